@@ -1,0 +1,36 @@
+//! What can go wrong, with data; the front end adds file, line and span.
+
+/// A specification that cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct BuildError {
+    /// Dotted path of the offending entry in the spec (`"body.region"`), empty when it is not one entry.
+    pub path: String,
+    /// What is wrong and what was expected.
+    pub message: String,
+    /// What to write instead, if there is something useful to say.
+    pub help: Option<String>,
+}
+
+impl BuildError {
+    pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
+        BuildError { path: path.into(), message: message.into(), help: None }
+    }
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// A run that went bad. The simulation keeps its last good state.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RunError {
+    #[error("step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) is not finite", position[0], position[1], position[2])]
+    NotFinite { step: u64, id: u64, position: [f64; 3] },
+    #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
+    Crossing { step: u64, i: u64, j: u64 },
+    #[error("step {step}: total energy grew from {before:.6e} to {after:.6e} without work: the step {time_step:.3e} is unstable")]
+    Unstable { step: u64, before: f64, after: f64, time_step: f64 },
+    #[error("step {step}: point {id} left the box through the fixed boundary on axis {axis}")]
+    Lost { step: u64, id: u64, axis: char },
+}

@@ -1,0 +1,11 @@
+//! peridyne: molecular dynamics and peridynamics as one mechanics, points that talk to a family of points.
+//!
+//! A [`spec::Spec`] says what to run; `run::build` turns it into a simulation; a simulation steps and
+//! answers with [`observe::Snapshot`]s. Lengths, masses and times are in whatever consistent unit system the
+//! spec uses; the engine itself is free of units.
+
+pub mod error;
+pub mod expression;
+pub mod observe;
+pub mod space;
+pub mod spec;

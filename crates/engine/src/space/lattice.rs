@@ -1,0 +1,114 @@
+//! Lattices: a cubic (square, linear) cell of edge `spacing` with a few sites in it.
+
+/// Kinds of lattices. `spacing` is the edge of the conventional cell, except for [`LatticeKind::Triangular`],
+/// where it is the distance between nearest neighbours (rows are √3/2 of it apart).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LatticeKind {
+    Chain,
+    Square,
+    Triangular,
+    Cubic,
+    Bcc,
+    Fcc,
+    Diamond,
+}
+
+impl LatticeKind {
+    pub const ALL: [LatticeKind; 7] = [
+        LatticeKind::Chain,
+        LatticeKind::Square,
+        LatticeKind::Triangular,
+        LatticeKind::Cubic,
+        LatticeKind::Bcc,
+        LatticeKind::Fcc,
+        LatticeKind::Diamond,
+    ];
+
+    /// Name in decks.
+    pub fn name(self) -> &'static str {
+        match self {
+            LatticeKind::Chain => "chain",
+            LatticeKind::Square => "square",
+            LatticeKind::Triangular => "triangular",
+            LatticeKind::Cubic => "cubic",
+            LatticeKind::Bcc => "bcc",
+            LatticeKind::Fcc => "fcc",
+            LatticeKind::Diamond => "diamond",
+        }
+    }
+
+    /// Number of space dimensions.
+    pub fn dimension(self) -> usize {
+        match self {
+            LatticeKind::Chain => 1,
+            LatticeKind::Square | LatticeKind::Triangular => 2,
+            _ => 3,
+        }
+    }
+
+    /// Sites of the cell in quarters of the cell's edges (`[B][3]`, integers).
+    ///
+    /// Triangular: a rectangular cell of `spacing` × `√3 spacing` with sites at (0,0) and (½,½).
+    pub fn basis(self) -> &'static [[i32; 3]] {
+        match self {
+            LatticeKind::Chain | LatticeKind::Square | LatticeKind::Cubic => &[[0, 0, 0]],
+            LatticeKind::Triangular => &[[0, 0, 0], [2, 2, 0]],
+            LatticeKind::Bcc => &[[0, 0, 0], [2, 2, 2]],
+            LatticeKind::Fcc => &[[0, 0, 0], [0, 2, 2], [2, 0, 2], [2, 2, 0]],
+            LatticeKind::Diamond => {
+                &[[0, 0, 0], [0, 2, 2], [2, 0, 2], [2, 2, 0], [1, 1, 1], [1, 3, 3], [3, 1, 3], [3, 3, 1]]
+            }
+        }
+    }
+
+    /// Squares of the cell's edges in units of `spacing²` (integers: 1, or 3 for the long edge of the
+    /// triangular cell), so that squared lattice distances are exact integers over 16.
+    pub fn edge_squared(self) -> [i64; 3] {
+        match self {
+            LatticeKind::Triangular => [1, 3, 1],
+            _ => [1, 1, 1],
+        }
+    }
+
+    /// Edges of the cell in units of `spacing`.
+    pub fn edges(self) -> [f64; 3] {
+        self.edge_squared().map(|s| (s as f64).sqrt())
+    }
+
+    /// Distance between nearest neighbours in units of `spacing`.
+    pub fn nearest(self) -> f64 {
+        match self {
+            LatticeKind::Bcc => 0.75f64.sqrt(),
+            LatticeKind::Fcc => 0.5f64.sqrt(),
+            LatticeKind::Diamond => 0.1875f64.sqrt(),
+            _ => 1.0,
+        }
+    }
+
+    /// Volume (area, length) of one site in units of `spacing^D`.
+    pub fn site_volume(self) -> f64 {
+        let e = self.edges();
+        e.iter().take(self.dimension()).product::<f64>() / self.basis().len() as f64
+    }
+}
+
+/// A lattice in space: kind, spacing (length) and the position of the first basis site of cell (0,0,0).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    pub kind: LatticeKind,
+    pub spacing: f64,
+    pub origin: [f64; 3],
+}
+
+impl Lattice {
+    /// Coordinates of a site: `quarter` counts quarters of the cell's edges from the origin (site `b` of cell
+    /// `(i,j,k)` has `quarter = 4(i,j,k) + basis[b]`).
+    pub fn position(&self, quarter: [i32; 3]) -> [f64; 3] {
+        let e = self.kind.edges();
+        let mut x = [0.0; 3];
+        for a in 0..self.kind.dimension() {
+            x[a] = self.origin[a] + self.spacing * e[a] * (quarter[a] as f64 / 4.0);
+        }
+        x
+    }
+}
