@@ -14,7 +14,11 @@ pub struct BuildError {
 
 impl BuildError {
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
-        BuildError { path: path.into(), message: message.into(), help: None }
+        BuildError {
+            path: path.into(),
+            message: message.into(),
+            help: None,
+        }
     }
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -26,11 +30,22 @@ impl BuildError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RunError {
     #[error("step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) is not finite", position[0], position[1], position[2])]
-    NotFinite { step: u64, id: u64, position: [f64; 3] },
+    NotFinite {
+        step: u64,
+        id: u64,
+        position: [f64; 3],
+    },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
-    #[error("step {step}: total energy grew from {before:.6e} to {after:.6e} without work: the step {time_step:.3e} is unstable")]
-    Unstable { step: u64, before: f64, after: f64, time_step: f64 },
+    #[error(
+        "step {step}: total energy grew from {before:.6e} to {after:.6e} without work: the step {time_step:.3e} is unstable"
+    )]
+    Unstable {
+        step: u64,
+        before: f64,
+        after: f64,
+        time_step: f64,
+    },
     #[error("step {step}: point {id} left the box through the fixed boundary on axis {axis}")]
     Lost { step: u64, id: u64, axis: char },
 }

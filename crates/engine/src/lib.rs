@@ -4,8 +4,13 @@
 //! answers with [`observe::Snapshot`]s. Lengths, masses and times are in whatever consistent unit system the
 //! spec uses; the engine itself is free of units.
 
+pub mod body;
 pub mod error;
+pub mod execute;
 pub mod expression;
+pub mod family;
+pub mod interaction;
+pub mod law;
 pub mod observe;
 pub mod space;
 pub mod spec;

@@ -65,7 +65,13 @@ pub enum BodySpec {
         perturb: Option<Perturbation>,
     },
     /// Given lattice sites, in quarters of the cell's edges (see [`crate::space::lattice::Lattice::position`]).
-    Sites { kind: LatticeKind, spacing: f64, origin: [f64; 3], quarters: Vec<[i32; 3]>, volume: Option<f64> },
+    Sites {
+        kind: LatticeKind,
+        spacing: f64,
+        origin: [f64; 3],
+        quarters: Vec<[i32; 3]>,
+        volume: Option<f64>,
+    },
     /// Points with volumes and marks.
     Cloud(Cloud),
 }
@@ -248,7 +254,11 @@ pub enum CrackShape {
     /// Segment between two points (2-D; in 3-D extruded along z without end).
     Segment { from: [f64; 3], to: [f64; 3] },
     /// Disk with centre, unit normal and radius (3-D).
-    Disk { center: [f64; 3], normal: [f64; 3], radius: f64 },
+    Disk {
+        center: [f64; 3],
+        normal: [f64; 3],
+        radius: f64,
+    },
     /// Flat polygon with three or more corners (3-D).
     Polygon { corners: Vec<[f64; 3]> },
     /// Point on a chain (1-D).
@@ -292,7 +302,10 @@ pub enum ConditionKind {
     BodyForce([Option<Expression>; 3]),
     /// Traction (force / area) on the set, spread over its points by volume; the area defaults to one lattice
     /// face (`spacing^(D−1)` times the section) per point.
-    Traction { value: [Option<Expression>; 3], area: Option<f64> },
+    Traction {
+        value: [Option<Expression>; 3],
+        area: Option<f64>,
+    },
     /// Viscous force density −c v (mass / volume / time).
     Damping(Expression),
 }
@@ -311,7 +324,11 @@ pub enum IndenterMotion {
     /// Centre as a function of t (x, y, z in the expressions are 0).
     Kinematic([Expression; 3]),
     /// A body with mass, start and initial velocity.
-    Free { mass: f64, center: [f64; 3], velocity: [f64; 3] },
+    Free {
+        mass: f64,
+        center: [f64; 3],
+        velocity: [f64; 3],
+    },
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,133 @@
+//! Time per directed bond of the force sweep: `cargo run --release --example sweep [simd]`.
+use peridyne::body::{Body, Layout, zeros};
+use peridyne::execute::simd::Simd;
+use peridyne::family::stencil::Stencil;
+use peridyne::interaction::stencil::*;
+use peridyne::interaction::*;
+use peridyne::law::Law;
+use peridyne::law::solid::{bond_based::BondBased, eam_like::*};
+use peridyne::space::lattice::*;
+use peridyne::spec::Horizon;
+use std::time::Instant;
+
+fn time<W: Law>(
+    name: &str,
+    law: W,
+    pc: PointConstants,
+    fracture: bool,
+    contact: bool,
+    simd: Simd,
+    disk: bool,
+) {
+    let h = 0.0005;
+    let lattice = Lattice {
+        kind: LatticeKind::Cubic,
+        spacing: h,
+        origin: [0.0; 3],
+    };
+    let mut q = vec![];
+    if disk {
+        for z in -74..=74 {
+            for y in -5..=0 {
+                for x in -74..=74i32 {
+                    if x * x + z * z <= 74 * 74 {
+                        q.push([4 * x, 4 * y, 4 * z])
+                    }
+                }
+            }
+        }
+    } else {
+        for z in 0..60 {
+            for y in 0..60 {
+                for x in 0..60 {
+                    q.push([4 * x, 4 * y, 4 * z])
+                }
+            }
+        }
+    }
+    let st = Stencil::new(LatticeKind::Cubic, h, Horizon::Ratio(3));
+    let body = Body::<3>::on_lattice(lattice, &q, st.reach, [false; 3], h * h * h).unwrap();
+    let Layout::Grid(grid) = &body.layout else {
+        panic!()
+    };
+    let weight = |r0: f64| peridyne::family::volume_fraction(r0, 3.0 * h, h);
+    let mut it = StencilInteraction::new(StencilParts {
+        body: &body,
+        grid,
+        stencil: &st,
+        law,
+        weight: &weight,
+        point_constants: pc,
+        toughness: vec![Toughness {
+            s00: if fracture { 0.0005 } else { f64::INFINITY },
+            alpha: 0.25,
+        }],
+        repulsion: contact.then_some(Repulsion {
+            stiffness: 1e26,
+            bonded: 0.9,
+            range: 1.35 * h,
+        }),
+        simd,
+    });
+    it.prepare(&body);
+    let mut u = body.at_rest();
+    for &s in &body.slots {
+        let p = body.position(s as usize);
+        for a in 0..3 {
+            u[a][s as usize] = 2e-5 * h * ((p[a] + 2.0 * p[(a + 1) % 3]) * 300.0).sin();
+        }
+    }
+    let mut f = zeros::<3>(body.len);
+    let mut best = f64::MAX;
+    for _ in 0..if simd == Simd::Portable { 2 } else { 8 } {
+        let t = Instant::now();
+        it.forces(&body, &u, &mut f, Sweep::Evolve);
+        best = best.min(t.elapsed().as_secs_f64());
+    }
+    println!(
+        "{name:14} {:9} fracture {fracture:5} contact {contact:5} {} points: {:.3} ns/bond  {:.2} ms  {} B/point",
+        simd.name(),
+        body.points(),
+        best * 1e9 / it.directed_bonds() as f64,
+        best * 1e3,
+        (it.bytes() + body.bytes()) / body.points()
+    );
+}
+
+fn main() {
+    let pick = std::env::args().nth(1);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(std::env::args().nth(2).map_or(1, |n| n.parse().unwrap()))
+        .build()
+        .unwrap();
+    pool.install(|| {
+        for simd in Simd::available() {
+            if pick.as_ref().is_some_and(|p| p != simd.name()) {
+                continue;
+            }
+            for disk in [true, false] {
+                for (f, c) in [(false, false), (true, false), (true, true)] {
+                    time(
+                        "pmb",
+                        BondBased { c: 1.6863e22 },
+                        PointConstants::None,
+                        f,
+                        c,
+                        simd,
+                        disk,
+                    );
+                    let s = Solid::lps(3, 14.9e9 * (1.0 - 2.0 / 3.0), 14.9e9);
+                    time(
+                        "lps",
+                        EamLike { ratio: s.ratio() },
+                        PointConstants::Solid(vec![s]),
+                        f,
+                        c,
+                        simd,
+                        disk,
+                    );
+                }
+            }
+        }
+    });
+}

@@ -1,0 +1,229 @@
+//! Bodies from lattice sites and from clouds.
+
+use super::{Body, Grid, Layout, Values};
+use crate::error::BuildError;
+use crate::execute::lane::TILE;
+use crate::space::AXES;
+use crate::space::lattice::Lattice;
+
+impl<const D: usize> Body<D> {
+    /// A body on the sites of a lattice (`[N][3]` quarters of the cell's edges).
+    ///
+    /// Point ids follow the order of `quarters`. `reach` is the number of cells a bond spans; on `periodic` axes the
+    /// period is the extent of the sites in whole cells. `volume` is per point.
+    pub fn on_lattice(
+        lattice: Lattice,
+        quarters: &[[i32; 3]],
+        reach: usize,
+        periodic: [bool; D],
+        volume: f64,
+    ) -> Result<Self, BuildError> {
+        let basis = lattice.kind.basis();
+        if quarters.is_empty() {
+            return Err(BuildError::new("body", "the body has no points"));
+        }
+        let mut low = [i32::MAX; D];
+        let mut high = [i32::MIN; D];
+        for q in quarters {
+            for a in 0..D {
+                low[a] = low[a].min(q[a].div_euclid(4));
+                high[a] = high[a].max(q[a].div_euclid(4));
+            }
+        }
+        let halo: [usize; D] = std::array::from_fn(|a| if periodic[a] { reach } else { 0 });
+        let extent: [usize; D] = std::array::from_fn(|a| (high[a] - low[a] + 1) as usize);
+        for a in 0..D {
+            if periodic[a] && extent[a] < reach {
+                return Err(BuildError::new(
+                    "periodic",
+                    format!(
+                        "the period along {} is {} cells, shorter than the horizon of {reach}",
+                        AXES[a], extent[a]
+                    ),
+                )
+                .help("make the body longer along this axis, or the horizon shorter"));
+            }
+        }
+        let cells: [usize; D] = std::array::from_fn(|a| extent[a] + 2 * halo[a]);
+        let low: [i32; D] = std::array::from_fn(|a| low[a] - halo[a] as i32);
+        let count: usize = cells.iter().product();
+        let stride = count.div_ceil(TILE) * TILE;
+        let mut grid = Grid {
+            lattice,
+            cells,
+            low,
+            halo,
+            stride,
+            guard: 0,
+            present: vec![],
+            owned: vec![],
+        };
+        let span = grid.shift([reach as i64; D], 0).unsigned_abs() as usize;
+        grid.guard = span.div_ceil(TILE) * TILE + TILE;
+        if grid.len() > u32::MAX as usize {
+            return Err(BuildError::new(
+                "body",
+                format!("{} lattice slots are more than 2³² − 1", grid.len()),
+            ));
+        }
+        grid.owned = vec![0; grid.tiles()];
+        let mut slots = Vec::with_capacity(quarters.len());
+        for q in quarters {
+            let cell: [i64; D] = std::array::from_fn(|a| (q[a].div_euclid(4) - grid.low[a]) as i64);
+            let rest: [i32; 3] =
+                std::array::from_fn(|a| if a < D { q[a].rem_euclid(4) } else { 0 });
+            let Some(b) = basis.iter().position(|s| *s == rest) else {
+                return Err(BuildError::new(
+                    "body",
+                    format!("{q:?} quarters is not a site of the lattice"),
+                ));
+            };
+            let slot = grid.slot(cell, b).expect("the box was made of these sites");
+            let i = slot - grid.guard;
+            if grid.owned[i / TILE] >> (i % TILE) & 1 == 1 {
+                return Err(BuildError::new(
+                    "body",
+                    format!("two points on one lattice site {q:?}"),
+                ));
+            }
+            grid.owned[i / TILE] |= 1 << (i % TILE);
+            slots.push(slot as u32);
+        }
+        grid.present = grid.owned.clone();
+        let images = if periodic.contains(&true) {
+            images(&mut grid, extent)
+        } else {
+            vec![]
+        };
+        let edges = lattice.kind.edges();
+        let period = std::array::from_fn(|a| {
+            periodic[a].then(|| extent[a] as f64 * edges[a] * lattice.spacing)
+        });
+        let spacing = lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64);
+        let len = grid.len();
+        Ok(Body {
+            layout: Layout::Grid(grid),
+            slots,
+            len,
+            spacing,
+            volume: Values::Uniform(volume),
+            density: Values::Uniform(1.0),
+            period,
+            material: vec![],
+            mark: vec![],
+            images,
+        })
+    }
+
+    /// A body of free points (`[N]` positions and volumes), stored in an order that keeps neighbours close.
+    pub fn from_cloud(
+        position: &[[f64; 3]],
+        volume: &[f64],
+        mark: &[i32],
+        spacing: f64,
+        period: [Option<f64>; D],
+    ) -> Result<Self, BuildError> {
+        let n = position.len();
+        if n == 0 {
+            return Err(BuildError::new("body", "the body has no points"));
+        }
+        if let Some(i) = position
+            .iter()
+            .position(|x| x[..D].iter().any(|c| !c.is_finite()))
+        {
+            return Err(BuildError::new(
+                "body",
+                format!(
+                    "the position of point {} is not finite: {:?}",
+                    i + 1,
+                    position[i]
+                ),
+            ));
+        }
+        if let Some(i) = volume.iter().position(|v| !(*v > 0.0 && v.is_finite())) {
+            return Err(BuildError::new(
+                "body",
+                format!(
+                    "the volume of point {} is {}, expected a positive number",
+                    i + 1,
+                    volume[i]
+                ),
+            ));
+        }
+        let order = spatial_order::<D>(position, 4.0 * spacing);
+        let len = n.div_ceil(TILE) * TILE;
+        let mut slots = vec![0u32; n];
+        // absent slots of the last tile repeat the last point; their bonds are dead
+        let mut x: [Vec<f64>; D] =
+            std::array::from_fn(|a| vec![position[*order.last().unwrap_or(&0) as usize][a]; len]);
+        for (slot, &id) in order.iter().enumerate() {
+            slots[id as usize] = slot as u32;
+            for a in 0..D {
+                x[a][slot] = position[id as usize][a];
+            }
+        }
+        let volume = Values::from_points(volume, &slots, len, 0.0);
+        Ok(Body {
+            layout: Layout::Cloud(x),
+            slots,
+            len,
+            spacing,
+            volume,
+            density: Values::Uniform(1.0),
+            period,
+            material: vec![],
+            mark: mark.to_vec(),
+            images: vec![],
+        })
+    }
+}
+
+/// Image slots of a periodic grid: every halo cell copies the cell one period away.
+fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Vec<(u32, u32)> {
+    let mut images = vec![];
+    let count: usize = grid.cells.iter().product();
+    for b in 0..grid.basis() {
+        for i in 0..count {
+            let copy = grid.guard + b * grid.stride + i;
+            let (c, _) = grid.cell(copy);
+            let from: [i64; D] = std::array::from_fn(|a| {
+                let h = grid.halo[a] as i64;
+                (c[a] - h).rem_euclid(extent[a] as i64) + h
+            });
+            // axes without halo map onto themselves
+            if from != c {
+                let original = grid.slot(from, b).expect("inside the box");
+                if grid.is_owned(original) {
+                    let k = copy - grid.guard;
+                    grid.present[k / TILE] |= 1 << (k % TILE);
+                    images.push((copy as u32, original as u32));
+                }
+            }
+        }
+    }
+    images
+}
+
+/// Ids sorted by cells of edge `cell`, cells in serpentine-free lexicographic order.
+fn spatial_order<const D: usize>(position: &[[f64; 3]], cell: f64) -> Vec<u32> {
+    let mut low = [f64::INFINITY; D];
+    for x in position {
+        for a in 0..D {
+            low[a] = low[a].min(x[a]);
+        }
+    }
+    let key = |x: &[f64; 3]| -> [i64; 3] {
+        let mut k = [0i64; 3];
+        for a in 0..D {
+            k[2 - a] = ((x[a] - low[a]) / cell) as i64;
+        }
+        k
+    };
+    let mut order: Vec<(([i64; 3], u32),)> = position
+        .iter()
+        .enumerate()
+        .map(|(i, x)| ((key(x), i as u32),))
+        .collect();
+    order.sort_unstable();
+    order.into_iter().map(|((_, i),)| i).collect()
+}

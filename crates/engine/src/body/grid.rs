@@ -1,0 +1,126 @@
+//! The integer grid of a lattice body: one box of cells per basis site, cut into tiles of eight slots.
+
+use crate::execute::lane::TILE;
+use crate::space::Point;
+use crate::space::lattice::Lattice;
+
+#[derive(Debug, Clone)]
+pub struct Grid<const D: usize> {
+    pub lattice: Lattice,
+    /// Cells along each axis, image cells of periodic axes included.
+    pub cells: [usize; D],
+    /// Lattice coordinates of the box's first cell.
+    pub low: [i32; D],
+    /// Image cells on each side of periodic axes.
+    pub halo: [usize; D],
+    /// Slots of one sublattice: the cells, rounded up to whole tiles.
+    pub stride: usize,
+    /// Slots before the first and after the last, so that every offset stays inside the arrays.
+    pub guard: usize,
+    /// One bit per slot (guards excluded): a point or an image of one is there. One byte per tile.
+    pub present: Vec<u8>,
+    /// Like `present`, images excluded.
+    pub owned: Vec<u8>,
+}
+
+impl<const D: usize> Grid<D> {
+    /// Number of sites in a cell.
+    pub fn basis(&self) -> usize {
+        self.lattice.kind.basis().len()
+    }
+
+    /// Tiles of the whole grid.
+    pub fn tiles(&self) -> usize {
+        self.basis() * self.stride / TILE
+    }
+
+    /// Slots, guards included.
+    pub fn len(&self) -> usize {
+        2 * self.guard + self.basis() * self.stride
+    }
+
+    /// First slot of a tile.
+    #[inline(always)]
+    pub fn tile_slot(&self, tile: usize) -> usize {
+        self.guard + tile * TILE
+    }
+
+    /// Sublattice of a tile.
+    #[inline(always)]
+    pub fn tile_sublattice(&self, tile: usize) -> usize {
+        tile * TILE / self.stride
+    }
+
+    /// Slot of site `b` of the cell at box coordinates `c`, if inside the box.
+    pub fn slot(&self, c: [i64; D], b: usize) -> Option<usize> {
+        let mut i = 0usize;
+        for a in (0..D).rev() {
+            if c[a] < 0 || c[a] >= self.cells[a] as i64 {
+                return None;
+            }
+            i = i * self.cells[a] + c[a] as usize;
+        }
+        Some(self.guard + b * self.stride + i)
+    }
+
+    /// Box coordinates and sublattice of a slot inside the grid.
+    pub fn cell(&self, slot: usize) -> ([i64; D], usize) {
+        let i = slot - self.guard;
+        let (b, mut i) = (i / self.stride, i % self.stride);
+        let c = std::array::from_fn(|a| {
+            let n = self.cells[a];
+            let c = if a + 1 < D { i % n } else { i };
+            i /= n;
+            c as i64
+        });
+        (c, b)
+    }
+
+    /// Number of slots from a cell to the cell `d` cells away and `db` sublattices on.
+    pub fn shift(&self, d: [i64; D], db: i64) -> i64 {
+        let mut s = 0;
+        for a in (0..D).rev() {
+            s = s * self.cells[a] as i64 + d[a];
+        }
+        s + db * self.stride as i64
+    }
+
+    fn bit(set: &[u8], i: usize) -> bool {
+        set[i / TILE] >> (i % TILE) & 1 == 1
+    }
+
+    /// Is there a point (or an image of one) in this slot?
+    pub fn is_present(&self, slot: usize) -> bool {
+        Self::bit(&self.present, slot - self.guard)
+    }
+
+    /// Is there a point in this slot?
+    pub fn is_owned(&self, slot: usize) -> bool {
+        Self::bit(&self.owned, slot - self.guard)
+    }
+
+    /// The slot `d` cells and `to − from` sublattices from `slot`, if a point or image is there.
+    pub fn neighbour(&self, slot: usize, d: [i32; D], to: usize) -> Option<usize> {
+        let (c, _) = self.cell(slot);
+        let j = self.slot(std::array::from_fn(|a| c[a] + d[a] as i64), to)?;
+        self.is_present(j).then_some(j)
+    }
+
+    /// Quarters of the cell's edges from the lattice origin to a slot.
+    pub fn quarter(&self, slot: usize) -> [i32; 3] {
+        let (c, b) = self.cell(slot);
+        let q = self.lattice.kind.basis()[b];
+        std::array::from_fn(|a| {
+            if a < D {
+                4 * (c[a] as i32 + self.low[a]) + q[a]
+            } else {
+                0
+            }
+        })
+    }
+
+    /// Reference position of a slot.
+    pub fn position(&self, slot: usize) -> Point {
+        self.lattice.position(self.quarter(slot))
+    }
+}

@@ -1,0 +1,116 @@
+//! Bodies: reference points, volumes, densities, marks, and where each point's numbers are stored.
+//!
+//! Fields live in *slots*. On a lattice the slots are the cells of a box (so that a neighbour is a fixed number of
+//! slots away); in a cloud they are the points in an order that keeps neighbours close in memory.
+
+pub mod build;
+pub mod grid;
+pub mod values;
+
+pub use grid::Grid;
+pub use values::Values;
+
+use crate::space::Point;
+
+/// `[D][slots]`: a vector per slot.
+pub type Field<const D: usize> = [Vec<f64>; D];
+
+/// A vector field of zeros.
+pub fn zeros<const D: usize>(slots: usize) -> Field<D> {
+    std::array::from_fn(|_| vec![0.0; slots])
+}
+
+/// Displacement of absent sites, in spacings: so far that no test of nearness or breaking can ever hold.
+pub const FAR: f64 = 1e20;
+
+#[derive(Debug, Clone)]
+pub enum Layout<const D: usize> {
+    Grid(Grid<D>),
+    /// Reference coordinates per slot.
+    Cloud(Field<D>),
+}
+
+/// Reference configuration of a body in D dimensions.
+#[derive(Debug, Clone)]
+pub struct Body<const D: usize> {
+    pub layout: Layout<D>,
+    /// Slot of each point, in order of id.
+    pub slots: Vec<u32>,
+    /// Number of slots, guards included; a multiple of the tile where it matters.
+    pub len: usize,
+    /// Typical distance of nearest points (length).
+    pub spacing: f64,
+    /// Volume per point (length^D × section).
+    pub volume: Values,
+    /// Mass density per point.
+    pub density: Values,
+    /// Period per axis, if periodic.
+    pub period: [Option<f64>; D],
+    /// Material per slot; empty when there is one.
+    pub material: Vec<u8>,
+    /// Mark per point, in order of id; empty: all 0.
+    pub mark: Vec<i32>,
+    /// `(copy, original)` slots of periodic images.
+    pub images: Vec<(u32, u32)>,
+}
+
+impl<const D: usize> Body<D> {
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Reference position of a slot, padded to three components.
+    pub fn position(&self, slot: usize) -> Point {
+        match &self.layout {
+            Layout::Grid(g) => g.position(slot),
+            Layout::Cloud(x) => std::array::from_fn(|a| if a < D { x[a][slot] } else { 0.0 }),
+        }
+    }
+
+    pub fn material_of(&self, slot: usize) -> usize {
+        self.material.get(slot).map_or(0, |&m| m as usize)
+    }
+
+    /// Refresh the periodic images of a field.
+    pub fn fill_images(&self, field: &mut [f64]) {
+        for &(copy, original) in &self.images {
+            field[copy as usize] = field[original as usize];
+        }
+    }
+
+    /// A displacement field at rest: 0 on points, far away on absent sites.
+    pub fn at_rest(&self) -> Field<D> {
+        let mut u: Field<D> = std::array::from_fn(|_| vec![FAR * self.spacing; self.len]);
+        for c in &mut u {
+            for &s in &self.slots {
+                c[s as usize] = 0.0;
+            }
+            self.fill_images(c);
+        }
+        u
+    }
+
+    /// Mass of the body.
+    pub fn mass(&self) -> f64 {
+        self.slots
+            .iter()
+            .map(|&s| self.volume.at(s as usize) * self.density.at(s as usize))
+            .sum()
+    }
+
+    /// Bytes held by the body.
+    pub fn bytes(&self) -> usize {
+        let layout = match &self.layout {
+            Layout::Grid(g) => g.present.len(),
+            Layout::Cloud(x) => x.iter().map(|c| c.len() * 8).sum(),
+        };
+        layout
+            + self.slots.len() * 4
+            + self.volume.bytes()
+            + self.density.bytes()
+            + self.material.len()
+            + self.mark.len() * 4
+            + self.images.len() * 8
+    }
+}

@@ -1,0 +1,145 @@
+//! Four numbers in an AVX2 register.
+
+use super::Lane;
+use std::arch::x86_64::*;
+use std::ops::{Add, Mul, Sub};
+
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub struct F64x4(__m256d);
+
+/// All-ones lanes for the bits that are 0.
+static DEAD: [[u64; 4]; 16] = {
+    let mut t = [[0u64; 4]; 16];
+    let mut b = 0;
+    while b < 16 {
+        let mut l = 0;
+        while l < 4 {
+            if b >> l & 1 == 0 {
+                t[b][l] = u64::MAX;
+            }
+            l += 1;
+        }
+        b += 1;
+    }
+    t
+};
+
+// SAFETY, for every block in this file: the instructions exist, because `simd` calls these functions only after
+// detecting AVX2 and FMA; pointers are as the trait's callers promise.
+impl Add for F64x4 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        unsafe { F64x4(_mm256_add_pd(self.0, o.0)) }
+    }
+}
+impl Sub for F64x4 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        unsafe { F64x4(_mm256_sub_pd(self.0, o.0)) }
+    }
+}
+impl Mul for F64x4 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        unsafe { F64x4(_mm256_mul_pd(self.0, o.0)) }
+    }
+}
+
+impl Lane for F64x4 {
+    const N: usize = 4;
+    type Mask = __m256d;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        unsafe { F64x4(_mm256_set1_pd(x)) }
+    }
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> Self {
+        unsafe { F64x4(_mm256_loadu_pd(p)) }
+    }
+    #[inline(always)]
+    unsafe fn store(self, p: *mut f64) {
+        unsafe { _mm256_storeu_pd(p, self.0) }
+    }
+    /// Four whole-record loads and a transpose: AVX2 gathers are slower.
+    #[inline(always)]
+    unsafe fn gather4(base: *const f64, index: *const u32) -> [Self; 4] {
+        unsafe {
+            let r = |l: usize| _mm256_loadu_pd(base.add(4 * *index.add(l) as usize));
+            let (a, b, c, d) = (r(0), r(1), r(2), r(3));
+            let (ab0, ab1) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+            let (cd0, cd1) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+            [
+                F64x4(_mm256_permute2f128_pd::<0x20>(ab0, cd0)),
+                F64x4(_mm256_permute2f128_pd::<0x20>(ab1, cd1)),
+                F64x4(_mm256_permute2f128_pd::<0x31>(ab0, cd0)),
+                F64x4(_mm256_permute2f128_pd::<0x31>(ab1, cd1)),
+            ]
+        }
+    }
+    #[inline(always)]
+    fn fma(self, a: Self, b: Self) -> Self {
+        unsafe { F64x4(_mm256_fmadd_pd(self.0, a.0, b.0)) }
+    }
+    #[inline(always)]
+    fn div(self, a: Self) -> Self {
+        unsafe { F64x4(_mm256_div_pd(self.0, a.0)) }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        unsafe { F64x4(_mm256_sqrt_pd(self.0)) }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        unsafe { F64x4(_mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0)) }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        unsafe { F64x4(_mm256_min_pd(self.0, other.0)) }
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        unsafe {
+            F64x4(_mm256_round_pd::<
+                { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
+            >(self.0))
+        }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> __m256d {
+        unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn ge(self, other: Self) -> __m256d {
+        unsafe { _mm256_cmp_pd::<_CMP_GE_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn dead(bits: u8, part: usize) -> __m256d {
+        // a table load costs no arithmetic port
+        unsafe { _mm256_loadu_pd(DEAD[(bits >> (4 * part) & 15) as usize].as_ptr().cast()) }
+    }
+    #[inline(always)]
+    fn or(a: __m256d, b: __m256d) -> __m256d {
+        unsafe { _mm256_or_pd(a, b) }
+    }
+    #[inline(always)]
+    fn bits(m: __m256d) -> u32 {
+        unsafe { _mm256_movemask_pd(m) as u32 }
+    }
+    #[inline(always)]
+    fn nan_if(self, m: __m256d) -> Self {
+        unsafe { F64x4(_mm256_or_pd(self.0, m)) }
+    }
+    #[inline(always)]
+    fn zero_if(self, m: __m256d) -> Self {
+        unsafe { F64x4(_mm256_andnot_pd(m, self.0)) }
+    }
+    #[inline(always)]
+    fn select(m: __m256d, a: Self, b: Self) -> Self {
+        unsafe { F64x4(_mm256_blendv_pd(b.0, a.0, m)) }
+    }
+}

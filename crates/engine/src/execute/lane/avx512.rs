@@ -1,0 +1,119 @@
+//! Eight numbers in an AVX-512 register.
+
+use super::Lane;
+use std::arch::x86_64::*;
+use std::ops::{Add, Mul, Sub};
+
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub struct F64x8(__m512d);
+
+// SAFETY, for every block in this file: the instructions exist, because `simd` calls these functions only after
+// detecting AVX-512 F and DQ; pointers are as the trait's callers promise.
+impl Add for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        unsafe { F64x8(_mm512_add_pd(self.0, o.0)) }
+    }
+}
+impl Sub for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        unsafe { F64x8(_mm512_sub_pd(self.0, o.0)) }
+    }
+}
+impl Mul for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        unsafe { F64x8(_mm512_mul_pd(self.0, o.0)) }
+    }
+}
+
+impl Lane for F64x8 {
+    const N: usize = 8;
+    type Mask = __mmask8;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        unsafe { F64x8(_mm512_set1_pd(x)) }
+    }
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> Self {
+        unsafe { F64x8(_mm512_loadu_pd(p)) }
+    }
+    #[inline(always)]
+    unsafe fn store(self, p: *mut f64) {
+        unsafe { _mm512_storeu_pd(p, self.0) }
+    }
+    #[inline(always)]
+    unsafe fn gather4(base: *const f64, index: *const u32) -> [Self; 4] {
+        unsafe {
+            let i = _mm256_slli_epi32::<2>(_mm256_loadu_si256(index.cast()));
+            let g = |c: usize| F64x8(_mm512_i32gather_pd::<8>(i, base.add(c)));
+            [g(0), g(1), g(2), g(3)]
+        }
+    }
+    #[inline(always)]
+    fn fma(self, a: Self, b: Self) -> Self {
+        unsafe { F64x8(_mm512_fmadd_pd(self.0, a.0, b.0)) }
+    }
+    #[inline(always)]
+    fn div(self, a: Self) -> Self {
+        unsafe { F64x8(_mm512_div_pd(self.0, a.0)) }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        unsafe { F64x8(_mm512_sqrt_pd(self.0)) }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        unsafe { F64x8(_mm512_abs_pd(self.0)) }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        unsafe { F64x8(_mm512_min_pd(self.0, other.0)) }
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        unsafe {
+            F64x8(_mm512_roundscale_pd::<
+                { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
+            >(self.0))
+        }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> __mmask8 {
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn ge(self, other: Self) -> __mmask8 {
+        unsafe { _mm512_cmp_pd_mask::<_CMP_GE_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn dead(bits: u8, _part: usize) -> __mmask8 {
+        !bits
+    }
+    #[inline(always)]
+    fn or(a: __mmask8, b: __mmask8) -> __mmask8 {
+        a | b
+    }
+    #[inline(always)]
+    fn bits(m: __mmask8) -> u32 {
+        m as u32
+    }
+    #[inline(always)]
+    fn nan_if(self, m: __mmask8) -> Self {
+        unsafe { F64x8(_mm512_mask_mov_pd(self.0, m, _mm512_set1_pd(f64::NAN))) }
+    }
+    #[inline(always)]
+    fn zero_if(self, m: __mmask8) -> Self {
+        unsafe { F64x8(_mm512_maskz_mov_pd(!m, self.0)) }
+    }
+    #[inline(always)]
+    fn select(m: __mmask8, a: Self, b: Self) -> Self {
+        unsafe { F64x8(_mm512_mask_mov_pd(b.0, m, a.0)) }
+    }
+}

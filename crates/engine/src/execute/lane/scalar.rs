@@ -1,0 +1,87 @@
+//! One number: the portable reference.
+
+use super::Lane;
+
+impl Lane for f64 {
+    const N: usize = 1;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: f64) -> f64 {
+        x
+    }
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> f64 {
+        // SAFETY: the caller's promise
+        unsafe { *p }
+    }
+    #[inline(always)]
+    unsafe fn store(self, p: *mut f64) {
+        // SAFETY: the caller's promise
+        unsafe { *p = self }
+    }
+    #[inline(always)]
+    unsafe fn gather4(base: *const f64, index: *const u32) -> [f64; 4] {
+        // SAFETY: the caller's promise
+        unsafe {
+            let p = base.add(4 * *index as usize);
+            [*p, *p.add(1), *p.add(2), *p.add(3)]
+        }
+    }
+    #[inline(always)]
+    fn fma(self, a: f64, b: f64) -> f64 {
+        self.mul_add(a, b)
+    }
+    #[inline(always)]
+    fn div(self, a: f64) -> f64 {
+        self / a
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn min(self, other: f64) -> f64 {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn round(self) -> f64 {
+        self.round_ties_even()
+    }
+    #[inline(always)]
+    fn lt(self, other: f64) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn ge(self, other: f64) -> bool {
+        self >= other
+    }
+    #[inline(always)]
+    fn dead(bits: u8, part: usize) -> bool {
+        bits >> part & 1 == 0
+    }
+    #[inline(always)]
+    fn or(a: bool, b: bool) -> bool {
+        a | b
+    }
+    #[inline(always)]
+    fn bits(m: bool) -> u32 {
+        m as u32
+    }
+    #[inline(always)]
+    fn nan_if(self, m: bool) -> f64 {
+        if m { f64::NAN } else { self }
+    }
+    #[inline(always)]
+    fn zero_if(self, m: bool) -> f64 {
+        if m { 0.0 } else { self }
+    }
+    #[inline(always)]
+    fn select(m: bool, a: f64, b: f64) -> f64 {
+        if m { a } else { b }
+    }
+}

@@ -1,0 +1,5 @@
+//! How loops run: lanes of a vector register, and blocks of points shared out to threads.
+
+pub mod blocks;
+pub mod lane;
+pub mod simd;

@@ -1,0 +1,80 @@
+//! The one place where an instruction set is chosen: detected at start, or asked for.
+
+use super::lane::Lane;
+#[cfg(target_arch = "x86_64")]
+use super::lane::{avx2::F64x4, avx512::F64x8};
+
+/// Instruction sets with a path of their own. All give the same bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Simd {
+    Portable,
+    Avx2,
+    Avx512,
+}
+
+/// A loop over blocks of work, written once over any [`Lane`]; implement `block` with `#[inline(always)]`.
+pub trait Kernel: Sync {
+    type Out: Send;
+    /// Do block `b`.
+    fn block<L: Lane>(&self, b: usize) -> Self::Out;
+}
+
+impl Simd {
+    /// The widest instruction set of this machine.
+    pub fn detect() -> Simd {
+        *Simd::available().last().unwrap_or(&Simd::Portable)
+    }
+
+    /// All instruction sets that this machine has, the widest last.
+    pub fn available() -> Vec<Simd> {
+        #[allow(unused_mut)]
+        let mut all = vec![Simd::Portable];
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                all.push(Simd::Avx2);
+            }
+            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
+                all.push(Simd::Avx512);
+            }
+        }
+        all
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Simd::Portable => "portable",
+            Simd::Avx2 => "avx2",
+            Simd::Avx512 => "avx512",
+        }
+    }
+
+    /// Run block `b` of `kernel` with this instruction set.
+    ///
+    /// `self` must come from [`Simd::available`]: the tag is the proof that the instructions exist.
+    #[inline]
+    pub(crate) fn run<K: Kernel>(self, kernel: &K, b: usize) -> K::Out {
+        match self {
+            Simd::Portable => kernel.block::<f64>(b),
+            // SAFETY: the tag was made by detection
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx2 => unsafe { avx2(kernel, b) },
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx512 => unsafe { avx512(kernel, b) },
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => kernel.block::<f64>(b),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn avx2<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+    kernel.block::<F64x4>(b)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
+unsafe fn avx512<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+    kernel.block::<F64x8>(b)
+}

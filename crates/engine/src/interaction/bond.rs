@@ -1,0 +1,31 @@
+//! The arithmetic of one bond, shared by all families.
+
+use crate::execute::lane::{self, Lane};
+
+/// `ξ+η` and `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = η·(ξ + (ξ+η))`.
+#[inline(always)]
+pub fn deform<L: Lane, const D: usize>(eta: [L; D], xi: [L; D], inv_r0_squared: L) -> ([L; D], L) {
+    let mut y = eta;
+    for a in 0..D {
+        y[a] = eta[a] + xi[a];
+    }
+    let mut q = eta[0] * (y[0] + xi[0]);
+    for a in 1..D {
+        q = eta[a].fma(y[a] + xi[a], q);
+    }
+    (y, q * inv_r0_squared)
+}
+
+/// The critical value of `e` for a critical stretch: `e > s0 (2 + s0)` is `s > s0`.
+pub fn critical_e(s0: f64) -> f64 {
+    if s0 <= -1.0 { -1.0 } else { s0 * (2.0 + s0) }
+}
+
+/// The stretch that a critical `e` stands for.
+pub fn critical_stretch(e0: f64) -> f64 {
+    if e0.is_infinite() {
+        e0
+    } else {
+        lane::stretch(e0)
+    }
+}

@@ -1,0 +1,122 @@
+//! A law bound to a family: forces, energies and bonds of a body. Compiled once per law and family, called once
+//! per sweep.
+
+pub mod bond;
+pub mod stencil;
+
+use crate::body::{Body, Field};
+use crate::spec::CrackKind;
+use std::ops::AddAssign;
+
+/// What a sweep reports besides its forces.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tally {
+    /// Directed bonds that broke.
+    pub broken: u64,
+    /// Energy that they held (energy).
+    pub released: f64,
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, o: Tally) {
+        self.broken += o.broken;
+        self.released += o.released;
+    }
+}
+
+/// Short-range repulsion inside a family: `K V_j (r − d)` for `r < d = min(bonded r0, free h)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Repulsion {
+    /// Force / volume² / length.
+    pub stiffness: f64,
+    /// Fraction of the reference distance.
+    pub bonded: f64,
+    /// Range of pairs that are far apart in the reference (length).
+    pub range: f64,
+}
+
+impl Repulsion {
+    /// The distance d below which a pair of reference distance r0 repels.
+    pub fn distance(&self, r0: f64) -> f64 {
+        (self.bonded * r0).min(self.range)
+    }
+}
+
+/// Critical stretch of one material: `s0 = s00 − α s_min`; infinite `s00` never breaks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Toughness {
+    pub s00: f64,
+    pub alpha: f64,
+}
+
+/// May bonds break in this sweep?
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sweep {
+    /// Forces, then test and break, then the new critical stretch.
+    Evolve,
+    /// Forces only; the memory stays as it is.
+    Hold,
+}
+
+/// Is a bond of the reference family whole?
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BondState {
+    Whole,
+    Broken,
+}
+
+/// Energies and dilatation of all points, per slot.
+#[derive(Debug, Clone, Default)]
+pub struct PointEnergies {
+    /// Strain energy density of bonds (energy / volume).
+    pub strain: Vec<f64>,
+    /// Energy density of repulsion inside the family (energy / volume).
+    pub repulsion: Vec<f64>,
+    /// Dilatation θ (–).
+    pub dilatation: Vec<f64>,
+}
+
+/// A law on a family.
+pub trait Interaction<const D: usize>: Send + Sync {
+    /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
+    /// bonds' memory if asked to. Images of `u` must be fresh.
+    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep) -> Tally;
+
+    /// Energies and dilatation at `u`.
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
+
+    /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
+
+    /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot; 0 for points without a family.
+    fn damage(&self, body: &Body<D>, out: &mut [f64]);
+
+    /// Cut bonds whose end points satisfy `crosses`. Returns directed bonds cut. Call before the first sweep.
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64;
+
+    /// Compute what depends on the family (weighted volumes); after all `Absent` cuts, before the first sweep.
+    fn prepare(&mut self, body: &Body<D>);
+
+    /// Directed bonds of the reference family.
+    fn directed_bonds(&self) -> u64;
+
+    /// Size of the family of every slot.
+    fn family_size(&self, slot: usize) -> usize;
+
+    /// Critical stretch s0 of a slot (∞ before the first sweep).
+    fn critical_stretch(&self, slot: usize) -> f64;
+
+    /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
+    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool;
+
+    /// The mutable memory of bonds, for checkpoints: alive bytes and critical stretches.
+    fn memory(&mut self) -> (&mut [u8], &mut [f64]);
+
+    /// Bytes held.
+    fn bytes(&self) -> usize;
+}

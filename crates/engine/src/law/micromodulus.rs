@@ -1,0 +1,141 @@
+//! Stiffness constants of the bond-based solid from moduli, and critical stretch from fracture energy.
+//!
+//! All follow from three sums over a full family in the bulk, continuum integrals or discrete:
+//! `M1 = Σ ω ν V r0`, `M2 = Σ ω ν V r0²`, `m = Σ ω ν V r0²` with the law's own weights.
+
+use crate::law::influence::influence;
+use crate::spec::{Influence, Plane, PmbStiffness};
+
+/// Sums over a full bulk family: `first = Σ ω ν V r0`, `second = Σ ω ν V r0²`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    pub first: f64,
+    pub second: f64,
+}
+
+impl Moments {
+    /// Integrals over the ball (3-D), disk (2-D, times thickness) or segment (1-D, times area) of radius δ, by
+    /// composite Gauss quadrature of the influence function (exact to round-off for the polynomial ones).
+    pub fn continuum(dimension: usize, horizon: f64, section: f64, kind: Influence) -> Moments {
+        let shell = |r: f64| match dimension {
+            1 => 2.0 * section,
+            2 => 2.0 * std::f64::consts::PI * r * section,
+            _ => 4.0 * std::f64::consts::PI * r * r,
+        };
+        let integral = |p: i32| {
+            // five-point Gauss on 64 pieces; the spline's knot at δ/2 is a border
+            const X: [f64; 5] = [
+                -0.906179845938664,
+                -0.5384693101056831,
+                0.0,
+                0.5384693101056831,
+                0.906179845938664,
+            ];
+            const W: [f64; 5] = [
+                0.2369268850561891,
+                0.4786286704993665,
+                0.5688888888888889,
+                0.4786286704993665,
+                0.2369268850561891,
+            ];
+            let pieces = 64;
+            let h = horizon / pieces as f64;
+            (0..pieces)
+                .flat_map(|k| {
+                    X.iter()
+                        .zip(W)
+                        .map(move |(x, w)| (h * (k as f64 + 0.5 + 0.5 * x), 0.5 * h * w))
+                })
+                .map(|(r, w)| w * influence(kind, r, horizon) * r.powi(p) * shell(r))
+                .sum()
+        };
+        Moments {
+            first: integral(1),
+            second: integral(2),
+        }
+    }
+}
+
+/// Micromodulus c of the bond-based solid in `dimension` dimensions.
+///
+/// With `W = ¼ c M1 (tr²ε + 2 ε:ε)/(D(D+2))` the shear modulus is `G = c M1 / (2 D (D+2))` and the Lamé constant of
+/// the D dimensions equals it. Bulk modulus of the solid: K = 5G/3 (3-D and plane strain, where E = 5G/2); plane
+/// stress (ν = ⅓): E = 8G/3 and K = E/(3(1−2ν)) = E; 1-D: E = 3G, K is read as E.
+/// Full-ball values: 18K/(πδ⁴); 9E/(πtδ³), 48E/(5πtδ³); 2E/(Aδ²).
+pub fn micromodulus(
+    dimension: usize,
+    plane: Plane,
+    stiffness: PmbStiffness,
+    moments: Moments,
+) -> f64 {
+    let shear = match (stiffness, dimension, plane) {
+        (PmbStiffness::Micromodulus(c), ..) => return c,
+        (PmbStiffness::Bulk(e) | PmbStiffness::Young(e), 1, _) => e / 3.0,
+        (PmbStiffness::Bulk(k), 2, Plane::Stress) => k * 3.0 / 8.0,
+        (PmbStiffness::Bulk(k), ..) => 0.6 * k,
+        (PmbStiffness::Young(e), 2, Plane::Stress) => e * 3.0 / 8.0,
+        (PmbStiffness::Young(e), ..) => 0.4 * e,
+    };
+    let d = dimension as f64;
+    2.0 * d * (d + 2.0) * shear / moments.first
+}
+
+/// Critical stretch from a fracture energy G0 (energy / area): all bonds across a plane, at stretch s0, hold G0.
+///
+/// A unit area is crossed by bonds of energy `½ Σ |ξ_n| w dV` (each once), `w = ½ c ω s0² r0`, and
+/// `⟨|n_z|⟩ = 1, 2/π, ½` in 1, 2, 3 dimensions: `G0 = ¼ c s0² ⟨|n_z|⟩ M2`.
+/// Full-ball values: √(5G0/(9Kδ)) (3-D), √(4πG0/(9Eδ)) (plane stress); Silling & Askari 2005, Ha & Bobaru 2010.
+pub fn critical_stretch(dimension: usize, energy: f64, c: f64, moments: Moments) -> f64 {
+    let mean = match dimension {
+        1 => 1.0,
+        2 => std::f64::consts::FRAC_2_PI,
+        _ => 0.5,
+    };
+    (4.0 * energy / (c * mean * moments.second)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn close(a: f64, b: f64) {
+        assert!((a - b).abs() <= 1e-13 * b.abs(), "{a} is not {b}");
+    }
+
+    #[test]
+    fn full_ball_constants_are_the_published_ones() {
+        let (d, t) = (0.003, 0.002);
+        let m =
+            |dim| Moments::continuum(dim, d, if dim == 3 { 1.0 } else { t }, Influence::Constant);
+        let k = 14.9e9;
+        let c = micromodulus(3, Plane::Stress, PmbStiffness::Bulk(k), m(3));
+        close(c, 18.0 * k / (PI * d.powi(4)));
+        close(
+            micromodulus(2, Plane::Stress, PmbStiffness::Young(k), m(2)),
+            9.0 * k / (PI * t * d.powi(3)),
+        );
+        close(
+            micromodulus(2, Plane::Strain, PmbStiffness::Young(k), m(2)),
+            48.0 * k / (5.0 * PI * t * d.powi(3)),
+        );
+        close(
+            micromodulus(1, Plane::Stress, PmbStiffness::Young(k), m(1)),
+            2.0 * k / (t * d * d),
+        );
+        close(
+            critical_stretch(3, 10.0, c, m(3)),
+            (5.0 * 10.0 / (9.0 * k * d)).sqrt(),
+        );
+        let c = micromodulus(2, Plane::Stress, PmbStiffness::Young(k), m(2));
+        close(
+            critical_stretch(2, 10.0, c, m(2)),
+            (4.0 * PI * 10.0 / (9.0 * k * d)).sqrt(),
+        );
+        let c = micromodulus(2, Plane::Strain, PmbStiffness::Young(k), m(2));
+        close(
+            critical_stretch(2, 10.0, c, m(2)),
+            (5.0 * PI * 10.0 / (12.0 * k * d)).sqrt(),
+        );
+    }
+}

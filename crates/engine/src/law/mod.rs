@@ -1,0 +1,32 @@
+//! Laws: what one bond answers. A law is a small pure function, written once over any lane.
+//!
+//! Families hand every law the same three numbers of a bond: a constant `k` made from the reference, and
+//! `e = |ξ+η|²/|ξ|² − 1` in the form the law asks for: extension over current length `g = (r − r0)/r`, or stretch
+//! `s = (r − r0)/r0`.
+
+pub mod influence;
+pub mod micromodulus;
+pub mod solid;
+
+use crate::execute::lane::Lane;
+
+/// What one bond answers. Point fields (`i`, `j`: up to two numbers at either end) carry what differs from point to
+/// point: materials, weighted volumes, the pressure of the last share pass.
+pub trait Law: Copy + Send + Sync + 'static {
+    /// Does the force need a point scalar summed over the family first?
+    const SHARES: bool;
+    /// How many point fields `pull` reads.
+    const FIELDS: usize;
+
+    /// The bond constant `k` from reference length and `ω ν V_j`.
+    fn constant<L: Lane>(self, r0: L, inv_r0: L, weight: L) -> L;
+
+    /// Force density on i along `ξ + η`: the coefficient of `ξ + η`, with `g = (r − r0)/r`.
+    fn pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2]) -> L;
+
+    /// Energy density at i of one bond, with `x = k r0² s²`.
+    fn pair_energy<L: Lane>(self, x: L, i: [L; 2], j: [L; 2]) -> L;
+
+    /// Pressure factor at i: `P = factor · Σ k r0² s` (0 for laws that share nothing), from i's own fields.
+    fn pressure_factor<L: Lane>(self, own: L) -> L;
+}

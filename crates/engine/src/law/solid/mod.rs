@@ -1,0 +1,4 @@
+//! Peridynamic solids.
+
+pub mod bond_based;
+pub mod eam_like;
