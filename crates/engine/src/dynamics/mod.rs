@@ -1,0 +1,4 @@
+//! Motion in time.
+
+pub mod stable_step;
+pub mod verlet;
