@@ -1,6 +1,8 @@
 //! Space: lattices and regions. Everything here is three numbers wide; unused axes are 0.
 
+pub mod fill;
 pub mod lattice;
+pub mod membership;
 pub mod region;
 
 /// A point or vector of physical space; unused axes are 0.

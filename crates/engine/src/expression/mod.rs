@@ -1,0 +1,121 @@
+//! Expressions of x, y, z, t and named constants, such as `"0.1*sin(pi*x/L)"`.
+//!
+//! | | |
+//! |---|---|
+//! | numbers | `2`, `0.5`, `.5`, `1e-3` |
+//! | names | `x y z t`, the constants given, `pi`, `e` |
+//! | arithmetic | `+ - * / ^`; `^` is right associative and binds tighter than a sign: `-x^2 = -(x^2)` |
+//! | logic (0 or 1) | `< <= > >= == !=`, `&& \|\| !`; anything but 0 is true |
+//! | choice | `a ? b : c`, `if(a, b, c)` |
+//! | functions | `sin cos tan asin acos atan atan2 sinh cosh tanh exp log` (natural; also `ln`) `log10 sqrt abs min max floor ceil sign step clamp hypot` |
+//!
+//! `step(a)` is 0 for a < 0 and 1 otherwise; `clamp(a, low, high)`; `min` and `max` take two or more.
+//! Both sides of a choice are evaluated; the one not taken may be NaN without harm.
+
+mod op;
+mod parse;
+#[cfg(test)]
+mod tests;
+
+use op::Op;
+use std::fmt;
+use std::ops::Range;
+
+/// Most numbers an expression may have waiting at once while it is evaluated.
+pub(crate) const STACK: usize = 32;
+
+/// A compiled expression: a flat stack program, evaluated without allocation.
+///
+/// ```
+/// use peridyne::expression::Expression;
+/// let u = Expression::parse("a*x^2 + (t > 1 ? 1 : 0)", &[("a", 3.0)]).unwrap();
+/// assert_eq!(u.eval(&[2.0, 0.0, 0.0], 2.0), 13.0);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    source: String,
+    program: Vec<Op>,
+}
+
+/// Why a text is not an expression.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExpressionError {
+    pub message: String,
+    /// Bytes of the source that are to blame; may be empty at its end.
+    pub span: Range<usize>,
+    pub help: Option<String>,
+    /// The text that was parsed.
+    pub source: String,
+}
+
+impl Expression {
+    /// Compiles `source`; `constants` are names and values that may be used in it beside `pi` and `e`.
+    ///
+    /// `x`, `y`, `z`, `t` and function names are never looked up among the constants.
+    pub fn parse(source: &str, constants: &[(&str, f64)]) -> Result<Self, ExpressionError> {
+        let program = parse::program(source, constants)?;
+        Ok(Expression {
+            source: source.to_string(),
+            program,
+        })
+    }
+
+    pub fn constant(value: f64) -> Self {
+        Expression {
+            source: format!("{value}"),
+            program: vec![Op::Push(value)],
+        }
+    }
+
+    /// Value at the point `x` (length) at time `t`.
+    pub fn eval(&self, x: &[f64; 3], t: f64) -> f64 {
+        op::run(&self.program, x, t)
+    }
+
+    /// The value, if it depends on nothing.
+    pub fn as_constant(&self) -> Option<f64> {
+        match self.program[..] {
+            [Op::Push(value)] => Some(value),
+            _ => None,
+        }
+    }
+
+    pub fn depends_on_time(&self) -> bool {
+        self.program.contains(&Op::Time)
+    }
+
+    pub fn depends_on_position(&self) -> bool {
+        self.program
+            .iter()
+            .any(|op| matches!(op, Op::Coordinate(_)))
+    }
+
+    /// The text it was compiled from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+}
+
+impl fmt::Display for ExpressionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let start = self.source[..self.span.start]
+            .rfind('\n')
+            .map_or(0, |i| i + 1);
+        let end = self.source[start..]
+            .find('\n')
+            .map_or(self.source.len(), |i| start + i);
+        let before = self.source[start..self.span.start].chars().count();
+        let marked = self.source[self.span.start..self.span.end.min(end).max(self.span.start)]
+            .chars()
+            .count();
+        writeln!(f, "{}", self.message)?;
+        writeln!(f, "  {}", &self.source[start..end])?;
+        write!(f, "  {}{}", " ".repeat(before), "^".repeat(marked.max(1)))?;
+        match &self.help {
+            Some(help) => write!(f, "\nhelp: {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for ExpressionError {}
