@@ -35,6 +35,17 @@ pub enum RunError {
         id: u64,
         position: [f64; 3],
     },
+    #[error(
+        "step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) would move {path:.3e} in one step, more than the spacing {spacing:.3e}: the run is unstable or the step too long",
+        position[0], position[1], position[2]
+    )]
+    TooFast {
+        step: u64,
+        id: u64,
+        position: [f64; 3],
+        path: f64,
+        spacing: f64,
+    },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
     #[error(
@@ -46,6 +57,4 @@ pub enum RunError {
         after: f64,
         time_step: f64,
     },
-    #[error("step {step}: point {id} left the box through the fixed boundary on axis {axis}")]
-    Lost { step: u64, id: u64, axis: char },
 }

@@ -5,6 +5,8 @@
 //! spec uses; the engine itself is free of units.
 
 pub mod body;
+pub mod condition;
+pub mod dynamics;
 pub mod error;
 pub mod execute;
 pub mod expression;
@@ -12,5 +14,6 @@ pub mod family;
 pub mod interaction;
 pub mod law;
 pub mod observe;
+pub mod run;
 pub mod space;
 pub mod spec;

@@ -10,15 +10,29 @@ const STEPS: usize = 30;
 const MARGIN: f64 = 1.02;
 
 /// Largest eigenvalue of `M⁻¹K` (1 / time²) at the reference configuration; 0 if nothing resists.
-pub fn largest_eigenvalue<const D: usize>(body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
-    let mass: Vec<f64> =
-        body.slots.iter().map(|&s| body.volume.at(s as usize) * body.density.at(s as usize)).collect();
+pub fn largest_eigenvalue<const D: usize>(
+    body: &Body<D>,
+    interaction: &mut dyn Interaction<D>,
+) -> f64 {
+    let mass: Vec<f64> = body
+        .slots
+        .iter()
+        .map(|&s| body.volume.at(s as usize) * body.density.at(s as usize))
+        .collect();
     // every point in motion, no symmetry: a fixed low-discrepancy start
     let mut w: Vec<[f64; D]> = (0..body.points())
-        .map(|i| std::array::from_fn(|a| ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5))
+        .map(|i| {
+            std::array::from_fn(|a| {
+                ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
+            })
+        })
         .collect();
     let norm = |w: &[[f64; D]]| -> f64 {
-        w.iter().zip(&mass).map(|(w, m)| m * w.iter().map(|c| c * c).sum::<f64>()).sum::<f64>().sqrt()
+        w.iter()
+            .zip(&mass)
+            .map(|(w, m)| m * w.iter().map(|c| c * c).sum::<f64>())
+            .sum::<f64>()
+            .sqrt()
     };
     let scale = norm(&w);
     w.iter_mut().flatten().for_each(|c| *c /= scale);
@@ -28,8 +42,12 @@ pub fn largest_eigenvalue<const D: usize>(body: &Body<D>, interaction: &mut dyn 
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for _ in 0..STEPS.min(D * body.points()) {
         let mut next = product(body, interaction, &w, &mut u, &mut f);
-        let alpha: f64 =
-            next.iter().zip(&w).zip(&mass).map(|((n, w), m)| m * (0..D).map(|a| n[a] * w[a]).sum::<f64>()).sum();
+        let alpha: f64 = next
+            .iter()
+            .zip(&w)
+            .zip(&mass)
+            .map(|((n, w), m)| m * (0..D).map(|a| n[a] * w[a]).sum::<f64>())
+            .sum();
         let beta = betas.last().copied().unwrap_or(0.0);
         for ((n, w), p) in next.iter_mut().zip(&w).zip(&previous) {
             for a in 0..D {
@@ -70,16 +88,19 @@ fn product<const D: usize>(
     interaction.forces(body, u, f, Sweep::Hold);
     body.slots
         .iter()
-        .map(|&s| std::array::from_fn(|a| -f[a][s as usize] / (small * body.density.at(s as usize))))
+        .map(|&s| {
+            std::array::from_fn(|a| -f[a][s as usize] / (small * body.density.at(s as usize)))
+        })
         .collect()
 }
 
 /// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on Sturm counts.
 fn largest_of_tridiagonal(diagonal: &[f64], off: &[f64]) -> f64 {
-    let radius = |i: usize| {
-        off.get(i).map_or(0.0, |b| b.abs()) + if i > 0 { off[i - 1].abs() } else { 0.0 }
-    };
-    let mut high = (0..diagonal.len()).map(|i| diagonal[i] + radius(i)).fold(f64::MIN, f64::max);
+    let radius =
+        |i: usize| off.get(i).map_or(0.0, |b| b.abs()) + if i > 0 { off[i - 1].abs() } else { 0.0 };
+    let mut high = (0..diagonal.len())
+        .map(|i| diagonal[i] + radius(i))
+        .fold(f64::MIN, f64::max);
     let mut low = diagonal.iter().copied().fold(f64::MIN, f64::max);
     let below = |x: f64| {
         let mut d = 1.0;
@@ -99,7 +120,11 @@ fn largest_of_tridiagonal(diagonal: &[f64], off: &[f64]) -> f64 {
         if middle <= low || middle >= high {
             break;
         }
-        if below(middle) == diagonal.len() { high = middle } else { low = middle }
+        if below(middle) == diagonal.len() {
+            high = middle
+        } else {
+            low = middle
+        }
     }
     high
 }
@@ -114,6 +139,9 @@ mod tests {
         let n = 17;
         let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
         let found = largest_of_tridiagonal(&vec![2.0; n], &vec![-1.0; n - 1]);
-        assert!((found - exact).abs() < 1e-14 * exact, "{found} is not {exact}");
+        assert!(
+            (found - exact).abs() < 1e-14 * exact,
+            "{found} is not {exact}"
+        );
     }
 }

@@ -21,7 +21,10 @@ pub struct Verlet {
 
 impl Verlet {
     pub fn new<const D: usize>(simd: Simd, body: &Body<D>) -> Self {
-        Verlet { simd, fastest: vec![0.0; body.len.div_ceil(BLOCK)] }
+        Verlet {
+            simd,
+            fastest: vec![0.0; body.len.div_ceil(BLOCK)],
+        }
     }
 
     /// Kick (twice if `pending`) and drift. Points whose step is not below `limit` (length) stay where they are.
@@ -48,11 +51,19 @@ impl Verlet {
         };
         for_each_block(self.simd, &kernel, &mut self.fastest);
         // not `f64::max`: it would lose what is not a number
-        self.fastest.iter().fold(0.0, |m, x| if *x <= m { m } else { *x })
+        self.fastest
+            .iter()
+            .fold(0.0, |m, x| if *x <= m { m } else { *x })
     }
 
     /// The waiting half kick.
-    pub fn kick<const D: usize>(&mut self, body: &Body<D>, v: &mut Field<D>, f: &Field<D>, dt: f64) {
+    pub fn kick<const D: usize>(
+        &mut self,
+        body: &Body<D>,
+        v: &mut Field<D>,
+        f: &Field<D>,
+        dt: f64,
+    ) {
         for a in 0..D {
             for i in 0..body.len {
                 v[a][i] = (0.5 * dt / body.density.at(i)).mul_add(f[a][i], v[a][i]);
@@ -80,7 +91,11 @@ impl Verlet {
             }
             for a in 0..D {
                 let back = 0.5 * dt / body.density.at(i) * f[a][i];
-                v[a][i] = if v[a][i].is_finite() && back.is_finite() { v[a][i] - back } else { 0.0 };
+                v[a][i] = if v[a][i].is_finite() && back.is_finite() {
+                    v[a][i] - back
+                } else {
+                    0.0
+                };
             }
         }
     }
@@ -111,7 +126,9 @@ impl<const D: usize> Kernel for Advance<'_, D> {
             unsafe {
                 let h = match self.density {
                     Values::Uniform(rho) => L::splat(0.5 * self.dt / rho),
-                    Values::PerSlot(rho) => L::splat(0.5 * self.dt).div(L::load(rho.as_ptr().add(i))),
+                    Values::PerSlot(rho) => {
+                        L::splat(0.5 * self.dt).div(L::load(rho.as_ptr().add(i)))
+                    }
                 };
                 let dt = L::splat(self.dt);
                 let mut squared = L::splat(0.0);
@@ -140,6 +157,9 @@ impl<const D: usize> Kernel for Advance<'_, D> {
             }
             i += L::N;
         }
-        fastest.to_array()[..L::N].iter().copied().fold(0.0, f64::max)
+        fastest.to_array()[..L::N]
+            .iter()
+            .copied()
+            .fold(0.0, f64::max)
     }
 }

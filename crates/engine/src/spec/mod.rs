@@ -76,6 +76,16 @@ pub enum BodySpec {
     Cloud(Cloud),
 }
 
+impl BodySpec {
+    /// Cell edge or typical distance of points, where the spec says it.
+    pub fn spacing(&self) -> Option<f64> {
+        match self {
+            BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => Some(*spacing),
+            BodySpec::Cloud(c) => c.spacing,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Perturbation {
     pub amplitude: f64,
@@ -306,6 +316,8 @@ pub enum ConditionKind {
         value: [Option<Expression>; 3],
         area: Option<f64>,
     },
+    /// The force density on these components becomes this, whatever else acts (LAMMPS `fix setforce`).
+    SetForce([Option<Expression>; 3]),
     /// Viscous force density −c v (mass / volume / time).
     Damping(Expression),
 }

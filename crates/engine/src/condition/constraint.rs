@@ -1,0 +1,115 @@
+//! Constraints: points that move as told. Their work is the kinetic energy they gain minus what the internal force
+//! gave them.
+
+use super::Program;
+use crate::body::{Body, Field};
+use crate::space::Point;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prescribed {
+    Displacement,
+    Velocity,
+}
+
+#[derive(Debug, Clone)]
+pub struct Constraint<const D: usize> {
+    kind: Prescribed,
+    program: Program<D>,
+    slots: Vec<u32>,
+    points: Vec<Point>,
+    /// Displacement, velocity and force density at the last whole step.
+    last: Vec<[[f64; 3]; D]>,
+    /// Work done on the body (energy).
+    pub work: f64,
+}
+
+impl<const D: usize> Constraint<D> {
+    pub fn new(kind: Prescribed, program: Program<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
+        let last = vec![[[0.0; 3]; D]; slots.len()];
+        Constraint {
+            kind,
+            program,
+            slots,
+            points,
+            last,
+            work: 0.0,
+        }
+    }
+
+    fn velocity(&self, a: usize, k: usize, t: f64, dt: f64) -> f64 {
+        match self.kind {
+            Prescribed::Velocity => self.program.at(a, k, &self.points[k], t),
+            Prescribed::Displacement => {
+                let g = |t| self.program.at(a, k, &self.points[k], t);
+                (g(t + dt) - g(t - dt)) / (2.0 * dt)
+            }
+        }
+    }
+
+    /// Put the points where they belong at the start of a run.
+    pub fn start(&mut self, u: &mut Field<D>, v: &mut Field<D>, t: f64, dt: f64) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            let i = s as usize;
+            for a in (0..D).filter(|a| self.program.acts(*a)) {
+                if self.kind == Prescribed::Displacement {
+                    u[a][i] = self.program.at(a, k, &self.points[k], t);
+                }
+                v[a][i] = self.velocity(a, k, t, dt);
+            }
+        }
+    }
+
+    /// Remember the state of the whole step that begins at `t`, and let the coming pass carry the points: no force,
+    /// and the velocity of the step's middle.
+    pub fn begin(&mut self, u: &Field<D>, v: &mut Field<D>, f: &mut Field<D>, t: f64, dt: f64) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            let i = s as usize;
+            for a in (0..D).filter(|a| self.program.acts(*a)) {
+                self.last[k][a] = [u[a][i], self.velocity(a, k, t, dt), f[a][i]];
+                f[a][i] = 0.0;
+                v[a][i] = (self.target(a, k, u[a][i], t + dt, dt) - u[a][i]) / dt;
+            }
+        }
+    }
+
+    /// Displacement at `t`, from `from` one step before.
+    fn target(&self, a: usize, k: usize, from: f64, t: f64, dt: f64) -> f64 {
+        match self.kind {
+            Prescribed::Displacement => self.program.at(a, k, &self.points[k], t),
+            Prescribed::Velocity => from + dt * self.velocity(a, k, t - 0.5 * dt, dt),
+        }
+    }
+
+    /// After the drift of the step that ends at `t`: displacements exactly as prescribed.
+    pub fn drift(&self, u: &mut Field<D>, t: f64, dt: f64) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            for a in (0..D).filter(|a| self.program.acts(*a)) {
+                u[a][s as usize] = self.target(a, k, self.last[k][a][0], t, dt);
+            }
+        }
+    }
+
+    /// With the force of the step's end: account for the work.
+    pub fn end(&mut self, body: &Body<D>, u: &Field<D>, f: &Field<D>, t: f64, dt: f64) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            let i = s as usize;
+            let (rho, volume) = (body.density.at(i), body.volume.at(i));
+            for a in (0..D).filter(|a| self.program.acts(*a)) {
+                let [u0, v0, f0] = self.last[k][a];
+                let v1 = self.velocity(a, k, t, dt);
+                let gained = 0.5 * rho * (v1 * v1 - v0 * v0);
+                let given = 0.5 * (f0 + f[a][i]) * (u[a][i] - u0);
+                self.work += volume * (gained - given);
+            }
+        }
+    }
+
+    /// Velocities of the whole step at `t`, after the last half kick.
+    pub fn settle(&self, v: &mut Field<D>, t: f64, dt: f64) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            for a in (0..D).filter(|a| self.program.acts(*a)) {
+                v[a][s as usize] = self.velocity(a, k, t, dt);
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Loads: body force, traction, damping, and forces replaced on a set.
+
+use super::Program;
+use crate::body::{Body, Field};
+use crate::space::Point;
+
+#[derive(Debug, Clone)]
+pub enum LoadKind<const D: usize> {
+    /// Force density (force / volume).
+    Body(Program<D>),
+    /// Force density −c v; `c` in mass / volume / time.
+    Damping(Vec<f64>),
+    /// The force density becomes this, whatever else acts.
+    Replace(Program<D>),
+}
+
+/// A load on a set of points.
+#[derive(Debug, Clone)]
+pub struct Load<const D: usize> {
+    pub kind: LoadKind<D>,
+    slots: Vec<u32>,
+    points: Vec<Point>,
+    /// Force density added last time, for the work of the next step.
+    last: Vec<[f64; D]>,
+    /// Work done on the body (energy).
+    pub work: f64,
+}
+
+impl<const D: usize> Load<D> {
+    pub fn new(kind: LoadKind<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
+        let last = vec![[0.0; D]; slots.len()];
+        Load {
+            kind,
+            slots,
+            points,
+            last,
+            work: 0.0,
+        }
+    }
+
+    /// Work of the force of the step's start over half its path (the other half is [`Load::add`]'s).
+    pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
+        for (f, &s) in self.last.iter().zip(&self.slots) {
+            let i = s as usize;
+            let power: f64 = (0..D).map(|a| f[a] * v[a][i]).sum();
+            self.work += 0.5 * dt * power * body.volume.at(i);
+        }
+    }
+
+    /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run.
+    pub fn add(&mut self, body: &Body<D>, v: &Field<D>, f: &mut Field<D>, t: f64, dt: f64) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            let i = s as usize;
+            let mut power = 0.0;
+            for a in 0..D {
+                let added = match &self.kind {
+                    LoadKind::Body(p) => p.at(a, k, &self.points[k], t),
+                    LoadKind::Damping(c) => -c[k] * v[a][i],
+                    LoadKind::Replace(p) if p.acts(a) => p.at(a, k, &self.points[k], t) - f[a][i],
+                    LoadKind::Replace(_) => 0.0,
+                };
+                f[a][i] += added;
+                self.last[k][a] = added;
+                power += added * v[a][i];
+            }
+            self.work += 0.5 * dt * power * body.volume.at(i);
+        }
+    }
+
+    pub fn is_damping(&self) -> bool {
+        matches!(self.kind, LoadKind::Damping(_))
+    }
+}

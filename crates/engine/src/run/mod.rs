@@ -1,0 +1,109 @@
+//! From a specification to a running model.
+
+mod build;
+mod model;
+mod probe;
+mod recipe;
+
+pub use build::{Options, build, build_in};
+pub use model::Model;
+
+use crate::error::RunError;
+use crate::observe::{Ledger, Snapshot};
+use crate::space::Point;
+
+/// What a model is, for headers and reports.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Info {
+    pub dimension: usize,
+    pub points: u64,
+    pub directed_bonds: u64,
+    /// Smallest, mean and largest family.
+    pub family: (usize, f64, usize),
+    /// `"stencil"` or `"list"`.
+    pub family_kind: &'static str,
+    /// Directed bonds whose length is within round-off of the horizon.
+    pub near_horizon: u64,
+    pub horizon: f64,
+    pub spacing: f64,
+    pub mass: f64,
+    pub volume: f64,
+    /// Micromodulus per material of bond-based bodies (force / volume²).
+    pub micromodulus: Vec<f64>,
+    /// Critical stretch s00 per material; ∞: never breaks.
+    pub critical_stretch: Vec<f64>,
+    pub time_step: f64,
+    /// Stability limit of the step.
+    pub stable_step: f64,
+    /// Bonds cut by pre-cracks, directed.
+    pub cut: u64,
+    /// Bytes held by the model.
+    pub bytes: usize,
+    pub simd: &'static str,
+    pub warnings: Vec<String>,
+}
+
+/// What to fill into a snapshot beyond positions, velocities and damage.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SnapshotOptions {
+    pub energies: bool,
+    pub fragments: bool,
+    pub bonds: bool,
+}
+
+/// A running model of any dimension, law and family. All arrays are in order of point id.
+pub trait Simulation: Send {
+    fn info(&self) -> &Info;
+
+    /// Forces at the current state. Call once before the first step, and after changing the state from outside.
+    /// `bonds = false` leaves the bonds out, as LAMMPS does in the first set-up of a run.
+    fn start(&mut self, bonds: bool);
+
+    /// One step. On an error the state is that of the step before (up to round-off).
+    fn step(&mut self) -> Result<(), RunError>;
+
+    fn step_number(&self) -> u64;
+    fn time(&self) -> f64;
+    fn set_time(&mut self, step: u64, time: f64);
+    fn set_time_step(&mut self, dt: f64);
+
+    /// Energies now; an error if the balance shows that the run has gone unstable.
+    fn ledger(&mut self) -> Result<Ledger, RunError>;
+
+    fn snapshot(&mut self, options: SnapshotOptions) -> Snapshot;
+
+    /// Directed bonds broken since the start.
+    fn broken(&self) -> u64;
+
+    /// Number of fragments (connected by whole bonds) now.
+    fn fragments(&self) -> u64;
+
+    fn displacements(&self) -> Vec<Point>;
+    fn set_displacements(&mut self, u: &[Point]);
+    fn velocities(&mut self) -> Vec<Point>;
+    fn set_velocities(&mut self, v: &[Point]);
+    /// Force densities of the last sweep.
+    fn force_densities(&self) -> Vec<Point>;
+    fn reference(&self) -> Vec<Point>;
+    fn volumes(&self) -> Vec<f64>;
+    fn densities(&self) -> Vec<f64>;
+    fn damage(&self) -> Vec<f64>;
+    fn dilatation(&self) -> Vec<f64>;
+    /// Strain and contact energy density.
+    fn energy_density(&self) -> Vec<f64>;
+    /// Critical stretch s0 of every point.
+    fn critical_stretch(&self) -> Vec<f64>;
+
+    /// Strain energy density of every point under the homogeneous strain ε (`[3][3]`, no contact, whole bonds).
+    fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64>;
+    /// Force densities under a given displacement (bonds and repulsion in the family, no breaking).
+    fn forces_under(&mut self, u: &[Point]) -> Vec<Point>;
+
+    /// Replace loads, constraints and indenters (a LAMMPS script changes its fixes between runs).
+    fn set_conditions(
+        &mut self,
+        conditions: &[crate::spec::ConditionSpec],
+        sets: &[(String, Vec<u32>)],
+        indenters: &[crate::spec::IndenterSpec],
+    ) -> Result<(), crate::error::BuildError>;
+}

@@ -1,0 +1,530 @@
+//! The running model: state, forces, motion and accounts.
+
+use super::{Info, Simulation, SnapshotOptions};
+use crate::body::{Body, Field};
+use crate::condition::Program;
+use crate::condition::constraint::{Constraint, Prescribed};
+use crate::condition::indenter::Indenter;
+use crate::condition::load::{Load, LoadKind};
+use crate::dynamics::verlet::Verlet;
+use crate::error::{BuildError, RunError};
+use crate::interaction::{BondState, Interaction, PointEnergies, Sweep};
+use crate::observe::{Ledger, Snapshot};
+use crate::space::Point;
+use crate::spec::{ConditionKind, ConditionSpec, IndenterSpec};
+
+/// A model in D dimensions.
+pub struct Model<const D: usize> {
+    pub(super) info: Info,
+    pub(super) body: Body<D>,
+    pub(super) interaction: Box<dyn Interaction<D>>,
+    pub(super) u: Field<D>,
+    pub(super) v: Field<D>,
+    pub(super) f: Field<D>,
+    pub(super) verlet: Verlet,
+    pub(super) loads: Vec<Load<D>>,
+    pub(super) constraints: Vec<Constraint<D>>,
+    pub(super) indenters: Vec<Indenter<D>>,
+    /// Named sets of point ids.
+    pub(super) sets: Vec<(String, Vec<u32>)>,
+    pub(super) dt: f64,
+    pub(super) step: u64,
+    /// Step and time from which time is counted in whole steps.
+    pub(super) origin: (u64, f64),
+    /// Does `v` wait for the last half kick?
+    pub(super) pending: bool,
+    pub(super) broken: u64,
+    pub(super) released: f64,
+    /// Work of conditions that were replaced since.
+    pub(super) past_work: [f64; 3],
+    pub(super) initial_energy: Option<f64>,
+    pub(super) energies: PointEnergies,
+}
+
+impl<const D: usize> Model<D> {
+    /// Bytes held: body, bonds, and the state of nine numbers per slot in 3-D.
+    pub(super) fn bytes(&self) -> usize {
+        self.body.bytes() + self.interaction.bytes() + 3 * D * 8 * self.body.len
+    }
+
+    fn refresh_images(&mut self) {
+        if !self.body.images.is_empty() {
+            for c in &mut self.u {
+                self.body.fill_images(c);
+            }
+        }
+    }
+
+    /// All forces at the current displacements; `dt` is 0 at the start of a run.
+    fn forces(&mut self, bonds: bool, dt: f64) {
+        self.refresh_images();
+        let t = self.time();
+        if bonds {
+            let tally = self
+                .interaction
+                .forces(&self.body, &self.u, &mut self.f, Sweep::Evolve);
+            self.broken += tally.broken;
+            self.released += tally.released;
+        } else {
+            self.f.iter_mut().for_each(|c| c.fill(0.0));
+        }
+        for indenter in &mut self.indenters {
+            indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
+        }
+        for load in &mut self.loads {
+            load.add(&self.body, &self.v, &mut self.f, t, dt);
+        }
+    }
+
+    /// Bring velocities to the whole step.
+    fn finish(&mut self) {
+        if self.pending {
+            self.verlet.kick(&self.body, &mut self.v, &self.f, self.dt);
+            let (t, dt) = (self.time(), self.dt);
+            for c in &self.constraints {
+                c.settle(&mut self.v, t, dt);
+            }
+            self.pending = false;
+        }
+    }
+
+    fn energy_now(&mut self) -> Ledger {
+        self.finish();
+        self.refresh_images();
+        self.interaction
+            .observe(&self.body, &self.u, &mut self.energies);
+        let mut ledger = Ledger {
+            released: self.released,
+            dissipated: self.past_work[0],
+            work_conditions: self.past_work[1],
+            work_indenter: self.past_work[2],
+            ..Ledger::default()
+        };
+        for &s in &self.body.slots {
+            let i = s as usize;
+            let volume = self.body.volume.at(i);
+            let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
+            ledger.kinetic += 0.5 * self.body.density.at(i) * volume * v2;
+            ledger.strain += volume * self.energies.strain[i];
+            ledger.contact += volume * self.energies.repulsion[i];
+        }
+        for load in &self.loads {
+            if load.is_damping() {
+                ledger.dissipated -= load.work
+            } else {
+                ledger.work_conditions += load.work
+            }
+        }
+        ledger.work_conditions += self.constraints.iter().map(|c| c.work).sum::<f64>();
+        ledger.work_indenter += self.indenters.iter().map(|i| i.work).sum::<f64>();
+        ledger.initial = self.initial_energy.unwrap_or(0.0);
+        ledger
+    }
+
+    /// Which point the pass refused, and why.
+    fn refused(&self, limit: f64) -> RunError {
+        let step = self.step + 1;
+        for (id, &s) in self.body.slots.iter().enumerate() {
+            let i = s as usize;
+            let path = (0..D)
+                .map(|a| (self.dt * self.v[a][i]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            if path < limit {
+                continue;
+            }
+            let x = self.body.position(i);
+            let position = std::array::from_fn(|a| if a < D { x[a] + self.u[a][i] } else { 0.0 });
+            let id = id as u64 + 1;
+            return if path.is_finite() {
+                RunError::TooFast {
+                    step,
+                    id,
+                    position,
+                    path,
+                    spacing: limit,
+                }
+            } else {
+                RunError::NotFinite { step, id, position }
+            };
+        }
+        RunError::NotFinite {
+            step,
+            id: 0,
+            position: [0.0; 3],
+        }
+    }
+
+    fn by_id<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
+        self.body.slots.iter().map(|&s| value(s as usize)).collect()
+    }
+
+    fn vectors(&self, field: &Field<D>) -> Vec<Point> {
+        self.by_id(|i| std::array::from_fn(|a| if a < D { field[a][i] } else { 0.0 }))
+    }
+
+    fn scatter(body: &Body<D>, field: &mut Field<D>, values: &[Point]) {
+        for (x, &s) in values.iter().zip(&body.slots) {
+            for a in 0..D {
+                field[a][s as usize] = x[a];
+            }
+        }
+    }
+
+    /// Slots and reference positions of a set.
+    pub(super) fn members(
+        &self,
+        set: &str,
+        sets: &[(String, Vec<u32>)],
+    ) -> Result<(Vec<u32>, Vec<Point>), BuildError> {
+        let slots: Vec<u32> = if set == "all" {
+            self.body.slots.clone()
+        } else {
+            let Some((_, ids)) = sets.iter().find(|(n, _)| n == set) else {
+                return Err(BuildError::new("", format!("there is no set `{set}`")));
+            };
+            ids.iter().map(|id| self.body.slots[*id as usize]).collect()
+        };
+        let points = slots
+            .iter()
+            .map(|s| self.body.position(*s as usize))
+            .collect();
+        Ok((slots, points))
+    }
+
+    fn crossed_chain(&self) -> Option<(u64, u64)> {
+        if D != 1 {
+            return None;
+        }
+        let mut crossed = None;
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, xi, state| {
+                if crossed.is_none()
+                    && state == BondState::Whole
+                    && xi[0].abs() < 1.5 * self.body.spacing
+                    && (xi[0] + self.u[0][j] - self.u[0][i]) * xi[0] <= 0.0
+                {
+                    crossed = Some((i, j));
+                }
+            });
+        let id = |slot: usize| {
+            self.body
+                .slots
+                .iter()
+                .position(|s| *s as usize == slot)
+                .map_or(0, |i| i as u64 + 1)
+        };
+        crossed.map(|(i, j)| (id(i), id(j)))
+    }
+}
+
+impl<const D: usize> Simulation for Model<D> {
+    fn info(&self) -> &Info {
+        &self.info
+    }
+
+    fn start(&mut self, bonds: bool) {
+        self.finish();
+        let (t, dt) = (self.time(), self.dt);
+        for c in &mut self.constraints {
+            c.start(&mut self.u, &mut self.v, t, dt);
+        }
+        self.indenters.iter_mut().for_each(Indenter::look_again);
+        self.forces(bonds, 0.0);
+        // energy that came in from outside counts as initial
+        let now = self.energy_now();
+        self.initial_energy = Some(ledger_base(&now));
+    }
+
+    fn step(&mut self) -> Result<(), RunError> {
+        let (t, dt) = (self.time(), self.dt);
+        for c in &mut self.constraints {
+            c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
+        }
+        let limit = self.body.spacing;
+        let fastest = self.verlet.advance(
+            &self.body,
+            &mut self.u,
+            &mut self.v,
+            &self.f,
+            dt,
+            self.pending,
+            limit,
+        );
+        if !(fastest < limit * limit) {
+            let error = self.refused(limit);
+            self.verlet
+                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, limit);
+            self.pending = false;
+            return Err(error);
+        }
+        self.step += 1;
+        let t = self.time();
+        for c in &self.constraints {
+            c.drift(&mut self.u, t, dt);
+        }
+        for load in &mut self.loads {
+            load.begin(&self.body, &self.v, dt);
+        }
+        for indenter in &mut self.indenters {
+            indenter.begin(&self.body, &self.v, t, dt, fastest.sqrt());
+        }
+        self.forces(true, dt);
+        for c in &mut self.constraints {
+            c.end(&self.body, &self.u, &self.f, t, dt);
+        }
+        self.pending = true;
+        Ok(())
+    }
+
+    fn step_number(&self) -> u64 {
+        self.step
+    }
+
+    fn time(&self) -> f64 {
+        self.origin.1 + (self.step - self.origin.0) as f64 * self.dt
+    }
+
+    fn set_time(&mut self, step: u64, time: f64) {
+        self.step = step;
+        self.origin = (step, time);
+    }
+
+    fn set_time_step(&mut self, dt: f64) {
+        self.finish();
+        self.origin = (self.step, self.time());
+        self.dt = dt;
+        self.info.time_step = dt;
+    }
+
+    fn ledger(&mut self) -> Result<Ledger, RunError> {
+        let ledger = self.energy_now();
+        if let Some((i, j)) = self.crossed_chain() {
+            return Err(RunError::Crossing {
+                step: self.step,
+                i,
+                j,
+            });
+        }
+        let before =
+            ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let after =
+            ledger.kinetic + ledger.strain + ledger.contact + ledger.released + ledger.dissipated;
+        if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
+            return Err(RunError::Unstable {
+                step: self.step,
+                before,
+                after,
+                time_step: self.dt,
+            });
+        }
+        Ok(ledger)
+    }
+
+    fn snapshot(&mut self, options: SnapshotOptions) -> Snapshot {
+        self.finish();
+        let mut snapshot = Snapshot {
+            step: self.step,
+            time: self.time(),
+            dimension: D,
+            spacing: self.body.spacing,
+            reference: self.reference(),
+            displacement: self.displacements(),
+            velocity: self.vectors(&self.v),
+            damage: self.damage(),
+            mark: if self.body.mark.is_empty() {
+                vec![0; self.body.points()]
+            } else {
+                self.body.mark.clone()
+            },
+            ..Snapshot::default()
+        };
+        if options.energies {
+            self.refresh_images();
+            self.interaction
+                .observe(&self.body, &self.u, &mut self.energies);
+            snapshot.energy_density =
+                self.by_id(|i| self.energies.strain[i] + self.energies.repulsion[i]);
+            snapshot.dilatation = self.by_id(|i| self.energies.dilatation[i]);
+        }
+        if options.bonds {
+            let mut id = vec![0u32; self.body.len];
+            for (k, &s) in self.body.slots.iter().enumerate() {
+                id[s as usize] = k as u32;
+            }
+            let mut bonds = vec![];
+            self.interaction
+                .each_bond(&self.body, &mut |i, j, _, state| {
+                    if state == BondState::Whole {
+                        let (a, b) = (id[i], id[j]);
+                        bonds.push((a.min(b), a.max(b)));
+                    }
+                });
+            snapshot.bonds = Some(bonds);
+        }
+        snapshot
+    }
+
+    fn broken(&self) -> u64 {
+        self.broken
+    }
+
+    fn fragments(&self) -> u64 {
+        0
+    }
+
+    fn displacements(&self) -> Vec<Point> {
+        self.vectors(&self.u)
+    }
+
+    fn set_displacements(&mut self, u: &[Point]) {
+        self.finish();
+        Self::scatter(&self.body, &mut self.u, u);
+    }
+
+    fn velocities(&mut self) -> Vec<Point> {
+        self.finish();
+        self.vectors(&self.v)
+    }
+
+    fn set_velocities(&mut self, v: &[Point]) {
+        self.finish();
+        Self::scatter(&self.body, &mut self.v, v);
+    }
+
+    fn force_densities(&self) -> Vec<Point> {
+        self.vectors(&self.f)
+    }
+
+    fn reference(&self) -> Vec<Point> {
+        self.by_id(|i| self.body.position(i))
+    }
+
+    fn volumes(&self) -> Vec<f64> {
+        self.by_id(|i| self.body.volume.at(i))
+    }
+
+    fn densities(&self) -> Vec<f64> {
+        self.by_id(|i| self.body.density.at(i))
+    }
+
+    fn damage(&self) -> Vec<f64> {
+        let mut damage = vec![0.0; self.body.len];
+        self.interaction.damage(&self.body, &mut damage);
+        self.by_id(|i| damage[i])
+    }
+
+    fn dilatation(&self) -> Vec<f64> {
+        let mut out = PointEnergies::default();
+        self.interaction.observe(&self.body, &self.u, &mut out);
+        self.by_id(|i| out.dilatation[i])
+    }
+
+    fn energy_density(&self) -> Vec<f64> {
+        let mut out = PointEnergies::default();
+        self.interaction.observe(&self.body, &self.u, &mut out);
+        self.by_id(|i| out.strain[i] + out.repulsion[i])
+    }
+
+    fn critical_stretch(&self) -> Vec<f64> {
+        self.by_id(|i| self.interaction.critical_stretch(i))
+    }
+
+    fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
+        let mut u = self.body.at_rest();
+        for &s in &self.body.slots {
+            let x = self.body.position(s as usize);
+            for a in 0..D {
+                u[a][s as usize] = (0..D).map(|b| strain[a][b] * x[b]).sum();
+            }
+        }
+        // images are periodic in displacement; a homogeneous strain is not: give each its own
+        for &(copy, _) in &self.body.images {
+            let x = self.body.position(copy as usize);
+            for a in 0..D {
+                u[a][copy as usize] = (0..D).map(|b| strain[a][b] * x[b]).sum();
+            }
+        }
+        let mut out = PointEnergies::default();
+        self.interaction.observe(&self.body, &u, &mut out);
+        self.by_id(|i| out.strain[i])
+    }
+
+    fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {
+        let mut u = self.body.at_rest();
+        Self::scatter(&self.body, &mut u, displacement);
+        for c in &mut u {
+            self.body.fill_images(c);
+        }
+        let mut f = crate::body::zeros(self.body.len);
+        self.interaction.forces(&self.body, &u, &mut f, Sweep::Hold);
+        self.vectors(&f)
+    }
+
+    fn set_conditions(
+        &mut self,
+        conditions: &[ConditionSpec],
+        sets: &[(String, Vec<u32>)],
+        indenters: &[IndenterSpec],
+    ) -> Result<(), BuildError> {
+        let (mut loads, mut constraints) = (vec![], vec![]);
+        for (n, c) in conditions.iter().enumerate() {
+            let (slots, points) = self.members(&c.set, sets).map_err(|e| BuildError {
+                path: format!("condition[{n}].set"),
+                ..e
+            })?;
+            let load = |kind| Load::new(kind, slots.clone(), points.clone());
+            match &c.kind {
+                ConditionKind::BodyForce(e) => {
+                    loads.push(load(LoadKind::Body(Program::new(e, &points))))
+                }
+                ConditionKind::SetForce(e) => {
+                    loads.push(load(LoadKind::Replace(Program::new(e, &points))))
+                }
+                ConditionKind::Damping(e) => loads.push(load(LoadKind::Damping(
+                    points.iter().map(|x| e.eval(x, 0.0)).collect(),
+                ))),
+                ConditionKind::Traction { value, area } => {
+                    let volume: f64 = slots.iter().map(|s| self.body.volume.at(*s as usize)).sum();
+                    let face = self
+                        .body
+                        .volume
+                        .at(slots.first().map_or(0, |s| *s as usize))
+                        / self.body.spacing;
+                    let area = area.unwrap_or(face * slots.len() as f64);
+                    loads.push(load(LoadKind::Body(
+                        Program::new(value, &points).scaled(area / volume),
+                    )));
+                }
+                ConditionKind::Displacement(e) => constraints.push(Constraint::new(
+                    Prescribed::Displacement,
+                    Program::new(e, &points),
+                    slots,
+                    points,
+                )),
+                ConditionKind::Velocity(e) => constraints.push(Constraint::new(
+                    Prescribed::Velocity,
+                    Program::new(e, &points),
+                    slots,
+                    points,
+                )),
+            }
+        }
+        // a replaced force is replaced whatever else was added
+        loads.sort_by_key(|l: &Load<D>| matches!(l.kind, LoadKind::Replace(_)));
+        self.finish();
+        let now = self.energy_now();
+        self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
+        self.loads = loads;
+        self.constraints = constraints;
+        self.indenters = indenters.iter().map(Indenter::new).collect();
+        Ok(())
+    }
+}
+
+/// The part of the balance that must stay as it is from now on.
+fn ledger_base(l: &Ledger) -> f64 {
+    l.kinetic + l.strain + l.contact + l.released + l.dissipated
+        - l.work_conditions
+        - l.work_indenter
+}

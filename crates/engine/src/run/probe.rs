@@ -1,0 +1,67 @@
+//! The stability limit of a body, measured on the body itself, or on a block of its lattice where that is smaller.
+
+use super::recipe::Recipe;
+use crate::body::{Body, Layout, Values};
+use crate::dynamics::stable_step::largest_eigenvalue;
+use crate::error::BuildError;
+use crate::interaction::Interaction;
+use crate::spec::Spec;
+
+/// Above this a lattice body is represented by a block of itself.
+const LARGE: usize = 20_000;
+/// Cells per axis of that block: eight horizons of the usual family; the spectrum's top no longer changes.
+const BLOCK: usize = 24;
+
+/// Largest stable step of velocity Verlet (time); ∞ if nothing resists.
+///
+/// A large lattice body is probed on a block with the same lattice, periodic axes and thickness, once per material:
+/// it has the bulk and every kind of flat surface, edge and corner.
+pub(super) fn stable_step<const D: usize>(
+    recipe: &Recipe,
+    body: &Body<D>,
+    interaction: &mut dyn Interaction<D>,
+    spec: &Spec,
+) -> Result<f64, BuildError> {
+    let lambda = match &body.layout {
+        Layout::Grid(grid) if body.points() > LARGE => {
+            let extent: [usize; D] =
+                std::array::from_fn(|a| (grid.cells[a] - 2 * grid.halo[a]).min(BLOCK));
+            let basis = grid.lattice.kind.basis();
+            let mut quarters = vec![];
+            for i in 0..extent.iter().product::<usize>() {
+                let mut rest = i;
+                let cell: [usize; D] = std::array::from_fn(|a| {
+                    let c = rest % extent[a];
+                    rest /= extent[a];
+                    c
+                });
+                quarters.extend(basis.iter().map(|b| -> [i32; 3] {
+                    std::array::from_fn(|a| if a < D { 4 * cell[a] as i32 + b[a] } else { 0 })
+                }));
+            }
+            let periodic = std::array::from_fn(|a| body.period[a].is_some());
+            let reach = recipe.stencil.as_ref().map_or(1, |s| s.reach);
+            let mut block = Body::<D>::on_lattice(
+                grid.lattice,
+                &quarters,
+                reach,
+                periodic,
+                body.volume.uniform().unwrap_or(1.0),
+            )?;
+            let mut lambda = 0.0f64;
+            for (n, m) in spec.materials.iter().enumerate() {
+                block.density = Values::Uniform(m.density);
+                let mut it = recipe.interaction(&block, Some(n))?;
+                it.prepare(&block);
+                lambda = lambda.max(largest_eigenvalue(&block, it.as_mut()));
+            }
+            lambda
+        }
+        _ => largest_eigenvalue(body, interaction),
+    };
+    Ok(if lambda > 0.0 {
+        2.0 / lambda.sqrt()
+    } else {
+        f64::INFINITY
+    })
+}

@@ -1,0 +1,319 @@
+//! What an interaction is made of, apart from the body: laws with their constants, weights, toughness.
+
+use crate::body::{Body, Layout};
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::family::stencil::Stencil;
+use crate::family::volume_fraction;
+use crate::interaction::stencil::{PointConstants, StencilInteraction, StencilParts};
+use crate::interaction::{Interaction, Repulsion, Toughness};
+use crate::law::influence::influence;
+use crate::law::micromodulus::{self, Moments, micromodulus};
+use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
+use crate::law::solid::eam_like::{EamLike, Solid};
+use crate::spec::{Calibration, Criterion, Influence, LawSpec, MaterialSpec, PmbStiffness, Spec};
+
+/// Constants of all materials.
+#[derive(Debug, Clone)]
+pub(super) enum Laws {
+    Bond(Vec<f64>),
+    Solid(Vec<Solid>),
+}
+
+pub(super) struct Recipe {
+    pub laws: Laws,
+    pub toughness: Vec<Toughness>,
+    pub repulsion: Option<Repulsion>,
+    pub stencil: Option<Stencil>,
+    pub horizon: f64,
+    /// Distance over which the horizon cuts cells.
+    pub spacing: f64,
+    pub influence: Influence,
+    pub scaling: bool,
+    pub rule: crate::spec::InterfaceRule,
+    pub simd: Simd,
+}
+
+impl Recipe {
+    /// Constants from a spec; `discrete` are the sums over a bulk family of this body.
+    pub fn new<const D: usize>(
+        spec: &Spec,
+        stencil: Option<Stencil>,
+        horizon: f64,
+        spacing: f64,
+        discrete: Moments,
+        simd: Simd,
+    ) -> Result<Recipe, BuildError> {
+        let continuum = Moments::continuum(D, horizon, spec.section, spec.influence);
+        let moments = match spec.calibration {
+            Calibration::Continuum => continuum,
+            Calibration::Discrete => discrete,
+        };
+        let at = |n: usize, key: &str| format!("material[{n}].{key}");
+        let mut bond = vec![];
+        let mut solid = vec![];
+        let mut repulsive: f64 = 0.0;
+        for (n, m) in spec.materials.iter().enumerate() {
+            if !(m.density > 0.0 && m.density.is_finite()) {
+                return Err(BuildError::new(
+                    at(n, "density"),
+                    format!("density is {}, expected a positive number", m.density),
+                ));
+            }
+            let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
+            let hard = |stiffness| micromodulus(D, spec.plane, stiffness, continuum);
+            let (value, contact) = match m.law {
+                LawSpec::Pmb(stiffness) => {
+                    bond.push(c(stiffness));
+                    (c(stiffness), c(stiffness))
+                }
+                LawSpec::Lps(moduli) => {
+                    let (g, l) = (moduli.shear(), moduli.lame());
+                    let lambda = match (D, spec.plane) {
+                        (1, _) => moduli.young - 2.0 * g,
+                        (2, crate::spec::Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
+                        _ => l,
+                    };
+                    solid.push(Solid::lps(D, lambda, g));
+                    let k = if D == 1 { moduli.young } else { moduli.bulk() };
+                    (g.min(k), hard(PmbStiffness::Bulk(k)))
+                }
+                LawSpec::LpsAsTyped { bulk, shear } => {
+                    solid.push(Solid {
+                        n: 3.0,
+                        kappa: bulk - 5.0 / 3.0 * shear,
+                        beta: 15.0 * shear,
+                    });
+                    (
+                        shear.min(bulk),
+                        18.0 * bulk / (std::f64::consts::PI * horizon.powi(4)),
+                    )
+                }
+                LawSpec::EamLike { pair, volume } => {
+                    solid.push(Solid {
+                        n: 3.0,
+                        kappa: volume / 3.0,
+                        beta: 0.5 * pair,
+                    });
+                    (
+                        pair,
+                        hard(PmbStiffness::Bulk((3.0 * volume + 0.5 * pair) / 9.0)),
+                    )
+                }
+            };
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(
+                    BuildError::new(at(n, "law"), "stiffness must be positive and finite")
+                        .help("check the moduli: K > 0, G > 0, −1 < ν < ½"),
+                );
+            }
+            repulsive = repulsive.max(contact);
+        }
+        let laws = match (bond.is_empty(), solid.is_empty()) {
+            (false, true) => Laws::Bond(bond),
+            (true, false) => Laws::Solid(solid),
+            (true, true) => return Err(BuildError::new("material", "the body has no material")),
+            (false, false) => {
+                return Err(BuildError::new(
+                    "material",
+                    "bond-based and state-based materials in one body",
+                )
+                .help("give all materials the same kind of law: bonds across need one"));
+            }
+        };
+        let toughness = spec
+            .materials
+            .iter()
+            .enumerate()
+            .map(|(n, m)| toughness::<D>(spec, m, moments, &at(n, "fracture")))
+            .collect::<Result<Vec<_>, _>>()?;
+        let repulsion = spec.contact.map(|c| Repulsion {
+            stiffness: c.stiffness.unwrap_or(15.0 * repulsive / horizon),
+            bonded: c.bonded,
+            range: c.free * spacing,
+        });
+        Ok(Recipe {
+            laws,
+            toughness,
+            repulsion,
+            stencil,
+            horizon,
+            spacing,
+            influence: spec.influence,
+            scaling: spec.volume_scaling,
+            rule: spec.interface,
+            simd,
+        })
+    }
+
+    /// `ω ν` of a bond of length r0.
+    pub fn weight(&self, r0: f64) -> f64 {
+        let nu = if self.scaling {
+            volume_fraction(r0, self.horizon, self.spacing)
+        } else {
+            1.0
+        };
+        nu * influence(self.influence, r0, self.horizon)
+    }
+
+    /// The interaction on `body`; `only` makes everything of one material.
+    pub fn interaction<const D: usize>(
+        &self,
+        body: &Body<D>,
+        only: Option<usize>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let pick = |n: usize| only.is_none_or(|o| o == n);
+        let toughness: Vec<Toughness> = self
+            .toughness
+            .iter()
+            .enumerate()
+            .filter(|(n, _)| pick(*n))
+            .map(|(_, t)| *t)
+            .collect();
+        match &self.laws {
+            Laws::Bond(c) => {
+                let c: Vec<f64> = c
+                    .iter()
+                    .enumerate()
+                    .filter(|(n, _)| pick(*n))
+                    .map(|(_, c)| *c)
+                    .collect();
+                if c.iter().all(|x| *x == c[0]) {
+                    self.bind(body, BondBased { c: c[0] }, PointConstants::None, toughness)
+                } else {
+                    self.bind(
+                        body,
+                        BondBasedMixed { rule: self.rule },
+                        PointConstants::PerMaterial(c),
+                        toughness,
+                    )
+                }
+            }
+            Laws::Solid(s) => {
+                let s: Vec<Solid> = s
+                    .iter()
+                    .enumerate()
+                    .filter(|(n, _)| pick(*n))
+                    .map(|(_, s)| *s)
+                    .collect();
+                self.bind(
+                    body,
+                    EamLike {
+                        ratio: s[0].ratio(),
+                    },
+                    PointConstants::Solid(s),
+                    toughness,
+                )
+            }
+        }
+    }
+
+    fn bind<const D: usize, W: crate::law::Law>(
+        &self,
+        body: &Body<D>,
+        law: W,
+        point_constants: PointConstants,
+        toughness: Vec<Toughness>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        match (&body.layout, &self.stencil) {
+            (Layout::Grid(grid), Some(stencil)) => {
+                Ok(Box::new(StencilInteraction::new(StencilParts {
+                    body,
+                    grid,
+                    stencil,
+                    law,
+                    weight: &|r0| self.weight(r0),
+                    point_constants,
+                    toughness,
+                    repulsion: self.repulsion,
+                    simd: self.simd,
+                })))
+            }
+            _ => Err(BuildError::new("body", "horizon lists are not built yet")),
+        }
+    }
+}
+
+fn toughness<const D: usize>(
+    spec: &Spec,
+    m: &MaterialSpec,
+    moments: Moments,
+    path: &str,
+) -> Result<Toughness, BuildError> {
+    let Some(fracture) = m.fracture else {
+        return Ok(Toughness {
+            s00: f64::INFINITY,
+            alpha: 0.0,
+        });
+    };
+    let s00 = match fracture.criterion {
+        Criterion::Stretch(s) => s,
+        Criterion::Energy(energy) => {
+            // the bond-based constant of the same bulk; for state-based solids of the same K
+            let stiffness = match m.law {
+                LawSpec::Pmb(s) => s,
+                LawSpec::Lps(m) if D == 1 => PmbStiffness::Young(m.young),
+                LawSpec::Lps(m) => {
+                    return lps_toughness::<D>(spec, m, energy, fracture.alpha, path);
+                }
+                _ => {
+                    return Err(BuildError::new(
+                        path,
+                        "a fracture energy is known for pmb and lps materials only",
+                    )
+                    .help("give critical_stretch instead"));
+                }
+            };
+            let c = micromodulus(D, spec.plane, stiffness, moments);
+            micromodulus::critical_stretch(D, energy, c, moments)
+        }
+    };
+    if !(s00 > 0.0) || !(fracture.alpha >= 0.0) {
+        return Err(BuildError::new(
+            path,
+            format!(
+                "critical stretch {s00} and alpha {} must be positive",
+                fracture.alpha
+            ),
+        ));
+    }
+    Ok(Toughness {
+        s00,
+        alpha: fracture.alpha,
+    })
+}
+
+/// Critical stretch of LPS from a fracture energy: Madenci & Oterkus 2014 (6.19) in 3-D,
+/// `s0² = G0 / ((3G + (3/4)⁴ (K − 5G/3)) δ)`, and (6.20) in 2-D, `s0² = G0 / ((6G/π + 16 (K₂ − 2G)/(9π²)) δ)`.
+fn lps_toughness<const D: usize>(
+    spec: &Spec,
+    m: crate::spec::Moduli,
+    energy: f64,
+    alpha: f64,
+    path: &str,
+) -> Result<Toughness, BuildError> {
+    let horizon = match spec.horizon {
+        crate::spec::Horizon::Length(d) => d,
+        crate::spec::Horizon::Ratio(r) => r as f64 * spec.body.spacing().unwrap_or(1.0),
+    };
+    let (k, g) = (m.bulk(), m.shear());
+    let stiffness = if D == 3 {
+        3.0 * g + 0.75f64.powi(4) * (k - 5.0 * g / 3.0)
+    } else {
+        let l = m.lame();
+        let plane = match spec.plane {
+            crate::spec::Plane::Strain => l + g,
+            crate::spec::Plane::Stress => 2.0 * l * g / (l + 2.0 * g) + g,
+        };
+        6.0 * g / std::f64::consts::PI
+            + 16.0 * (plane - 2.0 * g) / (9.0 * std::f64::consts::PI.powi(2))
+    };
+    let s00 = (energy / (stiffness * horizon)).sqrt();
+    if !(s00 > 0.0) {
+        return Err(BuildError::new(
+            path,
+            format!("a fracture energy of {energy} gives no critical stretch"),
+        ));
+    }
+    Ok(Toughness { s00, alpha })
+}
