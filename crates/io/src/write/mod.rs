@@ -4,6 +4,11 @@ pub mod atomic;
 pub mod dump;
 pub mod fields;
 pub mod history;
+pub mod picture;
 pub mod pvd;
 pub mod run_json;
+pub mod series;
 pub mod vtu;
+
+pub use atomic::WriteError;
+pub use series::{Series, SeriesOptions};
