@@ -45,11 +45,8 @@ struct Panel {
 
 pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
     let bounds = bounds(s);
-    let spacing = if s.spacing > 0.0 {
-        s.spacing
-    } else {
-        longest(&bounds) / 100.0
-    };
+    let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
+    let spacing = guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
     let near = |x: &[f64; 3]| {
         let reach = REACH * longest(&bounds) + spacing;
         (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)

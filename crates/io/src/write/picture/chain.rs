@@ -6,8 +6,9 @@ use super::colormap::color;
 use super::image::{Align, Color, Font, GREY, INK, Image};
 use super::{HEAD, MARGIN, PictureOptions, head, label};
 
-/// Height of one plot, of the room between and below them, and width of the numbers at the left (pixels).
+/// Height of one plot, of its name above it, of the room between and below them, and width of the numbers at the left (pixels).
 const PLOT: f64 = 300.0;
+const NAME: f64 = 34.0;
 const BETWEEN: f64 = 64.0;
 const BELOW: f64 = 96.0;
 const NUMBERS: f64 = 110.0;
@@ -37,7 +38,7 @@ impl Axes {
 pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
     let mut image = Image::new(
         options.width,
-        (HEAD + 2.0 * PLOT + BETWEEN + BELOW) as usize,
+        (HEAD + NAME + 2.0 * PLOT + BETWEEN + BELOW) as usize,
     );
     head(&mut image, s, options);
     let mut order: Vec<usize> = (0..s.reference.len())
@@ -57,8 +58,8 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
         x: range(&x),
         y,
     };
-    let upper = at(HEAD, range(&u));
-    let lower = at(HEAD + PLOT + BETWEEN, [-0.04, 1.04]);
+    let upper = at(HEAD + NAME, range(&u));
+    let lower = at(HEAD + NAME + PLOT + BETWEEN, [-0.04, 1.04]);
     grid(&mut image, &upper, "displacement", unit);
     grid(&mut image, &lower, "damage", "");
     numbers_below(&mut image, &lower, unit);
@@ -119,7 +120,7 @@ fn grid(image: &mut Image, axes: &Axes, name: &str, unit: &str) {
     };
     image.text(
         axes.left,
-        axes.top - 30.0,
+        axes.top - NAME,
         &name,
         Font::Normal,
         Align::Left,

@@ -15,7 +15,12 @@ const DARKEST: f64 = 0.18;
 
 /// Colour of a damage; values outside 0…1 are clamped, what is no number counts as 0.
 pub fn color(damage: f64) -> Color {
-    let part = DARKEST + (1.0 - DARKEST) * damage.max(0.0).min(1.0);
+    let damage = if damage.is_nan() {
+        0.0
+    } else {
+        damage.clamp(0.0, 1.0)
+    };
+    let part = DARKEST + (1.0 - DARKEST) * damage;
     let at = part * (INFERNO.len() - 1) as f64;
     let low = (at as usize).min(INFERNO.len() - 2);
     let part = at - low as f64;

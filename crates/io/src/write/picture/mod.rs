@@ -32,7 +32,7 @@ pub struct PictureOptions {
     /// Units of length and time; "m" and "s" get SI prefixes, "" is none.
     pub length_unit: String,
     pub time_unit: String,
-    /// Width (pixels); the height follows from the body.
+    /// Width (pixels), 800 to 8192; the height follows from the body.
     pub width: usize,
 }
 

@@ -150,9 +150,18 @@ fn a_long_bar_is_stacked_and_a_tower_fits() {
 fn bodies_without_extent_are_drawn() {
     for dimension in 1..=3 {
         for n in [0, 1] {
-            let image = draw(&block([n, 1, 1], dimension));
-            assert_eq!(image.width, 1600);
-            assert!(number_of(&image, INK) > 0);
+            let s = block([n, 1, 1], dimension);
+            for s in [
+                Snapshot {
+                    spacing: 0.0,
+                    ..s.clone()
+                },
+                s,
+            ] {
+                let image = draw(&s);
+                assert!(image.width == 1600 && (200..2000).contains(&image.height));
+                assert!(number_of(&image, INK) > 0);
+            }
         }
     }
 }
@@ -204,4 +213,20 @@ fn the_file_is_a_png_of_the_picture() {
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
     assert_eq!(bytes, damage(&s, &options).unwrap().pixels.as_flattened());
+}
+
+#[test]
+fn a_level_surface_is_lit_evenly_up_to_its_edges() {
+    let image = views(&draw(&block([20, 20, 20], 3)));
+    // down the middle of the section: the top face, then the cut
+    let column: Vec<Color> = image
+        .pixels
+        .chunks(image.width)
+        .map(|row| row[1180])
+        .collect();
+    let first = column.iter().position(|p| *p != WHITE).unwrap();
+    let top = &column[first + 2..first + 150];
+    assert!(top.iter().all(|p| *p == top[0]));
+    let cut = column[column.len() / 2];
+    assert!(cut[0] < top[0][0] && cut[2] < top[0][2]);
 }

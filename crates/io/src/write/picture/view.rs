@@ -1,7 +1,7 @@
 //! A body seen by an orthographic camera: every point a small cube, the nearest to the viewer wins.
 //!
 //! Everything is drawn at [`FINE`] times the final resolution and averaged down. Relief is shown by the light on the
-//! slope of the depth buffer and by darkening what lies deeper than its surroundings ("unsharp masking the depth
+//! slope of the surface and by darkening what lies deeper than its surroundings ("unsharp masking the depth
 //! buffer", Luft, Colditz and Deussen 2006).
 
 use super::colormap::color;
@@ -15,9 +15,9 @@ const OVERLAP: f64 = 1.08;
 const SIDE_LIGHT: f32 = 0.88;
 const TOP_LIGHT: f32 = 1.10;
 
-/// Change of light per slope (rise over run) of the surface, and the most that depth takes away.
+/// Change of light per slope (rise over run) of the surface, and the most that a hollow takes away.
 const SLOPE_LIGHT: f32 = 0.45;
-const DEPTH_SHADE: f32 = 0.45;
+const HOLLOW_SHADE: f32 = 0.45;
 
 /// An orthonormal frame: screen right, screen up, towards the viewer; and the elevation of the viewer above
 /// the plane that he looks along (sine and cosine).
@@ -87,9 +87,9 @@ impl Frame {
         };
         for x in points {
             let p = camera.project(x);
-            for a in 0..3 {
-                frame.low[a] = frame.low[a].min(p[a] - spacing);
-                frame.high[a] = frame.high[a].max(p[a] + spacing);
+            for ((low, high), p) in frame.low.iter_mut().zip(&mut frame.high).zip(p) {
+                *low = low.min(p - spacing);
+                *high = high.max(p + spacing);
             }
         }
         (frame.low[0] <= frame.high[0]).then_some(frame)
@@ -148,10 +148,11 @@ pub fn draw(
         let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
         buffer.cube(screen, depth as f32, damage as f32, camera);
     }
+    let heights = buffer.heights(camera);
     if camera.cosine == 0.0 {
-        buffer.light_slopes();
+        buffer.light_slopes(&heights);
     }
-    buffer.darken_depths();
+    buffer.darken_hollows(&heights);
     buffer.average_onto(image, corner);
 }
 
@@ -186,11 +187,21 @@ impl Buffer {
         }
     }
 
-    /// Mean depth of the body within ±`radius` pixels along both axes; 0 where there is nothing.
-    fn blurred_depth(&self, radius: usize) -> Vec<f32> {
+    /// Height of the surface above the ground of the body (edges of a cube); −∞ where there is nothing. Seen
+    /// from above this is the depth; seen obliquely, unlike the depth, it is constant on a level surface.
+    fn heights(&self, camera: &Camera) -> Vec<f32> {
+        let row_height = camera.cosine / self.edge;
+        let height = |(at, depth): (usize, &f32)| {
+            let row = (at / self.width) as f64;
+            depth * camera.sine as f32 - (row * row_height) as f32
+        };
+        self.depth.iter().enumerate().map(height).collect()
+    }
+
+    /// Mean of the heights within ±`radius` pixels along both axes; 0 where there is nothing.
+    fn blurred(&self, heights: &[f32], radius: usize) -> Vec<f32> {
         let (w, h) = (self.width, self.height);
-        let mut sum: Vec<[f32; 2]> = self
-            .depth
+        let mut sum: Vec<[f32; 2]> = heights
             .iter()
             .map(|d| if d.is_finite() { [*d, 1.0] } else { [0.0; 2] })
             .collect();
@@ -221,9 +232,9 @@ impl Buffer {
     }
 
     /// Light from the upper left on the slopes of the smoothed surface.
-    fn light_slopes(&mut self) {
+    fn light_slopes(&mut self, heights: &[f32]) {
         let radius = (self.edge.round() as usize).max(2);
-        let smooth = self.blurred_depth(radius);
+        let smooth = self.blurred(heights, radius);
         let solid = |at: usize| self.depth[at].is_finite();
         let mut gain = vec![1f32; smooth.len()];
         for row in 1..self.height.saturating_sub(1) {
@@ -233,7 +244,7 @@ impl Buffer {
                 if !solid(at) || !around.into_iter().all(solid) {
                     continue;
                 }
-                // depth is in edges, so slopes are rise over run
+                // heights are in edges, so slopes are rise over run
                 let run = 2.0 / self.edge as f32;
                 let right = (smooth[at + 1] - smooth[at - 1]) / run;
                 let down = (smooth[at + self.width] - smooth[at - self.width]) / run;
@@ -247,12 +258,12 @@ impl Buffer {
     }
 
     /// Darkens what lies deeper than its surroundings: cracks, and debris behind.
-    fn darken_depths(&mut self) {
+    fn darken_hollows(&mut self, heights: &[f32]) {
         let radius = ((2.0 * self.edge).round() as usize).max(3);
-        let smooth = self.blurred_depth(radius);
-        for ((light, depth), smooth) in self.light.iter_mut().zip(&self.depth).zip(smooth) {
-            if depth.is_finite() {
-                *light *= 1.0 - DEPTH_SHADE * ((smooth - depth) / 4.0).clamp(0.0, 1.0);
+        let smooth = self.blurred(heights, radius);
+        for ((light, height), smooth) in self.light.iter_mut().zip(heights).zip(smooth) {
+            if height.is_finite() {
+                *light *= 1.0 - HOLLOW_SHADE * ((smooth - height) / 4.0).clamp(0.0, 1.0);
             }
         }
     }
