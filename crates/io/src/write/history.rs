@@ -80,12 +80,16 @@ impl History {
         }
         row += "\n";
         if let Err(error) = self.file.write_all(row.as_bytes()) {
-            // a torn row is worse than a missing one; if cutting it off fails too, the first error tells more
-            let _ = self.file.set_len(self.length);
+            self.cut_torn_row();
             return Err(WriteError::at("append to", &self.path)(error));
         }
         self.length += row.len() as u64;
         Ok(())
+    }
+
+    /// A torn row is worse than a missing one. If cutting it off fails too, the error of the row tells more.
+    fn cut_torn_row(&self) {
+        let _ = self.file.set_len(self.length);
     }
 
     /// Waits until all rows are on the disk.
@@ -178,7 +182,7 @@ mod tests {
         let whole = std::fs::read(&path).unwrap();
         // half a row got out before the disk was full
         history.file.write_all(b"2,0.").unwrap();
-        history.file.set_len(history.length).unwrap();
+        history.cut_torn_row();
         history.push(2, &[4.0, 5.0, 6.0]).unwrap();
         let text = std::fs::read(&path).unwrap();
         assert_eq!(text, [&whole[..], b"2,4.0,5.0,6.0\n"].concat());

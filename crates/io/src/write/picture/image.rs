@@ -28,11 +28,6 @@ impl Font {
         }
     }
 
-    /// Height of a line (pixels).
-    pub fn height(self) -> f64 {
-        self.raster().1.val() as f64
-    }
-
     /// Width of a text (pixels).
     pub fn width(self, text: &str) -> f64 {
         let (weight, size) = self.raster();
