@@ -1,0 +1,140 @@
+//! LAMMPS text dump (`dump custom`) of a snapshot: what reads LAMMPS's dumps reads it.
+
+use std::io::{self, Write};
+
+use peridyne::observe::Snapshot;
+
+use super::fields::{Field, fields, positions};
+
+/// The box of a dump; without one it is shrunk around the points, half a spacing wider on each side.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DumpBox {
+    /// Lower and upper bound per axis (length).
+    pub bounds: Option<[[f64; 2]; 3]>,
+    pub periodic: [bool; 3],
+}
+
+/// Writes one frame: `id type x y z`, velocities as `vx vy vz`, and every scalar of the snapshot by its name.
+///
+/// Types count from 1: the mark, less the smallest mark, plus 1. Numbers read back to the same f64. A trajectory
+/// is frames one after another in one file.
+///
+/// # Errors
+/// Those of `w`; `InvalidInput` for arrays of unequal lengths.
+pub fn write_frame<W: Write>(w: &mut W, s: &Snapshot, cell: &DumpBox) -> io::Result<()> {
+    let mut columns = fields(s)?;
+    // x, y, z say it already
+    columns.retain(|(name, _)| *name != "displacement");
+    writeln!(w, "ITEM: TIMESTEP\n{}", s.step)?;
+    writeln!(w, "ITEM: NUMBER OF ATOMS\n{}", s.reference.len())?;
+    let flags = cell.periodic.map(|p| if p { "pp" } else { "ss" });
+    writeln!(w, "ITEM: BOX BOUNDS {}", flags.join(" "))?;
+    for [low, high] in cell.bounds.unwrap_or_else(|| shrunk(s)) {
+        writeln!(w, "{low:?} {high:?}")?;
+    }
+    write!(w, "ITEM: ATOMS id type x y z")?;
+    for (name, _) in &columns {
+        match *name {
+            "velocity" => write!(w, " vx vy vz")?,
+            name => write!(w, " {name}")?,
+        }
+    }
+    writeln!(w)?;
+    let first = i64::from(s.mark.iter().copied().min().unwrap_or(0));
+    for (i, [x, y, z]) in positions(s).enumerate() {
+        let kind = s.mark.get(i).map_or(1, |&mark| i64::from(mark) - first + 1);
+        write!(w, "{} {kind} {x:?} {y:?} {z:?}", i + 1)?;
+        for (_, field) in &columns {
+            match field {
+                Field::Vector(v) => v[i].iter().try_for_each(|c| write!(w, " {c:?}"))?,
+                Field::Scalar(v) => write!(w, " {:?}", v[i])?,
+                Field::Integer(v) => write!(w, " {}", v[i])?,
+                Field::Count(v) => write!(w, " {}", v[i])?,
+            }
+        }
+        writeln!(w)?;
+    }
+    Ok(())
+}
+
+fn shrunk(s: &Snapshot) -> [[f64; 2]; 3] {
+    let half = if s.spacing > 0.0 {
+        0.5 * s.spacing
+    } else {
+        0.5
+    };
+    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for x in positions(s).filter(|x| x.iter().all(|c| c.is_finite())) {
+        for (b, c) in bounds.iter_mut().zip(x) {
+            *b = [b[0].min(c), b[1].max(c)];
+        }
+    }
+    bounds.map(|[low, high]| {
+        if low <= high {
+            [low - half, high + half]
+        } else {
+            [-half, half]
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fields::tests::small;
+    use super::*;
+
+    #[test]
+    fn a_frame_reads_back() {
+        let s = small();
+        let mut file = Vec::new();
+        write_frame(&mut file, &s, &DumpBox::default()).unwrap();
+        let text = String::from_utf8(file).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines[..4],
+            ["ITEM: TIMESTEP", "7", "ITEM: NUMBER OF ATOMS", "3"]
+        );
+        assert_eq!(lines[4], "ITEM: BOX BOUNDS ss ss ss");
+        assert_eq!(lines[5], "-0.25 0.75");
+        let columns = "vx vy vz damage energy_density dilatation mark fragment";
+        assert_eq!(lines[8], format!("ITEM: ATOMS id type x y z {columns}"));
+        let rows: Vec<Vec<f64>> = lines[9..]
+            .iter()
+            .map(|l| l.split(' ').map(|c| c.parse().unwrap()).collect())
+            .collect();
+        let x: Vec<[f64; 3]> = positions(&s).collect();
+        for (i, row) in rows.iter().enumerate() {
+            assert_eq!(row[0], i as f64 + 1.0);
+            assert_eq!(row[2..5], x[i]);
+            assert_eq!(row[5..8], s.velocity[i]);
+            assert_eq!(
+                row[8..11],
+                [s.damage[i], s.energy_density[i], s.dilatation[i]]
+            );
+            assert_eq!(row[11], f64::from(s.mark[i]));
+        }
+        assert_eq!(
+            rows.iter().map(|r| r[1]).collect::<Vec<_>>(),
+            [1.0, 2.0, 6.0]
+        );
+    }
+
+    #[test]
+    fn a_given_box_is_kept() {
+        let cell = DumpBox {
+            bounds: Some([[0.0, 1.0]; 3]),
+            periodic: [true, false, true],
+        };
+        let mut file = Vec::new();
+        write_frame(&mut file, &small(), &cell).unwrap();
+        let text = String::from_utf8(file).unwrap();
+        assert!(text.contains("BOX BOUNDS pp ss pp\n0.0 1.0\n0.0 1.0\n0.0 1.0\nITEM"));
+    }
+
+    #[test]
+    fn a_point_gone_to_infinity_does_not_take_the_box_along() {
+        let mut s = small();
+        s.displacement[2][0] = f64::INFINITY;
+        assert_eq!(shrunk(&s)[0], [-0.15, 0.75]);
+    }
+}

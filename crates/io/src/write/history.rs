@@ -1,0 +1,233 @@
+//! `history.csv`: numbers over time, one row per output.
+//!
+//! A file that grows cannot be replaced whole at every row, so it is atomic row by row instead: the header
+//! replaces an older file atomically; every row is one unbuffered append of one whole line, which the operating
+//! system keeps when the run is killed; a row that does not fit (disk full) is cut off again. The file can
+//! be read at any time while the run goes on.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use peridyne::observe::Ledger;
+
+use super::atomic::{WriteError, open_to_append, write_file};
+use super::fields::invalid;
+
+/// A column: name, and unit ("" for pure numbers). The header shows `name [unit]`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    pub name: String,
+    pub unit: String,
+}
+
+impl Column {
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Column {
+            name: name.into(),
+            unit: unit.into(),
+        }
+    }
+}
+
+/// An open `history.csv`.
+#[derive(Debug)]
+pub struct History {
+    path: PathBuf,
+    file: File,
+    columns: usize,
+    /// Length of the file in bytes, whole rows only.
+    length: u64,
+}
+
+impl History {
+    /// Starts the file with its header: `step` and the columns.
+    pub fn create(path: &Path, columns: &[Column]) -> Result<Self, WriteError> {
+        let mut header = String::from("step");
+        for column in columns {
+            let cell = match column.unit.as_str() {
+                "" => column.name.clone(),
+                unit => format!("{} [{unit}]", column.name),
+            };
+            header += ",";
+            header += &quoted(&cell);
+        }
+        header += "\n";
+        write_file(path, |w| w.write_all(header.as_bytes()))?;
+        let file = open_to_append(path)?;
+        Ok(History {
+            path: path.to_path_buf(),
+            file,
+            columns: columns.len(),
+            length: header.len() as u64,
+        })
+    }
+
+    /// Appends a row; it is in the file when this returns. Numbers are written with the fewest digits that
+    /// read back to the same f64.
+    ///
+    /// # Errors
+    /// The operating system's; `InvalidInput` when the number of values is not that of the columns.
+    pub fn push(&mut self, step: u64, values: &[f64]) -> Result<(), WriteError> {
+        if values.len() != self.columns {
+            let (got, want) = (values.len(), self.columns);
+            let error = invalid(format!("{got} values for {want} columns"));
+            return Err(WriteError::at("append to", &self.path)(error));
+        }
+        let mut row = step.to_string();
+        for value in values {
+            row += &format!(",{value:?}");
+        }
+        row += "\n";
+        if let Err(error) = self.file.write_all(row.as_bytes()) {
+            self.cut_torn_row();
+            return Err(WriteError::at("append to", &self.path)(error));
+        }
+        self.length += row.len() as u64;
+        Ok(())
+    }
+
+    /// A torn row is worse than a missing one. If cutting it off fails too, the error of the row tells more.
+    fn cut_torn_row(&self) {
+        let _ = self.file.set_len(self.length);
+    }
+
+    /// Waits until all rows are on the disk.
+    pub fn finish(self) -> Result<(), WriteError> {
+        self.file
+            .sync_all()
+            .map_err(WriteError::at("write", &self.path))
+    }
+}
+
+/// A CSV cell (RFC 4180).
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_string()
+    }
+}
+
+/// Columns of the energy ledger, in the order of [`ledger_values`].
+pub fn ledger_columns(unit: &str) -> Vec<Column> {
+    let names = [
+        "kinetic energy",
+        "strain energy",
+        "contact energy",
+        "released energy",
+        "dissipated energy",
+        "work of conditions",
+        "work of indenters",
+        "energy residual",
+    ];
+    names.map(|name| Column::new(name, unit)).to_vec()
+}
+
+/// The ledger as a row: its entries without the constant `initial`, and what the balance misses.
+pub fn ledger_values(l: &Ledger) -> [f64; 8] {
+    [
+        l.kinetic,
+        l.strain,
+        l.contact,
+        l.released,
+        l.dissipated,
+        l.work_conditions,
+        l.work_indenter,
+        l.residual(),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn columns() -> Vec<Column> {
+        vec![
+            Column::new("time", "s"),
+            Column::new("broken bonds", ""),
+            Column::new("a,b \"c\"", "m/s"),
+        ]
+    }
+
+    #[test]
+    fn header_names_units_and_rows_are_there_at_once() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("history.csv");
+        std::fs::write(&path, "a longer file of an older run\n").unwrap();
+        let mut history = History::create(&path, &columns()).unwrap();
+        let header = "step,time [s],broken bonds,\"a,b \"\"c\"\" [m/s]\"\n";
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), header);
+        history.push(3, &[1e-7, 0.1 + 0.2, -1e300]).unwrap();
+        // read while the run goes on: nothing waits in a buffer
+        let rows = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(rows, format!("{header}3,1e-7,0.30000000000000004,-1e300\n"));
+        assert!(
+            history
+                .push(4, &[1.0])
+                .unwrap_err()
+                .to_string()
+                .contains("1 values for 3 columns")
+        );
+        history.finish().unwrap();
+    }
+
+    #[test]
+    fn a_row_that_fails_is_cut_off() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("history.csv");
+        let mut history = History::create(&path, &columns()).unwrap();
+        history.push(1, &[1.0, 2.0, 3.0]).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        // half a row got out before the disk was full
+        history.file.write_all(b"2,0.").unwrap();
+        history.cut_torn_row();
+        history.push(2, &[4.0, 5.0, 6.0]).unwrap();
+        let text = std::fs::read(&path).unwrap();
+        assert_eq!(text, [&whole[..], b"2,4.0,5.0,6.0\n"].concat());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_told_with_path_and_reason() {
+        let path = PathBuf::from("/dev/full");
+        let file = open_to_append(&path).unwrap();
+        let mut history = History {
+            path,
+            file,
+            columns: 1,
+            length: 0,
+        };
+        let text = history.push(1, &[1.0]).unwrap_err().to_string();
+        assert!(
+            text.starts_with("cannot append to `/dev/full`: No space left on device"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn ledger_has_a_name_for_every_value() {
+        let ledger = Ledger {
+            kinetic: 3.0,
+            strain: 2.0,
+            initial: 4.5,
+            ..Ledger::default()
+        };
+        assert_eq!(ledger_columns("J").len(), ledger_values(&ledger).len());
+        assert_eq!(ledger_values(&ledger)[7], 0.5);
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_round_trip(value in proptest::num::f64::ANY) {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join("history.csv");
+            let mut history = History::create(&path, &[Column::new("x", "")]).unwrap();
+            history.push(0, &[value]).unwrap();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let back: f64 = text.trim_end().rsplit(',').next().unwrap().parse().unwrap();
+            prop_assert!(back.to_bits() == value.to_bits() || back.is_nan() && value.is_nan());
+        }
+    }
+}

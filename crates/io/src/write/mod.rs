@@ -1,0 +1,14 @@
+//! Writers: each turns snapshots or numbers into one format, atomically, and does nothing else.
+
+pub mod atomic;
+pub mod dump;
+pub mod fields;
+pub mod history;
+pub mod picture;
+pub mod pvd;
+pub mod run_json;
+pub mod series;
+pub mod vtu;
+
+pub use atomic::WriteError;
+pub use series::{Series, SeriesOptions};

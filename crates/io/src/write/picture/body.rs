@@ -1,0 +1,296 @@
+//! Pictures of plates and solids: layout, frame, scale bar and colour bar.
+
+use peridyne::observe::Snapshot;
+use peridyne::space::AXES;
+
+use super::super::fields::positions;
+use super::colormap::color;
+use super::image::{Align, Font, GREY, INK, Image};
+use super::view::{Camera, Frame, cross, draw as draw_view};
+use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
+
+/// Debris farther from the reference body than this part of its longest extent is not drawn.
+const REACH: f64 = 0.3;
+/// Elevation of the viewer of the section (degrees): low enough to see the cut, high enough to see the top.
+const ELEVATION: f64 = 30.0;
+/// Room between and below the views (pixels).
+const GAP: f64 = 48.0;
+const CAPTION: f64 = 40.0;
+/// A view is not drawn higher than this part of the picture's width.
+const TALLEST: f64 = 0.75;
+/// Views go below each other when that makes them larger by this factor.
+const WORTH_STACKING: f64 = 1.6;
+
+/// Keeps the points whose reference coordinate along `axis` is at or behind `at` in the direction `sign` (±1).
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    axis: usize,
+    at: f64,
+    sign: f64,
+}
+
+impl Cut {
+    fn keeps(&self, reference: &[f64; 3]) -> bool {
+        self.sign * reference[self.axis] >= self.sign * self.at
+    }
+}
+
+/// One view: camera, what it shows, and its frame.
+struct Panel {
+    camera: Camera,
+    frame: Frame,
+    caption: String,
+    cut: Option<Cut>,
+}
+
+pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
+    let bounds = bounds(s);
+    let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
+    let spacing = guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
+    let near = |x: &[f64; 3]| {
+        let reach = REACH * longest(&bounds) + spacing;
+        (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)
+    };
+    let shown = |cut: Option<Cut>| {
+        let points =
+            positions(s)
+                .zip(&s.reference)
+                .zip(&s.damage)
+                .filter(move |((x, reference), _)| {
+                    near(x) && cut.is_none_or(|cut| cut.keeps(reference))
+                });
+        points.map(|((x, _), damage)| (x, *damage))
+    };
+    let panels: Vec<Panel> = cameras(s, &bounds)
+        .into_iter()
+        .filter_map(|(camera, caption, cut)| {
+            let frame = Frame::around(&camera, shown(cut).map(|p| p.0), spacing)?;
+            Some(Panel {
+                camera,
+                frame,
+                caption,
+                cut,
+            })
+        })
+        .collect();
+
+    let width = options.width as f64;
+    let placed = place(&panels, width - 2.0 * MARGIN, TALLEST * width);
+    let height = HEAD + placed.height + FOOT;
+    let mut image = Image::new(options.width, height.ceil() as usize);
+    head(&mut image, s, options);
+    for ((panel, corner), caption) in panels.iter().zip(&placed.corners).zip(&placed.captions) {
+        let corner = [MARGIN + corner[0], HEAD + corner[1]];
+        draw_view(
+            &mut image,
+            corner,
+            placed.scale,
+            &panel.camera,
+            &panel.frame,
+            spacing,
+            shown(panel.cut),
+        );
+        let middle = corner[0] + 0.5 * panel.frame.size()[0] * placed.scale;
+        image.text(
+            middle,
+            HEAD + caption,
+            &panel.caption,
+            Font::Small,
+            Align::Center,
+            GREY,
+        );
+    }
+    let outside = s.reference.len() - shown(None).count();
+    foot(&mut image, placed.scale, outside, options);
+    image
+}
+
+/// Bounds of the reference positions per axis, `[0, 0]` without points.
+fn bounds(s: &Snapshot) -> [[f64; 2]; 3] {
+    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for x in s
+        .reference
+        .iter()
+        .filter(|x| x.iter().all(|c| c.is_finite()))
+    {
+        for (b, c) in bounds.iter_mut().zip(x) {
+            *b = [b[0].min(*c), b[1].max(*c)];
+        }
+    }
+    bounds.map(|b| if b[0] <= b[1] { b } else { [0.0; 2] })
+}
+
+fn longest(bounds: &[[f64; 2]; 3]) -> f64 {
+    bounds
+        .iter()
+        .map(|[low, high]| high - low)
+        .fold(0.0, f64::max)
+}
+
+/// The cameras of a body with captions and cuts: a plate as it lies; a solid from above, along its thinnest
+/// axis, and cut open through the middle along its longest and thinnest axes.
+fn cameras(s: &Snapshot, bounds: &[[f64; 2]; 3]) -> Vec<(Camera, String, Option<Cut>)> {
+    let unit = |axis: usize| std::array::from_fn(|a| f64::from(u8::from(a == axis)));
+    let straight = std::f64::consts::FRAC_PI_2;
+    if s.dimension == 2 {
+        return vec![(Camera::new(unit(0), unit(2), straight), String::new(), None)];
+    }
+    let extent = bounds.map(|[low, high]| high - low);
+    // equal extents differ by round-off and half cells: prefer z up and x to the right
+    let tie = 1.02;
+    let thin = [2, 1, 0].into_iter().reduce(|best, a| {
+        if extent[a] * tie < extent[best] {
+            a
+        } else {
+            best
+        }
+    });
+    let thin = thin.unwrap_or(2);
+    let long = (0..3).filter(|&a| a != thin);
+    let long = long
+        .reduce(|best, a| {
+            if extent[a] > tie * extent[best] {
+                a
+            } else {
+                best
+            }
+        })
+        .unwrap_or(0);
+    let deep = 3 - thin - long;
+    let (right, top) = (unit(long), unit(thin));
+    // the half behind the cut stays
+    let sign = cross(top, right)[deep];
+    let middle = 0.5 * (bounds[deep][0] + bounds[deep][1]);
+    // a plane of points in the middle belongs to the half, whatever the round-off
+    let cut = Some(Cut {
+        axis: deep,
+        at: middle - sign * 1e-6 * extent[deep],
+        sign,
+    });
+    let [t, l] = [thin, long].map(|a| AXES[a]);
+    vec![
+        (
+            Camera::new(right, top, straight),
+            format!("from above, along -{t}"),
+            None,
+        ),
+        (
+            Camera::new(right, top, ELEVATION.to_radians()),
+            format!("cut open along {l} and {t}"),
+            cut,
+        ),
+    ]
+}
+
+/// Scale (pixels per length), upper left corners of the views and upper edges of their captions, and height of
+/// them all (pixels).
+struct Placement {
+    scale: f64,
+    corners: Vec<[f64; 2]>,
+    captions: Vec<f64>,
+    height: f64,
+}
+
+/// Places views side by side, or below each other where that shows them much larger, all at one scale.
+fn place(panels: &[Panel], width: f64, tallest: f64) -> Placement {
+    let sizes: Vec<[f64; 2]> = panels.iter().map(|p| p.frame.size()).collect();
+    let caption = if panels.iter().all(|p| p.caption.is_empty()) {
+        0.0
+    } else {
+        CAPTION
+    };
+    let count = sizes.len() as f64;
+    let gaps = GAP * (count - 1.0);
+    let total = |axis: usize| sizes.iter().map(|s| s[axis]).sum::<f64>();
+    let largest = |axis: usize| sizes.iter().map(|s| s[axis]).fold(0.0, f64::max);
+    if sizes.is_empty() {
+        return Placement {
+            scale: 1.0,
+            corners: Vec::new(),
+            captions: Vec::new(),
+            height: 0.0,
+        };
+    }
+    let beside = ((width - gaps) / total(0)).min(tallest / largest(1));
+    let below = (width / largest(0)).min((tallest - gaps - count * caption) / total(1));
+    let (mut corners, mut captions) = (Vec::new(), Vec::new());
+    let mut at = 0.0;
+    if beside * WORTH_STACKING >= below {
+        let left = 0.5 * (width - gaps - total(0) * beside);
+        let height = largest(1) * beside;
+        for size in &sizes {
+            corners.push([left + at, 0.5 * (height - size[1] * beside)]);
+            captions.push(height + 0.4 * caption);
+            at += size[0] * beside + GAP;
+        }
+        return Placement {
+            scale: beside,
+            corners,
+            captions,
+            height: height + caption,
+        };
+    }
+    for size in &sizes {
+        corners.push([0.5 * (width - size[0] * below), at]);
+        at += size[1] * below;
+        captions.push(at + 0.4 * caption);
+        at += caption + GAP;
+    }
+    Placement {
+        scale: below,
+        corners,
+        captions,
+        height: at - GAP,
+    }
+}
+
+/// Scale bar to the left, colour bar to the right, what is missing between them.
+fn foot(image: &mut Image, scale: f64, outside: usize, options: &PictureOptions) {
+    let (right, y) = (image.width as f64 - MARGIN, image.height as f64 - 52.0);
+    let length = label::round_down(0.16 * image.width as f64 / scale);
+    let pixels = length * scale;
+    for (dx, dy, w, h) in [
+        (0.0, 6.0, pixels, 3.0),
+        (0.0, 0.0, 3.0, 15.0),
+        (pixels - 3.0, 0.0, 3.0, 15.0),
+    ] {
+        image.rectangle(MARGIN + dx, y + dy, w, h, INK);
+    }
+    let text = label::quantity(length, &options.length_unit);
+    image.text(
+        MARGIN + pixels + 14.0,
+        y - 5.0,
+        &text,
+        Font::Normal,
+        Align::Left,
+        INK,
+    );
+
+    let bar = 320.0;
+    let start = right - bar - 30.0;
+    for i in 0..bar as usize {
+        let tint = color((i as f64 + 0.5) / bar);
+        image.rectangle(start + i as f64, y - 2.0, 1.0, 18.0, tint);
+    }
+    image.text(
+        start - 14.0,
+        y - 5.0,
+        "damage  0",
+        Font::Normal,
+        Align::Right,
+        INK,
+    );
+    image.text(right, y - 5.0, "1", Font::Normal, Align::Right, INK);
+    if outside > 0 {
+        let noun = if outside == 1 { "point" } else { "points" };
+        let text = format!("{} {noun} outside", label::count(outside as u64));
+        image.text(
+            0.45 * image.width as f64,
+            y - 3.0,
+            &text,
+            Font::Small,
+            Align::Center,
+            GREY,
+        );
+    }
+}

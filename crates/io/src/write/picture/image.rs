@@ -1,0 +1,202 @@
+//! An RGB image to draw on: rectangles, lines, text, and PNG.
+
+use std::io::{self, Write};
+
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+
+/// Red, green, blue; sRGB.
+pub type Color = [u8; 3];
+
+pub const WHITE: Color = [255; 3];
+pub const INK: Color = [34, 38, 46];
+pub const GREY: Color = [112, 118, 128];
+
+/// Sizes of text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Font {
+    Small,
+    Normal,
+    Title,
+}
+
+impl Font {
+    fn raster(self) -> (FontWeight, RasterHeight) {
+        match self {
+            Font::Small => (FontWeight::Regular, RasterHeight::Size20),
+            Font::Normal => (FontWeight::Regular, RasterHeight::Size24),
+            Font::Title => (FontWeight::Bold, RasterHeight::Size32),
+        }
+    }
+
+    /// Width of a text (pixels).
+    pub fn width(self, text: &str) -> f64 {
+        let (weight, size) = self.raster();
+        (get_raster_width(weight, size) * text.chars().count()) as f64
+    }
+}
+
+/// Where a text stands relative to its anchor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    Left,
+    Center,
+    Right,
+}
+
+/// Rows of pixels from the top; coordinates are in pixels, x to the right, y down.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    pub width: usize,
+    pub height: usize,
+    pub pixels: Vec<Color>,
+}
+
+impl Image {
+    /// A white image.
+    pub fn new(width: usize, height: usize) -> Self {
+        Image {
+            width,
+            height,
+            pixels: vec![WHITE; width * height],
+        }
+    }
+
+    /// Lays `color` over a pixel with opacity 0…1; pixels outside are ignored.
+    pub fn blend(&mut self, x: i64, y: i64, color: Color, opacity: f64) {
+        if x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
+            return;
+        }
+        let pixel = &mut self.pixels[y as usize * self.width + x as usize];
+        for (p, c) in pixel.iter_mut().zip(color) {
+            *p = (f64::from(*p) + (f64::from(c) - f64::from(*p)) * opacity).round() as u8;
+        }
+    }
+
+    pub fn rectangle(&mut self, x: f64, y: f64, width: f64, height: f64, color: Color) {
+        for row in y.round() as i64..(y + height).round() as i64 {
+            for column in x.round() as i64..(x + width).round() as i64 {
+                self.blend(column, row, color, 1.0);
+            }
+        }
+    }
+
+    /// A straight line with round ends, smooth edges. A line that is not finite is not drawn.
+    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], width: f64, color: Color) {
+        if !from.iter().chain(&to).all(|c| c.is_finite()) {
+            return;
+        }
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let square = dx * dx + dy * dy;
+        let reach = 0.5 * width + 1.0;
+        let range = |a: f64, b: f64, end: usize| {
+            let low = (a.min(b) - reach).floor().max(0.0);
+            low as i64..=(a.max(b) + reach).ceil().min(end as f64) as i64
+        };
+        for y in range(from[1], to[1], self.height) {
+            for x in range(from[0], to[0], self.width) {
+                let (px, py) = (x as f64 + 0.5 - from[0], y as f64 + 0.5 - from[1]);
+                let along = if square > 0.0 {
+                    ((px * dx + py * dy) / square).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                let distance = (px - along * dx).hypot(py - along * dy);
+                self.blend(x, y, color, (0.5 * width + 0.5 - distance).clamp(0.0, 1.0));
+            }
+        }
+    }
+
+    /// One line of text, `y` its upper edge. Characters that the font lacks show as `?`.
+    pub fn text(&mut self, x: f64, y: f64, text: &str, font: Font, align: Align, color: Color) {
+        let (weight, size) = font.raster();
+        let mut left = match align {
+            Align::Left => x,
+            Align::Center => x - 0.5 * font.width(text),
+            Align::Right => x - font.width(text),
+        }
+        .round() as i64;
+        for c in text.chars() {
+            let c = if "‐‑–—−".contains(c) {
+                '-'
+            } else {
+                c
+            };
+            let glyph = get_raster(c, weight, size).or_else(|| get_raster('?', weight, size));
+            let Some(glyph) = glyph else { continue };
+            for (j, row) in glyph.rows().enumerate() {
+                for (i, &value) in row.iter().enumerate() {
+                    let opacity = f64::from(value) / 255.0;
+                    self.blend(left + i as i64, y.round() as i64 + j as i64, color, opacity);
+                }
+            }
+            left += glyph.width() as i64;
+        }
+    }
+
+    /// Writes the image as PNG (8-bit RGB).
+    pub fn write_png<W: Write>(&self, w: W) -> io::Result<()> {
+        let mut encoder = png::Encoder::new(w, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let mut writer = encoder.write_header().map_err(io_error)?;
+        writer
+            .write_image_data(self.pixels.as_flattened())
+            .map_err(io_error)?;
+        writer.finish().map_err(io_error)
+    }
+}
+
+fn io_error(error: png::EncodingError) -> io::Error {
+    match error {
+        png::EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn png_decodes_to_the_same_pixels() {
+        let mut image = Image::new(7, 5);
+        image.rectangle(2.0, 1.0, 3.0, 2.0, [10, 20, 30]);
+        let mut file = Vec::new();
+        image.write_png(&mut file).unwrap();
+        let mut reader = png::Decoder::new(io::Cursor::new(file))
+            .read_info()
+            .unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        assert_eq!(
+            (info.width, info.height, info.color_type),
+            (7, 5, png::ColorType::Rgb)
+        );
+        let at = |x: usize, y: usize| &bytes[3 * (7 * y + x)..][..3];
+        assert_eq!(at(2, 1), [10, 20, 30]);
+        assert_eq!(at(4, 2), [10, 20, 30]);
+        assert_eq!(at(5, 2), WHITE);
+        assert_eq!(at(2, 3), WHITE);
+    }
+
+    #[test]
+    fn a_line_covers_its_width_and_stays_in_the_image() {
+        let mut image = Image::new(20, 11);
+        image.line([-5.0, 5.5], [50.0, 5.5], 3.0, [0; 3]);
+        let column: Vec<u8> = (0..11).map(|y| image.pixels[20 * y + 10][0]).collect();
+        assert_eq!(column, [255, 255, 255, 255, 0, 0, 0, 255, 255, 255, 255]);
+        let before = image.clone();
+        image.line([f64::NAN, 0.0], [1.0, 1.0], 3.0, [0; 3]);
+        assert_eq!(image, before);
+    }
+
+    #[test]
+    fn text_stands_where_it_is_put() {
+        let mut image = Image::new(200, 40);
+        image.text(190.0, 5.0, "µ–漢", Font::Normal, Align::Right, [0; 3]);
+        let inked = |x: usize| (0..40).any(|y| image.pixels[200 * y + x] != WHITE);
+        let width = Font::Normal.width("µ–漢") as usize;
+        assert!((190 - width..190).filter(|&x| inked(x)).count() > width / 2);
+        assert!((0..190 - width).chain(190..200).all(|x| !inked(x)));
+    }
+}

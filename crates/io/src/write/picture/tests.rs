@@ -1,0 +1,232 @@
+use super::image::{Color, WHITE};
+use super::*;
+use peridyne::observe::Snapshot;
+
+/// A lattice of nx × ny × nz points, spacing 1, all arrays zero.
+fn block(n: [usize; 3], dimension: usize) -> Snapshot {
+    let mut reference = Vec::new();
+    for z in 0..n[2] {
+        for y in 0..n[1] {
+            reference.extend((0..n[0]).map(|x| [x as f64, y as f64, z as f64]));
+        }
+    }
+    let count = reference.len();
+    Snapshot {
+        dimension,
+        spacing: 1.0,
+        displacement: vec![[0.0; 3]; count],
+        damage: vec![0.0; count],
+        reference,
+        ..Snapshot::default()
+    }
+}
+
+fn draw(s: &Snapshot) -> Image {
+    damage(s, &PictureOptions::default()).unwrap()
+}
+
+fn number_of(image: &Image, color: Color) -> usize {
+    image.pixels.iter().filter(|p| **p == color).count()
+}
+
+/// The part of a picture between head and foot.
+fn views(image: &Image) -> Image {
+    let rows = HEAD as usize..image.height - FOOT as usize;
+    let pixels = image.pixels[rows.start * image.width..rows.end * image.width].to_vec();
+    Image {
+        height: rows.len(),
+        pixels,
+        ..*image
+    }
+}
+
+#[test]
+fn a_plate_shows_damage_where_it_is() {
+    let mut s = block([20, 10, 1], 2);
+    for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
+        *damage = if x[0] > 9.5 { 1.0 } else { 0.0 };
+    }
+    let image = draw(&s);
+    let row = (HEAD as usize + image.height - FOOT as usize) / 2;
+    let at = |x: usize| image.pixels[row * image.width + x];
+    assert_eq!(at(image.width / 4), colormap::color(0.0));
+    assert_eq!(at(3 * image.width / 4), colormap::color(1.0));
+    assert_eq!(at(5), WHITE);
+}
+
+#[test]
+fn up_is_up() {
+    let mut s = block([10, 10, 1], 2);
+    for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
+        *damage = if x[1] > 4.5 { 1.0 } else { 0.0 };
+    }
+    let image = views(&draw(&s));
+    let at = |part: f64| {
+        image.pixels[(part * image.height as f64) as usize * image.width + image.width / 2]
+    };
+    assert_eq!(at(0.25), colormap::color(1.0));
+    assert_eq!(at(0.75), colormap::color(0.0));
+}
+
+#[test]
+fn the_layer_nearest_to_the_viewer_wins() {
+    // thin along y: seen from +y; the order of the points must not matter
+    for flip in [false, true] {
+        let mut s = block([30, 3, 30], 3);
+        for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
+            *damage = if x[1] == 2.0 { 1.0 } else { 0.0 };
+        }
+        if flip {
+            s.reference.reverse();
+            s.damage.reverse();
+        }
+        let image = views(&draw(&s));
+        // the left view is the one from above
+        let left: Vec<Color> = image
+            .pixels
+            .chunks(image.width)
+            .flat_map(|row| row[..700].to_vec())
+            .collect();
+        assert!(left.contains(&colormap::color(1.0)));
+        assert!(!left.contains(&colormap::color(0.0)));
+    }
+}
+
+#[test]
+fn the_section_shows_the_inside() {
+    let mut s = block([31, 31, 5], 3);
+    for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
+        // a core that no view of the whole body could show
+        let core =
+            (x[0] - 15.0).abs() < 5.0 && (x[1] - 15.0).abs() < 5.0 && (x[2] - 2.0).abs() < 1.5;
+        *damage = if core { 1.0 } else { 0.0 };
+    }
+    let image = views(&draw(&s));
+    let bright = |p: &&Color| p[0] > 200 && p[1] > 200 && p[2] < 200;
+    let part = |range: std::ops::Range<usize>| {
+        image
+            .pixels
+            .chunks(image.width)
+            .map(|row| row[range.clone()].iter().filter(bright).count())
+            .sum::<usize>()
+    };
+    assert_eq!(part(0..780), 0);
+    assert!(part(820..1600) > 1000);
+}
+
+#[test]
+fn debris_far_away_is_counted_and_does_not_shrink_the_picture() {
+    let mut s = block([40, 40, 1], 2);
+    let whole = draw(&s);
+    s.displacement[0] = [1e9, 0.0, 0.0];
+    s.displacement[1] = [f64::NAN, 0.0, 0.0];
+    let broken = draw(&s);
+    assert_eq!((whole.width, whole.height), (broken.width, broken.height));
+    // two points of 1,600 are missing from the views, nothing else moved
+    let lost = number_of(&views(&broken), WHITE) - number_of(&views(&whole), WHITE);
+    let body = views(&whole).pixels.len() - number_of(&views(&whole), WHITE);
+    assert!(
+        (lost as f64 / body as f64 - 2.0 / 1600.0).abs() < 5e-4,
+        "{lost} of {body}"
+    );
+    // and the foot says so
+    let foot = |i: &Image| i.pixels[(i.height - FOOT as usize) * i.width..].to_vec();
+    assert_ne!(foot(&whole), foot(&broken));
+}
+
+#[test]
+fn a_long_bar_is_stacked_and_a_tower_fits() {
+    let bar = draw(&block([100, 5, 3], 3));
+    let ink = |image: &Image, x: usize| {
+        let views = views(image);
+        (0..views.height).any(|y| views.pixels[y * views.width + x] != WHITE)
+    };
+    assert!(ink(&bar, 100) && ink(&bar, 800) && ink(&bar, 1500));
+    let tower = draw(&block([5, 200, 1], 2));
+    assert!(tower.height <= 1600);
+}
+
+#[test]
+fn bodies_without_extent_are_drawn() {
+    for dimension in 1..=3 {
+        for n in [0, 1] {
+            let s = block([n, 1, 1], dimension);
+            for s in [
+                Snapshot {
+                    spacing: 0.0,
+                    ..s.clone()
+                },
+                s,
+            ] {
+                let image = draw(&s);
+                assert!(image.width == 1600 && (200..2000).contains(&image.height));
+                assert!(number_of(&image, INK) > 0);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_chain_is_two_curves() {
+    let mut s = block([50, 1, 1], 1);
+    for (u, x) in s.displacement.iter_mut().zip(&s.reference) {
+        u[0] = 0.01 * x[0];
+    }
+    s.damage[25] = 1.0;
+    let image = draw(&s);
+    // the damaged point, in both plots, in the colour of damage 1
+    let hot: Vec<usize> = (0..image.pixels.len())
+        .filter(|&i| image.pixels[i] == colormap::color(1.0))
+        .collect();
+    let upper = hot
+        .iter()
+        .filter(|&&i| i / image.width < (HEAD + 320.0) as usize)
+        .count();
+    assert!(upper > 20 && hot.len() - upper > 20);
+}
+
+#[test]
+fn damage_must_be_there() {
+    let s = Snapshot {
+        damage: Vec::new(),
+        ..block([3, 3, 1], 2)
+    };
+    let text = damage(&s, &PictureOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(text.contains("no damage"), "{text}");
+}
+
+#[test]
+fn the_file_is_a_png_of_the_picture() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("damage.png");
+    let s = block([10, 10, 10], 3);
+    let options = PictureOptions {
+        title: "x".repeat(500),
+        width: 900,
+        ..PictureOptions::default()
+    };
+    write(&path, &s, &options).unwrap();
+    let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(bytes, damage(&s, &options).unwrap().pixels.as_flattened());
+}
+
+#[test]
+fn a_level_surface_is_lit_evenly_up_to_its_edges() {
+    let image = views(&draw(&block([20, 20, 20], 3)));
+    // down the middle of the section: the top face, then the cut
+    let column: Vec<Color> = image
+        .pixels
+        .chunks(image.width)
+        .map(|row| row[1180])
+        .collect();
+    let first = column.iter().position(|p| *p != WHITE).unwrap();
+    let top = &column[first + 2..first + 150];
+    assert!(top.iter().all(|p| *p == top[0]));
+    let cut = column[column.len() / 2];
+    assert!(cut[0] < top[0][0] && cut[2] < top[0][2]);
+}

@@ -1,0 +1,298 @@
+//! A body seen by an orthographic camera: every point a small cube, the nearest to the viewer wins.
+//!
+//! Everything is drawn at [`FINE`] times the final resolution and averaged down. Relief is shown by the light on the
+//! slope of the surface and by darkening what lies deeper than its surroundings ("unsharp masking the depth
+//! buffer", Luft, Colditz and Deussen 2006).
+
+use super::colormap::color;
+use super::image::{Color, Image};
+
+/// Pixels drawn per final pixel and axis.
+const FINE: usize = 2;
+/// Cubes are a little larger than the spacing, so that a stretched but unbroken body shows no gaps.
+const OVERLAP: f64 = 1.08;
+/// Light on the faces of a body seen obliquely: below 1 darkens towards black, above 1 lightens towards white.
+const SIDE_LIGHT: f32 = 0.88;
+const TOP_LIGHT: f32 = 1.10;
+
+/// Change of light per slope (rise over run) of the surface, and the most that a hollow takes away.
+const SLOPE_LIGHT: f32 = 0.45;
+const HOLLOW_SHADE: f32 = 0.45;
+
+/// An orthonormal frame: screen right, screen up, towards the viewer; and the elevation of the viewer above
+/// the plane that he looks along (sine and cosine).
+#[derive(Debug, Clone, Copy)]
+pub struct Camera {
+    pub right: [f64; 3],
+    pub up: [f64; 3],
+    pub toward: [f64; 3],
+    pub sine: f64,
+    pub cosine: f64,
+}
+
+impl Camera {
+    /// Looks at a body whose `right` and `top` directions are given (orthonormal) from the front, `elevation` (radian)
+    /// above the horizon; π/2 looks straight down.
+    pub fn new(right: [f64; 3], top: [f64; 3], elevation: f64) -> Self {
+        let back = cross(top, right);
+        let (mut sine, mut cosine) = elevation.sin_cos();
+        if cosine < 1e-9 {
+            (sine, cosine) = (1.0, 0.0);
+        }
+        let combine = |a: f64, b: f64| std::array::from_fn(|i| a * top[i] + b * back[i]);
+        Camera {
+            right,
+            up: combine(cosine, sine),
+            toward: combine(sine, -cosine),
+            sine,
+            cosine,
+        }
+    }
+
+    /// Screen right and up, and distance towards the viewer (length).
+    pub fn project(&self, x: [f64; 3]) -> [f64; 3] {
+        [dot(self.right, x), dot(self.up, x), dot(self.toward, x)]
+    }
+}
+
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// What a camera sees of some points: the frame in the camera's coordinates (length).
+#[derive(Debug, Clone, Copy)]
+pub struct Frame {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+}
+
+impl Frame {
+    /// The smallest frame around points that are cubes of edge `spacing`; `None` without points.
+    pub fn around(
+        camera: &Camera,
+        points: impl Iterator<Item = [f64; 3]>,
+        spacing: f64,
+    ) -> Option<Self> {
+        let mut frame = Frame {
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+        };
+        for x in points {
+            let p = camera.project(x);
+            for ((low, high), p) in frame.low.iter_mut().zip(&mut frame.high).zip(p) {
+                *low = low.min(p - spacing);
+                *high = high.max(p + spacing);
+            }
+        }
+        (frame.low[0] <= frame.high[0]).then_some(frame)
+    }
+
+    pub fn size(&self) -> [f64; 2] {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+}
+
+/// A colour channel (0…255) in a light: darkened towards black below 1, lightened towards white above.
+fn lit(channel: f32, light: f32) -> f32 {
+    if light <= 1.0 {
+        channel * light
+    } else {
+        channel + (255.0 - channel) * (light - 1.0).min(1.0)
+    }
+}
+
+/// Depth, damage and light per fine pixel.
+struct Buffer {
+    width: usize,
+    height: usize,
+    /// Towards the viewer, in edges of a cube; −∞ where there is nothing.
+    depth: Vec<f32>,
+    damage: Vec<f32>,
+    light: Vec<f32>,
+    /// Edge of a cube in fine pixels.
+    edge: f64,
+}
+
+/// Draws points (position, damage) with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
+/// length.
+pub fn draw(
+    image: &mut Image,
+    corner: [f64; 2],
+    scale: f64,
+    camera: &Camera,
+    frame: &Frame,
+    spacing: f64,
+    points: impl Iterator<Item = ([f64; 3], f64)>,
+) {
+    let fine = scale * FINE as f64;
+    let [w, h] = frame.size().map(|s| (s * fine).ceil() as usize + FINE);
+    let mut buffer = Buffer {
+        width: w,
+        height: h,
+        depth: vec![f32::NEG_INFINITY; w * h],
+        damage: vec![0.0; w * h],
+        light: vec![0.0; w * h],
+        edge: (spacing * OVERLAP * fine).max(1.0),
+    };
+    for (x, damage) in points {
+        let p = camera.project(x);
+        let screen = [(p[0] - frame.low[0]) * fine, (frame.high[1] - p[1]) * fine];
+        let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
+        buffer.cube(screen, depth as f32, damage as f32, camera);
+    }
+    let heights = buffer.heights(camera);
+    if camera.cosine == 0.0 {
+        buffer.light_slopes(&heights);
+    }
+    buffer.darken_hollows(&heights);
+    buffer.average_onto(image, corner);
+}
+
+impl Buffer {
+    /// A cube seen from `elevation`: its top face above its front face, each a rectangle.
+    fn cube(&mut self, [x, y]: [f64; 2], depth: f32, damage: f32, camera: &Camera) {
+        let (e, s, c) = (self.edge, camera.sine, camera.cosine);
+        let whole = |from: f64, to: f64, end: usize| {
+            let low = (from - 0.5).ceil().max(0.0) as usize;
+            low..((to - 0.5).ceil().max(0.0) as usize).min(end)
+        };
+        let top = y - 0.5 * e * (s + c);
+        // the front upper edge of the cube is the part nearest to the viewer
+        let ridge = top + e * s;
+        let nearest = depth + (0.5 * (s + c)) as f32;
+        for row in whole(top, top + e * (s + c), self.height) {
+            let v = row as f64 + 0.5 - ridge;
+            let (fall, light) = match (v < 0.0, c == 0.0) {
+                (_, true) => (0.0, 1.0),
+                (true, _) => (-v * c / s / e, TOP_LIGHT),
+                (false, _) => (v * s / c / e, SIDE_LIGHT),
+            };
+            let depth = nearest - fall as f32;
+            for column in whole(x - 0.5 * e, x + 0.5 * e, self.width) {
+                let at = row * self.width + column;
+                if depth > self.depth[at] {
+                    self.depth[at] = depth;
+                    self.damage[at] = damage;
+                    self.light[at] = light;
+                }
+            }
+        }
+    }
+
+    /// Height of the surface above the ground of the body (edges of a cube); −∞ where there is nothing. Seen
+    /// from above this is the depth; seen obliquely, unlike the depth, it is constant on a level surface.
+    fn heights(&self, camera: &Camera) -> Vec<f32> {
+        let row_height = camera.cosine / self.edge;
+        let height = |(at, depth): (usize, &f32)| {
+            let row = (at / self.width) as f64;
+            depth * camera.sine as f32 - (row * row_height) as f32
+        };
+        self.depth.iter().enumerate().map(height).collect()
+    }
+
+    /// Mean of the heights within ±`radius` pixels along both axes; 0 where there is nothing.
+    fn blurred(&self, heights: &[f32], radius: usize) -> Vec<f32> {
+        let (w, h) = (self.width, self.height);
+        let mut sum: Vec<[f32; 2]> = heights
+            .iter()
+            .map(|d| if d.is_finite() { [*d, 1.0] } else { [0.0; 2] })
+            .collect();
+        let mut line = Vec::new();
+        let mut pass = |start: usize, stride: usize, length: usize| {
+            line.clear();
+            line.extend((0..length).map(|i| sum[start + i * stride]));
+            let mut running = [0f64; 2];
+            for i in 0..length + radius {
+                if i < length {
+                    running[0] += f64::from(line[i][0]);
+                    running[1] += f64::from(line[i][1]);
+                }
+                if i > 2 * radius {
+                    running[0] -= f64::from(line[i - 2 * radius - 1][0]);
+                    running[1] -= f64::from(line[i - 2 * radius - 1][1]);
+                }
+                if i >= radius {
+                    sum[start + (i - radius) * stride] = running.map(|r| r as f32);
+                }
+            }
+        };
+        (0..h).for_each(|row| pass(row * w, 1, w));
+        (0..w).for_each(|column| pass(column, w, h));
+        sum.into_iter()
+            .map(|[s, n]| if n > 0.5 { s / n } else { 0.0 })
+            .collect()
+    }
+
+    /// Light from the upper left on the slopes of the smoothed surface.
+    fn light_slopes(&mut self, heights: &[f32]) {
+        let radius = (self.edge.round() as usize).max(2);
+        let smooth = self.blurred(heights, radius);
+        let solid = |at: usize| self.depth[at].is_finite();
+        let mut gain = vec![1f32; smooth.len()];
+        for row in 1..self.height.saturating_sub(1) {
+            for column in 1..self.width.saturating_sub(1) {
+                let at = row * self.width + column;
+                let around = [at - 1, at + 1, at - self.width, at + self.width];
+                if !solid(at) || !around.into_iter().all(solid) {
+                    continue;
+                }
+                // heights are in edges, so slopes are rise over run
+                let run = 2.0 / self.edge as f32;
+                let right = (smooth[at + 1] - smooth[at - 1]) / run;
+                let down = (smooth[at + self.width] - smooth[at - self.width]) / run;
+                gain[at] = 1.0 + (SLOPE_LIGHT * (right + down)).clamp(-0.35, 0.25);
+            }
+        }
+        self.light
+            .iter_mut()
+            .zip(gain)
+            .for_each(|(light, gain)| *light *= gain);
+    }
+
+    /// Darkens what lies deeper than its surroundings: cracks, and debris behind.
+    fn darken_hollows(&mut self, heights: &[f32]) {
+        let radius = ((2.0 * self.edge).round() as usize).max(3);
+        let smooth = self.blurred(heights, radius);
+        for ((light, height), smooth) in self.light.iter_mut().zip(heights).zip(smooth) {
+            if height.is_finite() {
+                *light *= 1.0 - HOLLOW_SHADE * ((smooth - height) / 4.0).clamp(0.0, 1.0);
+            }
+        }
+    }
+
+    fn average_onto(&self, image: &mut Image, corner: [f64; 2]) {
+        let table: Vec<Color> = (0..=255).map(|i| color(f64::from(i) / 255.0)).collect();
+        for row in 0..self.height.div_ceil(FINE) {
+            for column in 0..self.width.div_ceil(FINE) {
+                let mut sum = [0f32; 3];
+                let mut covered = 0.0;
+                for at in (0..FINE * FINE).filter_map(|k| {
+                    let (x, y) = (column * FINE + k % FINE, row * FINE + k / FINE);
+                    (x < self.width && y < self.height).then_some(y * self.width + x)
+                }) {
+                    if self.depth[at].is_finite() {
+                        let index = (self.damage[at].clamp(0.0, 1.0) * 255.0).round() as usize;
+                        for (s, c) in sum.iter_mut().zip(table[index]) {
+                            *s += lit(f32::from(c), self.light[at]);
+                        }
+                        covered += 1.0;
+                    }
+                }
+                if covered > 0.0 {
+                    let mean = sum.map(|s| (s / covered).round() as u8);
+                    let opacity = f64::from(covered) / (FINE * FINE) as f64;
+                    let x = corner[0].round() as i64 + column as i64;
+                    image.blend(x, corner[1].round() as i64 + row as i64, mean, opacity);
+                }
+            }
+        }
+    }
+}

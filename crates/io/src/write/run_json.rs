@@ -1,0 +1,236 @@
+//! `run.json`: what ran, how fast, in how much memory, and where the energy went; for scripts and benchmarks.
+
+use std::fmt;
+use std::path::Path;
+
+use peridyne::observe::Ledger;
+use serde::{Serialize, Serializer};
+use sha2::{Digest, Sha256};
+
+use super::atomic::{WriteError, write_file};
+
+/// Everything `run.json` holds. Numbers are in the units of the run; a number that is not finite reads `null`.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunReport {
+    /// Version of peridyne.
+    pub version: String,
+    /// The deck or script as given on the command line.
+    pub deck: String,
+    /// [`deck_hash`] of its bytes.
+    pub deck_hash: String,
+    pub title: String,
+    pub status: Status,
+    pub particles: u64,
+    /// Bonds counted from both ends, at the start.
+    pub directed_bonds: u64,
+    /// Steps done.
+    pub steps: u64,
+    pub time_step: f64,
+    /// Wall time inside the steps alone (s).
+    pub seconds_stepping: f64,
+    /// [`ns_per_bond_step`].
+    pub ns_per_bond_step: Option<f64>,
+    /// [`peak_memory_bytes`].
+    pub peak_memory_bytes: Option<u64>,
+    pub broken_directed_bonds: u64,
+    /// Connected components, when they were counted.
+    pub fragments: Option<u64>,
+    pub threads: usize,
+    /// Instruction set of the hot loop ("avx512", "avx2", "portable").
+    pub simd: String,
+    pub energy: EnergyReport,
+    pub warnings: Vec<String>,
+}
+
+/// How a run ended; `"done"` or `"stopped: why"`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Status {
+    Done,
+    Stopped(String),
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Status::Done => f.write_str("done"),
+            Status::Stopped(why) => write!(f, "stopped: {why}"),
+        }
+    }
+}
+
+impl Serialize for Status {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// The energy ledger with what its balance misses.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EnergyReport {
+    pub kinetic: f64,
+    pub strain: f64,
+    pub contact: f64,
+    pub released: f64,
+    pub dissipated: f64,
+    pub work_conditions: f64,
+    pub work_indenter: f64,
+    pub initial: f64,
+    pub residual: f64,
+}
+
+impl From<&Ledger> for EnergyReport {
+    fn from(l: &Ledger) -> Self {
+        EnergyReport {
+            kinetic: l.kinetic,
+            strain: l.strain,
+            contact: l.contact,
+            released: l.released,
+            dissipated: l.dissipated,
+            work_conditions: l.work_conditions,
+            work_indenter: l.work_indenter,
+            initial: l.initial,
+            residual: l.residual(),
+        }
+    }
+}
+
+impl RunReport {
+    /// Writes the report, all or nothing.
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        write_file(path, |w| {
+            serde_json::to_writer_pretty(&mut *w, self)?;
+            std::io::Write::write_all(w, b"\n")
+        })
+    }
+}
+
+/// `sha256:` and the SHA-256 of a deck in hexadecimal digits, as `sha256sum` prints it.
+pub fn deck_hash(deck: &[u8]) -> String {
+    let digits: Vec<String> = Sha256::digest(deck)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    format!("sha256:{}", digits.concat())
+}
+
+/// Wall time per directed bond and step (ns); `None` before there is one of each.
+pub fn ns_per_bond_step(seconds: f64, directed_bonds: u64, steps: u64) -> Option<f64> {
+    let visits = directed_bonds as f64 * steps as f64;
+    (visits > 0.0).then(|| seconds * 1e9 / visits)
+}
+
+/// The most memory this process has held at once (bytes): the peak resident set, on Linux; `None` elsewhere.
+pub fn peak_memory_bytes() -> Option<u64> {
+    high_water_mark(&std::fs::read_to_string("/proc/self/status").ok()?)
+}
+
+/// `VmHWM:    1234 kB` of `/proc/self/status`, where kB are 1024 bytes.
+fn high_water_mark(status: &str) -> Option<u64> {
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn report() -> RunReport {
+        RunReport {
+            version: "0.1.0".into(),
+            deck: "impact.toml".into(),
+            deck_hash: deck_hash(b"abc"),
+            title: "impact".into(),
+            status: Status::Done,
+            particles: 103_110,
+            directed_bonds: 10_009_800,
+            steps: 2000,
+            time_step: 1e-7,
+            seconds_stepping: 10.5,
+            ns_per_bond_step: ns_per_bond_step(10.5, 10_009_800, 2000),
+            peak_memory_bytes: None,
+            broken_directed_bonds: 12,
+            fragments: Some(3),
+            threads: 2,
+            simd: "avx512".into(),
+            energy: EnergyReport::from(&Ledger {
+                kinetic: 1.5,
+                initial: 1.0,
+                ..Ledger::default()
+            }),
+            warnings: vec!["a \"quoted\" warning".into()],
+        }
+    }
+
+    fn written(report: &RunReport) -> Value {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("run.json");
+        report.write(&path).unwrap();
+        serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn all_keys_are_there() {
+        let json = written(&report());
+        for (key, value) in [
+            ("version", json!("0.1.0")),
+            ("particles", json!(103_110)),
+            ("directed_bonds", json!(10_009_800)),
+            ("steps", json!(2000)),
+            ("time_step", json!(1e-7)),
+            ("seconds_stepping", json!(10.5)),
+            ("ns_per_bond_step", json!(10.5e9 / 20_019_600_000.0)),
+            ("peak_memory_bytes", Value::Null),
+            ("broken_directed_bonds", json!(12)),
+            ("fragments", json!(3)),
+            ("threads", json!(2)),
+            ("simd", json!("avx512")),
+            ("status", json!("done")),
+            ("warnings", json!(["a \"quoted\" warning"])),
+        ] {
+            assert_eq!(json[key], value, "{key}");
+        }
+        assert_eq!(json["energy"]["kinetic"], 1.5);
+        assert_eq!(json["energy"]["residual"], 0.5);
+    }
+
+    #[test]
+    fn a_run_gone_bad_still_reports() {
+        let status = Status::Stopped("point 7 is not finite".into());
+        let mut bad = RunReport { status, ..report() };
+        bad.energy.kinetic = f64::NAN;
+        let json = written(&bad);
+        assert_eq!(json["status"], "stopped: point 7 is not finite");
+        assert_eq!(json["energy"]["kinetic"], Value::Null);
+    }
+
+    #[test]
+    fn hash_is_sha256() {
+        // FIPS 180-4, the one-block example
+        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(deck_hash(b"abc"), format!("sha256:{digest}"));
+    }
+
+    #[test]
+    fn no_rate_without_bonds() {
+        assert_eq!(ns_per_bond_step(1.0, 0, 10), None);
+        assert_eq!(ns_per_bond_step(1.0, 10, 0), None);
+    }
+
+    #[test]
+    fn peak_memory_is_read_in_kibibytes() {
+        let status = "Name:\tperidyne\nVmPeak:\t  9 kB\nVmHWM:\t  1234 kB\nVmRSS:\t  7 kB\n";
+        assert_eq!(high_water_mark(status), Some(1_263_616));
+        assert_eq!(high_water_mark("Name:\tx\n"), None);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn peak_memory_grows_with_what_is_held() {
+        let held = std::hint::black_box(vec![1u8; 64 << 20]);
+        assert!(peak_memory_bytes().unwrap() > held.len() as u64);
+    }
+}

@@ -1,0 +1,380 @@
+//! VTK UnstructuredGrid (`.vtu`), raw appended binary, little-endian, 64-bit headers: ParaView, pyvista, VTK.
+//!
+//! Everything is streamed; nothing of the size of the body is allocated. Format: VTK file formats, "XML file
+//! formats", appended data with `encoding="raw"`; every block is its length in bytes (u64) and its bytes.
+
+use std::io::{self, Write};
+
+use peridyne::observe::Snapshot;
+
+use super::fields::{Field, fields, invalid, positions};
+
+const VERTEX: u8 = 1;
+const LINE: u8 = 3;
+
+/// What one block of appended data holds.
+enum Block<'a> {
+    Positions,
+    Field(Field<'a>),
+    /// 1-based numbers of the points.
+    Ids(usize),
+    /// Point numbers of cells with one point each: 0, 1, 2, …
+    Vertices(usize),
+    Lines(&'a [(u32, u32)]),
+    /// Ends of `cells` cells with `width` points each.
+    Offsets {
+        cells: usize,
+        width: usize,
+    },
+    Types {
+        cells: usize,
+        kind: u8,
+    },
+}
+
+/// An array of the file: where it goes, name, and contents. Blocks follow in the order of the header.
+struct Array<'a> {
+    section: &'static str,
+    name: &'static str,
+    block: Block<'a>,
+}
+
+/// Writes the points at their current positions as vertex cells, with all arrays the snapshot carries and `id`.
+///
+/// # Errors
+/// Those of `w`; `InvalidInput` for arrays of unequal lengths.
+pub fn write_points<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
+    let n = s.reference.len();
+    let cells = [
+        Block::Vertices(n),
+        Block::Offsets { cells: n, width: 1 },
+        Block::Types {
+            cells: n,
+            kind: VERTEX,
+        },
+    ];
+    write_grid(w, s, n, cells)
+}
+
+/// Writes the unbroken bonds as line cells between the current positions, with the same arrays on the points.
+/// A bond through a periodic boundary is a line across the body.
+///
+/// # Errors
+/// Those of `w`; `InvalidInput` when the snapshot carries no bonds or arrays of unequal lengths.
+pub fn write_bonds<W: Write>(w: &mut W, s: &Snapshot) -> io::Result<()> {
+    let bonds = s
+        .bonds
+        .as_deref()
+        .ok_or_else(|| invalid("the snapshot carries no bonds".to_string()))?;
+    let n = bonds.len();
+    let cells = [
+        Block::Lines(bonds),
+        Block::Offsets { cells: n, width: 2 },
+        Block::Types {
+            cells: n,
+            kind: LINE,
+        },
+    ];
+    write_grid(w, s, n, cells)
+}
+
+fn write_grid<W: Write>(
+    w: &mut W,
+    s: &Snapshot,
+    cells: usize,
+    topology: [Block; 3],
+) -> io::Result<()> {
+    let n = s.reference.len();
+    let mut arrays = Vec::new();
+    for (name, field) in fields(s)? {
+        arrays.push(Array {
+            section: "PointData",
+            name,
+            block: Block::Field(field),
+        });
+    }
+    arrays.push(Array {
+        section: "PointData",
+        name: "id",
+        block: Block::Ids(n),
+    });
+    arrays.push(Array {
+        section: "Points",
+        name: "position",
+        block: Block::Positions,
+    });
+    for (name, block) in ["connectivity", "offsets", "types"]
+        .into_iter()
+        .zip(topology)
+    {
+        arrays.push(Array {
+            section: "Cells",
+            name,
+            block,
+        });
+    }
+    write_header(w, s, cells, &arrays)?;
+    for array in &arrays {
+        array.block.write(w, s)?;
+    }
+    w.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+}
+
+fn write_header<W: Write>(
+    w: &mut W,
+    s: &Snapshot,
+    cells: usize,
+    arrays: &[Array],
+) -> io::Result<()> {
+    let n = s.reference.len();
+    writeln!(w, r#"<?xml version="1.0"?>"#)?;
+    writeln!(
+        w,
+        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
+    )?;
+    writeln!(w, "<UnstructuredGrid>\n<FieldData>")?;
+    // `TimeValue` is the name by which ParaView and VTK know the time of a file
+    let array = r#"<DataArray NumberOfTuples="1" format="ascii""#;
+    writeln!(
+        w,
+        r#"{array} type="Float64" Name="TimeValue">{:?}</DataArray>"#,
+        s.time
+    )?;
+    writeln!(
+        w,
+        r#"{array} type="Int64" Name="step">{}</DataArray>"#,
+        s.step
+    )?;
+    writeln!(
+        w,
+        "</FieldData>\n<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{cells}\">"
+    )?;
+    let mut offset = 0;
+    let mut section = "";
+    for a in arrays {
+        if a.section != section {
+            if !section.is_empty() {
+                writeln!(w, "</{section}>")?;
+            }
+            section = a.section;
+            let active = match section {
+                "PointData" => r#" Scalars="damage" Vectors="displacement""#,
+                _ => "",
+            };
+            writeln!(w, "<{section}{active}>")?;
+        }
+        let (kind, components) = a.block.kind();
+        writeln!(
+            w,
+            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}" format="appended" offset="{offset}"/>"#,
+            a.name
+        )?;
+        offset += 8 + a.block.bytes(n);
+    }
+    write!(
+        w,
+        "</{section}>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+    )
+}
+
+impl Block<'_> {
+    /// VTK's name of the number type, and the number of components.
+    fn kind(&self) -> (&'static str, usize) {
+        match self {
+            Block::Positions | Block::Field(Field::Vector(_)) => ("Float64", 3),
+            Block::Field(Field::Scalar(_)) => ("Float64", 1),
+            Block::Field(Field::Integer(_)) => ("Int32", 1),
+            Block::Field(Field::Count(_)) => ("UInt32", 1),
+            Block::Ids(_) | Block::Vertices(_) | Block::Lines(_) | Block::Offsets { .. } => {
+                ("Int64", 1)
+            }
+            Block::Types { .. } => ("UInt8", 1),
+        }
+    }
+
+    /// Length in bytes, for `n` points.
+    fn bytes(&self, n: usize) -> u64 {
+        let bytes = match self {
+            Block::Positions | Block::Field(Field::Vector(_)) => 24 * n,
+            Block::Field(Field::Scalar(_)) => 8 * n,
+            Block::Field(Field::Integer(_) | Field::Count(_)) => 4 * n,
+            Block::Ids(n) | Block::Vertices(n) => 8 * n,
+            Block::Lines(bonds) => 16 * bonds.len(),
+            Block::Offsets { cells, .. } => 8 * cells,
+            Block::Types { cells, .. } => *cells,
+        };
+        bytes as u64
+    }
+
+    fn write<W: Write>(&self, w: &mut W, s: &Snapshot) -> io::Result<()> {
+        w.write_all(&self.bytes(s.reference.len()).to_le_bytes())?;
+        match *self {
+            Block::Positions => vectors(w, positions(s)),
+            Block::Field(Field::Vector(v)) => vectors(w, v.iter().copied()),
+            Block::Field(Field::Scalar(v)) => {
+                v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes()))
+            }
+            Block::Field(Field::Integer(v)) => {
+                v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes()))
+            }
+            Block::Field(Field::Count(v)) => {
+                v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes()))
+            }
+            Block::Ids(n) => integers(w, 1..n as i64 + 1),
+            Block::Vertices(n) => integers(w, 0..n as i64),
+            Block::Lines(bonds) => {
+                integers(w, bonds.iter().flat_map(|&(i, j)| [i.into(), j.into()]))
+            }
+            Block::Offsets { cells, width } => integers(w, (1..=cells).map(|c| (c * width) as i64)),
+            Block::Types { cells, kind } => (0..cells).try_for_each(|_| w.write_all(&[kind])),
+        }
+    }
+}
+
+fn vectors<W: Write>(w: &mut W, values: impl Iterator<Item = [f64; 3]>) -> io::Result<()> {
+    for v in values {
+        for c in v {
+            w.write_all(&c.to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+fn integers<W: Write>(w: &mut W, values: impl Iterator<Item = i64>) -> io::Result<()> {
+    for v in values {
+        w.write_all(&v.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::fields::tests::small;
+    use super::*;
+
+    /// Reads an attribute of the `<DataArray>` with this name.
+    fn attribute<'a>(header: &'a str, array: &str, key: &str) -> &'a str {
+        let at = header
+            .find(&format!("Name=\"{array}\""))
+            .unwrap_or_else(|| panic!("no {array}"));
+        let start = header[..at].rfind('<').unwrap();
+        let tag = &header[start..start + header[start..].find('>').unwrap()];
+        let value = tag.find(&format!("{key}=\"")).unwrap() + key.len() + 2;
+        &tag[value..value + tag[value..].find('"').unwrap()]
+    }
+
+    /// The bytes of an appended array, read through its offset as a reader does.
+    pub fn appended(file: &[u8], array: &str) -> Vec<u8> {
+        let mark = b"<AppendedData encoding=\"raw\">\n_";
+        let start = file.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len();
+        let header = std::str::from_utf8(&file[..start]).unwrap();
+        let at = start + attribute(header, array, "offset").parse::<usize>().unwrap();
+        let length = u64::from_le_bytes(file[at..at + 8].try_into().unwrap()) as usize;
+        file[at + 8..at + 8 + length].to_vec()
+    }
+
+    pub fn floats(file: &[u8], array: &str) -> Vec<f64> {
+        let bytes = appended(file, array);
+        bytes
+            .chunks_exact(8)
+            .map(|b| f64::from_le_bytes(b.try_into().unwrap()))
+            .collect()
+    }
+
+    fn integers(file: &[u8], array: &str) -> Vec<i64> {
+        let bytes = appended(file, array);
+        bytes
+            .chunks_exact(8)
+            .map(|b| i64::from_le_bytes(b.try_into().unwrap()))
+            .collect()
+    }
+
+    #[test]
+    fn points_come_back() {
+        let s = small();
+        let mut file = Vec::new();
+        write_points(&mut file, &s).unwrap();
+        assert_eq!(
+            floats(&file, "position"),
+            positions(&s).flatten().collect::<Vec<_>>()
+        );
+        assert_eq!(floats(&file, "displacement"), s.displacement.concat());
+        assert_eq!(floats(&file, "velocity"), s.velocity.concat());
+        assert_eq!(floats(&file, "damage"), s.damage);
+        assert_eq!(floats(&file, "energy_density"), s.energy_density);
+        assert_eq!(floats(&file, "dilatation"), s.dilatation);
+        assert_eq!(
+            appended(&file, "mark"),
+            [[255; 4], [0; 4], [4, 0, 0, 0]].concat()
+        );
+        assert_eq!(
+            appended(&file, "fragment"),
+            [[0; 4], [0; 4], [1, 0, 0, 0]].concat()
+        );
+        assert_eq!(integers(&file, "id"), [1, 2, 3]);
+        assert_eq!(integers(&file, "connectivity"), [0, 1, 2]);
+        assert_eq!(integers(&file, "offsets"), [1, 2, 3]);
+        assert_eq!(appended(&file, "types"), [1, 1, 1]);
+        assert!(file.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+    }
+
+    #[test]
+    fn header_says_what_is_there() {
+        let mut file = Vec::new();
+        write_bonds(&mut file, &small()).unwrap();
+        let header = String::from_utf8_lossy(&file);
+        assert!(header.contains(r#"NumberOfPoints="3" NumberOfCells="2""#));
+        assert!(header.contains(r#"byte_order="LittleEndian" header_type="UInt64""#));
+        assert!(header.contains(r#"Name="TimeValue">1.5e-7<"#));
+        assert_eq!(
+            attribute(&header, "displacement", "NumberOfComponents"),
+            "3"
+        );
+        assert_eq!(attribute(&header, "mark", "type"), "Int32");
+    }
+
+    #[test]
+    fn bonds_come_back() {
+        let mut file = Vec::new();
+        write_bonds(&mut file, &small()).unwrap();
+        assert_eq!(integers(&file, "connectivity"), [0, 1, 1, 2]);
+        assert_eq!(integers(&file, "offsets"), [2, 4]);
+        assert_eq!(appended(&file, "types"), [3, 3]);
+        let none = Snapshot {
+            bonds: None,
+            ..small()
+        };
+        assert!(
+            write_bonds(&mut Vec::new(), &none)
+                .unwrap_err()
+                .to_string()
+                .contains("no bonds")
+        );
+    }
+
+    #[test]
+    fn a_full_disk_stops_the_writer_wherever_it_strikes() {
+        struct Limited(usize);
+        impl Write for Limited {
+            fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+                match self.0.min(bytes.len()) {
+                    0 => Err(io::ErrorKind::StorageFull.into()),
+                    n => {
+                        self.0 -= n;
+                        Ok(n)
+                    }
+                }
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut whole = Vec::new();
+        write_points(&mut whole, &small()).unwrap();
+        for room in 0..whole.len() {
+            let error = write_points(&mut Limited(room), &small()).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+        }
+        write_points(&mut Limited(whole.len()), &small()).unwrap();
+    }
+}
