@@ -50,10 +50,11 @@ pub struct Toughness {
 }
 
 /// May bonds break in this sweep?
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sweep {
-    /// Forces, then test and break, then the new critical stretch.
-    Evolve,
+#[derive(Debug, Clone, Copy)]
+pub enum Sweep<'a, const D: usize> {
+    /// Forces, then test and break, then the new critical stretch. A bond that breaks pulls once more, over half
+    /// the next step; `v` (velocity of the step's middle) and `dt` say what that costs.
+    Evolve { v: &'a Field<D>, dt: f64 },
     /// Forces only; the memory stays as it is.
     Hold,
 }
@@ -80,9 +81,12 @@ pub struct PointEnergies {
 pub trait Interaction<const D: usize>: Send + Sync {
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
     /// bonds' memory if asked to. Images of `u` must be fresh.
-    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep) -> Tally;
+    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally;
 
-    /// Energies and dilatation at `u`.
+    /// Strain energy of bonds and energy of repulsion inside the family at `u` (energy), without allocating.
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2];
+
+    /// Energy densities and dilatation of all points at `u`.
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
 
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.

@@ -59,6 +59,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     guard: usize,
     tallies: Vec<Tally>,
     unit: Vec<()>,
+    sums: Vec<[f64; 2]>,
 }
 
 /// How the point fields of a law follow from the weighted volume of each point.
@@ -185,6 +186,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             guard: grid.guard,
             tallies: vec![Tally::default(); blocks],
             unit: vec![(); blocks],
+            sums: vec![[0.0; 2]; blocks],
         }
     }
 
@@ -212,6 +214,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         body: &Body<D>,
         u: &Field<D>,
         f: &mut Field<D>,
+        sweep: Sweep<D>,
     ) {
         let mut tallies = std::mem::take(&mut self.tallies);
         let kernel = Forces::<D, W, FRACTURE, CONTACT> {
@@ -222,6 +225,11 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             memory: SharedBytes(self.alive.as_ptr().cast_mut()),
             toughness: &self.toughness,
             pressure: &self.pressure,
+            v: if let Sweep::Evolve { v, dt } = sweep {
+                Some((v, dt))
+            } else {
+                None
+            },
         };
         for_each_block(self.simd, &kernel, &mut tallies);
         self.tallies = tallies;
@@ -329,6 +337,8 @@ struct Forces<'a, const D: usize, W, const FRACTURE: bool, const CONTACT: bool> 
     memory: SharedBytes,
     toughness: &'a [Toughness],
     pressure: &'a [f64],
+    /// Velocity of the step's middle, and the step.
+    v: Option<(&'a Field<D>, f64)>,
 }
 
 impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool> Kernel
@@ -426,8 +436,9 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
                             tally.broken += which.count_ones() as u64;
                             let s = lane::stretch(e);
                             let share = k * L::splat(b.r0_squared) * s;
-                            let x =
-                                L::select(breaks, v.law.pair_energy(share * s, own, other), zero);
+                            let held = v.law.pair_energy(share * s, own, other)
+                                + self.farewell(pull, y, i, j);
+                            let x = L::select(breaks, held, zero);
                             let share = L::select(breaks, share, zero);
                             let sum = lost.unwrap_or([zero; 2]);
                             lost = Some([sum[0] + x, sum[1] + share]);
@@ -455,6 +466,21 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
                 }
             }
         }
+    }
+
+    /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
+    /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner.
+    #[inline(always)]
+    unsafe fn farewell<L: Lane>(&self, pull: L, y: [L; D], i: usize, j: usize) -> L {
+        let Some((v, dt)) = self.v else {
+            return L::splat(0.0);
+        };
+        let mut rate = L::splat(0.0);
+        for a in 0..D {
+            let relative = unsafe { L::load(v[a].as_ptr().add(j)) - L::load(v[a].as_ptr().add(i)) };
+            rate = y[a].fma(relative, rate);
+        }
+        L::splat(0.25 * dt) * pull * rate
     }
 
     /// `s0 = s00 − α s_min` for the points at slot `i`, as a critical `e`.
@@ -496,11 +522,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
         let mut energy = lost[0];
         if W::SHARES {
             // ½ q (S² − (S − L)²) = L P − ½ q L², with P = q S
-            let q = if self.pressure.is_empty() {
-                self.view.law.pressure_factor(own[1])
-            } else {
-                unsafe { L::load(self.pressure.as_ptr().add(i)) }
-            };
+            let q: L = unsafe { pressure_factor(&self.view, self.pressure, i) };
             energy = energy + lost[1] * (own[0] - L::splat(0.5) * q * lost[1]);
         }
         energy.to_array()[..L::N].iter().sum::<f64>() * self.view.volume
@@ -534,11 +556,7 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                     } else {
                         self.sum::<L, true>(bonds, row, i, part)
                     };
-                    let q = if self.pressure.is_empty() {
-                        v.law.pressure_factor(L::load(v.fields[1].as_ptr().add(i)))
-                    } else {
-                        L::load(self.pressure.as_ptr().add(i))
-                    };
+                    let q: L = pressure_factor(v, self.pressure, i);
                     (q * sum).store(self.out.at(i));
                 }
             }
@@ -578,9 +596,16 @@ impl<const D: usize, W: Law> Share<'_, D, W> {
     }
 }
 
-/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds.
+/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds. Sums are returned,
+/// fields are written where wanted.
 struct Energies<'a, const D: usize, W> {
     view: View<'a, D, W>,
+    pressure: &'a [f64],
+    fields: Option<EnergyFields>,
+}
+
+#[derive(Clone, Copy)]
+struct EnergyFields {
     strain: Shared,
     repulsion: Shared,
     share: Shared,
@@ -588,11 +613,13 @@ struct Energies<'a, const D: usize, W> {
 }
 
 impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
-    type Out = ();
+    /// Strain and repulsion energy of the block (energy).
+    type Out = [f64; 2];
 
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) {
+    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
         let v = &self.view;
+        let mut sums = [0.0; 2];
         for n in v.block(block) {
             let tile = v.tiles[n] as usize;
             let bonds = v.bonds[v.grid.tile_sublattice(tile)].as_slice();
@@ -621,18 +648,48 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                             }
                         }
                     }
-                    strain.store(self.strain.at(i));
-                    repulsion.store(self.repulsion.at(i));
-                    share.store(self.share.at(i));
-                    weight.store(self.weight.at(i));
+                    if W::SHARES {
+                        let q = pressure_factor(v, self.pressure, i);
+                        strain = strain + L::splat(0.5) * q * share * share;
+                    }
+                    // lane by lane, so that the width does not show in the sum
+                    for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
+                        x.to_array()[..L::N]
+                            .iter()
+                            .for_each(|x| *sum += x * v.volume);
+                    }
+                    if let Some(out) = self.fields {
+                        strain.store(out.strain.at(i));
+                        repulsion.store(out.repulsion.at(i));
+                        share.store(out.share.at(i));
+                        weight.store(out.weight.at(i));
+                    }
                 }
             }
+        }
+        sums
+    }
+}
+
+/// `P / Σ k r0² s` of the points at slot `i`.
+#[inline(always)]
+unsafe fn pressure_factor<L: Lane, const D: usize, W: Law>(
+    v: &View<D, W>,
+    factors: &[f64],
+    i: usize,
+) -> L {
+    // SAFETY: slots lie inside the arrays
+    unsafe {
+        if factors.is_empty() {
+            v.law.pressure_factor(L::load(v.fields[1].as_ptr().add(i)))
+        } else {
+            L::load(factors.as_ptr().add(i))
         }
     }
 }
 
 impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
-    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep) -> Tally {
+    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally {
         if W::SHARES {
             let mut unit = std::mem::take(&mut self.unit);
             let mut pressure = std::mem::take(&mut self.fields[0]);
@@ -646,12 +703,12 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.fields[0] = pressure;
             self.unit = unit;
         }
-        let fracture = sweep == Sweep::Evolve && !self.critical.is_empty();
+        let fracture = matches!(sweep, Sweep::Evolve { .. }) && !self.critical.is_empty();
         match (fracture, self.repulsion.is_some()) {
-            (false, false) => self.sweep::<false, false>(body, u, f),
-            (false, true) => self.sweep::<false, true>(body, u, f),
-            (true, false) => self.sweep::<true, false>(body, u, f),
-            (true, true) => self.sweep::<true, true>(body, u, f),
+            (false, false) => self.sweep::<false, false>(body, u, f, sweep),
+            (false, true) => self.sweep::<false, true>(body, u, f, sweep),
+            (true, false) => self.sweep::<true, false>(body, u, f, sweep),
+            (true, true) => self.sweep::<true, true>(body, u, f, sweep),
         }
         if fracture {
             std::mem::swap(&mut self.critical, &mut self.next);
@@ -664,6 +721,20 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         total
     }
 
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let mut sums = std::mem::take(&mut self.sums);
+        let kernel = Energies {
+            view: self.view(body, u),
+            pressure: &self.pressure,
+            fields: None,
+        };
+        for_each_block(self.simd, &kernel, &mut sums);
+        self.sums = sums;
+        self.sums
+            .iter()
+            .fold([0.0; 2], |t, s| [t[0] + s[0], t[1] + s[1]])
+    }
+
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let mut share = vec![0.0; body.len];
         let mut weight = vec![0.0; body.len];
@@ -673,21 +744,18 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         }
         let kernel = Energies {
             view: self.view(body, u),
-            strain: Shared(out.strain.as_mut_ptr()),
-            repulsion: Shared(out.repulsion.as_mut_ptr()),
-            share: Shared(share.as_mut_ptr()),
-            weight: Shared(weight.as_mut_ptr()),
+            pressure: &self.pressure,
+            fields: Some(EnergyFields {
+                strain: Shared(out.strain.as_mut_ptr()),
+                repulsion: Shared(out.repulsion.as_mut_ptr()),
+                share: Shared(share.as_mut_ptr()),
+                weight: Shared(weight.as_mut_ptr()),
+            }),
         };
-        for_each_block(self.simd, &kernel, &mut vec![(); self.tallies.len()]);
+        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; self.tallies.len()]);
         for &slot in &body.slots {
             let i = slot as usize;
             if W::SHARES {
-                let q = if self.pressure.is_empty() {
-                    self.law.pressure_factor(self.fields[1][i])
-                } else {
-                    self.pressure[i]
-                };
-                out.strain[i] += 0.5 * q * share[i] * share[i];
                 out.dilatation[i] = self.dilatation_factor(body, i) * share[i];
             } else if weight[i] > 0.0 {
                 out.dilatation[i] = D as f64 * share[i] / weight[i];

@@ -9,7 +9,6 @@ use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
-use crate::interaction::PointEnergies;
 use crate::law::influence::influence;
 use crate::law::micromodulus::Moments;
 use crate::space::fill::fill;
@@ -187,7 +186,6 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         released: 0.0,
         past_work: [0.0; 3],
         initial_energy: None,
-        energies: PointEnergies::default(),
     };
     model.info.bytes = model.bytes();
     initial(spec, &mut model)?;

@@ -38,7 +38,6 @@ pub struct Model<const D: usize> {
     /// Work of conditions that were replaced since.
     pub(super) past_work: [f64; 3],
     pub(super) initial_energy: Option<f64>,
-    pub(super) energies: PointEnergies,
 }
 
 impl<const D: usize> Model<D> {
@@ -60,9 +59,15 @@ impl<const D: usize> Model<D> {
         self.refresh_images();
         let t = self.time();
         if bonds {
-            let tally = self
-                .interaction
-                .forces(&self.body, &self.u, &mut self.f, Sweep::Evolve);
+            let tally = self.interaction.forces(
+                &self.body,
+                &self.u,
+                &mut self.f,
+                Sweep::Evolve {
+                    v: &self.v,
+                    dt: self.dt,
+                },
+            );
             self.broken += tally.broken;
             self.released += tally.released;
         } else {
@@ -91,9 +96,10 @@ impl<const D: usize> Model<D> {
     fn energy_now(&mut self) -> Ledger {
         self.finish();
         self.refresh_images();
-        self.interaction
-            .observe(&self.body, &self.u, &mut self.energies);
+        let [strain, contact] = self.interaction.energy(&self.body, &self.u);
         let mut ledger = Ledger {
+            strain,
+            contact,
             released: self.released,
             dissipated: self.past_work[0],
             work_conditions: self.past_work[1],
@@ -105,8 +111,6 @@ impl<const D: usize> Model<D> {
             let volume = self.body.volume.at(i);
             let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
             ledger.kinetic += 0.5 * self.body.density.at(i) * volume * v2;
-            ledger.strain += volume * self.energies.strain[i];
-            ledger.contact += volume * self.energies.repulsion[i];
         }
         for load in &self.loads {
             if load.is_damping() {
@@ -341,11 +345,10 @@ impl<const D: usize> Simulation for Model<D> {
         };
         if options.energies {
             self.refresh_images();
-            self.interaction
-                .observe(&self.body, &self.u, &mut self.energies);
-            snapshot.energy_density =
-                self.by_id(|i| self.energies.strain[i] + self.energies.repulsion[i]);
-            snapshot.dilatation = self.by_id(|i| self.energies.dilatation[i]);
+            let mut energies = PointEnergies::default();
+            self.interaction.observe(&self.body, &self.u, &mut energies);
+            snapshot.energy_density = self.by_id(|i| energies.strain[i] + energies.repulsion[i]);
+            snapshot.dilatation = self.by_id(|i| energies.dilatation[i]);
         }
         if options.bonds {
             let mut id = vec![0u32; self.body.len];
