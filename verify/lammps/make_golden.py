@@ -3,7 +3,7 @@
 
   make_golden.py                        all cases, each written to cases/NAME.golden and NAME.thermo
   make_golden.py NAME ...               these cases
-  make_golden.py --check [NAME ...]     run variants of every case (skin, newton, sorting) and print by how
+  make_golden.py --check [NAME ...]     run variants of every case (skin, newton, order, threads, a nudged step) and print by how
                                         much LAMMPS differs from the committed data; writes nothing
   make_golden.py --data                 write the generated data files and tables of the cases only
   make_golden.py --impact pmb|lps [--steps N] [--every N] [--skin M] [--out FILE]
@@ -40,16 +40,15 @@ def reexec(path):
         os.execv(python, [python, os.path.abspath(__file__)] + sys.argv[1:])
 
 
-def lammps(path, script, folder, variables=None, echo=False):
+def lammps(path, script, folder, variables=None, extra=()):
     """Run a script in a folder; answer what LAMMPS printed."""
     env = dict(os.environ, LD_LIBRARY_PATH=os.path.join(path, "lib"), OMP_NUM_THREADS="1")
-    command = [os.path.join(path, "bin", "lmp"), "-in", script, "-log", "none"]
+    command = [os.path.join(path, "bin", "lmp"), "-in", script, "-log", "none", *extra]
     for name, value in (variables or {}).items():
         command += ["-var", name, str(value)]
     done = subprocess.run(command, cwd=folder, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode or echo:
-        sys.stderr.write(done.stdout[-3000:])
     if done.returncode:
+        sys.stderr.write(done.stdout[-3000:])
         raise SystemExit(f"LAMMPS failed on {script}")
     return done.stdout
 
@@ -86,7 +85,7 @@ def main():
         return
     import golden
 
-    golden.run(o.names, path, check=o.check, data_only=o.data)
+    golden.run(o.names, path, check_only=o.check, data_only=o.data)
 
 
 if __name__ == "__main__":
