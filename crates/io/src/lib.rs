@@ -1,3 +1,6 @@
-//! io
+//! peridyne-io: decks, LAMMPS scripts and meshes in; VTU, CSV, JSON, dumps and pictures out.
 
+pub mod deck;
+pub mod drive;
+pub mod read;
 pub mod write;

@@ -1,0 +1,114 @@
+//! What was understood, in words.
+
+use super::units::{Dim, UnitSystem};
+use peridyne::space::region::Region;
+use peridyne::spec::{
+    BodySpec, Criterion, Horizon, IndenterMotion, LawSpec, MaterialSpec, Plane, PmbStiffness, Spec, TimeStep,
+};
+
+/// A short header: body, materials, horizon, what acts, schedule; numbers with units.
+pub fn describe(spec: &Spec, units: UnitSystem) -> String {
+    let mut lines = Vec::new();
+    if !spec.title.is_empty() {
+        lines.push(spec.title.clone());
+    }
+    let plane = match (spec.dimension, spec.plane) {
+        (2, Plane::Stress) => " plane stress",
+        (2, Plane::Strain) => " plane strain",
+        _ => "",
+    };
+    let section = match spec.dimension {
+        1 => format!(", cross-section {}", units.write(spec.section, Dim::AREA)),
+        2 => format!(", thickness {}", units.write(spec.section, Dim::LENGTH)),
+        _ => String::new(),
+    };
+    lines.push(format!("body       {}-D{plane}{section}, {}", spec.dimension, body(&spec.body, units, spec.dimension)));
+    lines.extend(spec.materials.iter().map(|m| format!("material   {}", material(m, units))));
+    let horizon = match spec.horizon {
+        Horizon::Ratio(m) => format!("{m} spacings"),
+        Horizon::Length(length) => units.write(length, Dim::LENGTH),
+    };
+    lines.push(format!(
+        "horizon    {horizon}, influence {:?}, volume scaling {}, constants {:?}",
+        spec.influence,
+        if spec.volume_scaling { "on" } else { "off" },
+        spec.calibration
+    ));
+    for (axis, period) in ["x", "y", "z"].iter().zip(spec.periodic) {
+        if let Some(period) = period {
+            lines.push(format!("periodic   {axis} with {}", units.write(period, Dim::LENGTH)));
+        }
+    }
+    if let Some(contact) = spec.contact {
+        lines.push(format!("contact    below {} of the reference distance, within {} spacings", contact.bonded, contact.free));
+    }
+    for indenter in &spec.indenters {
+        let motion = match &indenter.motion {
+            IndenterMotion::Kinematic(center) => {
+                let center: Vec<&str> = center.iter().take(spec.dimension).map(|c| c.source()).collect();
+                format!("moved along ({})", center.join(", "))
+            }
+            IndenterMotion::Free { mass, .. } => format!("free with {}", units.write(*mass, Dim::MASS)),
+        };
+        lines.push(format!("indenter   sphere of radius {}, {motion}", units.write(indenter.radius, Dim::LENGTH)));
+    }
+    lines.push(format!(
+        "acting     {} initial values, {} conditions, {} pre-cracks",
+        spec.initial.len(),
+        spec.conditions.len(),
+        spec.precracks.len()
+    ));
+    let step = match spec.schedule.time_step {
+        TimeStep::Fixed(step) => units.write(step, Dim::TIME),
+        TimeStep::Fraction(fraction) => format!("{fraction} of the stability limit"),
+    };
+    let steps = match spec.schedule.steps {
+        0 => "as many steps as the duration takes".to_string(),
+        steps => format!("{steps} steps"),
+    };
+    lines.push(format!("run        {steps} of {step}"));
+    lines.join("\n")
+}
+
+fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> String {
+    match body {
+        BodySpec::Lattice { kind, spacing, region, perturb, .. } => {
+            let perturbed = if perturb.is_some() { ", perturbed" } else { "" };
+            let spacing = units.write(*spacing, Dim::LENGTH);
+            format!("{} lattice of {spacing}{perturbed}, {}", kind.name(), extent(region, units, dimension))
+        }
+        BodySpec::Sites { kind, spacing, quarters, .. } => {
+            format!("{} sites of a {} lattice of {}", quarters.len(), kind.name(), units.write(*spacing, Dim::LENGTH))
+        }
+        BodySpec::Cloud(cloud) => format!("{} points", cloud.position.len()),
+    }
+}
+
+fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
+    let (low, high) = region.bounds();
+    let sizes: Vec<String> = (0..dimension).map(|a| units.write(high[a] - low[a], Dim::LENGTH)).collect();
+    format!("within {}", sizes.join(" × "))
+}
+
+fn material(m: &MaterialSpec, units: UnitSystem) -> String {
+    let pressure = |p: f64| units.write(p, Dim::PRESSURE);
+    let law = match m.law {
+        LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(e)),
+        LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(k)),
+        LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => format!("pmb, c = {}", units.write(c, Dim::MICROMODULUS)),
+        LawSpec::Lps(moduli) => format!("lps, E = {}, ν = {}", pressure(moduli.young), super::units::short(moduli.poisson)),
+        LawSpec::LpsAsTyped { bulk, shear } => format!("lps as typed, K = {}, G = {}", pressure(bulk), pressure(shear)),
+        LawSpec::EamLike { pair, volume } => format!("eam-like, k = {}, p = {}", pressure(pair), pressure(volume)),
+    };
+    let fracture = match m.fracture {
+        None => "unbreakable".to_string(),
+        Some(f) => {
+            let criterion = match f.criterion {
+                Criterion::Stretch(s) => format!("breaks at stretch {s}"),
+                Criterion::Energy(g) => format!("breaks at {}", units.write(g, Dim::FRACTURE_ENERGY)),
+            };
+            if f.alpha == 0.0 { criterion } else { format!("{criterion}, α = {}", f.alpha) }
+        }
+    };
+    format!("{} on {}: {law}, ρ = {}, {fracture}", m.name, m.set, units.write(m.density, Dim::DENSITY))
+}

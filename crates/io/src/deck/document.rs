@@ -1,0 +1,331 @@
+//! The deck as written: one struct per table, nothing interpreted yet.
+
+use super::units::UnitSystem;
+use super::value::{At, Components, Number, Or, Vector, Written};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A peridyne deck.
+///
+/// Numbers are plain (in the deck's units), carry a unit ("0.5 mm"), or are expressions of the constants.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Document {
+    /// One line for headers and pictures.
+    pub title: Option<String>,
+    /// What plain numbers mean; si when left out.
+    pub units: Option<At<UnitSystem>>,
+    /// Space dimensions, 1 to 3; follows from the lattice or the mesh when left out.
+    pub dimension: Option<At<usize>>,
+    /// 2-D only; stress when left out.
+    pub plane: Option<At<PlaneName>>,
+    /// Thickness of a 2-D body; 1 when left out.
+    pub thickness: Option<Number>,
+    /// Cross-section of a 1-D body; 1 when left out.
+    pub area: Option<Number>,
+    /// Named numbers for use in any number.
+    #[serde(default)]
+    pub constants: BTreeMap<String, Number>,
+    pub body: At<Body>,
+    /// Named sets of points; "all" always exists.
+    #[serde(default)]
+    pub sets: BTreeMap<String, At<Set>>,
+    /// `[material]`, or `[material.NAME]` for each of several.
+    pub material: BTreeMap<String, At<Material>>,
+    /// Bonds between unlike materials; series when left out.
+    pub interface: Option<InterfaceName>,
+    /// { m_ratio = 3 } in lattice spacings, or a length.
+    pub horizon: At<Or<Written, HorizonRatio>>,
+    /// constant for pmb and inverse for lps when left out.
+    pub influence: Option<InfluenceName>,
+    /// Scale the partner's volume where its cell straddles the horizon; true when left out.
+    pub volume_scaling: Option<bool>,
+    /// discrete (the body really has the modulus asked for) when left out.
+    pub calibration: Option<CalibrationName>,
+    /// auto when left out.
+    pub family: Option<FamilyName>,
+    /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
+    pub periodic: Option<At<Or<Vec<At<AxisName>>, Periods>>>,
+    #[serde(default)]
+    pub precrack: Vec<At<Precrack>>,
+    /// On when a material can fracture; false turns it off.
+    pub contact: Option<Or<bool, Contact>>,
+    #[serde(default)]
+    pub initial: Vec<At<Initial>>,
+    #[serde(default)]
+    pub condition: Vec<At<Condition>>,
+    #[serde(default)]
+    pub indenter: Vec<At<Indenter>>,
+    pub run: At<Run>,
+    #[serde(default)]
+    pub output: Output,
+}
+
+/// Where the points come from: a lattice in a region, or a file.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    pub lattice: Option<At<LatticeName>>,
+    /// Edge of the lattice cell; with a file, the typical distance of points.
+    pub spacing: Option<Number>,
+    /// Position of one lattice site; 0 when left out.
+    pub origin: Option<Vector>,
+    pub region: Option<At<Shape>>,
+    /// Points (.txt), a mesh (.inp, .msh) or LAMMPS data (.data), relative to the deck.
+    pub file: Option<At<String>>,
+    pub perturb: Option<Perturb>,
+}
+
+/// Random displacement of every site.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Perturb {
+    pub amplitude: Number,
+    pub seed: u64,
+}
+
+/// A region of space; its boundary belongs to it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Shape {
+    Everything,
+    Block { low: Vector, high: Vector },
+    Cylinder { axis: AxisName, center: Option<Vector>, radius: Number, low: Option<Number>, high: Option<Number> },
+    /// In 2-D a disk.
+    Sphere { center: Option<Vector>, radius: Number },
+    /// Where normal · (x − point) ≤ 0.
+    HalfSpace { point: Vector, normal: Vector },
+    Union(Vec<At<Shape>>),
+    Difference { from: Box<At<Shape>>, minus: Vec<At<Shape>> },
+    Intersection(Vec<At<Shape>>),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Set {
+    pub region: Option<At<Shape>>,
+    /// Number or name of a mark in the file.
+    pub mark: Option<At<Mark>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Mark {
+    Number(i32),
+    Name(String),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Set that is made of it; all when left out.
+    pub set: Option<At<String>>,
+    pub density: Number,
+    pub law: At<Law>,
+    pub fracture: Option<At<Fracture>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Law {
+    /// Bond-based: one of young, bulk, micromodulus.
+    Pmb(Elastic),
+    /// State-based: two of young, poisson, bulk, shear.
+    Lps(Elastic),
+    /// State-based with the three-dimensional formulas in any dimension: bulk and shear.
+    LpsAsTyped(Elastic),
+    /// W = E(θ) + bonds, with the two stiffnesses.
+    EamLike(EamLike),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Elastic {
+    pub young: Option<Number>,
+    pub poisson: Option<Number>,
+    pub bulk: Option<Number>,
+    pub shear: Option<Number>,
+    /// pmb only, force / volume².
+    pub micromodulus: Option<Number>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EamLike {
+    pub pair: Number,
+    pub volume: Number,
+}
+
+/// One of critical_stretch and energy.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fracture {
+    pub critical_stretch: Option<Number>,
+    /// Fracture energy per area.
+    pub energy: Option<Number>,
+    /// Strengthening under compression, s0 = s00 − α s_min; 0 when left out.
+    pub alpha: Option<Number>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HorizonRatio {
+    pub m_ratio: Number,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Periods {
+    pub x: Option<Number>,
+    pub y: Option<Number>,
+    pub z: Option<Number>,
+}
+
+/// One of segment, disk, polygon, point.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Precrack {
+    /// 2-D, or endless along z.
+    pub segment: Option<Segment>,
+    pub disk: Option<Disk>,
+    /// Three or more corners.
+    pub polygon: Option<At<Vec<Vector>>>,
+    /// 1-D.
+    pub point: Option<Number>,
+    /// absent (never there; when left out) or broken (counted as damage).
+    pub kind: Option<CrackName>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Segment {
+    pub from: Vector,
+    pub to: Vector,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Disk {
+    pub center: Vector,
+    pub normal: Vector,
+    pub radius: Number,
+}
+
+/// Short-range repulsion.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Fraction of the reference distance below which any pair repels; 0.9 when left out.
+    pub bonded: Option<Number>,
+    /// Range in spacings; 1.35 when left out.
+    pub free: Option<Number>,
+    /// Force / volume² / length; from the law when left out.
+    pub stiffness: Option<Number>,
+}
+
+/// Values at t = 0, expressions of x, y, z.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Initial {
+    /// A set, or a region; everything when both are left out.
+    pub set: Option<At<String>>,
+    pub region: Option<At<Shape>>,
+    pub displacement: Option<Components>,
+    pub velocity: Option<Components>,
+}
+
+/// What is done to a set during the run, expressions of reference x, y, z and t.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Condition {
+    /// A set, or a region; everything when both are left out.
+    pub set: Option<At<String>>,
+    pub region: Option<At<Shape>>,
+    pub displacement: Option<Components>,
+    pub velocity: Option<Components>,
+    /// Force / volume.
+    pub body_force: Option<Components>,
+    /// Force / area.
+    pub traction: Option<Components>,
+    /// Area over which the traction is spread; one lattice face per point when left out.
+    pub area: Option<Number>,
+    /// Viscous force density / velocity.
+    pub damping: Option<Number>,
+}
+
+/// A rigid sphere; moved as its centre (an expression of t) says, or free when it has a mass.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Indenter {
+    /// Force density / length².
+    pub stiffness: Number,
+    pub radius: Number,
+    pub center: Vector,
+    pub velocity: Option<Vector>,
+    pub mass: Option<Number>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    pub steps: Option<At<u64>>,
+    /// Instead of steps.
+    pub duration: Option<Number>,
+    /// A time, or { safety = 0.8 } of the estimated limit (when left out).
+    pub time_step: Option<At<Or<Written, Safety>>>,
+    /// Run even if the step is above the stability limit.
+    #[serde(default)]
+    pub force_unstable: bool,
+    pub threads: Option<At<usize>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Safety {
+    pub safety: Number,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Output {
+    /// Folder; beside the deck when left out.
+    pub dir: Option<String>,
+    /// Steps between frames; only the first and the last state when left out.
+    pub every: Option<At<u64>>,
+    /// Point fields of a frame; all but fragment when left out.
+    pub fields: Option<Vec<FieldName>>,
+    /// VTU series for ParaView; true when left out.
+    pub vtu: Option<bool>,
+    /// Unbroken bonds as lines, too.
+    #[serde(default)]
+    pub bonds: bool,
+    /// LAMMPS dump file of this name.
+    pub dump: Option<String>,
+    /// Steps between rows of history.csv; a hundredth of the run when left out.
+    pub history: Option<At<u64>>,
+    /// PNG of the damage at the end; true when left out.
+    pub picture: Option<bool>,
+}
+
+macro_rules! names {
+    ($($(#[$doc:meta])* $name:ident { $($variant:ident),+ $(,)? })+) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum $name { $($variant),+ }
+    )+};
+}
+
+names! {
+    PlaneName { Stress, Strain }
+    LatticeName { Chain, Square, Triangular, Cubic, Bcc, Fcc, Diamond }
+    AxisName { X, Y, Z }
+    InterfaceName { Series, Parallel, Minimum }
+    InfluenceName { Constant, Inverse, Conical, Gaussian, CubicSpline }
+    CalibrationName { Continuum, Discrete }
+    FamilyName { Auto, Stencil, List }
+    CrackName { Absent, Broken }
+    /// Point fields that can be written.
+    FieldName { Displacement, Velocity, Damage, EnergyDensity, Dilatation, Mark, Id, Fragment }
+}

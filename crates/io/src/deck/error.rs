@@ -1,0 +1,96 @@
+//! What is wrong in a deck, with the place.
+
+use super::source::Source;
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::fmt;
+use std::ops::Range;
+
+/// A mistake in a deck or in an override of it.
+#[derive(Debug, Clone)]
+pub struct DeckError {
+    pub message: String,
+    /// What to write instead.
+    pub help: Option<String>,
+    /// File name, or the override (`--set body.spacing`).
+    pub file: String,
+    /// Line (1-based) in the file; `None` for an override or when no place is to blame.
+    pub line: Option<usize>,
+    span: Option<Range<usize>>,
+    text: NamedSource<String>,
+}
+
+impl DeckError {
+    /// A mistake at `span` (bytes) of `text`.
+    pub(super) fn new(file: &str, text: &str, span: Option<Range<usize>>, message: String, help: Option<String>) -> Self {
+        let span = span.map(|s| s.start.min(text.len())..s.end.min(text.len()));
+        let is_override = file.starts_with("--set");
+        let line = span.as_ref().filter(|_| !is_override).map(|s| 1 + text[..s.start].matches('\n').count());
+        let text = NamedSource::new(file, text.to_string()).with_language("toml");
+        DeckError { message, help, file: file.to_string(), line, span, text }
+    }
+
+    pub fn span(&self) -> Option<Range<usize>> {
+        self.span.clone()
+    }
+}
+
+impl fmt::Display for DeckError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for DeckError {}
+
+impl Diagnostic for DeckError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.span.as_ref().map(|_| &self.text as &dyn SourceCode)
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.span.clone()?;
+        Some(Box::new(std::iter::once(LabeledSpan::underline(span))))
+    }
+}
+
+/// The candidate most like `name`, if one is like it at all.
+pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&name.to_lowercase(), &candidate.to_lowercase()), candidate))
+        .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Says what serde found wrong in words for people.
+pub(super) fn from_toml(source: &Source, span: Option<Range<usize>>, message: &str) -> DeckError {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let known = || quoted.iter().skip(1).copied();
+    let (message, help) = if let Some(name) = message.strip_prefix("unknown field `").and(quoted.first()) {
+        (format!("unknown key `{name}`"), Some(suggest(name, known())))
+    } else if let Some(name) = message.strip_prefix("unknown variant `").and(quoted.first()) {
+        (format!("`{name}` is not known here"), Some(suggest(name, known())))
+    } else if let Some(name) = message.strip_prefix("missing field `").and(quoted.first()) {
+        (format!("the key `{name}` is missing"), None)
+    } else if let Some(rest) = message.strip_prefix("invalid type: ") {
+        match rest.split_once(", expected ") {
+            Some((found, expected)) => (format!("expected {expected}, found {found}"), None),
+            None => (message.to_string(), None),
+        }
+    } else if message.starts_with("wanted exactly 1 element") {
+        ("expected a table with exactly one entry, which says the kind".into(), None)
+    } else {
+        (message.trim().replace('\n', ", "), None)
+    };
+    source.error(span, message, help)
+}
+
+fn suggest<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    match nearest(name, known.clone()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("known here: {}", known.collect::<Vec<_>>().join(", ")),
+    }
+}

@@ -1,0 +1,76 @@
+//! Places of spec entries in the deck.
+
+use super::source::Source;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Keys of one material; a table under `material` with none of them holds named materials.
+const MATERIAL: [&str; 4] = ["set", "density", "law", "fracture"];
+
+/// Name that the material of `[material]` gets.
+const UNNAMED: &str = "material";
+
+fn is_one_material(table: &DeTable) -> bool {
+    table.is_empty()
+        || table.iter().any(|(key, value)| MATERIAL.contains(&&*key.get_ref().as_ref()) || !value.get_ref().is_table())
+}
+
+/// Gives the material of a plain `[material]` its name, so that the deck always holds named materials.
+pub(super) fn name_material(tree: &mut DeTable) {
+    let Some(entry) = tree.get_mut("material") else { return };
+    let span = entry.span();
+    if let DeValue::Table(table) = entry.get_mut()
+        && is_one_material(table)
+    {
+        let one = std::mem::take(table);
+        table.insert(Spanned::new(span.clone(), UNNAMED.into()), Spanned::new(span, DeValue::Table(one)));
+    }
+}
+
+/// The key in the deck of a top-level entry of the spec.
+fn deck_key(spec_key: &str) -> &str {
+    match spec_key {
+        "materials" => "material",
+        "precracks" => "precrack",
+        "conditions" => "condition",
+        "indenters" => "indenter",
+        "schedule" => "run",
+        other => other,
+    }
+}
+
+pub(super) fn locate(source: &Source, path: &str) -> Option<Range<usize>> {
+    let tree = source.tree().ok()?;
+    let path = path.replace('[', ".").replace(']', "");
+    let mut segments = path.split('.').filter(|s| !s.is_empty());
+    let first = segments.next()?;
+    let top = match first {
+        "section" => ["thickness", "area"].into_iter().find_map(|key| tree.get_ref().get(key)),
+        key => tree.get_ref().get(deck_key(key)),
+    }?;
+    let mut here = top;
+    for segment in segments {
+        let index = segment.parse::<usize>().ok();
+        let next = match here.get_ref() {
+            DeValue::Array(items) => index.and_then(|i| items.get(i)),
+            DeValue::Table(table) if std::ptr::eq(here, top) && first == "materials" && is_one_material(table) => {
+                // one unnamed material is the deck's `material` itself
+                if index == Some(0) || segment == UNNAMED {
+                    continue;
+                }
+                table.get(segment)
+            }
+            DeValue::Table(table) => match index {
+                Some(i) if !table.contains_key(segment) => table.values().nth(i),
+                _ => table.get(segment),
+            },
+            _ => None,
+        };
+        match next {
+            Some(next) => here = next,
+            None => break,
+        }
+    }
+    Some(here.span())
+}

@@ -1,0 +1,288 @@
+//! From written numbers to numbers: units, constants, expressions, components.
+
+use crate::deck::error::{DeckError, nearest};
+use crate::deck::source::Source;
+use crate::deck::units::{self, Dim, UnitSystem};
+use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
+use peridyne::expression::{Expression, ExpressionError};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+pub(super) type Result<T> = std::result::Result<T, DeckError>;
+
+pub(super) struct Context<'a> {
+    pub source: &'a Source,
+    pub units: UnitSystem,
+    pub dimension: usize,
+    /// Value in plain numbers of the deck, and dimension if it was written with a unit.
+    constants: BTreeMap<String, (f64, Option<Dim>)>,
+}
+
+/// What a text in a number's place turned out to be.
+enum Meaning {
+    Value(f64),
+    Expression(Expression),
+}
+
+impl<'a> Context<'a> {
+    pub fn new(source: &'a Source, units: UnitSystem, constants: &BTreeMap<String, Number>) -> Result<Self> {
+        let mut context = Context { source, units, dimension: 3, constants: BTreeMap::new() };
+        // constants may use each other in any order; each round settles at least one, or the first error is real
+        let mut open: Vec<(&String, &Number)> = constants.iter().collect();
+        while !open.is_empty() {
+            let mut failed = None;
+            let mut next = Vec::new();
+            for (name, number) in &open {
+                match context.named_constant(name, number) {
+                    Ok(value) => {
+                        context.constants.insert((*name).clone(), value);
+                    }
+                    Err(error) => {
+                        failed.get_or_insert(error);
+                        next.push((*name, *number));
+                    }
+                }
+            }
+            match failed {
+                Some(error) if next.len() == open.len() => return Err(error),
+                _ => open = next,
+            }
+        }
+        Ok(context)
+    }
+
+    fn named_constant(&self, name: &str, number: &Number) -> Result<(f64, Option<Dim>)> {
+        if ["x", "y", "z", "t"].contains(&name) {
+            return Err(self.error(&number.span, format!("the constant \"{name}\" would hide the coordinate {name}")));
+        }
+        let valid = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if !valid {
+            return Err(self.error(&number.span, format!("\"{name}\" cannot be used in expressions: letters, digits and _ make a name")));
+        }
+        if let Written::Text(text) = &number.value
+            && let Some((value, unit)) = units::split(text)
+            && !unit.is_empty()
+        {
+            let (scale, dim) = self.unit(unit, &number.span)?;
+            return Ok((value * scale * self.units.from_si(dim), Some(dim)));
+        }
+        Ok((self.plain(number)?, None))
+    }
+
+    pub fn error(&self, span: &Range<usize>, message: impl Into<String>) -> DeckError {
+        self.source.error(Some(span.clone()), message, None)
+    }
+
+    pub fn error_with(&self, span: &Range<usize>, message: impl Into<String>, help: impl Into<String>) -> DeckError {
+        self.source.error(Some(span.clone()), message, Some(help.into()))
+    }
+
+    fn unit(&self, unit: &str, span: &Range<usize>) -> Result<(f64, Dim)> {
+        if !self.units.has_units() {
+            let message = format!("numbers carry no units in the unit system {}: `{unit}`", self.units.name());
+            return Err(self.error_with(span, message, "write plain numbers, or units = \"si\""));
+        }
+        units::unit(unit).map_err(|message| self.error(span, message))
+    }
+
+    /// A text is a quantity, the name of a constant, or an expression; the value is in plain numbers of the deck.
+    fn meaning(&self, text: &str, span: &Range<usize>, dim: Dim) -> Result<Meaning> {
+        let wrong = |found: Dim| {
+            let help = dim.example().map_or("write it in other units".into(), |e| format!("write for example \"{e}\""));
+            self.error_with(span, format!("expected {dim}, \"{text}\" is {found}"), help)
+        };
+        if let Some((value, unit)) = units::split(text) {
+            if unit.is_empty() {
+                return Ok(Meaning::Value(value));
+            }
+            let (scale, found) = self.unit(unit, span)?;
+            if found != dim {
+                return Err(wrong(found));
+            }
+            return Ok(Meaning::Value(value * scale * self.units.from_si(dim)));
+        }
+        if let Some((value, found)) = self.constants.get(text.trim()) {
+            return match found {
+                Some(found) if *found != dim => Err(wrong(*found)),
+                _ => Ok(Meaning::Value(*value)),
+            };
+        }
+        self.compile(text, span).map(Meaning::Expression)
+    }
+
+    fn compile(&self, text: &str, span: &Range<usize>) -> Result<Expression> {
+        let constants: Vec<(&str, f64)> = self.constants.iter().map(|(name, v)| (name.as_str(), v.0)).collect();
+        Expression::parse(text, &constants).map_err(|error| self.expression_error(text, span, error))
+    }
+
+    /// Carries the place inside an expression over to the deck, if the text stands there as it is.
+    fn expression_error(&self, text: &str, span: &Range<usize>, error: ExpressionError) -> DeckError {
+        let inner = match self.source.slice(span).find(text) {
+            Some(offset) => {
+                let start = span.start + offset;
+                let end = error.span.end.max(error.span.start + 1);
+                start + error.span.start..start + end
+            }
+            None => span.clone(),
+        };
+        self.source.error(Some(inner), error.message, error.help)
+    }
+
+    fn plain(&self, number: &Number) -> Result<f64> {
+        match &number.value {
+            Written::Plain(value) => Ok(*value),
+            Written::Text(text) => match units::split(text) {
+                Some((value, "")) => Ok(value),
+                _ => self.constant_value(self.compile(text, &number.span)?, &number.span),
+            },
+        }
+    }
+
+    fn constant_value(&self, expression: Expression, span: &Range<usize>) -> Result<f64> {
+        expression.as_constant().ok_or_else(|| {
+            self.error_with(span, "this number may not depend on x, y, z or t", "use numbers and [constants] only")
+        })
+    }
+
+    /// A number of this dimension, as it is computed with; NaN is refused.
+    pub fn number(&self, number: &Number, dim: Dim) -> Result<f64> {
+        let value = match &number.value {
+            Written::Plain(value) => *value,
+            Written::Text(text) => match self.meaning(text, &number.span, dim)? {
+                Meaning::Value(value) => value,
+                Meaning::Expression(expression) => self.constant_value(expression, &number.span)?,
+            },
+        };
+        if value.is_nan() {
+            return Err(self.error(&number.span, "this is not a number (NaN)"));
+        }
+        Ok(value * self.units.plain_factor(dim))
+    }
+
+    pub fn finite(&self, number: &Number, dim: Dim) -> Result<f64> {
+        let value = self.number(number, dim)?;
+        if value.is_finite() { Ok(value) } else { Err(self.error(&number.span, "this number must be finite")) }
+    }
+
+    /// A number above zero; `what` names it.
+    pub fn positive(&self, number: &Number, dim: Dim, what: &str) -> Result<f64> {
+        let value = self.finite(number, dim)?;
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.error(&number.span, format!("{what} must be positive, it is {}", units::short(value))))
+        }
+    }
+
+    /// An expression of x, y, z, t of this dimension.
+    pub fn expression(&self, number: &Number, dim: Dim) -> Result<Expression> {
+        let factor = self.units.plain_factor(dim);
+        let Written::Text(text) = &number.value else {
+            return Ok(Expression::constant(self.finite(number, dim)?));
+        };
+        match self.meaning(text, &number.span, dim)? {
+            Meaning::Value(value) => Ok(Expression::constant(value * factor)),
+            Meaning::Expression(expression) if factor == 1.0 => Ok(expression),
+            Meaning::Expression(_) => self.compile(&format!("({text})*{factor:e}"), &number.span),
+        }
+    }
+
+    fn list<'v>(&self, numbers: &'v [Number], span: &Range<usize>) -> Result<&'v [Number]> {
+        if numbers.len() == self.dimension {
+            return Ok(numbers);
+        }
+        let message = match (numbers.len(), self.dimension) {
+            (given, 1) => format!("expected one component in 1-D, found {given}"),
+            (given, dimension) => format!("expected {dimension} components in {dimension}-D, found {given}"),
+        };
+        Err(self.error(span, message))
+    }
+
+    /// A vector, `fill` on the unused axes.
+    pub fn vector(&self, vector: &Vector, dim: Dim, fill: f64) -> Result<[f64; 3]> {
+        let mut out = [fill; 3];
+        for (a, number) in self.list(&vector.value.0, &vector.span)?.iter().enumerate() {
+            out[a] = self.number(&placed(number, &vector.span), dim)?;
+        }
+        Ok(out)
+    }
+
+    pub fn finite_vector(&self, vector: &Vector, dim: Dim) -> Result<[f64; 3]> {
+        let value = self.vector(vector, dim, 0.0)?;
+        if value.iter().all(|c| c.is_finite()) {
+            Ok(value)
+        } else {
+            Err(self.error(&vector.span, "these components must be finite"))
+        }
+    }
+
+    /// Expressions of a vector, 0 on the unused axes.
+    pub fn expressions(&self, vector: &Vector, dim: Dim) -> Result<[Expression; 3]> {
+        let mut out = [const { None }; 3];
+        for (a, number) in self.list(&vector.value.0, &vector.span)?.iter().enumerate() {
+            out[a] = Some(self.expression(&placed(number, &vector.span), dim)?);
+        }
+        Ok(out.map(|e| e.unwrap_or_else(|| Expression::constant(0.0))))
+    }
+
+    /// Components that may be left free.
+    pub fn components(&self, components: &Components, dim: Dim) -> Result<[Option<Expression>; 3]> {
+        let mut out = [const { None }; 3];
+        match &components.value {
+            ComponentsWritten::List(numbers) => {
+                for (a, number) in self.list(numbers, &components.span)?.iter().enumerate() {
+                    if !matches!(&number.value, Written::Text(text) if text.trim() == "free") {
+                        out[a] = Some(self.expression(number, dim)?);
+                    }
+                }
+            }
+            ComponentsWritten::Axes(axes) => {
+                for (a, number) in axes.iter().enumerate() {
+                    let Some(number) = number else { continue };
+                    if a >= self.dimension {
+                        let message = format!("there is no {} in {}-D", ["x", "y", "z"][a], self.dimension);
+                        return Err(self.error(&number.span, message));
+                    }
+                    out[a] = Some(self.expression(number, dim)?);
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// The index of the one entry that is given, an error if there is none or more.
+    pub fn one_of(&self, span: &Range<usize>, what: &str, given: &[(&str, bool)]) -> Result<usize> {
+        let found: Vec<usize> = (0..given.len()).filter(|i| given[*i].1).collect();
+        match found[..] {
+            [one] => Ok(one),
+            [] => {
+                let names: Vec<&str> = given.iter().map(|g| g.0).collect();
+                Err(self.error(span, format!("{what} needs one of {}", names.join(", "))))
+            }
+            _ => {
+                let names: Vec<&str> = found.iter().map(|i| given[*i].0).collect();
+                Err(self.error(span, format!("{what} has {}: give one of them", names.join(" and "))))
+            }
+        }
+    }
+
+    /// Checks that a set exists.
+    pub fn known_set(&self, name: &At<String>, sets: &[peridyne::spec::SetSpec]) -> Result<String> {
+        if name.value == "all" || sets.iter().any(|set| set.name == name.value) {
+            return Ok(name.value.clone());
+        }
+        let names: Vec<&str> = sets.iter().map(|set| set.name.as_str()).chain(["all"]).collect();
+        let help = match nearest(&name.value, names.iter().copied()) {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None => format!("known sets: {}", names.join(", ")),
+        };
+        Err(self.error_with(&name.span, format!("there is no set \"{}\"", name.value), help))
+    }
+}
+
+/// A lone number in the place of a vector has no place of its own.
+fn placed(number: &Number, span: &Range<usize>) -> Number {
+    let span = if number.span.is_empty() { span.clone() } else { number.span.clone() };
+    At { value: number.value.clone(), span }
+}

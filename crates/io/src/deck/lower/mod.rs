@@ -1,0 +1,207 @@
+//! From the deck as written to the specification: units, defaults, checks.
+
+mod body;
+mod context;
+mod material;
+mod motion;
+mod schedule;
+
+pub(super) use schedule::steps;
+
+use super::document::{
+    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InterfaceName, PlaneName,
+};
+use super::error::DeckError;
+use super::source::Source;
+use super::units::{Dim, short};
+use super::value::{At, Or, Written};
+use super::{OutputSpec, ReadCloud};
+use context::{Context, Result};
+use peridyne::spec::{
+    BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule, LawSpec, MaterialSpec,
+    Plane, Spec,
+};
+use std::path::Path;
+
+/// How files named in a deck are read.
+pub(super) struct Files<'a> {
+    /// Folder of the deck.
+    pub folder: &'a Path,
+    pub lammps: Option<&'a ReadCloud<'a>>,
+}
+
+impl Files<'_> {
+    /// The points of `body.file` and, if the file says so, their dimension.
+    fn read(&self, context: &Context, body: &Body) -> Result<(Cloud, Option<usize>)> {
+        let Some(file) = &body.file else { return Ok((Cloud::default(), None)) };
+        let path = self.folder.join(&file.value);
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
+        let failed = |message: String| context.error(&file.span, message);
+        match (extension.as_str(), self.lammps) {
+            ("data" | "lammps", Some(read)) => read(&path).map(|cloud| (cloud, None)).map_err(failed),
+            ("data" | "lammps", None) => Err(failed("LAMMPS data files cannot be read here".into())),
+            _ => crate::read::points(&path).map(|p| (p.cloud, p.dimension)).map_err(|e| failed(e.to_string())),
+        }
+    }
+}
+
+pub(super) struct Lowered {
+    pub spec: Spec,
+    pub output: OutputSpec,
+    pub threads: Option<usize>,
+    pub duration: Option<f64>,
+}
+
+pub(super) fn lower(source: &Source, document: &Document, files: &Files) -> std::result::Result<Lowered, DeckError> {
+    let units = document.units.as_ref().map(|u| u.value).unwrap_or_default();
+    let mut context = Context::new(source, units, &document.constants)?;
+    let mut body = body::body(&mut context, &document.body, document.dimension.as_ref(), files)?;
+    let periodic = body::periods(&context, document.periodic.as_ref(), &mut body)?;
+    let mut sets = body::sets(&context, &document.sets, &body)?;
+    let materials = material::materials(&context, &document.material, &sets)?;
+    let mut initial = Vec::new();
+    for (index, at) in document.initial.iter().enumerate() {
+        initial.push(motion::initial(&context, index, at, &mut sets)?);
+    }
+    let mut conditions = Vec::new();
+    for (index, at) in document.condition.iter().enumerate() {
+        conditions.extend(motion::condition(&context, index, at, &mut sets)?);
+    }
+    let run = schedule::schedule(&context, &document.run)?;
+    let spec = Spec {
+        title: document.title.clone().unwrap_or_default(),
+        dimension: context.dimension,
+        plane: match document.plane.as_ref().map(|p| p.value) {
+            Some(PlaneName::Strain) => Plane::Strain,
+            Some(PlaneName::Stress) | None => Plane::Stress,
+        },
+        section: section(&context, document)?,
+        horizon: horizon(&context, &document.horizon, &body)?,
+        interface: match document.interface {
+            Some(InterfaceName::Parallel) => InterfaceRule::Parallel,
+            Some(InterfaceName::Minimum) => InterfaceRule::Minimum,
+            Some(InterfaceName::Series) | None => InterfaceRule::Series,
+        },
+        volume_scaling: document.volume_scaling.unwrap_or(true),
+        calibration: match document.calibration {
+            Some(CalibrationName::Continuum) => Calibration::Continuum,
+            Some(CalibrationName::Discrete) | None => Calibration::Discrete,
+        },
+        influence: influence(document.influence, &materials),
+        periodic,
+        precracks: document.precrack.iter().map(|p| motion::precrack(&context, p)).collect::<Result<_>>()?,
+        contact: contact(&context, document, &materials)?,
+        initial,
+        conditions,
+        indenters: document.indenter.iter().map(|i| motion::indenter(&context, i)).collect::<Result<_>>()?,
+        family: match document.family {
+            Some(FamilyName::Stencil) => FamilyChoice::Stencil,
+            Some(FamilyName::List) => FamilyChoice::List,
+            Some(FamilyName::Auto) | None => FamilyChoice::Auto,
+        },
+        schedule: run.schedule,
+        body,
+        sets,
+        materials,
+    };
+    let output = schedule::output(&context, &document.output)?;
+    Ok(Lowered { spec, output, threads: run.threads, duration: run.duration })
+}
+
+fn section(context: &Context, document: &Document) -> Result<f64> {
+    let d = context.dimension;
+    if let Some(plane) = &document.plane
+        && d != 2
+    {
+        return Err(context.error(&plane.span, format!("plane stress and strain are 2-D; this body is {d}-D")));
+    }
+    match (&document.thickness, &document.area) {
+        (Some(thickness), None) if d == 2 => context.positive(thickness, Dim::LENGTH, "the thickness"),
+        (None, Some(area)) if d == 1 => context.positive(area, Dim::AREA, "the area"),
+        (None, None) => Ok(1.0),
+        (Some(thickness), _) if d != 2 => {
+            Err(context.error(&thickness.span, format!("thickness belongs to a 2-D body; this one is {d}-D")))
+        }
+        (_, Some(area)) => Err(context.error(&area.span, format!("area belongs to a 1-D body; this one is {d}-D"))),
+        (Some(_), None) => Ok(1.0),
+    }
+}
+
+fn horizon(context: &Context, written: &At<Or<Written, HorizonRatio>>, body: &BodySpec) -> Result<Horizon> {
+    // the length of the shortest bond, where it is known
+    let lattice = match body {
+        BodySpec::Lattice { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
+        BodySpec::Cloud(cloud) => cloud.spacing.map(|s| (s, 0.0)),
+        BodySpec::Sites { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
+    };
+    let below = |length: f64, shortest: f64| {
+        let message =
+            format!("the horizon {} is below the distance of points {}: no bonds", short(length), short(shortest));
+        context.error_with(&written.span, message, "write horizon = { m_ratio = 3 }")
+    };
+    match &written.value {
+        Or::Bare(number) => {
+            let number = At { value: number.clone(), span: written.span.clone() };
+            let length = context.positive(&number, Dim::LENGTH, "the horizon")?;
+            match lattice {
+                Some((_, shortest)) if length < shortest => Err(below(length, shortest)),
+                _ => Ok(Horizon::Length(length)),
+            }
+        }
+        Or::Table(HorizonRatio { m_ratio }) => {
+            let ratio = context.positive(m_ratio, Dim::NUMBER, "m_ratio")?;
+            let Some((spacing, shortest)) = lattice else {
+                let help = "give body.spacing, or the horizon as a length";
+                return Err(context.error_with(&m_ratio.span, "m_ratio counts spacings, and these points have none", help));
+            };
+            let whole = ratio.fract() == 0.0 && ratio <= f64::from(u32::MAX);
+            if ratio * spacing < shortest {
+                Err(below(ratio * spacing, shortest))
+            } else if ratio > 1000.0 {
+                Err(context.error(&m_ratio.span, format!("m_ratio = {} would bond everything: 3 is usual", short(ratio))))
+            } else if whole && !matches!(body, BodySpec::Cloud(_)) {
+                Ok(Horizon::Ratio(ratio as u32))
+            } else {
+                Ok(Horizon::Length(ratio * spacing))
+            }
+        }
+    }
+}
+
+/// The customary influence function of the law, unless one is asked for.
+fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influence {
+    match asked {
+        Some(InfluenceName::Constant) => Influence::Constant,
+        Some(InfluenceName::Inverse) => Influence::Inverse,
+        Some(InfluenceName::Conical) => Influence::Conical,
+        Some(InfluenceName::Gaussian) => Influence::Gaussian,
+        Some(InfluenceName::CubicSpline) => Influence::CubicSpline,
+        None => match materials.first().map(|m| m.law) {
+            Some(LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. }) => Influence::Inverse,
+            _ => Influence::Constant,
+        },
+    }
+}
+
+fn contact(context: &Context, document: &Document, materials: &[MaterialSpec]) -> Result<Option<ContactSpec>> {
+    let standard = ContactSpec { bonded: 0.9, free: 1.35, stiffness: None };
+    match &document.contact {
+        Some(Or::Bare(false)) => Ok(None),
+        Some(Or::Bare(true)) => Ok(Some(standard)),
+        None => Ok(materials.iter().any(|m| m.fracture.is_some()).then_some(standard)),
+        Some(Or::Table(c)) => {
+            let get = |n: &Option<_>, or: f64, what: &str| {
+                n.as_ref().map_or(Ok(or), |n| context.positive(n, Dim::NUMBER, what))
+            };
+            Ok(Some(ContactSpec {
+                bonded: get(&c.bonded, standard.bonded, "the fraction of the reference distance")?,
+                free: get(&c.free, standard.free, "the range")?,
+                stiffness: c
+                    .stiffness
+                    .as_ref()
+                    .map(|n| context.positive(n, Dim::CONTACT_STIFFNESS, "the stiffness"))
+                    .transpose()?,
+            }))
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Initial values, conditions, indenters, pre-cracks.
+
+use super::body::region;
+use super::context::{Context, Result};
+use crate::deck::document::{Condition, CrackName, Indenter, Initial, Precrack, Shape};
+use crate::deck::units::Dim;
+use crate::deck::value::At;
+use peridyne::expression::Expression;
+use peridyne::spec::{
+    ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion, IndenterSpec, InitialSpec, Members, PrecrackSpec,
+    SetSpec,
+};
+use std::ops::Range;
+
+/// The set that is meant: a named one, one made of a region here, or all.
+fn target(
+    context: &Context,
+    span: &Range<usize>,
+    what: String,
+    set: &Option<At<String>>,
+    shape: &Option<At<Shape>>,
+    sets: &mut Vec<SetSpec>,
+) -> Result<String> {
+    match (set, shape) {
+        (Some(_), Some(_)) => Err(context.error(span, format!("{what} has set and region: give one of them"))),
+        (Some(set), None) => context.known_set(set, sets),
+        (None, Some(shape)) => {
+            sets.push(SetSpec { name: what.clone(), members: Members::Region(region(context, shape)?) });
+            Ok(what)
+        }
+        (None, None) => Ok("all".into()),
+    }
+}
+
+pub(super) fn initial(context: &Context, index: usize, at: &At<Initial>, sets: &mut Vec<SetSpec>) -> Result<InitialSpec> {
+    let written = &at.value;
+    if written.displacement.is_none() && written.velocity.is_none() {
+        return Err(context.error(&at.span, "an initial value needs displacement or velocity"));
+    }
+    let get = |c: &Option<_>, dim| c.as_ref().map_or(Ok([const { None }; 3]), |c| context.components(c, dim));
+    Ok(InitialSpec {
+        set: target(context, &at.span, format!("initial {}", index + 1), &written.set, &written.region, sets)?,
+        displacement: get(&written.displacement, Dim::LENGTH)?,
+        velocity: get(&written.velocity, Dim::VELOCITY)?,
+    })
+}
+
+/// One entry may do several things to its set.
+pub(super) fn condition(
+    context: &Context,
+    index: usize,
+    at: &At<Condition>,
+    sets: &mut Vec<SetSpec>,
+) -> Result<Vec<ConditionSpec>> {
+    let c = &at.value;
+    let set = target(context, &at.span, format!("condition {}", index + 1), &c.set, &c.region, sets)?;
+    let mut kinds = Vec::new();
+    if let Some(v) = &c.displacement {
+        kinds.push(ConditionKind::Displacement(context.components(v, Dim::LENGTH)?));
+    }
+    if let Some(v) = &c.velocity {
+        kinds.push(ConditionKind::Velocity(context.components(v, Dim::VELOCITY)?));
+    }
+    if let Some(v) = &c.body_force {
+        kinds.push(ConditionKind::BodyForce(context.components(v, Dim::FORCE_DENSITY)?));
+    }
+    match (&c.traction, &c.area) {
+        (Some(v), area) => kinds.push(ConditionKind::Traction {
+            value: context.components(v, Dim::PRESSURE)?,
+            area: area.as_ref().map(|a| context.positive(a, Dim::AREA, "the area")).transpose()?,
+        }),
+        (None, Some(area)) => return Err(context.error(&area.span, "area belongs to a traction")),
+        (None, None) => {}
+    }
+    if let Some(v) = &c.damping {
+        kinds.push(ConditionKind::Damping(context.expression(v, Dim::DAMPING)?));
+    }
+    if kinds.is_empty() {
+        let message = "a condition needs one of displacement, velocity, body_force, traction, damping";
+        return Err(context.error(&at.span, message));
+    }
+    Ok(kinds.into_iter().map(|kind| ConditionSpec { set: set.clone(), kind }).collect())
+}
+
+pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterSpec> {
+    let i = &at.value;
+    let motion = match &i.mass {
+        Some(mass) => IndenterMotion::Free {
+            mass: context.positive(mass, Dim::MASS, "the mass")?,
+            center: context.finite_vector(&i.center, Dim::LENGTH)?,
+            velocity: i.velocity.as_ref().map_or(Ok([0.0; 3]), |v| context.finite_vector(v, Dim::VELOCITY))?,
+        },
+        None => {
+            let mut center = context.expressions(&i.center, Dim::LENGTH)?;
+            if let Some(velocity) = &i.velocity {
+                let speed = context.finite_vector(velocity, Dim::VELOCITY)?;
+                for (a, c) in center.iter_mut().enumerate() {
+                    let Some(start) = c.as_constant() else {
+                        return Err(context.error(&velocity.span, "the centre moves already by its expression: drop one of them"));
+                    };
+                    if speed[a] != 0.0 {
+                        *c = Expression::parse(&format!("{start:e} + {:e}*t", speed[a]), &[])
+                            .map_err(|e| context.error(&velocity.span, e.message))?;
+                    }
+                }
+            }
+            IndenterMotion::Kinematic(center)
+        }
+    };
+    Ok(IndenterSpec {
+        stiffness: context.positive(&i.stiffness, Dim::INDENTER_STIFFNESS, "the stiffness")?,
+        radius: context.positive(&i.radius, Dim::LENGTH, "the radius")?,
+        motion,
+    })
+}
+
+pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackSpec> {
+    let p = &at.value;
+    let given = [
+        ("segment", p.segment.is_some()),
+        ("disk", p.disk.is_some()),
+        ("polygon", p.polygon.is_some()),
+        ("point", p.point.is_some()),
+    ];
+    context.one_of(&at.span, "a precrack", &given)?;
+    let only = |dimensions: &[usize], what: &str| {
+        if dimensions.contains(&context.dimension) {
+            return Ok(());
+        }
+        let fitting = ["point", "segment", "disk, polygon or segment"][context.dimension - 1];
+        let message = format!("a {what} does not cut a body in {}-D", context.dimension);
+        Err(context.error_with(&at.span, message, format!("use {fitting}")))
+    };
+    let point = |v| context.finite_vector(v, Dim::LENGTH);
+    let shape = if let Some(s) = &p.segment {
+        only(&[2, 3], "segment")?;
+        CrackShape::Segment { from: point(&s.from)?, to: point(&s.to)? }
+    } else if let Some(d) = &p.disk {
+        only(&[3], "disk")?;
+        let normal = context.finite_vector(&d.normal, Dim::NUMBER)?;
+        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+        if length == 0.0 {
+            return Err(context.error(&d.normal.span, "the normal is zero"));
+        }
+        let radius = context.positive(&d.radius, Dim::LENGTH, "the radius")?;
+        CrackShape::Disk { center: point(&d.center)?, normal: normal.map(|n| n / length), radius }
+    } else if let Some(polygon) = &p.polygon {
+        only(&[3], "polygon")?;
+        if polygon.value.len() < 3 {
+            let message = format!("a polygon has three or more corners, not {}", polygon.value.len());
+            return Err(context.error(&polygon.span, message));
+        }
+        CrackShape::Polygon { corners: polygon.value.iter().map(point).collect::<Result<_>>()? }
+    } else if let Some(x) = &p.point {
+        only(&[1], "point")?;
+        CrackShape::Point { x: context.finite(x, Dim::LENGTH)? }
+    } else {
+        return Err(context.error(&at.span, "a precrack needs a shape"));
+    };
+    let kind = match p.kind {
+        Some(CrackName::Broken) => CrackKind::Broken,
+        Some(CrackName::Absent) | None => CrackKind::Absent,
+    };
+    Ok(PrecrackSpec { shape, kind })
+}

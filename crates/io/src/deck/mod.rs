@@ -1,0 +1,135 @@
+//! The TOML deck: text with units, expressions and overrides → [`Spec`].
+//!
+//! A mistake is a [`DeckError`] that names file, line and what to write instead. A [`BuildError`] of the engine
+//! finds its way back to the deck through [`Deck::explain`].
+
+mod describe;
+mod document;
+mod error;
+mod locate;
+mod lower;
+mod schema;
+mod source;
+mod units;
+mod value;
+
+#[cfg(test)]
+mod tests;
+
+pub use describe::describe;
+pub use document::FieldName;
+pub use error::DeckError;
+pub use schema::schema;
+pub use units::{Dim, UnitSystem};
+
+use document::Document;
+use lower::Files;
+use peridyne::error::BuildError;
+use peridyne::spec::{Cloud, Spec};
+use serde::Deserialize;
+use source::Source;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Reads points of a format that lives elsewhere; the message of an error names file and line.
+pub type ReadCloud<'a> = dyn Fn(&Path) -> Result<Cloud, String> + 'a;
+
+/// A deck that was understood.
+#[derive(Debug, Clone)]
+pub struct Deck {
+    pub spec: Spec,
+    pub output: OutputSpec,
+    pub units: UnitSystem,
+    /// Threads asked for.
+    pub threads: Option<usize>,
+    /// Duration asked for where the step is estimated: `spec.schedule.steps` is then 0, and [`Deck::steps`] has it.
+    pub duration: Option<f64>,
+    source: Source,
+}
+
+/// What a run writes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputSpec {
+    /// Folder; `None`: chosen by the caller.
+    pub dir: Option<PathBuf>,
+    /// Steps between frames; `None`: first and last state.
+    pub every: Option<u64>,
+    /// Point fields of a frame.
+    pub fields: Vec<FieldName>,
+    /// VTU series with PVD.
+    pub vtu: bool,
+    /// Unbroken bonds in the VTU.
+    pub bonds: bool,
+    /// LAMMPS dump of this name.
+    pub dump: Option<PathBuf>,
+    /// Steps between rows of `history.csv`; `None`: chosen by the caller.
+    pub history: Option<u64>,
+    /// PNG of the damage at the end.
+    pub picture: bool,
+}
+
+impl Deck {
+    /// Reads a deck; files it names are relative to the folder of `file_name`. `overrides` are dotted keys and
+    /// values, each value TOML or a bare word.
+    ///
+    /// # Errors
+    /// The first mistake found, with its place in the deck or in the override.
+    pub fn parse(source: &str, file_name: &str, overrides: &[(String, String)]) -> Result<Deck, DeckError> {
+        Deck::parse_with(source, file_name, overrides, None)
+    }
+
+    /// The same, with a reader for LAMMPS data files (`.data`, `.lammps`).
+    pub fn parse_with(
+        source: &str,
+        file_name: &str,
+        overrides: &[(String, String)],
+        lammps: Option<&ReadCloud>,
+    ) -> Result<Deck, DeckError> {
+        let source = Source::new(source, file_name, overrides);
+        let mut tree = source.tree()?;
+        locate::name_material(tree.get_mut());
+        let document = Document::deserialize(toml::de::Deserializer::from(tree))
+            .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
+        let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
+        let lowered = lower::lower(&source, &document, &Files { folder, lammps })?;
+        Ok(Deck {
+            spec: lowered.spec,
+            output: lowered.output,
+            units: document.units.map(|u| u.value).unwrap_or_default(),
+            threads: lowered.threads,
+            duration: lowered.duration,
+            source,
+        })
+    }
+
+    /// Steps of the run once the time step is known.
+    pub fn steps(&self, time_step: f64) -> u64 {
+        self.duration.map_or(self.spec.schedule.steps, |duration| lower::steps(duration, time_step))
+    }
+
+    /// Where an entry of the spec (`"materials[0].density"`, `"body.region"`) stands in the deck, in bytes; the
+    /// nearest table around it if it was left out.
+    pub fn locate(&self, path: &str) -> Option<Range<usize>> {
+        locate::locate(&self.source, path)
+    }
+
+    /// An error of the engine as an error in the deck.
+    pub fn explain(&self, error: &BuildError) -> DeckError {
+        self.source.error(self.locate(&error.path), error.message.clone(), error.help.clone())
+    }
+
+    /// What was understood, in a few lines with units.
+    pub fn describe(&self) -> String {
+        describe(&self.spec, self.units)
+    }
+
+    /// The text of the deck.
+    pub fn text(&self) -> &str {
+        self.source.text()
+    }
+
+    /// The name of the deck's file.
+    pub fn file(&self) -> &str {
+        self.source.file()
+    }
+}

@@ -1,0 +1,129 @@
+//! The text of a deck with its overrides, as one tree whose spans say which text they are in.
+//!
+//! An override is parsed as a line that stands behind the deck's end: its spans start where the texts before it
+//! end, so one number tells the place in all of them.
+
+use super::error::DeckError;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+/// A deck's text and its overrides.
+#[derive(Debug, Clone)]
+pub struct Source {
+    file: String,
+    text: String,
+    overrides: Vec<Override>,
+}
+
+#[derive(Debug, Clone)]
+struct Override {
+    key: String,
+    line: String,
+    /// The line behind as many blanks as there are bytes before it.
+    padded: String,
+}
+
+pub(super) type Tree<'a> = Spanned<DeTable<'a>>;
+
+impl Source {
+    pub fn new(text: &str, file: &str, overrides: &[(String, String)]) -> Self {
+        let mut start = text.len() + 1;
+        let mut lines = Vec::new();
+        for (key, value) in overrides {
+            let line = line(key, value);
+            let padded = format!("{}{line}", " ".repeat(start));
+            start = padded.len() + 1;
+            lines.push(Override { key: key.clone(), line, padded });
+        }
+        Source { file: file.to_string(), text: text.to_string(), overrides: lines }
+    }
+
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The text that a place lies in: its name, itself and where it starts.
+    fn part(&self, at: usize) -> (String, &str, usize) {
+        let over = self.overrides.iter().find(|o| at > self.text.len() && at <= o.padded.len());
+        match over {
+            Some(o) => (format!("--set {}", o.key), &o.line, o.padded.len() - o.line.len()),
+            None => (self.file.clone(), &self.text, 0),
+        }
+    }
+
+    /// An error at a span of the whole.
+    pub(super) fn error(&self, span: Option<Range<usize>>, message: impl Into<String>, help: Option<String>) -> DeckError {
+        let (file, text, start) = self.part(span.as_ref().map_or(0, |s| s.start));
+        let span = span.map(|s| s.start.saturating_sub(start)..s.end.saturating_sub(start));
+        DeckError::new(&file, text, span, message.into(), help)
+    }
+
+    /// The text at a span.
+    pub(super) fn slice(&self, span: &Range<usize>) -> &str {
+        let (_, text, start) = self.part(span.start);
+        text.get(span.start.saturating_sub(start)..span.end.saturating_sub(start)).unwrap_or("")
+    }
+
+    /// Parses everything and lays the overrides over the deck.
+    pub(super) fn tree(&self) -> Result<Tree<'_>, DeckError> {
+        let mut tree = DeTable::parse(&self.text).map_err(|e| self.error(e.span(), e.message(), None))?;
+        for over in &self.overrides {
+            let help = || Some("an override is written KEY.PATH=VALUE".to_string());
+            let top = DeTable::parse(&over.padded).map_err(|e| self.error(e.span(), e.message(), help()))?;
+            merge(tree.get_mut(), top.into_inner());
+        }
+        Ok(tree)
+    }
+}
+
+/// Lays `over` over a table; a table of numbered keys goes over the items of an array.
+fn merge<'a>(into: &mut DeTable<'a>, over: DeTable<'a>) {
+    for (key, value) in over {
+        match (into.get_mut(&key).map(Spanned::get_mut), value.get_ref()) {
+            (Some(old @ (DeValue::Table(_) | DeValue::Array(_))), DeValue::Table(_)) => merge_value(old, value),
+            _ => {
+                // the old key goes too: its place is in the deck
+                into.remove(&key);
+                into.insert(key, value);
+            }
+        }
+    }
+}
+
+fn merge_value<'a>(old: &mut DeValue<'a>, value: Spanned<DeValue<'a>>) {
+    let span = value.span();
+    match (old, value.into_inner()) {
+        (DeValue::Table(table), DeValue::Table(over)) => merge(table, over),
+        (DeValue::Array(items), DeValue::Table(over)) => {
+            let number = |key: &Spanned<_>| AsRef::<str>::as_ref(key.get_ref() as &DeString).parse::<usize>().ok();
+            if over.keys().all(|key| number(key).is_some_and(|n| n < items.len())) {
+                for (key, value) in over {
+                    if let Some(item) = number(&key).and_then(|n| items.get_mut(n)) {
+                        match (item.get_ref(), value.get_ref()) {
+                            (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) => merge_value(item.get_mut(), value),
+                            _ => *item = value,
+                        }
+                    }
+                }
+            } else {
+                // an index that does not exist: the type error of the table names the override
+                items.push(Spanned::new(span, DeValue::Table(over)));
+            }
+        }
+        (old, value) => *old = value,
+    }
+}
+
+/// `key = value`, the value quoted if it is no TOML value by itself.
+fn line(key: &str, value: &str) -> String {
+    if DeValue::parse(value).is_ok() {
+        format!("{key} = {value}")
+    } else {
+        format!("{key} = {}", toml::Value::from(value))
+    }
+}

@@ -1,0 +1,64 @@
+//! Lines of a text file with their numbers, and numbers of a line.
+
+use super::ReadError;
+use std::str::FromStr;
+
+pub(super) struct Lines<'a> {
+    name: &'a str,
+    rest: std::iter::Peekable<std::iter::Enumerate<std::str::Lines<'a>>>,
+    /// 1-based number of the line last taken.
+    pub number: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub fn new(text: &'a str, name: &'a str) -> Self {
+        Lines { name, rest: text.lines().enumerate().peekable(), number: 0 }
+    }
+
+    /// The next line that is not blank, trimmed.
+    pub fn next(&mut self) -> Option<&'a str> {
+        for (index, line) in self.rest.by_ref() {
+            self.number = index + 1;
+            if !line.trim().is_empty() {
+                return Some(line.trim());
+            }
+        }
+        None
+    }
+
+    /// Passes over one line, blank or not.
+    pub fn next_raw(&mut self) {
+        if let Some((index, _)) = self.rest.next() {
+            self.number = index + 1;
+        }
+    }
+
+    /// The next line, which must exist.
+    pub fn expect(&mut self, what: &str) -> Result<&'a str, ReadError> {
+        self.next().ok_or_else(|| self.error(format!("the file ends where {what} should follow")))
+    }
+
+    /// The line after this one, untouched.
+    pub fn peek(&mut self) -> Option<&'a str> {
+        self.rest.peek().map(|(_, line)| line.trim())
+    }
+
+    pub fn error(&self, message: impl Into<String>) -> ReadError {
+        self.error_at(self.number, message)
+    }
+
+    pub fn error_at(&self, line: usize, message: impl Into<String>) -> ReadError {
+        ReadError { file: self.name.to_string(), line: Some(line), message: message.into() }
+    }
+
+    pub fn parse<T: FromStr>(&self, text: Option<&str>, what: &str) -> Result<T, ReadError> {
+        let text = text.ok_or_else(|| self.error(format!("expected {what}, the line ends")))?.trim();
+        text.parse().map_err(|_| self.error(format!("expected {what}, found `{text}`")))
+    }
+
+    /// A number that is neither NaN nor infinite.
+    pub fn finite(&self, text: Option<&str>, what: &str) -> Result<f64, ReadError> {
+        let value: f64 = self.parse(text, what)?;
+        if value.is_finite() { Ok(value) } else { Err(self.error(format!("{what} is {value}"))) }
+    }
+}
