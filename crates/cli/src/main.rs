@@ -1,1 +1,75 @@
-fn main() {}
+//! The peridyne program.
+
+mod check;
+mod deck;
+mod failure;
+mod laws;
+mod progress;
+mod run;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Peridynamics and molecular dynamics: points that talk to a family of points.
+#[derive(Parser)]
+#[command(name = "peridyne", version, about, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Run a deck (TOML) or a LAMMPS input script.
+    Run(run::RunArguments),
+    /// Say what a deck would run: points, bonds, moduli this cloud really has, stable step, memory, warnings.
+    Check(check::CheckArguments),
+    /// List the laws, lattices and influence functions with their parameters.
+    Laws,
+    /// Print the JSON schema of decks, for editors.
+    Schema,
+}
+
+/// What `run` and `check` both take.
+#[derive(clap::Args, Clone)]
+pub struct Input {
+    /// Deck (`.toml`) or LAMMPS input script (any other name).
+    pub file: PathBuf,
+    /// Override a key of the deck, e.g. `--set run.steps=100`; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = pair)]
+    pub set: Vec<(String, String)>,
+    /// Set a variable of the LAMMPS script, e.g. `--var steps=100`; may be repeated.
+    #[arg(long = "var", value_name = "NAME=VALUE", value_parser = pair)]
+    pub var: Vec<(String, String)>,
+    /// Instruction set: portable, avx2 or avx512; the widest of this machine if not given. Results do not depend on it.
+    #[arg(long)]
+    pub simd: Option<String>,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_string(), value.trim().to_string())),
+        _ => Err(format!("`{text}` is not of the form key=value")),
+    }
+}
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().verb {
+        Verb::Run(arguments) => run::run(&arguments),
+        Verb::Check(arguments) => check::check(&arguments),
+        Verb::Laws => laws::print(),
+        Verb::Schema => print_schema(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn print_schema() -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(&peridyne_io::deck::schema()).map_err(|e| Failure::Run(e.to_string()))?;
+    failure::say(&text);
+    Ok(())
+}

@@ -1,0 +1,79 @@
+//! Reading decks for the verbs.
+
+use crate::Input;
+use crate::failure::Failure;
+use peridyne::execute::simd::Simd;
+use peridyne::run::{Options, Simulation, build};
+use peridyne_io::deck::Deck;
+
+/// Is this file a deck, as opposed to a LAMMPS script?
+pub fn is_deck(input: &Input) -> bool {
+    input.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+pub fn text(input: &Input) -> Result<String, Failure> {
+    let name = input.file.display();
+    let bytes = std::fs::read(&input.file).map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    String::from_utf8(bytes).map_err(|e| Failure::input(format!("{name}: not text: {e}")))
+}
+
+pub fn read(input: &Input) -> Result<Deck, Failure> {
+    let text = text(input)?;
+    if let Some((name, _)) = input.var.first() {
+        return Err(Failure::input(format!("--var {name}: variables belong to LAMMPS scripts; a deck takes --set key=value")));
+    }
+    let name = input.file.to_string_lossy();
+    Deck::parse(&text, &name, &input.set).map_err(|e| Failure::Input(e.into()))
+}
+
+pub fn simd(input: &Input) -> Result<Option<Simd>, Failure> {
+    let Some(name) = &input.simd else { return Ok(None) };
+    let all = Simd::available();
+    let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
+    match all.iter().find(|s| s.name() == name) {
+        Some(s) => Ok(Some(*s)),
+        None => Err(Failure::input(format!("--simd {name}: this machine has {}", names.join(", ")))),
+    }
+}
+
+pub fn model(deck: &Deck, input: &Input) -> Result<Box<dyn Simulation>, Failure> {
+    let options = Options { simd: simd(input)?, ..Options::default() };
+    build(&deck.spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
+}
+
+/// What was built, in a few lines.
+pub fn headline(sim: &dyn Simulation) -> String {
+    let i = sim.info();
+    let bytes = i.bytes as f64;
+    let mut text = format!(
+        "points    {} in {} dimensions, spacing {:.6e}, mass {:.6e}\nbonds     {} directed, {} to {} per point (mean {:.2}), {}\nhorizon   {:.9e}\nstep      {:.6e}, stable up to {:.6e}\nmemory    {:.1} MB, {:.0} bytes per point\nlanes     {}",
+        i.points,
+        i.dimension,
+        i.spacing,
+        i.mass,
+        i.directed_bonds,
+        i.family.0,
+        i.family.2,
+        i.family.1,
+        i.family_kind,
+        i.horizon,
+        i.time_step,
+        i.stable_step,
+        bytes / 1e6,
+        bytes / i.points.max(1) as f64,
+        i.simd,
+    );
+    for s in i.critical_stretch.iter().filter(|s| s.is_finite()) {
+        text += &format!("\nbreaks    beyond a stretch of {s:.6e}");
+    }
+    for c in &i.micromodulus {
+        text += &format!("\nmicromodulus {c:.6e}");
+    }
+    if i.cut > 0 {
+        text += &format!("\npre-cracks cut {} directed bonds", i.cut);
+    }
+    for w in &i.warnings {
+        text += &format!("\nwarning: {w}");
+    }
+    text
+}

@@ -1,0 +1,34 @@
+//! `peridyne laws`: what a deck can name.
+
+use crate::failure::{Failure, say};
+use peridyne::space::lattice::LatticeKind;
+
+const LAWS: &str = "\
+laws (material.law)
+  pmb       bond-based, prototype microelastic brittle: f = c ω ν V s
+            bulk, young or micromodulus; Poisson ratio 1/4, plane stress 1/3
+  lps       linear peridynamic solid, state-based: W = ½ κ θ² + β/(2m) Σ ω ν V e²
+            two of young, poisson, bulk, shear; any Poisson ratio below 1/2
+  eam_like  the shape of both, with its two stiffnesses given directly: pair, volume
+
+influence functions (influence)
+  constant 1   inverse 1/ξ   conical 1 − ξ/δ   gaussian exp(−(2ξ/δ)²)   cubic_spline
+
+fracture (material.fracture)
+  critical_stretch or energy (per area), alpha: s0 = s00 − α s_min
+
+lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)";
+
+pub fn print() -> Result<(), Failure> {
+    say(LAWS);
+    for kind in LatticeKind::ALL {
+        say(&format!(
+            "  {:<11} {}-D, {} sites per cell, nearest neighbours at {:.4} spacings",
+            kind.name(),
+            kind.dimension(),
+            kind.basis().len(),
+            kind.nearest()
+        ));
+    }
+    Ok(())
+}

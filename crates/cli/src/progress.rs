@@ -1,0 +1,56 @@
+//! Progress: a live bar on a terminal, plain lines in a pipe.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use peridyne::observe::Ledger;
+use peridyne_io::drive::Progress;
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Between plain lines.
+const INTERVAL: Duration = Duration::from_secs(5);
+
+pub struct Terminal {
+    bar: Option<ProgressBar>,
+    bonds: u64,
+    spoken: Instant,
+    broken: u64,
+}
+
+impl Terminal {
+    pub fn new(steps: u64, bonds: u64) -> Terminal {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let style = "{bar:30.cyan} {pos}/{len} steps  {per_sec}  {eta} left  {msg}";
+            let bar = ProgressBar::new(steps);
+            bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar
+        });
+        Terminal { bar, bonds, spoken: Instant::now(), broken: 0 }
+    }
+
+    pub fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Progress for Terminal {
+    fn step(&mut self, done: u64, total: u64, stepping: Duration) {
+        let per_step = stepping.as_secs_f64() / done as f64;
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+            if done.is_multiple_of(16) {
+                let ns = per_step * 1e9 / self.bonds.max(1) as f64;
+                bar.set_message(format!("{ns:.2} ns per bond, {} bonds broken", self.broken));
+            }
+        } else if self.spoken.elapsed() >= INTERVAL {
+            self.spoken = Instant::now();
+            let left = per_step * (total - done) as f64;
+            eprintln!("step {done} of {total}, {:.1} steps/s, {left:.0} s left, {} bonds broken", 1.0 / per_step, self.broken);
+        }
+    }
+
+    fn row(&mut self, _step: u64, _time: f64, _ledger: &Ledger, broken: u64) {
+        self.broken = broken;
+    }
+}

@@ -1,0 +1,114 @@
+//! `peridyne run`.
+
+use crate::deck;
+use crate::failure::{Failure, say};
+use crate::progress::Terminal;
+use crate::Input;
+use peridyne::run::SnapshotOptions;
+use peridyne_io::deck::{Deck, FieldName, UnitSystem};
+use peridyne_io::drive::{DriveError, Plan, default_dir, drive};
+use peridyne_io::write::SeriesOptions;
+use peridyne_io::write::dump::DumpBox;
+use peridyne_io::write::picture::PictureOptions;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub input: Input,
+    /// Folder for the results; `out/<name of the file>` if neither this nor the deck says otherwise.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads; all cores if not given. Results do not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    if !deck::is_deck(&arguments.input) {
+        return Err(Failure::input("LAMMPS scripts are not connected yet"));
+    }
+    let deck = deck::read(&arguments.input)?;
+    let threads = arguments.threads.or(deck.threads);
+    with_threads(threads, |threads| run_deck(arguments, &deck, threads))
+}
+
+/// Everything runs inside a pool of its own, so that sweeps never cross into another.
+fn with_threads(
+    threads: Option<usize>,
+    work: impl FnOnce(usize) -> Result<(), Failure> + Send,
+) -> Result<(), Failure> {
+    if threads == Some(0) {
+        return Err(Failure::input("--threads 0: at least one thread must run"));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()
+        .map_err(|e| Failure::Run(format!("no threads: {e}")))?;
+    pool.install(|| work(rayon::current_num_threads()))
+}
+
+fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(), Failure> {
+    let mut sim = deck::model(deck, &arguments.input)?;
+    let dir = arguments.out.clone().or(deck.output.dir.clone()).unwrap_or_else(|| default_dir(&arguments.input.file));
+    say(&deck.describe());
+    say(&deck::headline(sim.as_ref()));
+    let steps = deck.steps(sim.info().time_step);
+    let plan = plan(deck, steps, dir, threads);
+    say(&format!("threads   {threads}\nrunning {steps} steps, results in {}", plan.dir.display()));
+    let mut progress = Terminal::new(steps, sim.info().directed_bonds);
+    let result = drive(sim.as_mut(), &plan, &mut progress);
+    progress.end();
+    match result {
+        Ok(report) => {
+            say(&format!(
+                "done: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments",
+                report.steps,
+                report.seconds_stepping,
+                report.ns_per_bond_step.map_or(String::new(), |ns| format!(", {ns:.2} ns per bond and step")),
+                report.broken_directed_bonds,
+                report.fragments.unwrap_or(0),
+            ));
+            if plan.series.picture.is_some() {
+                say(&format!("picture: {}", plan.dir.join("damage.png").display()));
+            }
+            Ok(())
+        }
+        Err(e @ (DriveError::Run { .. } | DriveError::Write(_))) => Err(Failure::Run(e.to_string())),
+    }
+}
+
+fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
+    let output = &deck.output;
+    let (length_unit, time_unit, energy_unit) = match deck.units {
+        UnitSystem::Si => ("m", "s", "J"),
+        UnitSystem::Metal => ("Å", "ps", "eV"),
+        UnitSystem::Lj | UnitSystem::None => ("", "", ""),
+    };
+    let energies = output.fields.iter().any(|f| matches!(f, FieldName::EnergyDensity | FieldName::Dilatation));
+    let title = deck.spec.title.clone();
+    Plan {
+        deck: deck.file().to_string(),
+        deck_text: deck.text().to_string(),
+        dir,
+        steps,
+        every: output.every,
+        history: output.history.unwrap_or((steps / 200).max(1)),
+        series: SeriesOptions {
+            points: output.vtu,
+            bonds: output.bonds,
+            dump: output.dump.as_ref().map(|_| DumpBox::default()),
+            picture: output.picture.then(|| PictureOptions {
+                title: title.clone(),
+                length_unit: length_unit.to_string(),
+                time_unit: time_unit.to_string(),
+                ..PictureOptions::default()
+            }),
+        },
+        snapshot: SnapshotOptions { energies, fragments: output.fields.contains(&FieldName::Fragment), bonds: output.bonds },
+        time_unit: time_unit.to_string(),
+        energy_unit: energy_unit.to_string(),
+        title,
+        threads,
+    }
+}
