@@ -9,6 +9,7 @@ pub mod error;
 pub mod execute;
 pub mod expression;
 pub mod family;
+pub mod fracture;
 pub mod interaction;
 pub mod law;
 pub mod observe;
