@@ -13,5 +13,7 @@ pub mod fracture;
 pub mod interaction;
 pub mod law;
 pub mod observe;
+#[cfg(test)]
+mod samples;
 pub mod space;
 pub mod spec;

@@ -1,12 +1,7 @@
 use super::*;
-use crate::body::{Body, Layout};
-use crate::execute::simd::Simd;
-use crate::family::stencil::Stencil;
-use crate::interaction::stencil::{PointConstants, StencilInteraction, StencilParts};
-use crate::interaction::{Interaction, Toughness};
-use crate::law::solid::bond_based::BondBased;
-use crate::space::lattice::{Lattice, LatticeKind};
-use crate::spec::{CrackKind, Horizon};
+use crate::samples::{Random, lattice, sites};
+use crate::space::lattice::LatticeKind;
+use crate::spec::CrackKind;
 
 fn crack<const D: usize>(shape: CrackShape) -> Crack<D> {
     Crack::new(&shape, [None; D]).unwrap()
@@ -15,45 +10,13 @@ fn crack<const D: usize>(shape: CrackShape) -> Crack<D> {
 /// Directed bonds that a crack cuts out of a box of lattice sites of spacing `h`.
 fn cut<const D: usize>(
     kind: LatticeKind,
-    sites: [i32; 3],
+    box_of: [i32; 3],
     h: f64,
     ratio: u32,
     periodic: [bool; D],
     shape: &CrackShape,
 ) -> u64 {
-    let stencil = Stencil::new(kind, h, Horizon::Ratio(ratio));
-    let mut quarters = vec![];
-    for z in 0..sites[2] {
-        for y in 0..sites[1] {
-            for x in 0..sites[0] {
-                quarters.push([4 * x, 4 * y, 4 * z]);
-            }
-        }
-    }
-    let lattice = Lattice {
-        kind,
-        spacing: h,
-        origin: [0.0; 3],
-    };
-    let body =
-        Body::<D>::on_lattice(lattice, &quarters, stencil.reach, periodic, h.powi(3)).unwrap();
-    let Layout::Grid(grid) = &body.layout else {
-        panic!("a lattice body has a grid")
-    };
-    let mut interaction = StencilInteraction::new(StencilParts {
-        body: &body,
-        grid,
-        stencil: &stencil,
-        law: BondBased { c: 1.0 },
-        weight: &|_| 1.0,
-        point_constants: PointConstants::None,
-        toughness: vec![Toughness {
-            s00: f64::INFINITY,
-            alpha: 0.0,
-        }],
-        repulsion: None,
-        simd: Simd::Portable,
-    });
+    let (body, mut interaction) = lattice::<D>(kind, &sites(box_of, |_| true), h, ratio, periodic);
     let crack = Crack::<D>::new(shape, body.period).unwrap();
     interaction.cut(&body, CrackKind::Broken, &|a, b| crack.crosses(&a, &b))
 }
@@ -91,7 +54,7 @@ fn a_chain_loses_the_bonds_across_a_point() {
 fn a_square_lattice_loses_the_bonds_across_a_segment() {
     // m_ratio 1: one bond per row that the crack passes, between planes or on one, ends on rows included
     let h = 1.0 / 3.0;
-    let sites = [8, 8, 1];
+    let box_of = [8, 8, 1];
     let vertical = |x: f64, low: f64, high: f64| CrackShape::Segment {
         from: [x * h, low * h, 0.0],
         to: [x * h, high * h, 0.0],
@@ -109,7 +72,7 @@ fn a_square_lattice_loses_the_bonds_across_a_segment() {
     ] {
         let n = cut(
             LatticeKind::Square,
-            sites,
+            box_of,
             h,
             1,
             [false; 2],
@@ -120,7 +83,7 @@ fn a_square_lattice_loses_the_bonds_across_a_segment() {
     // a diagonal between the sites: x + y = 7.5 cuts, in every row, the one bond that it meets, and in every column
     let n = cut(
         LatticeKind::Square,
-        sites,
+        box_of,
         h,
         1,
         [false; 2],
@@ -135,8 +98,8 @@ fn a_square_lattice_loses_the_bonds_across_a_segment() {
 #[test]
 fn a_cube_loses_the_bonds_across_flat_shapes() {
     let h = 0.0005;
-    let sites = [6, 6, 6];
-    let count = |shape: &CrackShape| cut(LatticeKind::Cubic, sites, h, 1, [false; 3], shape);
+    let box_of = [6, 6, 6];
+    let count = |shape: &CrackShape| cut(LatticeKind::Cubic, box_of, h, 1, [false; 3], shape);
     let (x, mid) = (2.5 * h, 2.0 * h);
     // in the plane x = 2.5: sites within 1 of (2, 2): 5; within √2: 9
     for (radius, bonds) in [(0.5, 1), (1.0, 5), (1.4, 5), (1.5, 9)] {
@@ -190,20 +153,14 @@ fn a_cube_loses_the_bonds_across_flat_shapes() {
         }
     }
     assert_eq!(
-        cut(LatticeKind::Cubic, sites, h, 3, [false; 3], &all),
+        cut(LatticeKind::Cubic, box_of, h, 3, [false; 3], &all),
         pairs
     );
 }
 
 #[test]
 fn the_direction_of_a_bond_does_not_matter() {
-    let mut seed = 7u64;
-    let mut random = move || {
-        seed = seed
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (seed >> 40) as f64 / (1u64 << 24) as f64 * 2.0 - 1.0
-    };
+    let mut random = Random(7);
     let cracks = [
         crack::<3>(CrackShape::Disk {
             center: [0.1, 0.0, 0.0],
@@ -226,8 +183,8 @@ fn the_direction_of_a_bond_does_not_matter() {
     for crack in &cracks {
         let mut hits = 0;
         for _ in 0..2000 {
-            let a: [f64; 3] = std::array::from_fn(|_| random());
-            let b: [f64; 3] = std::array::from_fn(|_| random());
+            let a: [f64; 3] = std::array::from_fn(|_| random.next());
+            let b: [f64; 3] = std::array::from_fn(|_| random.next());
             assert_eq!(crack.crosses(&a, &b), crack.crosses(&b, &a));
             hits += u32::from(crack.crosses(&a, &b));
         }
