@@ -11,9 +11,12 @@ pub mod error;
 pub mod execute;
 pub mod expression;
 pub mod family;
+pub mod fracture;
 pub mod interaction;
 pub mod law;
 pub mod observe;
 pub mod run;
+#[cfg(test)]
+mod samples;
 pub mod space;
 pub mod spec;

@@ -2,6 +2,7 @@
 //! per sweep.
 
 pub mod bond;
+pub mod contact;
 pub mod stencil;
 
 use crate::body::{Body, Field};

@@ -7,6 +7,7 @@ use crate::body::{Body, Field, Grid, Layout};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
+use crate::family::offsets::OffsetSet;
 use crate::family::stencil::Stencil;
 use crate::law::Law;
 use crate::spec::CrackKind;
@@ -36,6 +37,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     simd: Simd,
     /// Per sublattice.
     bonds: Vec<Vec<Bond<D>>>,
+    /// The offsets of `bonds`.
+    offsets: OffsetSet<D>,
     /// Bytes per tile in `alive`: the longest stencil.
     width: usize,
     /// Tiles that have points.
@@ -169,6 +172,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         StencilInteraction {
             law,
             simd,
+            offsets: OffsetSet::new(grid, &bonds, |b| (b.cell, b.to)),
             bonds,
             width,
             tiles,
@@ -928,16 +932,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             unreachable!("stencils live on grids")
         };
         let ((ci, bi), (cj, bj)) = (grid.cell(i), grid.cell(j));
-        let reach: [i64; D] = std::array::from_fn(|a| cj[a] - ci[a]);
-        self.bonds[bi].iter().any(|b| {
-            b.to == bj
-                && (0..D).all(|a| {
-                    let d = reach[a] - b.cell[a] as i64;
-                    d == 0
-                        || (grid.halo[a] > 0
-                            && d.rem_euclid((grid.cells[a] - 2 * grid.halo[a]) as i64) == 0)
-                })
-        })
+        self.offsets
+            .contains(std::array::from_fn(|a| cj[a] - ci[a]), bi, bj)
     }
 
     fn memory(&mut self) -> (&mut [u8], &mut [f64]) {
@@ -950,6 +946,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             + self.pressure.len()
             + self.critical.len()
             + self.next.len();
-        self.alive.len() + 2 * self.family.len() + 4 * self.tiles.len() + 8 * words
+        self.alive.len()
+            + self.offsets.bytes()
+            + 2 * self.family.len()
+            + 4 * self.tiles.len()
+            + 8 * words
     }
 }

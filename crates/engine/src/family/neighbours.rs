@@ -1,0 +1,188 @@
+//! Neighbours: pairs of points that are close now, whatever they were in the reference.
+//!
+//! Pairs within `cutoff + skin` are listed; the list stays valid until a point has moved more than `skin/2`, since two
+//! points can then have come `skin` closer, and is built again by itself. Linked cells make a build O(N).
+
+mod cells;
+mod moved;
+
+use crate::body::{Body, Field};
+use cells::Cells;
+use moved::Moved;
+
+/// The half list of near pairs: every point i with its neighbours j > i, both in order of slot.
+#[derive(Debug, Clone)]
+pub struct Neighbours<const D: usize> {
+    reach: f64,
+    apart: f64,
+    cells: Cells<D>,
+    /// Greatest displacement relative to the first point of each cell.
+    radius: Vec<f32>,
+    moved: Moved<D>,
+    /// `i << 32 | j` as found.
+    found: Vec<u64>,
+    /// Points that have neighbours, and where their neighbours end.
+    rows: Vec<(u32, u32)>,
+    partner: Vec<u32>,
+    builds: u64,
+}
+
+impl<const D: usize> Neighbours<D> {
+    /// An empty list of pairs closer than `cutoff`, with a margin of `skin` (lengths).
+    ///
+    /// On periodic axes the nearest image counts; the period should be at least `2 (cutoff + skin)`.
+    pub fn new(body: &Body<D>, cutoff: f64, skin: f64) -> Self {
+        let reach = cutoff + skin;
+        Neighbours {
+            reach,
+            apart: 0.0,
+            cells: Cells::new(body, reach),
+            radius: vec![],
+            moved: Moved::new(skin),
+            found: vec![],
+            rows: vec![],
+            partner: vec![],
+            builds: 0,
+        }
+    }
+
+    /// Leave out pairs whose displacements differ by less than `apart` (length). Where only pairs that were far from
+    /// each other in the reference matter, this passes over whole cells of a body that holds together.
+    pub fn apart(mut self, apart: f64) -> Self {
+        self.apart = apart;
+        self
+    }
+
+    /// Make the list valid at displacement `u`: build it if it is not. Pairs that `keep` refuses are left out; it is
+    /// asked once per near pair and build. Returns whether the list was built.
+    pub fn update(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        keep: &dyn Fn(usize, usize) -> bool,
+    ) -> bool {
+        if !self.moved.exceeds(u) {
+            return false;
+        }
+        self.moved.record(body, u);
+        self.cells.sort(body, u);
+        self.find(body, u, keep);
+        self.compress();
+        self.builds += 1;
+        true
+    }
+
+    fn find(&mut self, body: &Body<D>, u: &Field<D>, keep: &dyn Fn(usize, usize) -> bool) {
+        let (cells, apart, reach) = (&self.cells, self.apart, self.reach);
+        let difference = |i: u32, j: u32| {
+            (0..D)
+                .map(|a| u[a][j as usize] - u[a][i as usize])
+                .map(|d| d * d)
+                .sum::<f64>()
+        };
+        self.radius.clear();
+        if apart > 0.0 {
+            self.radius.extend((0..cells.len()).map(|c| {
+                let slots = cells.slots(c);
+                let most = slots
+                    .iter()
+                    .map(|s| difference(slots[0], *s))
+                    .fold(0.0, f64::max);
+                // rounded up
+                (most.sqrt() * (1.0 + 1e-6)) as f32
+            }));
+        }
+        let radius = &self.radius;
+        let alike = |a: usize, b: usize| {
+            apart > 0.0 && {
+                let room = apart - radius[a] as f64 - radius[b] as f64;
+                room > 0.0 && difference(cells.slots(a)[0], cells.slots(b)[0]) < room * room
+            }
+        };
+        let found = &mut self.found;
+        found.clear();
+        cells.each_near(alike, |i, j| {
+            if difference(i, j) < apart * apart {
+                return;
+            }
+            let (i, j) = (i.min(j), i.max(j));
+            if !keep(i as usize, j as usize) {
+                return;
+            }
+            let y = image(body, u, i as usize, j as usize).1;
+            if y.iter().map(|c| c * c).sum::<f64>() < reach * reach {
+                found.push((i as u64) << 32 | j as u64);
+            }
+        });
+    }
+
+    fn compress(&mut self) {
+        self.found.sort_unstable();
+        self.rows.clear();
+        self.partner.clear();
+        for pair in &self.found {
+            let i = (pair >> 32) as u32;
+            self.partner.push(*pair as u32);
+            let end = self.partner.len() as u32;
+            match self.rows.last_mut() {
+                Some(row) if row.0 == i => row.1 = end,
+                _ => self.rows.push((i, end)),
+            }
+        }
+    }
+
+    /// Every point that has neighbours j > i, with them (slots, ascending).
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[u32])> {
+        let mut start = 0;
+        self.rows.iter().map(move |&(i, end)| {
+            let row = &self.partner[start..end as usize];
+            start = end as usize;
+            (i as usize, row)
+        })
+    }
+
+    /// Number of listed pairs.
+    pub fn len(&self) -> usize {
+        self.partner.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.partner.is_empty()
+    }
+
+    /// How often the list was built.
+    pub fn builds(&self) -> u64 {
+        self.builds
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.cells.bytes()
+            + self.moved.bytes()
+            + 4 * self.radius.capacity()
+            + 8 * (self.found.capacity() + self.rows.capacity())
+            + 4 * self.partner.capacity()
+    }
+}
+
+/// Vector from i to the nearest image of j: in the reference, but to the image that is nearest at `u`, and at `u`.
+pub fn image<const D: usize>(
+    body: &Body<D>,
+    u: &Field<D>,
+    i: usize,
+    j: usize,
+) -> ([f64; D], [f64; D]) {
+    let (xi, xj) = (body.position(i), body.position(j));
+    let mut base = [0.0; D];
+    let mut now = [0.0; D];
+    for a in 0..D {
+        let (x, eta) = (xj[a] - xi[a], u[a][j] - u[a][i]);
+        let back = body.period[a].map_or(0.0, |p| p * ((x + eta) / p).round());
+        base[a] = x - back;
+        now[a] = base[a] + eta;
+    }
+    (base, now)
+}
+
+#[cfg(test)]
+mod tests;

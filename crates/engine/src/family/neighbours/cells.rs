@@ -1,0 +1,216 @@
+//! Linked cells on a folded space: on every axis, space is wound up on a ring of whole cells.
+//!
+//! A periodic axis is wound up on its period. An open axis is wound up on the extent of the reference body, so that
+//! the number of cells is fixed however far debris flies; far points share cells with near ones, and the true
+//! distance tells them apart. A coordinate on a ring is a 32-bit fraction of its length, so that the difference of two
+//! wraps around to the shorter way by itself.
+
+use crate::body::{Body, Field, Layout};
+
+const FULL: f64 = (1u64 << 32) as f64;
+
+#[derive(Debug, Clone)]
+pub(super) struct Cells<const D: usize> {
+    reach: f64,
+    /// Cells per axis.
+    count: [usize; D],
+    /// Length of the rings.
+    length: [f64; D],
+    /// `[cells + 1]` first point of every cell.
+    start: Vec<u32>,
+    /// Slots, and their coordinates on the rings, in order of cells.
+    order: Vec<u32>,
+    place: Vec<[u32; D]>,
+}
+
+impl<const D: usize> Cells<D> {
+    /// Cells for pairs closer than `reach`.
+    pub fn new(body: &Body<D>, reach: f64) -> Self {
+        let mut low = [f64::INFINITY; D];
+        let mut high = [f64::NEG_INFINITY; D];
+        each_point(body, |_, x| {
+            for a in 0..D {
+                low[a] = low[a].min(x[a]);
+                high[a] = high[a].max(x[a]);
+            }
+        });
+        // a little wider than the reach, for the round-off of points far out
+        let edge = reach * (1.0 + 1e-6);
+        let mut count: [usize; D] = std::array::from_fn(|a| match body.period[a] {
+            Some(p) => ((p / edge) as usize).max(1),
+            None => ((high[a] - low[a]) / edge) as usize + 3,
+        });
+        // mostly empty space gets wound up tighter
+        let limit = (body.points() / 2).max(27);
+        while count.iter().fold(1usize, |n, c| n.saturating_mul(*c)) > limit {
+            let Some(widest) = (0..D).filter(|a| count[*a] > 3).max_by_key(|a| count[*a]) else {
+                break;
+            };
+            count[widest] = (count[widest] / 2).max(3);
+        }
+        Cells {
+            reach,
+            count,
+            length: std::array::from_fn(|a| body.period[a].unwrap_or(count[a] as f64 * edge)),
+            start: vec![0; count.iter().product::<usize>() + 1],
+            order: vec![0; body.points()],
+            place: vec![[0; D]; body.points()],
+        }
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Slots of the points in a cell.
+    pub fn slots(&self, cell: usize) -> &[u32] {
+        &self.order[self.start[cell] as usize..self.start[cell + 1] as usize]
+    }
+
+    /// Put all points into their cells at displacement `u`.
+    pub fn sort(&mut self, body: &Body<D>, u: &Field<D>) {
+        let inverse = self.length.map(|l| 1.0 / l);
+        let place = |slot: usize, x: [f64; D]| -> [u32; D] {
+            std::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
+        };
+        let count = self.count;
+        let cell = |p: &[u32; D]| {
+            let mut c = 0;
+            for a in (0..D).rev() {
+                c = c * count[a] + ((p[a] as u64 * count[a] as u64) >> 32) as usize;
+            }
+            c
+        };
+        self.start.fill(0);
+        each_point(body, |slot, x| self.start[cell(&place(slot, x))] += 1);
+        let mut sum = 0;
+        for s in &mut self.start {
+            sum += std::mem::replace(s, sum);
+        }
+        each_point(body, |slot, x| {
+            let p = place(slot, x);
+            let next = &mut self.start[cell(&p)];
+            self.order[*next as usize] = slot as u32;
+            self.place[*next as usize] = p;
+            *next += 1;
+        });
+        // every start has become the next one
+        let cells = self.len();
+        self.start.copy_within(0..cells, 1);
+        self.start[0] = 0;
+    }
+
+    /// Every pair of points that are closer than the reach on the rings, once, except between cells that `skip`.
+    pub fn each_near(&self, skip: impl Fn(usize, usize) -> bool, mut visit: impl FnMut(u32, u32)) {
+        let unit = self.length.map(|l| l / FULL);
+        // each coordinate is cut off to its unit
+        let slack = 2.0 * unit.iter().sum::<f64>();
+        let limit = (self.reach + slack) * (self.reach + slack);
+        let mut at = [0usize; D];
+        for cell in 0..self.len() {
+            let own = self.start[cell] as usize..self.start[cell + 1] as usize;
+            if !own.is_empty() {
+                self.each_adjacent(at, |other| {
+                    let theirs = self.start[other] as usize..self.start[other + 1] as usize;
+                    if other < cell || theirs.is_empty() || skip(cell, other) {
+                        return;
+                    }
+                    for p in own.clone() {
+                        let x = self.place[p];
+                        let from = if other == cell { p + 1 } else { theirs.start };
+                        for q in from..theirs.end {
+                            let y = &self.place[q];
+                            let mut square = 0.0;
+                            for a in 0..D {
+                                let d = y[a].wrapping_sub(x[a]) as i32 as f64 * unit[a];
+                                square += d * d;
+                            }
+                            if square <= limit {
+                                visit(self.order[p], self.order[q]);
+                            }
+                        }
+                    }
+                });
+            }
+            for a in 0..D {
+                at[a] += 1;
+                if at[a] < self.count[a] {
+                    break;
+                }
+                at[a] = 0;
+            }
+        }
+    }
+
+    /// The distinct cells around a cell, itself included.
+    fn each_adjacent(&self, at: [usize; D], mut visit: impl FnMut(usize)) {
+        let around: [usize; D] = self.count.map(|n| n.min(3));
+        for k in 0..around.iter().product() {
+            let mut k: usize = k;
+            let (mut cell, mut stride) = (0, 1);
+            for a in 0..D {
+                let c = at[a] + k % around[a];
+                // n − 1, 0 and 1 cells on; with two cells on the ring only 0 and 1
+                let c = if around[a] == 3 {
+                    c + self.count[a] - 1
+                } else {
+                    c
+                };
+                cell += c % self.count[a] * stride;
+                stride *= self.count[a];
+                k /= around[a];
+            }
+            visit(cell);
+        }
+    }
+
+    pub fn bytes(&self) -> usize {
+        4 * (self.start.len() + self.order.len() + D * self.place.len())
+    }
+}
+
+/// The fraction of `t` above the whole number below it, in units of 2⁻³².
+fn wind(t: f64) -> u32 {
+    let rest = t - (t as i64) as f64;
+    let rest = if rest < 0.0 { rest + 1.0 } else { rest };
+    (rest * FULL) as u64 as u32
+}
+
+/// Slot and reference position of every point. On a grid, walked row by row: finding the coordinates of a single slot
+/// takes divisions.
+fn each_point<const D: usize>(body: &Body<D>, mut visit: impl FnMut(usize, [f64; D])) {
+    let grid = match &body.layout {
+        Layout::Cloud(x) => {
+            for &slot in &body.slots {
+                visit(slot as usize, std::array::from_fn(|a| x[a][slot as usize]));
+            }
+            return;
+        }
+        Layout::Grid(grid) => grid,
+    };
+    let lattice = &grid.lattice;
+    let edges = lattice.kind.edges();
+    let rows: usize = grid.cells[1..].iter().product();
+    for (b, site) in lattice.kind.basis().iter().enumerate() {
+        let coordinate = |a: usize, c: usize| {
+            let quarter = 4 * (c as i32 + grid.low[a]) + site[a];
+            lattice.origin[a] + lattice.spacing * edges[a] * (quarter as f64 / 4.0)
+        };
+        for row in 0..rows {
+            let mut x = [0.0; D];
+            let mut rest = row;
+            for a in 1..D {
+                x[a] = coordinate(a, rest % grid.cells[a]);
+                rest /= grid.cells[a];
+            }
+            let first = grid.guard + b * grid.stride + row * grid.cells[0];
+            for c in 0..grid.cells[0] {
+                if grid.is_owned(first + c) {
+                    x[0] = coordinate(0, c);
+                    visit(first + c, x);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Contact: repulsion between points that are not in each other's family.
+//!
+//! A pair of reference distance r0 that is closer than `d = min(bonded r0, range)` repels with the force density
+//! `K V_j (r − d)` along its current direction; its energy is `½ K (r − d)² V_i V_j` (Parks et al. 2008 (3.0.6);
+//! LAMMPS's observed behaviour: the volumes are not scaled at the horizon). Pairs inside a family repel in the
+//! family's own sweep.
+
+use super::Repulsion;
+use crate::body::{Body, Field};
+use crate::family::neighbours::{Neighbours, image};
+
+/// A listed pair, in the order of the list.
+#[derive(Debug, Clone, Copy)]
+struct Pair<const D: usize> {
+    /// From i to j in the reference, to the image of j that is near now.
+    base: [f64; D],
+    /// Distance below which they repel.
+    distance: f64,
+}
+
+/// Short-range repulsion outside the families.
+#[derive(Debug, Clone)]
+pub struct Contact<const D: usize> {
+    repulsion: Repulsion,
+    neighbours: Neighbours<D>,
+    pairs: Vec<Pair<D>>,
+}
+
+impl<const D: usize> Contact<D> {
+    /// Contact in `body`, inclusive of its periodic images. All pairs whose reference distance is less than `horizon`
+    /// must be in a family (as after `Interaction::in_family`); 0 promises nothing, and costs time.
+    pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64) -> Self {
+        // two points out of a body that holds together come that close only if their displacements differ by the rest
+        // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed
+        let range = repulsion.range;
+        let skin = (0.5 * (horizon - range)).clamp(0.25 * range, 0.5 * range);
+        // bonds within round-off of the horizon may be in the family or not
+        let apart = (horizon * (1.0 - 1e-6) - range - skin).max(0.0);
+        Contact {
+            repulsion,
+            neighbours: Neighbours::new(body, range, skin).apart(apart),
+            pairs: vec![],
+        }
+    }
+
+    /// Add the force density of all pairs for which `in_family` is false to `f`. Finds the pairs anew when points
+    /// have moved too far. The same bits for any number of threads.
+    pub fn add_forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        in_family: &dyn Fn(usize, usize) -> bool,
+    ) {
+        self.update(body, u, in_family);
+        let stiffness = self.repulsion.stiffness;
+        self.each_contact(u, |i, j, y, r, d| {
+            // two points on one spot have no direction
+            if r == 0.0 {
+                return;
+            }
+            let pull = stiffness * (r - d) / r;
+            let (vi, vj) = (body.volume.at(i), body.volume.at(j));
+            for a in 0..D {
+                f[a][i] += pull * vj * y[a];
+                f[a][j] -= pull * vi * y[a];
+            }
+        });
+    }
+
+    /// Find the pairs anew if points have moved too far.
+    pub fn update(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        in_family: &dyn Fn(usize, usize) -> bool,
+    ) {
+        if !self.neighbours.update(body, u, &|i, j| !in_family(i, j)) {
+            return;
+        }
+        self.pairs.clear();
+        for (i, row) in self.neighbours.rows() {
+            for &j in row {
+                let j = j as usize;
+                self.pairs.push(Pair {
+                    base: image(body, u, i, j).0,
+                    distance: self.repulsion.distance(reference_distance(body, i, j)),
+                });
+            }
+        }
+    }
+
+    /// Energy of all contacts (energy). `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].
+    pub fn energy(&self, body: &Body<D>, u: &Field<D>) -> f64 {
+        let mut energy = 0.0;
+        self.each_contact(u, |i, j, _, r, d| {
+            energy += 0.5
+                * self.repulsion.stiffness
+                * (r - d)
+                * (r - d)
+                * body.volume.at(i)
+                * body.volume.at(j);
+        });
+        energy
+    }
+
+    /// Number of pairs that repel, at the `u` of the last [`Contact::add_forces`] or [`Contact::update`].
+    pub fn pairs_in_contact(&self, u: &Field<D>) -> usize {
+        let mut count = 0;
+        self.each_contact(u, |_, _, _, _, _| count += 1);
+        count
+    }
+
+    /// How often the pairs were found anew.
+    pub fn builds(&self) -> u64 {
+        self.neighbours.builds()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.neighbours.bytes() + size_of::<Pair<D>>() * self.pairs.capacity()
+    }
+
+    /// Visit the pairs closer than allowed: slots, current vector and distance, allowed distance.
+    fn each_contact(&self, u: &Field<D>, mut visit: impl FnMut(usize, usize, [f64; D], f64, f64)) {
+        let mut pairs = self.pairs.iter();
+        for (i, row) in self.neighbours.rows() {
+            let ui: [f64; D] = std::array::from_fn(|a| u[a][i]);
+            for (&j, pair) in row.iter().zip(&mut pairs) {
+                let j = j as usize;
+                let y: [f64; D] = std::array::from_fn(|a| pair.base[a] + (u[a][j] - ui[a]));
+                let square: f64 = y.iter().map(|c| c * c).sum();
+                if square < pair.distance * pair.distance {
+                    visit(i, j, y, square.sqrt(), pair.distance);
+                }
+            }
+        }
+    }
+}
+
+/// Distance in the reference, to the nearest image.
+fn reference_distance<const D: usize>(body: &Body<D>, i: usize, j: usize) -> f64 {
+    let (xi, xj) = (body.position(i), body.position(j));
+    let mut square = 0.0;
+    for a in 0..D {
+        let x = xj[a] - xi[a];
+        let x = x - body.period[a].map_or(0.0, |p| p * (x / p).round());
+        square += x * x;
+    }
+    square.sqrt()
+}
+
+#[cfg(test)]
+#[path = "contact_tests.rs"]
+mod tests;
