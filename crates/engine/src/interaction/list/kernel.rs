@@ -355,7 +355,10 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PE
                 if let Some(lost) = lost {
                     let q = v.pressure_factor(rows, i.field[1]);
                     let energy = history::released::<L, W>(q, i.field, lost) * i.volume;
-                    tally.released += energy.to_array()[..L::N].iter().sum::<f64>();
+                    // one by one: the order of the sum must not depend on the width
+                    for x in &energy.to_array()[..L::N] {
+                        tally.released += x;
+                    }
                 }
             }
         }
