@@ -8,7 +8,10 @@ use peridyne_io::deck::Deck;
 
 /// Is this file a deck, as opposed to a LAMMPS script?
 pub fn is_deck(input: &Input) -> bool {
-    input.file.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+    input
+        .file
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
 pub fn text(input: &Input) -> Result<String, Failure> {
@@ -20,24 +23,34 @@ pub fn text(input: &Input) -> Result<String, Failure> {
 pub fn read(input: &Input) -> Result<Deck, Failure> {
     let text = text(input)?;
     if let Some((name, _)) = input.var.first() {
-        return Err(Failure::input(format!("--var {name}: variables belong to LAMMPS scripts; a deck takes --set key=value")));
+        return Err(Failure::input(format!(
+            "--var {name}: variables belong to LAMMPS scripts; a deck takes --set key=value"
+        )));
     }
     let name = input.file.to_string_lossy();
     Deck::parse(&text, &name, &input.set).map_err(|e| Failure::Input(e.into()))
 }
 
 pub fn simd(input: &Input) -> Result<Option<Simd>, Failure> {
-    let Some(name) = &input.simd else { return Ok(None) };
+    let Some(name) = &input.simd else {
+        return Ok(None);
+    };
     let all = Simd::available();
     let names: Vec<&str> = all.iter().map(|s| s.name()).collect();
     match all.iter().find(|s| s.name() == name) {
         Some(s) => Ok(Some(*s)),
-        None => Err(Failure::input(format!("--simd {name}: this machine has {}", names.join(", ")))),
+        None => Err(Failure::input(format!(
+            "--simd {name}: this machine has {}",
+            names.join(", ")
+        ))),
     }
 }
 
 pub fn model(deck: &Deck, input: &Input) -> Result<Box<dyn Simulation>, Failure> {
-    let options = Options { simd: simd(input)?, ..Options::default() };
+    let options = Options {
+        simd: simd(input)?,
+        ..Options::default()
+    };
     build(&deck.spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
 }
 

@@ -50,7 +50,9 @@ pub struct Input {
 
 fn pair(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
-        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_string(), value.trim().to_string())),
+        Some((key, value)) if !key.trim().is_empty() => {
+            Ok((key.trim().to_string(), value.trim().to_string()))
+        }
         _ => Err(format!("`{text}` is not of the form key=value")),
     }
 }
@@ -69,7 +71,8 @@ fn main() -> ExitCode {
 }
 
 fn print_schema() -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(&peridyne_io::deck::schema()).map_err(|e| Failure::Run(e.to_string()))?;
+    let text = serde_json::to_string_pretty(&peridyne_io::deck::schema())
+        .map_err(|e| Failure::Run(e.to_string()))?;
     failure::say(&text);
     Ok(())
 }

@@ -21,10 +21,18 @@ impl Terminal {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = "{bar:30.cyan} {pos}/{len} steps  {per_sec}  {eta} left  {msg}";
             let bar = ProgressBar::new(steps);
-            bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.set_style(
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
             bar
         });
-        Terminal { bar, bonds, spoken: Instant::now(), broken: 0 }
+        Terminal {
+            bar,
+            bonds,
+            spoken: Instant::now(),
+            broken: 0,
+        }
     }
 
     pub fn end(&self) {
@@ -46,7 +54,11 @@ impl Progress for Terminal {
         } else if self.spoken.elapsed() >= INTERVAL {
             self.spoken = Instant::now();
             let left = per_step * (total - done) as f64;
-            eprintln!("step {done} of {total}, {:.1} steps/s, {left:.0} s left, {} bonds broken", 1.0 / per_step, self.broken);
+            eprintln!(
+                "step {done} of {total}, {:.1} steps/s, {left:.0} s left, {} bonds broken",
+                1.0 / per_step,
+                self.broken
+            );
         }
     }
 

@@ -1,9 +1,9 @@
 //! `peridyne run`.
 
+use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::progress::Terminal;
-use crate::Input;
 use peridyne::run::SnapshotOptions;
 use peridyne_io::deck::{Deck, FieldName, UnitSystem};
 use peridyne_io::drive::{DriveError, Plan, default_dir, drive};
@@ -50,12 +50,19 @@ fn with_threads(
 
 fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(), Failure> {
     let mut sim = deck::model(deck, &arguments.input)?;
-    let dir = arguments.out.clone().or(deck.output.dir.clone()).unwrap_or_else(|| default_dir(&arguments.input.file));
+    let dir = arguments
+        .out
+        .clone()
+        .or(deck.output.dir.clone())
+        .unwrap_or_else(|| default_dir(&arguments.input.file));
     say(&deck.describe());
     say(&deck::headline(sim.as_ref()));
     let steps = deck.steps(sim.info().time_step);
     let plan = plan(deck, steps, dir, threads);
-    say(&format!("threads   {threads}\nrunning {steps} steps, results in {}", plan.dir.display()));
+    say(&format!(
+        "threads   {threads}\nrunning {steps} steps, results in {}",
+        plan.dir.display()
+    ));
     let mut progress = Terminal::new(steps, sim.info().directed_bonds);
     let result = drive(sim.as_mut(), &plan, &mut progress);
     progress.end();
@@ -65,16 +72,23 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                 "done: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments",
                 report.steps,
                 report.seconds_stepping,
-                report.ns_per_bond_step.map_or(String::new(), |ns| format!(", {ns:.2} ns per bond and step")),
+                report.ns_per_bond_step.map_or(String::new(), |ns| format!(
+                    ", {ns:.2} ns per bond and step"
+                )),
                 report.broken_directed_bonds,
                 report.fragments.unwrap_or(0),
             ));
             if plan.series.picture.is_some() {
-                say(&format!("picture: {}", plan.dir.join("damage.png").display()));
+                say(&format!(
+                    "picture: {}",
+                    plan.dir.join("damage.png").display()
+                ));
             }
             Ok(())
         }
-        Err(e @ (DriveError::Run { .. } | DriveError::Write(_))) => Err(Failure::Run(e.to_string())),
+        Err(e @ (DriveError::Run { .. } | DriveError::Write(_))) => {
+            Err(Failure::Run(e.to_string()))
+        }
     }
 }
 
@@ -85,7 +99,10 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         UnitSystem::Metal => ("Å", "ps", "eV"),
         UnitSystem::Lj | UnitSystem::None => ("", "", ""),
     };
-    let energies = output.fields.iter().any(|f| matches!(f, FieldName::EnergyDensity | FieldName::Dilatation));
+    let energies = output
+        .fields
+        .iter()
+        .any(|f| matches!(f, FieldName::EnergyDensity | FieldName::Dilatation));
     let title = deck.spec.title.clone();
     Plan {
         deck: deck.file().to_string(),
@@ -105,7 +122,11 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
                 ..PictureOptions::default()
             }),
         },
-        snapshot: SnapshotOptions { energies, fragments: output.fields.contains(&FieldName::Fragment), bonds: output.bonds },
+        snapshot: SnapshotOptions {
+            energies,
+            fragments: output.fields.contains(&FieldName::Fragment),
+            bonds: output.bonds,
+        },
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),
         title,

@@ -178,6 +178,26 @@ impl<const D: usize> Body<D> {
     }
 }
 
+impl<const D: usize> Body<D> {
+    /// The same points (ids, volumes, densities, materials, marks, periods) as a cloud, for families that are lists.
+    pub fn to_cloud(&self) -> Result<Self, BuildError> {
+        let points = self.slots.iter().map(|s| *s as usize);
+        let position: Vec<_> = points.clone().map(|s| self.position(s)).collect();
+        let volume: Vec<_> = points.clone().map(|s| self.volume.at(s)).collect();
+        let density: Vec<_> = points.clone().map(|s| self.density.at(s)).collect();
+        let mut cloud =
+            Body::from_cloud(&position, &volume, &self.mark, self.spacing, self.period)?;
+        cloud.density = Values::from_points(&density, &cloud.slots, cloud.len, 1.0);
+        if !self.material.is_empty() {
+            cloud.material = vec![0; cloud.len];
+            for (from, to) in points.zip(&cloud.slots) {
+                cloud.material[*to as usize] = self.material[from];
+            }
+        }
+        Ok(cloud)
+    }
+}
+
 /// Image slots of a periodic grid: every halo cell copies the cell one period away.
 fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Vec<(u32, u32)> {
     let mut images = vec![];

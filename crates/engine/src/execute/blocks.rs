@@ -18,19 +18,28 @@ pub fn for_each_block<K: Kernel>(simd: Simd, kernel: &K, out: &mut [K::Out]) {
 }
 
 /// A pointer that several blocks write through, each to its own points.
-#[derive(Clone, Copy)]
-pub struct Shared(pub *mut f64);
+pub struct Shared<T = f64>(pub *mut T);
+
+impl<T> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Shared<T> {}
 
 // SAFETY: whoever uses it writes disjoint points from different blocks
-unsafe impl Send for Shared {}
-unsafe impl Sync for Shared {}
+unsafe impl<T: Send> Send for Shared<T> {}
+unsafe impl<T: Send> Sync for Shared<T> {}
 
 impl Shared {
     pub const NULL: Shared = Shared(std::ptr::null_mut());
+}
+
+impl<T> Shared<T> {
     /// # Safety
     /// `i` lies inside the array.
     #[inline(always)]
-    pub unsafe fn at(self, i: usize) -> *mut f64 {
+    pub unsafe fn at(self, i: usize) -> *mut T {
         // SAFETY: the caller's promise
         unsafe { self.0.add(i) }
     }

@@ -1,5 +1,7 @@
 //! Families: which points talk to which. Each kind enumerates its bonds in one place.
 
+mod cells;
+pub mod horizon;
 pub mod neighbours;
 pub mod offsets;
 pub mod stencil;

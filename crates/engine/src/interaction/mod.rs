@@ -3,9 +3,13 @@
 
 pub mod bond;
 pub mod contact;
+mod history;
+pub mod list;
 pub mod stencil;
+pub mod weight;
 
 use crate::body::{Body, Field};
+use crate::law::solid::eam_like::Solid;
 use crate::spec::CrackKind;
 use std::ops::AddAssign;
 
@@ -58,6 +62,17 @@ pub enum Sweep<'a, const D: usize> {
     Evolve { v: &'a Field<D>, dt: f64 },
     /// Forces only; the memory stays as it is.
     Hold,
+}
+
+/// How the point fields of a law follow from the weighted volume of each point.
+#[derive(Debug, Clone)]
+pub enum PointConstants {
+    /// No fields.
+    None,
+    /// Field 0 is a constant per material.
+    PerMaterial(Vec<f64>),
+    /// EAM-like: per material `(n, κ, β)`.
+    Solid(Vec<Solid>),
 }
 
 /// Is a bond of the reference family whole?

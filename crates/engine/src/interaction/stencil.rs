@@ -2,7 +2,10 @@
 //! stored.
 
 use super::bond::{critical_stretch, deform};
-use super::{BondState, Interaction, PointEnergies, Repulsion, Sweep, Tally, Toughness};
+use super::{
+    BondState, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally, Toughness,
+    history,
+};
 use crate::body::{Body, Field, Grid, Layout};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::{self, Lane, TILE};
@@ -63,17 +66,6 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     tallies: Vec<Tally>,
     unit: Vec<()>,
     sums: Vec<[f64; 2]>,
-}
-
-/// How the point fields of a law follow from the weighted volume of each point.
-#[derive(Debug, Clone)]
-pub enum PointConstants {
-    /// No fields.
-    None,
-    /// Field 0 is a constant per material.
-    PerMaterial(Vec<f64>),
-    /// EAM-like: per material `(n, κ, β)`.
-    Solid(Vec<crate::law::solid::eam_like::Solid>),
 }
 
 /// Everything a stencil interaction is made of.
@@ -226,7 +218,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             critical: &self.critical,
             next: Shared(self.next.as_ptr().cast_mut()),
-            memory: SharedBytes(self.alive.as_ptr().cast_mut()),
+            memory: Shared(self.alive.as_ptr().cast_mut()),
             toughness: &self.toughness,
             pressure: &self.pressure,
             v: if let Sweep::Evolve { v, dt } = sweep {
@@ -326,19 +318,13 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 }
 
-#[derive(Clone, Copy)]
-struct SharedBytes(*mut u8);
-// SAFETY: every block writes the bytes of its own tiles
-unsafe impl Send for SharedBytes {}
-unsafe impl Sync for SharedBytes {}
-
 /// Force pass.
 struct Forces<'a, const D: usize, W, const FRACTURE: bool, const CONTACT: bool> {
     view: View<'a, D, W>,
     f: [Shared; D],
     critical: &'a [f64],
     next: Shared,
-    memory: SharedBytes,
+    memory: Shared<u8>,
     toughness: &'a [Toughness],
     pressure: &'a [f64],
     /// Velocity of the step's middle, and the step.
@@ -466,7 +452,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
             if FRACTURE {
                 self.next_critical(i, lowest);
                 if let Some(lost) = lost {
-                    tally.released += self.released(i, own, lost);
+                    self.release(i, own, lost, tally);
                 }
             }
         }
@@ -490,46 +476,20 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
     /// `s0 = s00 − α s_min` for the points at slot `i`, as a critical `e`.
     #[inline(always)]
     unsafe fn next_critical<L: Lane>(&self, i: usize, lowest: L) {
-        let one = L::splat(1.0);
-        let smin = lowest.div(one + (one + lowest).sqrt());
-        let (s00, alpha) = match self.toughness {
-            [t] => (L::splat(t.s00), L::splat(t.alpha)),
-            many => {
-                let pick = |field: fn(&Toughness) -> f64| {
-                    let t: [f64; TILE] = std::array::from_fn(|l| {
-                        if l < L::N {
-                            field(&many[self.view.body.material_of(i + l)])
-                        } else {
-                            0.0
-                        }
-                    });
-                    // SAFETY: N ≤ TILE
-                    unsafe { L::load(t.as_ptr()) }
-                };
-                (pick(|t| t.s00), pick(|t| t.alpha))
-            }
-        };
-        // a point without whole bonds has no say
-        let lonely = lowest.ge(L::splat(f64::INFINITY));
-        let s0 = s00 - alpha * L::select(lonely, L::splat(0.0), smin);
-        let e0 = L::select(
-            s0.lt(L::splat(-1.0)),
-            L::splat(-1.0),
-            s0 * (L::splat(2.0) + s0),
-        );
+        let material = |l| self.view.body.material_of(i + l);
+        let e0 = history::next_critical(self.toughness, material, lowest);
         unsafe { e0.store(self.next.at(i)) };
     }
 
     /// Energy of the bonds that the points at `i` just lost, from `Σ x` and `Σ k r0² s` over them.
     #[inline(always)]
-    unsafe fn released<L: Lane>(&self, i: usize, own: [L; 2], lost: [L; 2]) -> f64 {
-        let mut energy = lost[0];
-        if W::SHARES {
-            // ½ q (S² − (S − L)²) = L P − ½ q L², with P = q S
-            let q: L = unsafe { pressure_factor(&self.view, self.pressure, i) };
-            energy = energy + lost[1] * (own[0] - L::splat(0.5) * q * lost[1]);
+    unsafe fn release<L: Lane>(&self, i: usize, own: [L; 2], lost: [L; 2], tally: &mut Tally) {
+        let q: L = unsafe { pressure_factor(&self.view, self.pressure, i) };
+        let energy = history::released::<L, W>(q, own, lost);
+        // one by one: the order of the sum must not depend on the width
+        for x in &energy.to_array()[..L::N] {
+            tally.released += x * self.view.volume;
         }
-        energy.to_array()[..L::N].iter().sum::<f64>() * self.view.volume
     }
 }
 

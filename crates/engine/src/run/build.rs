@@ -9,12 +9,16 @@ use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
+use crate::fracture::precrack::Crack;
+use crate::interaction::contact::Contact;
 use crate::law::influence::influence;
 use crate::law::micromodulus::Moments;
 use crate::space::fill::fill;
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::space::{AXES, Point};
-use crate::spec::{BodySpec, CrackKind, FamilyChoice, Horizon, Members, Spec, TimeStep};
+use crate::spec::{
+    BodySpec, CrackKind, FamilyChoice, Horizon, Members, Perturbation, Spec, TimeStep,
+};
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -65,7 +69,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     };
     let sets = sets(spec, &body)?;
     assign_materials(spec, &mut body, &sets)?;
-    let near_horizon = stencil.as_ref().map_or(0, |s| s.near_horizon);
+    let near_horizon = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
     if near_horizon > 0 {
         warnings.push(format!(
             "{near_horizon} bonds of the stencil end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio)"
@@ -78,9 +82,21 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         if kind == CrackKind::Broken {
             interaction.prepare(&body);
         }
-        for crack in spec.precracks.iter().filter(|c| c.kind == kind) {
-            let _ = crack;
-            cut += 0;
+        for (n, crack) in spec
+            .precracks
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.kind == kind)
+        {
+            let shape = Crack::new(&crack.shape, body.period).map_err(|e| BuildError {
+                path: format!("precracks[{n}]"),
+                ..e
+            })?;
+            let count = interaction.cut(&body, kind, &|from, to| shape.crosses(&from, &to));
+            if count == 0 {
+                warnings.push(format!("pre-crack {} cuts no bond", n + 1));
+            }
+            cut += count;
         }
     }
     let directed_bonds = interaction.directed_bonds();
@@ -150,7 +166,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             } else {
                 "list"
             },
-            near_horizon: near_horizon as u64,
+            near_horizon,
             horizon,
             spacing: body.spacing,
             mass: body.mass(),
@@ -172,6 +188,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         f: zeros(body.len),
         u,
         verlet: Verlet::new(simd, &body),
+        contact: recipe.repulsion.map(|r| Contact::new(r, &body, horizon)),
         interaction,
         body,
         loads: vec![],
@@ -253,6 +270,13 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
         }
         Ok((body, Some(stencil), horizon))
     };
+    let list_if_asked = |(body, stencil, horizon): (Body<D>, Option<Stencil>, f64)| {
+        if spec.family == FamilyChoice::List {
+            Ok((body.to_cloud()?, None, horizon))
+        } else {
+            Ok((body, stencil, horizon))
+        }
+    };
     match &spec.body {
         BodySpec::Lattice {
             kind,
@@ -273,10 +297,14 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
                 origin: *origin,
             };
             let sites = fill(&lattice, region)?;
-            if spec.family == FamilyChoice::List || perturb.is_some() {
-                return Err(BuildError::new("body", "horizon lists are not built yet"));
+            match perturb {
+                Some(p) => {
+                    let (body, _, horizon) =
+                        on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?;
+                    Ok((perturbed(&body, p)?, None, horizon))
+                }
+                None => list_if_asked(on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?),
             }
-            on_lattice(*kind, *spacing, *origin, &sites.quarters, None)
         }
         BodySpec::Sites {
             kind,
@@ -284,8 +312,71 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
             origin,
             quarters,
             volume,
-        } => on_lattice(*kind, *spacing, *origin, quarters, *volume),
-        BodySpec::Cloud(_) => Err(BuildError::new("body", "horizon lists are not built yet")),
+        } => list_if_asked(on_lattice(*kind, *spacing, *origin, quarters, *volume)?),
+        BodySpec::Cloud(cloud) => {
+            if spec.family == FamilyChoice::Stencil {
+                return Err(BuildError::new(
+                    "family",
+                    "a stencil needs a lattice body, this is a cloud of points",
+                ));
+            }
+            let mean =
+                cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
+            let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
+            let period = std::array::from_fn(|a| spec.periodic[a]);
+            let mut body = Body::<D>::from_cloud(
+                &cloud.position,
+                &cloud.volume,
+                &cloud.mark,
+                spacing,
+                period,
+            )?;
+            if !cloud.density.is_empty() {
+                body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
+            }
+            Ok((body, None, horizon_length(spec, spacing)))
+        }
+    }
+}
+
+/// Every site moved by a uniform random vector in ±amplitude per axis.
+fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>, BuildError> {
+    if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * body.spacing) {
+        return Err(BuildError::new(
+            "body.perturb",
+            format!(
+                "the amplitude {} must be below half the spacing {}",
+                p.amplitude, body.spacing
+            ),
+        ));
+    }
+    let mut random = SplitMix(p.seed);
+    let position: Vec<Point> = body
+        .slots
+        .iter()
+        .map(|s| {
+            let mut x = body.position(*s as usize);
+            for c in x.iter_mut().take(D) {
+                *c += p.amplitude * (2.0 * random.unit() - 1.0);
+            }
+            x
+        })
+        .collect();
+    let volume = vec![body.volume.uniform().unwrap_or(1.0); position.len()];
+    Body::from_cloud(&position, &volume, &body.mark, body.spacing, body.period)
+}
+
+/// SplitMix64 (Steele, Lea & Flood 2014): a seed gives the same body on every machine.
+struct SplitMix(u64);
+
+impl SplitMix {
+    /// Uniform in [0, 1).
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 

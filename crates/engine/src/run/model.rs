@@ -8,6 +8,8 @@ use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError};
+use crate::fracture::fragments::Fragments;
+use crate::interaction::contact::Contact;
 use crate::interaction::{BondState, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
@@ -18,6 +20,8 @@ pub struct Model<const D: usize> {
     pub(super) info: Info,
     pub(super) body: Body<D>,
     pub(super) interaction: Box<dyn Interaction<D>>,
+    /// Repulsion between points that are not in each other's family.
+    pub(super) contact: Option<Contact<D>>,
     pub(super) u: Field<D>,
     pub(super) v: Field<D>,
     pub(super) f: Field<D>,
@@ -43,7 +47,10 @@ pub struct Model<const D: usize> {
 impl<const D: usize> Model<D> {
     /// Bytes held: body, bonds, and the state of nine numbers per slot in 3-D.
     pub(super) fn bytes(&self) -> usize {
-        self.body.bytes() + self.interaction.bytes() + 3 * D * 8 * self.body.len
+        self.body.bytes()
+            + self.interaction.bytes()
+            + self.contact.as_ref().map_or(0, Contact::bytes)
+            + 3 * D * 8 * self.body.len
     }
 
     fn refresh_images(&mut self) {
@@ -73,6 +80,12 @@ impl<const D: usize> Model<D> {
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
         }
+        if let Some(contact) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
+                interaction.in_family(body, i, j)
+            });
+        }
         for indenter in &mut self.indenters {
             indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
         }
@@ -96,7 +109,12 @@ impl<const D: usize> Model<D> {
     fn energy_now(&mut self) -> Ledger {
         self.finish();
         self.refresh_images();
-        let [strain, contact] = self.interaction.energy(&self.body, &self.u);
+        let [strain, mut contact] = self.interaction.energy(&self.body, &self.u);
+        if let Some(pairs) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            contact += pairs.energy(body, &self.u);
+        }
         let mut ledger = Ledger {
             strain,
             contact,
@@ -350,6 +368,9 @@ impl<const D: usize> Simulation for Model<D> {
             snapshot.energy_density = self.by_id(|i| energies.strain[i] + energies.repulsion[i]);
             snapshot.dilatation = self.by_id(|i| energies.dilatation[i]);
         }
+        if options.fragments {
+            snapshot.fragment = Some(Fragments::of(&self.body, self.interaction.as_ref()).label);
+        }
         if options.bonds {
             let mut id = vec![0u32; self.body.len];
             for (k, &s) in self.body.slots.iter().enumerate() {
@@ -373,7 +394,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn fragments(&self) -> u64 {
-        0
+        Fragments::of(&self.body, self.interaction.as_ref()).count() as u64
     }
 
     fn displacements(&self) -> Vec<Point> {

@@ -3,10 +3,13 @@
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
+use crate::family::horizon::HorizonList;
 use crate::family::stencil::Stencil;
 use crate::family::volume_fraction;
-use crate::interaction::stencil::{PointConstants, StencilInteraction, StencilParts};
-use crate::interaction::{Interaction, Repulsion, Toughness};
+use crate::interaction::list::{ListInteraction, ListParts};
+use crate::interaction::stencil::{StencilInteraction, StencilParts};
+use crate::interaction::weight::BondWeight;
+use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
 use crate::law::influence::influence;
 use crate::law::micromodulus::{self, Moments, micromodulus};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
@@ -30,6 +33,8 @@ pub(super) struct Recipe {
     pub spacing: f64,
     pub influence: Influence,
     pub scaling: bool,
+    /// Was the horizon given in spacings?
+    pub ratio: bool,
     pub rule: crate::spec::InterfaceRule,
     pub simd: Simd,
 }
@@ -141,6 +146,7 @@ impl Recipe {
             spacing,
             influence: spec.influence,
             scaling: spec.volume_scaling,
+            ratio: matches!(spec.horizon, crate::spec::Horizon::Ratio(_)),
             rule: spec.interface,
             simd,
         })
@@ -229,7 +235,25 @@ impl Recipe {
                     simd: self.simd,
                 })))
             }
-            _ => Err(BuildError::new("body", "horizon lists are not built yet")),
+            _ => {
+                let scaling = self.scaling.then_some(self.spacing);
+                // whole multiples of the spacing are meant inclusively
+                let reach = if self.ratio {
+                    self.horizon * (1.0 + 1e-9)
+                } else {
+                    self.horizon
+                };
+                Ok(Box::new(ListInteraction::new(ListParts {
+                    body,
+                    list: HorizonList::new(body, reach)?,
+                    law,
+                    weight: BondWeight::new(self.influence, self.horizon, scaling),
+                    point_constants,
+                    toughness,
+                    repulsion: self.repulsion,
+                    simd: self.simd,
+                })))
+            }
         }
     }
 }

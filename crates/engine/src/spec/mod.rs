@@ -99,6 +99,8 @@ pub struct Cloud {
     pub position: Vec<[f64; 3]>,
     /// `[N]` volumes (length^D times the section).
     pub volume: Vec<f64>,
+    /// `[N]` mass densities, or empty: those of the materials.
+    pub density: Vec<f64>,
     /// `[N]` marks, or empty: all 0.
     pub mark: Vec<i32>,
     /// Names of marks (physical groups, element sets): `(mark, name)`.

@@ -82,6 +82,26 @@ impl Lane for F64x4 {
         }
     }
     #[inline(always)]
+    unsafe fn gather2(base: *const f64, index: *const u32) -> [Self; 2] {
+        unsafe {
+            let r = |l: usize| _mm_loadu_pd(base.add(2 * *index.add(l) as usize));
+            let ac = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(r(0)), r(2));
+            let bd = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(r(1)), r(3));
+            [
+                F64x4(_mm256_unpacklo_pd(ac, bd)),
+                F64x4(_mm256_unpackhi_pd(ac, bd)),
+            ]
+        }
+    }
+    #[inline(always)]
+    fn inv_sqrt_estimate(self) -> Self {
+        unsafe {
+            let half = _mm256_srli_epi64::<1>(_mm256_castpd_si256(self.0));
+            let magic = _mm256_set1_epi64x(super::ROOT_MAGIC as i64);
+            F64x4(_mm256_castsi256_pd(_mm256_sub_epi64(magic, half)))
+        }
+    }
+    #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
         unsafe { F64x4(_mm256_fmadd_pd(self.0, a.0, b.0)) }
     }

@@ -57,6 +57,22 @@ impl Lane for F64x8 {
         }
     }
     #[inline(always)]
+    unsafe fn gather2(base: *const f64, index: *const u32) -> [Self; 2] {
+        unsafe {
+            let i = _mm256_slli_epi32::<1>(_mm256_loadu_si256(index.cast()));
+            let g = |c: usize| F64x8(_mm512_i32gather_pd::<8>(i, base.add(c)));
+            [g(0), g(1)]
+        }
+    }
+    #[inline(always)]
+    fn inv_sqrt_estimate(self) -> Self {
+        unsafe {
+            let half = _mm512_srli_epi64::<1>(_mm512_castpd_si512(self.0));
+            let magic = _mm512_set1_epi64(super::ROOT_MAGIC as i64);
+            F64x8(_mm512_castsi512_pd(_mm512_sub_epi64(magic, half)))
+        }
+    }
+    #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
         unsafe { F64x8(_mm512_fmadd_pd(self.0, a.0, b.0)) }
     }

@@ -34,6 +34,12 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// # Safety
     /// `index` is valid for reading `N` numbers and every record is readable.
     unsafe fn gather4(base: *const f64, index: *const u32) -> [Self; 4];
+    /// Two-number records at `base + 2 index[l]`, transposed like [`Lane::gather4`].
+    /// # Safety
+    /// `index` is valid for reading `N` numbers and every record is readable.
+    unsafe fn gather2(base: *const f64, index: *const u32) -> [Self; 2];
+    /// `ROOT_MAGIC − (bits >> 1)` as a number: 1/√self within 3.5 %, the same on every machine.
+    fn inv_sqrt_estimate(self) -> Self;
     /// `self * a + b`, rounded once.
     fn fma(self, a: Self, b: Self) -> Self;
     fn div(self, a: Self) -> Self;
@@ -70,6 +76,23 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         unsafe { self.store(a.as_mut_ptr()) };
         a
     }
+}
+
+/// Minimises the error of [`Lane::inv_sqrt_estimate`] (Lomont 2003, 64 bits).
+const ROOT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;
+
+/// `1/√a` for normal a > 0 within 2 units in the last place, without division or root: the estimate and two steps
+/// of fourth order, `y (1 + h/2 + 3h²/8 + 5h³/16)` with `h = 1 − a y²` (|h| ≤ 0.07, then 1e-5, then round-off).
+#[inline(always)]
+pub fn inv_sqrt<L: Lane>(a: L) -> L {
+    let mut y = a.inv_sqrt_estimate();
+    for _ in 0..2 {
+        let h = (L::splat(0.0) - a * y).fma(y, L::splat(1.0));
+        let p = L::splat(0.3125).fma(h, L::splat(0.375));
+        let p = p.fma(h, L::splat(0.5));
+        y = (y * h).fma(p, y);
+    }
+    y
 }
 
 /// Where the series below is exact to rounding: seven terms leave 0.4 e⁷ ≤ 7e-16.
@@ -155,6 +178,16 @@ pub fn stretch<L: Lane>(e: L) -> L {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn inverse_root_is_exact_to_two_units() {
+        let mut a = 1e-30;
+        while a < 1e30 {
+            let exact = 1.0 / f64::sqrt(a);
+            assert!((inv_sqrt(a) - exact).abs() <= 4.5e-16 * exact, "at {a}");
+            a *= 1.00837;
+        }
+    }
 
     #[test]
     fn series_and_root_agree_with_the_closed_form() {

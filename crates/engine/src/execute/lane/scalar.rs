@@ -29,6 +29,18 @@ impl Lane for f64 {
         }
     }
     #[inline(always)]
+    unsafe fn gather2(base: *const f64, index: *const u32) -> [f64; 2] {
+        // SAFETY: the caller's promise
+        unsafe {
+            let p = base.add(2 * *index as usize);
+            [*p, *p.add(1)]
+        }
+    }
+    #[inline(always)]
+    fn inv_sqrt_estimate(self) -> f64 {
+        f64::from_bits(super::ROOT_MAGIC.wrapping_sub(self.to_bits() >> 1))
+    }
+    #[inline(always)]
     fn fma(self, a: f64, b: f64) -> f64 {
         self.mul_add(a, b)
     }

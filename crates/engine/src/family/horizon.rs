@@ -1,0 +1,207 @@
+//! Horizon lists: all pairs of a cloud that are within the horizon in the reference, stored.
+//!
+//! Eight points advance together, so bonds are kept in *lines*: line k of a slice of eight rows holds partner k of
+//! each of them (sliced ELLPACK). Rows are the slots, sorted by family size within small windows: points of one
+//! slice have families of nearly one size, and little of a line is padding. Four bytes and a bit per bond.
+
+use super::cells::Cells;
+use crate::body::{Body, Layout};
+use crate::error::BuildError;
+use crate::execute::lane::TILE;
+use crate::space::AXES;
+use rayon::prelude::*;
+
+/// Rows that are sorted together: about one cell of the order in which a cloud is stored.
+const WINDOW: usize = 64;
+
+/// Partners of every point of a cloud.
+#[derive(Debug, Clone)]
+pub struct HorizonList {
+    /// Slot of each row; every slot of the body has one.
+    pub rows: Vec<u32>,
+    /// First line of each slice, and the end.
+    pub start: Vec<usize>,
+    /// `[lines][TILE]` slots; the row's own slot where there is no bond. Partners of a row ascend.
+    pub partner: Vec<u32>,
+    /// Bits of the bonds that are there, a byte per line.
+    pub present: Vec<u8>,
+    /// Directed bonds.
+    pub directed: u64,
+    /// Directed pairs within 1e-9 of the horizon, in or out: round-off decides about them.
+    pub near_horizon: u64,
+}
+
+impl HorizonList {
+    /// All pairs of a cloud body with `r0 ≤ horizon`, nearest images on periodic axes.
+    ///
+    /// A horizon of exactly m spacings on lattice sites should be passed times 1 + 1e-9, to include all of them.
+    /// Refused: a period of at most two horizons, and points in one place.
+    pub fn new<const D: usize>(body: &Body<D>, horizon: f64) -> Result<Self, BuildError> {
+        let Layout::Cloud(x) = &body.layout else {
+            return Err(BuildError::new(
+                "family",
+                "a horizon list needs a cloud of points, not a lattice body",
+            )
+            .help("convert the body with `to_cloud`"));
+        };
+        if !(horizon > 0.0 && horizon.is_finite()) {
+            return Err(BuildError::new(
+                "horizon",
+                format!("the horizon is {horizon}, expected a positive length"),
+            ));
+        }
+        for (a, period) in body.period.iter().enumerate() {
+            if let Some(p) = period.filter(|p| *p <= 2.0 * horizon) {
+                return Err(BuildError::new(
+                    "periodic",
+                    format!(
+                        "the period along {} is {p:e}, not more than two horizons of {horizon:e}: a point would meet \
+                         two images of the same partner",
+                        AXES[a]
+                    ),
+                )
+                .help("make the body longer along this axis, or the horizon shorter"));
+            }
+        }
+        // vector gathers count numbers of four-number records with 31 bits
+        if body.len >= 1 << 29 {
+            return Err(BuildError::new(
+                "body",
+                format!("{} points are too many for a list (2²⁹)", body.len),
+            ));
+        }
+        let limit = horizon * horizon;
+        let cells = Cells::new(
+            std::array::from_fn(|a| x[a].as_slice()),
+            body.points(),
+            body.period,
+            horizon,
+        );
+
+        let (size, near) = count(&cells, body, limit)?;
+        let mut rows: Vec<u32> = (0..body.len as u32).collect();
+        for window in rows.chunks_mut(WINDOW) {
+            window.sort_by_key(|s| (std::cmp::Reverse(size[*s as usize]), *s));
+        }
+        let mut start = vec![0];
+        for slice in rows.chunks(TILE) {
+            let lines = slice.iter().map(|s| size[*s as usize]).max().unwrap_or(0);
+            start.push(start[start.len() - 1] + lines as usize);
+        }
+        let lines = start[start.len() - 1];
+        let mut list = HorizonList {
+            rows,
+            start,
+            partner: vec![0; lines * TILE],
+            present: vec![0; lines],
+            directed: size.iter().map(|s| *s as u64).sum(),
+            near_horizon: near,
+        };
+        list.fill(&cells, body.points(), limit);
+        Ok(list)
+    }
+
+    /// Write the lines, slices in parallel.
+    fn fill<const D: usize>(&mut self, cells: &Cells<D>, points: usize, limit: f64) {
+        let mut slices = Vec::with_capacity(self.start.len() - 1);
+        let (mut partner, mut present) = (self.partner.as_mut_slice(), self.present.as_mut_slice());
+        for (slice, rows) in self.rows.chunks(TILE).enumerate() {
+            let lines = self.start[slice + 1] - self.start[slice];
+            let (p, rest) = partner.split_at_mut(lines * TILE);
+            partner = rest;
+            let (b, rest) = present.split_at_mut(lines);
+            present = rest;
+            slices.push((rows, p, b));
+        }
+        slices
+            .into_par_iter()
+            .for_each_init(Vec::new, |family, (rows, partner, present)| {
+                for (l, &i) in rows.iter().enumerate() {
+                    family.clear();
+                    if (i as usize) < points {
+                        cells.candidates(i as usize, |j, square| {
+                            if square <= limit && j != i {
+                                family.push(j);
+                            }
+                        });
+                    }
+                    family.sort_unstable();
+                    for (k, bits) in present.iter_mut().enumerate() {
+                        let there = family.get(k);
+                        partner[k * TILE + l] = *there.unwrap_or(&i);
+                        *bits |= (there.is_some() as u8) << l;
+                    }
+                }
+            });
+    }
+
+    /// Number of slices of eight rows.
+    pub fn slices(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Row of a slot of the body.
+    pub fn row(&self, slot: usize) -> usize {
+        let first = slot / WINDOW * WINDOW;
+        let is_slot = |s: &u32| *s as usize == slot;
+        first + self.rows[first..].iter().position(is_slot).unwrap_or(0)
+    }
+
+    /// Lines of the slice of a row.
+    pub fn lines(&self, row: usize) -> std::ops::Range<usize> {
+        self.start[row / TILE]..self.start[row / TILE + 1]
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * self.rows.len() + 8 * self.start.len() + 4 * self.partner.len() + self.present.len()
+    }
+}
+
+/// Family size of every slot, and the number of pairs at the horizon.
+fn count<const D: usize>(
+    cells: &Cells<D>,
+    body: &Body<D>,
+    limit: f64,
+) -> Result<(Vec<u32>, u64), BuildError> {
+    let mut size = vec![0u32; body.len];
+    let near = size[..body.points()]
+        .par_iter_mut()
+        .enumerate()
+        .map(|(i, size)| {
+            let mut near = 0;
+            let mut twin = None;
+            cells.candidates(i, |j, square| {
+                let other = j as usize != i;
+                *size += (square <= limit && other) as u32;
+                near += ((square - limit).abs() <= 2e-9 * limit) as u64;
+                if square <= 1e-20 * limit && other {
+                    twin = Some((i, j as usize));
+                }
+            });
+            match twin {
+                Some(pair) => Err(pair),
+                None => Ok(near),
+            }
+        })
+        .try_reduce(|| 0, |a, b| Ok(a + b));
+    match near {
+        Ok(near) => Ok((size, near)),
+        Err((i, j)) => {
+            let id = |slot: usize| {
+                let id = body.slots.iter().position(|s| *s as usize == slot);
+                id.map_or(0, |id| id + 1)
+            };
+            let (a, b) = (id(i).min(id(j)), id(i).max(id(j)));
+            let p = body.position(i);
+            Err(BuildError::new(
+                "body",
+                format!(
+                    "points {a} and {b} are in one place, ({:e}, {:e}, {:e})",
+                    p[0], p[1], p[2]
+                ),
+            )
+            .help("remove one of them: two points of a body must be apart"))
+        }
+    }
+}

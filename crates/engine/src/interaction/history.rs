@@ -1,0 +1,53 @@
+//! What bonds remember: the next critical stretch, and the energy of those that just broke.
+
+use super::Toughness;
+use crate::execute::lane::{Lane, TILE};
+use crate::law::Law;
+
+/// The critical `e` of `s0 = s00 − α s_min` for `N` points of `material(lane)`, from the lowest `e` of their whole
+/// bonds (∞ where there are none: such a point has no say).
+#[inline(always)]
+pub fn next_critical<L: Lane>(
+    toughness: &[Toughness],
+    material: impl Fn(usize) -> usize,
+    lowest: L,
+) -> L {
+    let one = L::splat(1.0);
+    let smin = lowest.div(one + (one + lowest).sqrt());
+    let (s00, alpha) = match toughness {
+        [t] => (L::splat(t.s00), L::splat(t.alpha)),
+        many => {
+            let pick = |field: fn(&Toughness) -> f64| {
+                let t: [f64; TILE] = std::array::from_fn(|l| {
+                    if l < L::N {
+                        field(&many[material(l)])
+                    } else {
+                        0.0
+                    }
+                });
+                // SAFETY: N ≤ TILE
+                unsafe { L::load(t.as_ptr()) }
+            };
+            (pick(|t| t.s00), pick(|t| t.alpha))
+        }
+    };
+    let lonely = lowest.ge(L::splat(f64::INFINITY));
+    let s0 = s00 - alpha * L::select(lonely, L::splat(0.0), smin);
+    L::select(
+        s0.lt(L::splat(-1.0)),
+        L::splat(-1.0),
+        s0 * (L::splat(2.0) + s0),
+    )
+}
+
+/// Energy density that points lose with bonds, from `Σ x` and `Σ k r0² s` over those bonds, the points' fields and
+/// their pressure factor `q`.
+#[inline(always)]
+pub fn released<L: Lane, W: Law>(q: L, own: [L; 2], lost: [L; 2]) -> L {
+    if W::SHARES {
+        // ½ q (S² − (S − L)²) = L P − ½ q L², with P = q S
+        lost[0] + lost[1] * (own[0] - L::splat(0.5) * q * lost[1])
+    } else {
+        lost[0]
+    }
+}

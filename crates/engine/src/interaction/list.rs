@@ -1,0 +1,424 @@
+//! Any law on a horizon list: bonds of an arbitrary cloud. A bond is a partner and a bit; its geometry and constant
+//! are computed anew from two records whenever it is met, which is faster than reading them.
+
+mod kernel;
+
+use super::bond::critical_stretch;
+use super::weight::BondWeight;
+use super::{
+    BondState, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally, Toughness,
+};
+use crate::body::{Body, Field};
+use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::lane::TILE;
+use crate::execute::simd::Simd;
+use crate::family::horizon::HorizonList;
+use crate::law::Law;
+use crate::spec::CrackKind;
+use kernel::{BLOCK, Energies, EnergyFields, Forces, Pack, Share, View};
+
+/// A law on a horizon list.
+pub struct ListInteraction<const D: usize, W: Law> {
+    law: W,
+    simd: Simd,
+    weight: BondWeight,
+    /// Its `present` bits are the family that damage counts: without absent bonds.
+    list: HorizonList,
+    /// `[lines]`: bits of whole bonds.
+    alive: Vec<u8>,
+    /// `[slots][4]`: x, y, z, volume.
+    reference: Vec<f64>,
+    /// `[slots][4]`: displacement and critical `e`, written before every sweep.
+    moved: Vec<f64>,
+    /// `[slots][2]`: point fields of the law (empty where unused).
+    fields: Vec<f64>,
+    /// Pressure factors per slot where materials differ; else the law's own.
+    pressure: Vec<f64>,
+    point_constants: PointConstants,
+    toughness: Vec<Toughness>,
+    repulsion: Option<Repulsion>,
+    /// Critical `e` per slot, now and next.
+    critical: Vec<f64>,
+    next: Vec<f64>,
+    period: [f64; D],
+    inv_period: [f64; D],
+    tallies: Vec<Tally>,
+    unit: Vec<()>,
+    sums: Vec<[f64; 2]>,
+}
+
+/// Everything a list interaction is made of.
+pub struct ListParts<'a, const D: usize, W> {
+    pub body: &'a Body<D>,
+    /// All pairs of this body within the horizon.
+    pub list: HorizonList,
+    pub law: W,
+    /// `ω ν` of a bond.
+    pub weight: BondWeight,
+    pub point_constants: PointConstants,
+    pub toughness: Vec<Toughness>,
+    pub repulsion: Option<Repulsion>,
+    pub simd: Simd,
+}
+
+impl<const D: usize, W: Law> ListInteraction<D, W> {
+    pub fn new(parts: ListParts<D, W>) -> Self {
+        let ListParts {
+            body,
+            list,
+            law,
+            weight,
+            point_constants,
+            toughness,
+            repulsion,
+            simd,
+        } = parts;
+        let mut reference = vec![0.0; 4 * body.len];
+        for (slot, record) in reference.chunks_mut(4).enumerate() {
+            record[..3].copy_from_slice(&body.position(slot));
+            record[3] = body.volume.at(slot);
+        }
+        let breaks = toughness.iter().any(|t| t.s00.is_finite());
+        let critical = if breaks {
+            vec![f64::INFINITY; body.len]
+        } else {
+            vec![]
+        };
+        let blocks = list.slices().div_ceil(BLOCK);
+        ListInteraction {
+            law,
+            simd,
+            weight,
+            alive: list.present.clone(),
+            list,
+            reference,
+            moved: vec![0.0; 4 * body.len],
+            fields: vec![0.0; if W::FIELDS > 0 { 2 * body.len } else { 0 }],
+            pressure: vec![],
+            point_constants,
+            toughness,
+            repulsion,
+            next: critical.clone(),
+            critical,
+            period: body.period.map(|p| p.unwrap_or(0.0)),
+            inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
+            tallies: vec![Tally::default(); blocks],
+            unit: vec![(); blocks],
+            sums: vec![[0.0; 2]; blocks],
+        }
+    }
+
+    /// For kernels that only read.
+    fn view<'a>(&'a self, moved: &'a [f64]) -> View<'a, D, W> {
+        let alive = Shared(self.alive.as_ptr().cast_mut());
+        let fields = Shared(self.fields.as_ptr().cast_mut());
+        self.view_of(moved, alive, fields)
+    }
+
+    fn view_of<'a>(
+        &'a self,
+        moved: &'a [f64],
+        alive: Shared<u8>,
+        fields: Shared,
+    ) -> View<'a, D, W> {
+        View {
+            law: self.law,
+            weight: self.weight,
+            list: &self.list,
+            alive,
+            reference: &self.reference,
+            moved,
+            fields,
+            pressure: &self.pressure,
+            period: self.period,
+            inv_period: self.inv_period,
+            repulsion: self.repulsion,
+        }
+    }
+
+    /// Write displacements and critical stretches into the records.
+    fn pack(&self, u: &Field<D>, moved: &mut [f64], unit: &mut [()]) {
+        let kernel = Pack::<D> {
+            u: std::array::from_fn(|a| u[a].as_slice()),
+            critical: &self.critical,
+            moved: Shared(moved.as_mut_ptr()),
+        };
+        for_each_block(self.simd, &kernel, unit);
+    }
+
+    fn share<const PERIODIC: bool>(&mut self, unit: &mut [()]) {
+        let alive = Shared(self.alive.as_mut_ptr());
+        let fields = Shared(self.fields.as_mut_ptr());
+        let kernel = Share::<D, W, PERIODIC> {
+            view: self.view_of(&self.moved, alive, fields),
+        };
+        for_each_block(self.simd, &kernel, unit);
+    }
+
+    fn sweep<const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool>(
+        &mut self,
+        body: &Body<D>,
+        f: &mut Field<D>,
+        motion: Option<(&Field<D>, f64)>,
+    ) {
+        let mut tallies = std::mem::take(&mut self.tallies);
+        let alive = Shared(self.alive.as_mut_ptr());
+        let fields = Shared(self.fields.as_mut_ptr());
+        let next = Shared(self.next.as_mut_ptr());
+        let kernel = Forces::<D, W, FRACTURE, CONTACT, PERIODIC> {
+            view: self.view_of(&self.moved, alive, fields),
+            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            next,
+            toughness: &self.toughness,
+            material: &body.material,
+            motion,
+        };
+        for_each_block(self.simd, &kernel, &mut tallies);
+        self.tallies = tallies;
+    }
+
+    fn is_periodic(&self) -> bool {
+        self.period.iter().any(|p| *p > 0.0)
+    }
+
+    /// θ over `Σ k r0² s` at a slot: `n/m`, from `β/m`.
+    fn dilatation_factor(&self, body: &Body<D>, slot: usize) -> f64 {
+        match &self.point_constants {
+            PointConstants::Solid(s) => {
+                let s = s[body.material_of(slot)];
+                s.n / s.beta * self.fields[2 * slot + 1]
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Σ over the bonds of a row whose bit is set in `bits`, in the row's order.
+    fn sum(&self, row: usize, bits: &[u8], of: impl Fn(usize) -> f64) -> f64 {
+        self.bonds(row)
+            .filter(|(line, _)| bits[*line] >> (row % TILE) & 1 == 1)
+            .map(|(_, j)| of(j))
+            .sum()
+    }
+
+    /// All pairs of a row, absent ones included: line and partner.
+    fn bonds(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
+        let slot = self.list.rows[row];
+        self.list
+            .lines(row)
+            .map(move |line| (line, self.list.partner[line * TILE + row % TILE]))
+            .take_while(move |(_, j)| *j != slot)
+            .map(|(line, j)| (line, j as usize))
+    }
+}
+
+impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
+    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally {
+        let mut moved = std::mem::take(&mut self.moved);
+        let mut unit = std::mem::take(&mut self.unit);
+        self.pack(u, &mut moved, &mut unit);
+        self.moved = moved;
+        let periodic = self.is_periodic();
+        if W::SHARES {
+            match periodic {
+                false => self.share::<false>(&mut unit),
+                true => self.share::<true>(&mut unit),
+            }
+        }
+        self.unit = unit;
+        let motion = match sweep {
+            Sweep::Evolve { v, dt } => Some((v, dt)),
+            Sweep::Hold => None,
+        };
+        let fracture = motion.is_some() && !self.critical.is_empty();
+        match (fracture, self.repulsion.is_some(), periodic) {
+            (false, false, false) => self.sweep::<false, false, false>(body, f, motion),
+            (false, false, true) => self.sweep::<false, false, true>(body, f, motion),
+            (false, true, false) => self.sweep::<false, true, false>(body, f, motion),
+            (false, true, true) => self.sweep::<false, true, true>(body, f, motion),
+            (true, false, false) => self.sweep::<true, false, false>(body, f, motion),
+            (true, false, true) => self.sweep::<true, false, true>(body, f, motion),
+            (true, true, false) => self.sweep::<true, true, false>(body, f, motion),
+            (true, true, true) => self.sweep::<true, true, true>(body, f, motion),
+        }
+        if fracture {
+            std::mem::swap(&mut self.critical, &mut self.next);
+        }
+        let mut total = Tally::default();
+        for t in &self.tallies {
+            total += *t;
+        }
+        total
+    }
+
+    fn energy(&mut self, _: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let mut moved = std::mem::take(&mut self.moved);
+        let mut unit = std::mem::take(&mut self.unit);
+        self.pack(u, &mut moved, &mut unit);
+        self.moved = moved;
+        self.unit = unit;
+        let mut sums = std::mem::take(&mut self.sums);
+        let kernel = Energies {
+            view: self.view(&self.moved),
+            fields: None,
+        };
+        for_each_block(self.simd, &kernel, &mut sums);
+        self.sums = sums;
+        self.sums
+            .iter()
+            .fold([0.0; 2], |t, s| [t[0] + s[0], t[1] + s[1]])
+    }
+
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        let mut moved = vec![0.0; 4 * body.len];
+        let mut unit = vec![(); self.unit.len()];
+        self.pack(u, &mut moved, &mut unit);
+        let mut share = vec![0.0; body.len];
+        let mut weight = vec![0.0; body.len];
+        for field in [&mut out.strain, &mut out.repulsion, &mut out.dilatation] {
+            field.clear();
+            field.resize(body.len, 0.0);
+        }
+        let kernel = Energies {
+            view: self.view(&moved),
+            fields: Some(EnergyFields {
+                strain: Shared(out.strain.as_mut_ptr()),
+                repulsion: Shared(out.repulsion.as_mut_ptr()),
+                share: Shared(share.as_mut_ptr()),
+                weight: Shared(weight.as_mut_ptr()),
+            }),
+        };
+        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; unit.len()]);
+        for &slot in &body.slots {
+            let i = slot as usize;
+            if W::SHARES {
+                out.dilatation[i] = self.dilatation_factor(body, i) * share[i];
+            } else if weight[i] > 0.0 {
+                out.dilatation[i] = D as f64 * share[i] / weight[i];
+            }
+        }
+    }
+
+    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let view = self.view(&self.moved);
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            for (line, j) in self.bonds(row).filter(|(_, j)| i as usize <= *j) {
+                let state = if self.alive[line] >> (row % TILE) & 1 == 1 {
+                    BondState::Whole
+                } else {
+                    BondState::Broken
+                };
+                visit(i as usize, j, view.constant(i as usize, j).0, state);
+            }
+        }
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            let volume = |j| body.volume.at(j);
+            let family = self.sum(row, &self.list.present, volume);
+            let whole = self.sum(row, &self.alive, volume);
+            out[i as usize] = if family == 0.0 {
+                0.0
+            } else {
+                1.0 - whole / family
+            };
+        }
+    }
+
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        let mut cut = vec![];
+        let view = self.view(&self.moved);
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            let x = body.position(i as usize);
+            let from: [f64; D] = std::array::from_fn(|a| x[a]);
+            for (line, j) in self.bonds(row) {
+                if self.alive[line] >> (row % TILE) & 1 == 0 {
+                    continue;
+                }
+                let (xi, _) = view.constant(i as usize, j);
+                if crosses(from, std::array::from_fn(|a| from[a] + xi[a])) {
+                    cut.push((line, 1u8 << (row % TILE)));
+                }
+            }
+        }
+        for (line, bit) in &cut {
+            self.alive[*line] &= !bit;
+            if kind == CrackKind::Absent {
+                self.list.present[*line] &= !bit;
+            }
+        }
+        if kind == CrackKind::Absent {
+            self.list.directed -= cut.len() as u64;
+        }
+        cut.len() as u64
+    }
+
+    fn prepare(&mut self, body: &Body<D>) {
+        match &self.point_constants {
+            PointConstants::None => {}
+            PointConstants::PerMaterial(c) => {
+                for (slot, field) in self.fields.chunks_mut(2).enumerate() {
+                    field[0] = c[body.material_of(slot)];
+                }
+            }
+            PointConstants::Solid(solids) => {
+                let of = |s: usize| solids[body.material_of(s)];
+                let view = self.view(&self.moved);
+                let mut per_m = vec![0.0; body.len];
+                for (row, &i) in self.list.rows.iter().enumerate() {
+                    let i = i as usize;
+                    let m = self.sum(row, &self.alive, |j| view.constant(i, j).1);
+                    if m > 0.0 {
+                        per_m[i] = of(i).beta / m;
+                    }
+                }
+                let mixed = solids.iter().any(|s| s.ratio() != solids[0].ratio());
+                let ratio = |(s, b): (usize, &f64)| of(s).ratio() * b * b;
+                if mixed {
+                    self.pressure = per_m.iter().enumerate().map(ratio).collect();
+                }
+                for (field, b) in self.fields.chunks_mut(2).zip(per_m) {
+                    field.copy_from_slice(&[0.0, b]);
+                }
+            }
+        }
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.list.directed
+    }
+
+    fn family_size(&self, slot: usize) -> usize {
+        let row = self.list.row(slot);
+        self.sum(row, &self.list.present, |_| 1.0) as usize
+    }
+
+    fn critical_stretch(&self, slot: usize) -> f64 {
+        self.critical
+            .get(slot)
+            .map_or(f64::INFINITY, |e| critical_stretch(*e))
+    }
+
+    fn in_family(&self, _: &Body<D>, i: usize, j: usize) -> bool {
+        self.bonds(self.list.row(i)).any(|(_, k)| k == j)
+    }
+
+    fn memory(&mut self) -> (&mut [u8], &mut [f64]) {
+        (&mut self.alive, &mut self.critical)
+    }
+
+    fn bytes(&self) -> usize {
+        let words = self.reference.len()
+            + self.moved.len()
+            + self.fields.len()
+            + self.pressure.len()
+            + self.critical.len()
+            + self.next.len();
+        self.list.bytes() + self.alive.len() + 8 * words
+    }
+}

@@ -1,0 +1,508 @@
+//! The sweeps over a horizon list: lanes run over the points of a slice, bonds in a fixed order.
+
+use crate::body::Field;
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{self, Lane, TILE};
+use crate::execute::simd::Kernel;
+use crate::family::horizon::HorizonList;
+use crate::interaction::bond::deform;
+use crate::interaction::weight::BondWeight;
+use crate::interaction::{Repulsion, Tally, Toughness, history};
+use crate::law::Law;
+
+/// Slices per block of work.
+pub const BLOCK: usize = 32;
+
+/// What all kernels read. Records keep what one bond needs of its partner together.
+pub struct View<'a, const D: usize, W> {
+    pub law: W,
+    pub weight: BondWeight,
+    pub list: &'a HorizonList,
+    /// `[lines]`: bits of whole bonds.
+    pub alive: Shared<u8>,
+    /// `[slots][4]`: x, y, z, volume.
+    pub reference: &'a [f64],
+    /// `[slots][4]`: displacement and critical `e`.
+    pub moved: &'a [f64],
+    /// `[slots][2]`: point fields of the law; empty where it has none.
+    pub fields: Shared,
+    /// Pressure factors per slot where materials differ; else the law's own.
+    pub pressure: &'a [f64],
+    /// 0 on free axes.
+    pub period: [f64; D],
+    pub inv_period: [f64; D],
+    pub repulsion: Option<Repulsion>,
+}
+
+/// One end of a bond.
+#[derive(Clone, Copy)]
+pub struct End<L, const D: usize> {
+    x: [L; D],
+    volume: L,
+    u: [L; D],
+    critical: L,
+    field: [L; 2],
+}
+
+/// A bond from its two ends.
+struct Bond<L, const D: usize> {
+    /// `ξ+η`
+    y: [L; D],
+    /// `|ξ+η|²/|ξ|² − 1`
+    e: L,
+    r0_squared: L,
+    r0: L,
+    inv_r0: L,
+    /// The law's constant.
+    k: L,
+}
+
+impl<const D: usize, W: Law> View<'_, D, W> {
+    pub fn block(&self, block: usize) -> std::ops::Range<usize> {
+        block * BLOCK..((block + 1) * BLOCK).min(self.list.slices())
+    }
+
+    /// Rows of part `part` of a slice.
+    #[inline(always)]
+    unsafe fn rows<L: Lane>(&self, slice: usize, part: usize) -> *const u32 {
+        // SAFETY: there are eight rows per slice
+        unsafe { self.list.rows.as_ptr().add(slice * TILE + part * L::N) }
+    }
+
+    /// Partners of part `part` in a line.
+    #[inline(always)]
+    unsafe fn partners<L: Lane>(&self, line: usize, part: usize) -> *const u32 {
+        // SAFETY: there are eight partners per line
+        unsafe { self.list.partner.as_ptr().add(line * TILE + part * L::N) }
+    }
+
+    /// `FIELDS`: with the point fields, if the law has any.
+    #[inline(always)]
+    unsafe fn end<L: Lane, const FIELDS: bool>(&self, slot: *const u32) -> End<L, D> {
+        // SAFETY: rows and partners are slots, and there is a record for each
+        unsafe {
+            let x = L::gather4(self.reference.as_ptr(), slot);
+            let u = L::gather4(self.moved.as_ptr(), slot);
+            let zero = L::splat(0.0);
+            let field = if FIELDS && W::FIELDS > 0 {
+                L::gather2(self.fields.0, slot)
+            } else {
+                [zero; 2]
+            };
+            End {
+                x: std::array::from_fn(|a| x[a]),
+                volume: x[3],
+                u: std::array::from_fn(|a| u[a]),
+                critical: u[3],
+                field,
+            }
+        }
+    }
+
+    /// `ξ` from i to the nearest image of j.
+    #[inline(always)]
+    fn reference<L: Lane, const PERIODIC: bool>(&self, i: &[L; D], j: &[L; D]) -> [L; D] {
+        std::array::from_fn(|a| {
+            let xi = j[a] - i[a];
+            if PERIODIC {
+                let turns = (xi * L::splat(self.inv_period[a])).round();
+                turns.fma(L::splat(-self.period[a]), xi)
+            } else {
+                xi
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn bond<L: Lane, const PERIODIC: bool>(&self, i: &End<L, D>, j: &End<L, D>) -> Bond<L, D> {
+        let xi = self.reference::<L, PERIODIC>(&i.x, &j.x);
+        let mut r0_squared = xi[0] * xi[0];
+        for x in &xi[1..] {
+            r0_squared = x.fma(*x, r0_squared);
+        }
+        let inv_r0 = lane::inv_sqrt(r0_squared);
+        let r0 = r0_squared * inv_r0;
+        let weight = self.weight.at(r0, inv_r0) * j.volume;
+        let eta = std::array::from_fn(|a| j.u[a] - i.u[a]);
+        let (y, e) = deform(eta, xi, inv_r0 * inv_r0);
+        Bond {
+            y,
+            e,
+            r0_squared,
+            r0,
+            inv_r0,
+            k: self.law.constant(r0, inv_r0, weight),
+        }
+    }
+
+    /// `k r0²` of the bond between two slots, and ξ.
+    pub fn constant(&self, i: usize, j: usize) -> ([f64; D], f64) {
+        // SAFETY: both are slots
+        let (i, j) = unsafe {
+            (
+                self.end::<f64, false>(&(i as u32)),
+                self.end::<f64, false>(&(j as u32)),
+            )
+        };
+        let b = self.bond::<f64, true>(&i, &j);
+        (self.reference::<f64, true>(&i.x, &j.x), b.k * b.r0_squared)
+    }
+
+    /// Which lanes of really there bonds are closer than repulsion allows, given that `e` may be low enough.
+    #[inline(always)]
+    fn close<L: Lane>(&self, c: Repulsion, b: &Bond<L, D>) -> (L::Mask, L) {
+        let d = (b.r0 * L::splat(c.bonded)).min(L::splat(c.range));
+        let limit = (d * b.inv_r0) * (d * b.inv_r0) - L::splat(1.0);
+        // padding has length 0
+        let real = L::select(L::splat(0.0).lt(b.r0_squared), b.e, L::splat(f64::NAN));
+        (real.lt(limit), d)
+    }
+
+    /// Coefficient of `ξ+η` from repulsion and its energy density.
+    #[inline(always)]
+    fn repel<L: Lane>(&self, b: &Bond<L, D>, volume: L) -> (L, L) {
+        let zero = L::splat(0.0);
+        let Some(c) = self.repulsion else {
+            return (zero, zero);
+        };
+        let (close, d) = self.close(c, b);
+        if !L::any(close) {
+            return (zero, zero);
+        }
+        let r = (b.r0_squared * (L::splat(1.0) + b.e)).sqrt();
+        let stiffness = L::splat(c.stiffness) * volume;
+        let pull = (stiffness * (r - d)).div(r);
+        let energy = L::splat(0.25) * stiffness * (r - d) * (r - d);
+        (L::select(close, pull, zero), L::select(close, energy, zero))
+    }
+
+    /// No repulsion in a bond whose `e` is at least this: `(d/r0)² ≤ bonded²`.
+    fn contact_e(&self) -> f64 {
+        self.repulsion.map_or(-1.0, |c| c.bonded * c.bonded - 1.0)
+    }
+
+    /// Pressure factors of `N` rows from their own fields.
+    #[inline(always)]
+    unsafe fn pressure_factor<L: Lane>(&self, rows: *const u32, own: L) -> L {
+        if self.pressure.is_empty() {
+            self.law.pressure_factor(own)
+        } else {
+            let q: [f64; TILE] = std::array::from_fn(|l| {
+                if l < L::N {
+                    // SAFETY: rows are slots, N of them
+                    unsafe { self.pressure[*rows.add(l) as usize] }
+                } else {
+                    0.0
+                }
+            });
+            // SAFETY: N ≤ TILE
+            unsafe { L::load(q.as_ptr()) }
+        }
+    }
+}
+
+/// Write one number of each of `N` rows, `step` apart.
+#[inline(always)]
+unsafe fn scatter<L: Lane>(value: L, out: Shared, rows: *const u32, step: usize) {
+    let all = value.to_array();
+    for (l, x) in all.iter().enumerate().take(L::N) {
+        // SAFETY: rows are slots of the caller's field, and every slot is the row of one slice
+        unsafe { *out.at(*rows.add(l) as usize * step) = *x };
+    }
+}
+
+/// Fill the records of a step.
+pub struct Pack<'a, const D: usize> {
+    pub u: [&'a [f64]; D],
+    /// Empty: nothing breaks.
+    pub critical: &'a [f64],
+    pub moved: Shared,
+}
+
+impl<const D: usize> Kernel for Pack<'_, D> {
+    type Out = ();
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        let slots = BLOCK * TILE;
+        for s in block * slots..((block + 1) * slots).min(self.u[0].len()) {
+            // SAFETY: there is a record per slot
+            unsafe {
+                for a in 0..D {
+                    *self.moved.at(4 * s + a) = self.u[a][s];
+                }
+                if let Some(c) = self.critical.get(s) {
+                    *self.moved.at(4 * s + 3) = *c;
+                }
+            }
+        }
+    }
+}
+
+/// Force pass.
+pub struct Forces<
+    'a,
+    const D: usize,
+    W,
+    const FRACTURE: bool,
+    const CONTACT: bool,
+    const PERIODIC: bool,
+> {
+    pub view: View<'a, D, W>,
+    pub f: [Shared; D],
+    pub next: Shared,
+    pub toughness: &'a [Toughness],
+    /// Material per slot; empty when there is one.
+    pub material: &'a [u8],
+    /// Velocity of the step's middle, and the step.
+    pub motion: Option<(&'a Field<D>, f64)>,
+}
+
+impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool> Kernel
+    for Forces<'_, D, W, FRACTURE, CONTACT, PERIODIC>
+{
+    type Out = Tally;
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> Tally {
+        let mut tally = Tally::default();
+        for slice in self.view.block(block) {
+            let lines = self.view.list.start[slice]..self.view.list.start[slice + 1];
+            for part in 0..TILE / L::N {
+                // SAFETY: the list was made for these records; each slice is written by one block
+                unsafe { self.points::<L>(slice, lines.clone(), part, &mut tally) };
+            }
+        }
+        tally
+    }
+}
+
+impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool>
+    Forces<'_, D, W, FRACTURE, CONTACT, PERIODIC>
+{
+    /// All bonds of `N` points.
+    #[inline(always)]
+    unsafe fn points<L: Lane>(
+        &self,
+        slice: usize,
+        lines: std::ops::Range<usize>,
+        part: usize,
+        tally: &mut Tally,
+    ) {
+        let v = &self.view;
+        let zero = L::splat(0.0);
+        let contact_e = L::splat(v.contact_e());
+        unsafe {
+            let rows = v.rows::<L>(slice, part);
+            let i = v.end::<L, true>(rows);
+            let mut lowest = L::splat(f64::INFINITY);
+            let mut acc = [zero; D];
+            // broken bonds: Σ x and Σ k r0² s, rare
+            let mut lost: Option<[L; 2]> = None;
+            for line in lines {
+                let partners = v.partners::<L>(line, part);
+                let j = v.end::<L, true>(partners);
+                let b = v.bond::<L, PERIODIC>(&i, &j);
+                let dead = L::dead(*v.alive.at(line), part);
+                let e = b.e.nan_if(dead);
+                let mut rare = lane::beyond_series(e);
+                let mut limit = zero;
+                if FRACTURE {
+                    limit = j.critical.min(i.critical);
+                    rare = L::or(rare, limit.lt(e));
+                    lowest = e.min(lowest);
+                }
+                if CONTACT {
+                    rare = L::or(rare, b.e.lt(contact_e));
+                }
+                let mut pull;
+                if L::any(rare) {
+                    let g = lane::extension_over_length(e);
+                    pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
+                    if CONTACT {
+                        pull = pull + v.repel(&b, j.volume).0;
+                    }
+                    if FRACTURE {
+                        let breaks = limit.lt(e);
+                        let which = L::bits(breaks);
+                        if which != 0 {
+                            *v.alive.at(line) &= !((which as u8) << (part * L::N));
+                            tally.broken += which.count_ones() as u64;
+                            let s = lane::stretch(e);
+                            let share = b.k * b.r0_squared * s;
+                            let x = v.law.pair_energy(share * s, i.field, j.field)
+                                + self.farewell(pull, b.y, rows, partners);
+                            let sum = lost.unwrap_or([zero; 2]);
+                            lost = Some([
+                                sum[0] + L::select(breaks, x, zero),
+                                sum[1] + L::select(breaks, share, zero),
+                            ]);
+                        }
+                    }
+                } else {
+                    let g = lane::extension_over_length_series(e);
+                    pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
+                }
+                for a in 0..D {
+                    acc[a] = pull.fma(b.y[a], acc[a]);
+                }
+            }
+            for a in 0..D {
+                scatter(acc[a], self.f[a], rows, 1);
+            }
+            if FRACTURE {
+                let material = |l: usize| {
+                    let slot = *rows.add(l) as usize;
+                    self.material.get(slot).map_or(0, |m| *m as usize)
+                };
+                let next = history::next_critical(self.toughness, material, lowest);
+                scatter(next, self.next, rows, 1);
+                if let Some(lost) = lost {
+                    let q = v.pressure_factor(rows, i.field[1]);
+                    let energy = history::released::<L, W>(q, i.field, lost) * i.volume;
+                    // one by one: the order of the sum must not depend on the width
+                    for x in &energy.to_array()[..L::N] {
+                        tally.released += x;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Share pass: `P = q Σ k r0² s` into field 0.
+pub struct Share<'a, const D: usize, W, const PERIODIC: bool> {
+    pub view: View<'a, D, W>,
+}
+
+impl<const D: usize, W: Law, const PERIODIC: bool> Kernel for Share<'_, D, W, PERIODIC> {
+    type Out = ();
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        let v = &self.view;
+        for slice in v.block(block) {
+            for part in 0..TILE / L::N {
+                // SAFETY: as in the force pass; pressures are written, stiffnesses read
+                unsafe {
+                    let rows = v.rows::<L>(slice, part);
+                    let i = v.end::<L, false>(rows);
+                    let mut sum = L::splat(0.0);
+                    for line in v.list.start[slice]..v.list.start[slice + 1] {
+                        let j = v.end::<L, false>(v.partners::<L>(line, part));
+                        let b = v.bond::<L, PERIODIC>(&i, &j);
+                        let dead = L::dead(*v.alive.at(line), part);
+                        let e = b.e.nan_if(dead);
+                        let s = if L::any(lane::beyond_series(e)) {
+                            lane::stretch(e)
+                        } else {
+                            lane::stretch_series(e)
+                        };
+                        sum = (b.k * b.r0_squared * s).zero_if(dead) + sum;
+                    }
+                    let q = v.pressure_factor(rows, L::gather2(v.fields.0, rows)[1]);
+                    scatter(q * sum, v.fields, rows, 2);
+                }
+            }
+        }
+    }
+}
+
+impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool>
+    Forces<'_, D, W, FRACTURE, CONTACT, PERIODIC>
+{
+    /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
+    /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner.
+    #[inline(always)]
+    unsafe fn farewell<L: Lane>(
+        &self,
+        pull: L,
+        y: [L; D],
+        rows: *const u32,
+        partners: *const u32,
+    ) -> L {
+        let Some((v, dt)) = self.motion else {
+            return L::splat(0.0);
+        };
+        let mut rate = L::splat(0.0);
+        for a in 0..D {
+            let mut relative = [0.0; TILE];
+            for (l, r) in relative[..L::N].iter_mut().enumerate() {
+                // SAFETY: rows and partners are slots
+                unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
+            }
+            // SAFETY: N ≤ TILE
+            rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
+        }
+        L::splat(0.25 * dt) * pull * rate
+    }
+}
+
+/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds.
+pub struct Energies<'a, const D: usize, W> {
+    pub view: View<'a, D, W>,
+    pub fields: Option<EnergyFields>,
+}
+
+/// Where the energy pass writes, per slot.
+#[derive(Clone, Copy)]
+pub struct EnergyFields {
+    pub strain: Shared,
+    pub repulsion: Shared,
+    pub share: Shared,
+    pub weight: Shared,
+}
+
+impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
+    /// Strain and repulsion energy of the block (energy).
+    type Out = [f64; 2];
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
+        let v = &self.view;
+        let mut sums = [0.0; 2];
+        let contact_e = L::splat(v.contact_e());
+        for slice in v.block(block) {
+            for part in 0..TILE / L::N {
+                // SAFETY: as in the force pass
+                unsafe {
+                    let zero = L::splat(0.0);
+                    let rows = v.rows::<L>(slice, part);
+                    let i = v.end::<L, true>(rows);
+                    let (mut strain, mut repulsion, mut share, mut weight) =
+                        (zero, zero, zero, zero);
+                    for line in v.list.start[slice]..v.list.start[slice + 1] {
+                        let j = v.end::<L, true>(v.partners::<L>(line, part));
+                        let b = v.bond::<L, true>(&i, &j);
+                        let dead = L::dead(*v.alive.at(line), part);
+                        let s = lane::stretch(b.e.nan_if(dead)).zero_if(dead);
+                        let kr = (b.k * b.r0_squared).zero_if(dead);
+                        let x = v.law.pair_energy(kr * s * s, i.field, j.field);
+                        strain = strain + x.zero_if(dead);
+                        share = kr.fma(s, share);
+                        weight = weight + kr;
+                        if v.repulsion.is_some() && L::any(b.e.lt(contact_e)) {
+                            repulsion = repulsion + v.repel(&b, j.volume).1;
+                        }
+                    }
+                    if W::SHARES {
+                        let q = v.pressure_factor(rows, i.field[1]);
+                        strain = strain + L::splat(0.5) * q * share * share;
+                    }
+                    // one by one: the order of the sum must not depend on the width
+                    for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
+                        let energy = x * i.volume;
+                        energy.to_array()[..L::N].iter().for_each(|x| *sum += x);
+                    }
+                    if let Some(out) = self.fields {
+                        scatter(strain, out.strain, rows, 1);
+                        scatter(repulsion, out.repulsion, rows, 1);
+                        scatter(share, out.share, rows, 1);
+                        scatter(weight, out.weight, rows, 1);
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
