@@ -19,6 +19,13 @@ impl Text {
         self.text.push_str(s);
         self.origin.extend(std::iter::repeat_n(origin, s.len()));
     }
+    /// Adds `other` after `joint`.
+    pub fn append(&mut self, joint: &str, other: &Text) {
+        let at = self.origin.last().map_or(0, |o| o + 1);
+        self.push_str(joint, at);
+        self.text.push_str(&other.text);
+        self.origin.extend(&other.origin);
+    }
     pub fn as_str(&self) -> &str {
         &self.text
     }

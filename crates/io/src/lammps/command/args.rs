@@ -65,6 +65,19 @@ impl<'a> Args<'a> {
         }
     }
 
+    /// All words that are left as one, joined with blanks.
+    ///
+    /// # Errors
+    /// There is none; `what` was expected.
+    pub fn rest(&mut self, what: &str) -> Result<Word> {
+        let mut joined = self.next(what)?.clone();
+        while let Some(word) = self.optional() {
+            joined.text.append(" ", &word.text);
+            joined.span.1 = word.span.1;
+        }
+        Ok(joined)
+    }
+
     /// A finite number.
     ///
     /// # Errors

@@ -85,15 +85,20 @@ impl Session<'_> {
 
     pub(super) fn reset_timestep(&mut self, args: &mut Args) -> Result<()> {
         let step = args.count("the new step", 0)?;
+        // forwards, the time goes on with the steps
+        let forwards = step.checked_sub(self.progress.step);
+        let counted = match forwards {
+            Some(n) => self.time() + n as f64 * self.progress.time_step,
+            None => step as f64 * self.progress.time_step,
+        };
         let time = if args.eat("time") {
             args.number("the new time")?
         } else {
-            step as f64 * self.progress.time_step
+            counted
         };
         args.finish()?;
-        let p = &mut self.progress;
-        (p.step, p.begin, p.end, p.first) = (step, step, step, step);
-        p.time_base = (step, time);
+        self.progress.step = step;
+        self.progress.time_base = (step, time);
         for dump in &mut self.dumps {
             dump.last_written = None;
         }

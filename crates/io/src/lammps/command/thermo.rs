@@ -76,7 +76,11 @@ impl Session<'_> {
                         "error" => Lost::Error,
                         "warn" | "ignore" => Lost::Allow,
                         _ => {
-                            return Err(args.unknown(how, "the value", ["error", "warn", "ignore"]));
+                            return Err(args.unknown(
+                                how,
+                                "the value",
+                                ["error", "warn", "ignore"],
+                            ));
                         }
                     };
                 }

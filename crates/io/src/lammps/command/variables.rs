@@ -40,8 +40,8 @@ impl Session<'_> {
             }
             "loop" => self.loop_kind(args)?,
             "string" => Kind::Text(args.next("a text")?.as_str().to_string()),
-            "equal" => Kind::Equal(Rc::new(read_formula(args.next("a formula")?)?)),
-            "atom" => Kind::Atom(Rc::new(read_formula(args.next("a formula")?)?)),
+            "equal" => Kind::Equal(Rc::new(read_formula(&args.rest("a formula")?)?)),
+            "atom" => Kind::Atom(Rc::new(read_formula(&args.rest("a formula")?)?)),
             "internal" => Kind::Internal(args.number("a value")?),
             "format" => {
                 let of = args.next("the name of a variable")?;

@@ -62,8 +62,9 @@ pub struct Clock {
 }
 
 impl Clock {
-    fn elapsed(&self) -> f64 {
-        (self.step - self.begin.min(self.step)) as f64 * self.time_step
+    /// Steps since the run began.
+    fn done(&self) -> f64 {
+        (self.step - self.begin.min(self.step)) as f64
     }
 }
 
@@ -135,15 +136,15 @@ pub fn apply(name: &str, a: &[f64], clock: &Clock) -> Result<f64, String> {
             };
             x + (y - x) * fraction
         }
-        ("vdisplace", [x, v]) => x + v * clock.elapsed(),
+        ("vdisplace", [x, v]) => x + v * clock.done() * clock.time_step,
         ("swiggle" | "cwiggle", [_, _, p]) if *p == 0.0 => {
             return wrong("needs a period other than 0");
         }
         ("swiggle", [x, amplitude, period]) => {
-            x + amplitude * (TAU / period * clock.elapsed()).sin()
+            x + amplitude * (TAU / period * clock.done() * clock.time_step).sin()
         }
         ("cwiggle", [x, amplitude, period]) => {
-            x + amplitude * (1.0 - (TAU / period * clock.elapsed()).cos())
+            x + amplitude * (1.0 - (TAU / period * clock.done() * clock.time_step).cos())
         }
         _ => match next_step(name, &a.iter().map(|x| *x as i64).collect::<Vec<_>>(), step) {
             Some(next) => next as f64,
@@ -151,6 +152,9 @@ pub fn apply(name: &str, a: &[f64], clock: &Clock) -> Result<f64, String> {
         },
     })
 }
+
+/// What LAMMPS gives when there is no next step.
+const NEVER: i64 = 9_223_372_036_854_774_784;
 
 /// The next output step after `step`.
 fn next_step(name: &str, a: &[i64], step: i64) -> Option<i64> {
@@ -170,7 +174,7 @@ fn next_step(name: &str, a: &[i64], step: i64) -> Option<i64> {
             } else {
                 x + multiple(step - x, z)
             };
-            Some(if next > y { i64::MAX >> 11 } else { next })
+            Some(if next > y { NEVER } else { next })
         }
         ("stride2", &[x, y, z, u, v, w])
             if x >= 0
@@ -186,7 +190,7 @@ fn next_step(name: &str, a: &[i64], step: i64) -> Option<i64> {
         {
             let outer = |s: i64| {
                 let next = x + multiple(s - x, z);
-                if next > y { i64::MAX >> 11 } else { next }
+                if next > y { NEVER } else { next }
             };
             Some(if step < x {
                 x
@@ -231,11 +235,11 @@ fn next_step(name: &str, a: &[i64], step: i64) -> Option<i64> {
             }
             let factor = (y as f64 / x as f64).powf(1.0 / (n - 1) as f64);
             let mut value = x as f64;
-            while value.floor() as i64 <= step && (value as i64) < y {
+            while value.ceil() as i64 <= step && (value as i64) < y {
                 value *= factor;
             }
             Some(if step >= y {
-                i64::MAX >> 11
+                NEVER
             } else {
                 (value.ceil() as i64).min(y)
             })
