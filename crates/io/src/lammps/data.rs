@@ -331,7 +331,6 @@ impl Session<'_> {
         self.types = data.types;
         self.ids = data.atoms.ids.clone();
         self.domain = Some(domain);
-        self.thermo.expected = n;
         self.store = super::session::Store::Atoms(data.atoms);
         Ok(())
     }

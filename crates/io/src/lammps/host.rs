@@ -263,7 +263,7 @@ pub trait Engine: Particles {
 
 /// Makes engines.
 pub trait Host {
-    /// At the first `run` (or `write_dump` of a force field quantity).
+    /// Called once, at the first `run`. Bonds may be built here or in the first [`Engine::setup`].
     ///
     /// # Errors
     /// The set-up cannot be built.

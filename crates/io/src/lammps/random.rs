@@ -93,9 +93,9 @@ mod tests {
     fn is_the_generator_of_lammps() {
         let mut r = Ranmar::new(12345).unwrap();
         for expected in [
-            0.86995309591293334961,
-            0.010425925254821777344,
-            0.29356783628463745117,
+            0.869_953_095_912_933_3,
+            0.010_425_925_254_821_777,
+            0.293_567_836_284_637_45,
         ] {
             assert_eq!(r.uniform(), expected);
         }

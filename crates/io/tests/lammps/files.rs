@@ -64,7 +64,7 @@ fn broken_data_files_are_errors_with_their_line() {
         ("7 1", "7 3", "atom type 3 is not between 1 and 2", 12),
         ("\n5 1 0.25", "\n3 1 0.25", "atom id 3 occurs twice", 14),
         ("7 -1 0 0\n", "", "2 of 3 lines", 20),
-        ("5 0 0 0", "6 0 0 0", "there is no atom with id 6", 19),
+        ("\n5 0 0 0", "\n6 0 0 0", "there is no atom with id 6", 19),
         ("-1 1 ylo yhi", "1 -1 ylo yhi", "the box is empty", 7),
         ("Velocities", "Bonds", "`Bonds` is not supported", 16),
         (

@@ -40,13 +40,11 @@ impl Script<'_> {
             }
             "run" => self.run(args),
             "quit" => {
-                if let Some(word) = args.optional() {
-                    if word.as_str() != "0" {
-                        return Err(Problem::at(
-                            word.span,
-                            format!("the script quits with status {}", word.as_str()),
-                        ));
-                    }
+                if let Some(word) = args.optional().filter(|w| w.as_str() != "0") {
+                    return Err(Problem::at(
+                        word.span,
+                        format!("the script quits with status {}", word.as_str()),
+                    ));
                 }
                 self.stop();
                 Ok(())

@@ -12,9 +12,9 @@ const COLUMNS: [&str; 24] = [
     "id", "type", "element", "mass", "proc", "x", "y", "z", "xs", "ys", "zs", "xu", "yu", "zu",
     "ix", "iy", "iz", "vx", "vy", "vz", "fx", "c_ID", "c_ID[i]", "v_name",
 ];
-const OPTIONS: [&str; 14] = [
-    "append", "delay", "element", "every", "first", "flush", "format", "image", "maxfiles", "pad",
-    "scale", "sort", "time", "units",
+const OPTIONS: [&str; 12] = [
+    "append", "element", "every", "first", "flush", "format", "image", "pad", "scale", "sort",
+    "time", "units",
 ];
 
 impl Session<'_> {
@@ -145,13 +145,7 @@ impl Session<'_> {
                     }
                 }
                 _ => {
-                    return Err(args.unknown(
-                        word,
-                        "the option",
-                        OPTIONS
-                            .into_iter()
-                            .filter(|o| !["delay", "maxfiles"].contains(o)),
-                    ));
+                    return Err(args.unknown(word, "the option", OPTIONS));
                 }
             }
         }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::Args;
 use crate::lammps::atoms::{Members, Reference};
 use crate::lammps::data;
-use crate::lammps::domain::{SimBox, corners};
+use crate::lammps::domain::{Face, SimBox, corners};
 use crate::lammps::error::{Problem, Result};
 use crate::lammps::fix::Input;
 use crate::lammps::host::{BLOCK, Quantity};
@@ -132,7 +132,6 @@ impl Session<'_> {
         }
         atoms.append(kind as u32, new);
         self.ids = atoms.ids.clone();
-        self.thermo.expected = was + made;
         self.console.print(&format!("Created {made} atoms"));
         self.console.print(&format!(
             "  using lattice units in orthogonal box = {}",

@@ -128,6 +128,14 @@ impl Session<'_> {
                 return Err(args.unknown(style, "the run style", ["verlet"]));
             }
         }
+        while let Some(word) = args.optional() {
+            if (name, word.as_str()) == ("neigh_modify", "exclude") {
+                return Err(Problem::at(
+                    word.span,
+                    "`neigh_modify exclude` would change the forces, it is not supported",
+                ));
+            }
+        }
         self.console.note(&format!("`{name}` has no effect here"));
         Ok(())
     }

@@ -58,7 +58,6 @@ impl Session<'_> {
             add_volume: style.as_str() != "custom",
             multi: style.as_str() == "multi",
             every: self.thermo.every,
-            expected: self.thermo.expected,
             ..Thermo::default()
         };
         Ok(())

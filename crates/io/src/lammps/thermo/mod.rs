@@ -31,8 +31,6 @@ pub struct Thermo {
     pub integer: Option<Format>,
     pub float: Option<Format>,
     pub single: Vec<(usize, Format)>,
-    /// Atoms at the start.
-    pub expected: usize,
 }
 
 impl Default for Thermo {
@@ -47,7 +45,6 @@ impl Default for Thermo {
             integer: None,
             float: None,
             single: Vec::new(),
-            expected: 0,
         }
     }
 }
