@@ -60,6 +60,8 @@ pub struct Progress {
     /// First and last step of the current run.
     pub begin: u64,
     pub end: u64,
+    /// First and last step of a `run ... every`, for functions of the step.
+    pub whole: Option<(u64, u64)>,
     /// First step of the chain of runs (`elaplong`).
     pub first: u64,
     pub time_step: f64,
@@ -136,6 +138,7 @@ impl<'a> Session<'a> {
                 step: 0,
                 begin: 0,
                 end: 0,
+                whole: None,
                 first: 0,
                 time_step: Units::Lj.time_step(),
                 time_base: (0, 0.0),
@@ -236,10 +239,11 @@ impl<'a> Session<'a> {
 
     pub fn clock(&self) -> Clock {
         let p = &self.progress;
+        let (begin, end) = p.whole.unwrap_or((p.begin, p.end));
         Clock {
             step: p.step,
-            begin: p.begin,
-            end: p.end,
+            begin,
+            end,
             time_step: p.time_step,
         }
     }

@@ -176,3 +176,21 @@ print \"> $(x[1]:%.17g) $(x[2]:%.17g) $(x[3]:%.17g)\"
     ];
     assert_eq!(printed(&script), expected);
 }
+
+#[test]
+fn runs_in_parts_ramp_over_the_whole() {
+    let script = format!(
+        "{BOX}fix 1 all nve
+variable t equal ramp(0,1)
+variable n equal step
+run 4 every 2 \"print '> at $n'\"
+print \"> $(step) $(time:%g)\"
+run 10 upto post no
+thermo_style custom step elapsed
+print \"> $(step) $(elapsed)\"
+fix 2 all indent 0 sphere v_t 0 0 1
+run 2
+"
+    );
+    assert_eq!(printed(&script), ["at 2", "at 4", "4 4e-08", "10 0"]);
+}

@@ -196,6 +196,7 @@ impl Script<'_> {
             self.session.end_run(&plan, clock.elapsed().as_secs_f64());
             return Ok(());
         };
+        self.session.progress.whole = Some((begin, end));
         while self.session.progress.step < end {
             let steps = (*every).min(end - self.session.progress.step);
             let first = self.session.progress.step == begin;
@@ -214,6 +215,7 @@ impl Script<'_> {
                 self.line(&command.text)?;
             }
         }
+        self.session.progress.whole = None;
         Ok(())
     }
 

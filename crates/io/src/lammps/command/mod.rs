@@ -10,6 +10,7 @@ mod output;
 mod pair;
 mod particles;
 mod run;
+mod set;
 mod settings;
 mod thermo;
 mod variables;

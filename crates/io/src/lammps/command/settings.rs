@@ -128,6 +128,9 @@ impl Session<'_> {
                 return Err(args.unknown(style, "the run style", ["verlet"]));
             }
         }
+        if name != "run_style" {
+            args.back();
+        }
         while let Some(word) = args.optional() {
             if (name, word.as_str()) == ("neigh_modify", "exclude") {
                 return Err(Problem::at(
