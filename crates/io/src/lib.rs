@@ -4,3 +4,5 @@ pub mod deck;
 pub mod drive;
 pub mod read;
 pub mod write;
+//! io
+pub mod lammps;

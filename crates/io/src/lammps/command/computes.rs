@@ -1,0 +1,110 @@
+//! `compute`, `uncompute`.
+
+use super::Args;
+use crate::lammps::compute::{Compute, ComputeKind, Mode, STYLES, Source};
+use crate::lammps::error::{Problem, Result, suggestion};
+use crate::lammps::host::Quantity;
+use crate::lammps::particles::Field;
+use crate::lammps::session::Session;
+
+impl Session<'_> {
+    pub(super) fn add_compute(&mut self, args: &mut Args) -> Result<()> {
+        self.domain()?;
+        let id = args.next("a compute ID")?;
+        if self.computes.iter().any(|c| c.id == id.as_str()) {
+            return Err(Problem::at(
+                id.span,
+                format!("there is a compute `{}` already", id.as_str()),
+            ));
+        }
+        let word = args.next("a group ID")?;
+        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let style = args.next("a compute style")?;
+        let raw = |q| ComputeKind::Atoms(vec![Field::Raw(q)]);
+        let kind = match style.as_str() {
+            "damage/atom" => raw(Quantity::Damage),
+            "dilatation/atom" => raw(Quantity::Dilatation),
+            "pe/atom" => raw(Quantity::Energy),
+            "ke/atom" => ComputeKind::Atoms(vec![Field::Kinetic]),
+            "ke" => ComputeKind::Kinetic,
+            "pe" => ComputeKind::Potential,
+            "property/atom" => {
+                let mut fields = Vec::new();
+                while let Some(word) = args.optional() {
+                    fields.push(match word.as_str() {
+                        "s0" => Field::Raw(Quantity::CriticalStretch),
+                        "vfrac" | "volume" => Field::Raw(Quantity::Volume),
+                        "density" => Field::Raw(Quantity::Density),
+                        name => Field::parse(name).ok_or_else(|| {
+                            let known = [
+                                "id", "type", "mass", "density", "vfrac", "s0", "x", "y", "z",
+                                "xs", "xu", "ix", "vx", "vy", "vz", "fx", "fy", "fz",
+                            ];
+                            args.unknown(word, "the property", known)
+                        })?,
+                    });
+                }
+                if fields.is_empty() {
+                    args.next("a property")?;
+                }
+                ComputeKind::Atoms(fields)
+            }
+            "reduce" => {
+                let word = args.next("sum, min, max or ave")?;
+                let mode = Mode::ALL
+                    .iter()
+                    .find(|(n, _)| *n == word.as_str())
+                    .map(|(_, m)| *m);
+                let mode =
+                    mode.ok_or_else(|| args.unknown(word, "the mode", Mode::ALL.map(|(n, _)| n)))?;
+                let mut inputs = Vec::new();
+                while let Some(word) = args.optional() {
+                    let input = Source::parse(word.as_str()).ok_or_else(|| {
+                        args.unknown(
+                            word,
+                            "the input",
+                            ["x", "vx", "fx", "c_ID", "c_ID[i]", "v_name"],
+                        )
+                    })?;
+                    self.check_source(&input).map_err(|p| p.or_at(word.span))?;
+                    inputs.push(input);
+                }
+                if inputs.is_empty() {
+                    args.next("an input")?;
+                }
+                ComputeKind::Reduce { mode, inputs }
+            }
+            _ => return Err(args.unknown(style, "the compute style", STYLES)),
+        };
+        args.finish()?;
+        self.computes.push(Compute {
+            id: id.as_str().to_string(),
+            members,
+            kind,
+        });
+        Ok(())
+    }
+
+    /// Does a per-atom source exist?
+    pub(super) fn check_source(&mut self, source: &Source) -> Result<()> {
+        match source {
+            Source::Variable(name) => self.variable_exists(name),
+            other => self.source_tree(other).map(|_| ()),
+        }
+    }
+
+    pub(super) fn remove_compute(&mut self, args: &mut Args) -> Result<()> {
+        let id = args.next("a compute ID")?;
+        args.finish()?;
+        let before = self.computes.len();
+        self.computes.retain(|c| c.id != id.as_str());
+        if self.computes.len() == before {
+            return Err(
+                Problem::at(id.span, format!("there is no compute `{}`", id.as_str())).help(
+                    suggestion(id.as_str(), self.computes.iter().map(|c| c.id.as_str())),
+                ),
+            );
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,429 @@
+//! `read_data`, `write_data` for `atom_style peri`.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::path::Path;
+
+use super::atoms::{Atoms, Column, Ids, Reference};
+use super::domain::SimBox;
+use super::error::{Problem, Result};
+use super::host::Quantity;
+use super::particles::Field;
+use super::printf::shortest;
+use super::session::Session;
+
+/// What a data file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataFile {
+    pub types: usize,
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+    pub atoms: Atoms,
+    /// Image flags other than 0 were present (and are dropped).
+    pub had_images: bool,
+}
+
+/// Lines of a file with their numbers, for messages.
+pub(super) struct Lines<R> {
+    reader: R,
+    pub path: String,
+    pub number: usize,
+    pub text: String,
+}
+
+impl<R: BufRead> Lines<R> {
+    pub fn new(reader: R, path: &str) -> Self {
+        Lines {
+            reader,
+            path: path.to_string(),
+            number: 0,
+            text: String::new(),
+        }
+    }
+
+    /// The next line without its comment; `None` at the end of the file.
+    pub fn next(&mut self) -> Result<Option<&str>> {
+        self.text.clear();
+        self.number += 1;
+        let mut raw = Vec::new();
+        match self.reader.read_until(b'\n', &mut raw) {
+            Ok(0) => return Ok(None),
+            Ok(_) => {}
+            Err(e) => return Err(Problem::new(format!("cannot read {}: {e}", self.path))),
+        }
+        match std::str::from_utf8(&raw) {
+            Ok(t) => self.text.push_str(t.trim_end()),
+            Err(_) => return Err(self.fail("this line is not text (binary or compressed file?)")),
+        }
+        Ok(Some(self.text.split('#').next().unwrap_or("").trim()))
+    }
+
+    pub fn fail(&self, message: impl Into<String>) -> Box<Problem> {
+        Problem::in_file(&self.path, self.number, &self.text, message)
+    }
+}
+
+/// A finite number.
+pub(super) fn finite(word: &str) -> std::result::Result<f64, String> {
+    match word.parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        Ok(_) => Err(format!("`{word}` is not a finite number")),
+        Err(_) => Err(format!("expected a number, found `{word}`")),
+    }
+}
+
+/// Opens a text file.
+pub(super) fn open(path: &Path, shown: &str) -> Result<BufReader<File>> {
+    File::open(path)
+        .map(BufReader::new)
+        .map_err(|e| Problem::new(format!("cannot open {shown}: {e}")))
+}
+
+const SECTIONS: [&str; 2] = ["Atoms", "Velocities"];
+
+/// Reads a data file of `atom_style peri`: `id type volume density x y z [ix iy iz]` per atom.
+///
+/// # Errors
+/// File and line of the first mistake.
+pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
+    let mut lines = Lines::new(reader, path);
+    let (mut count, mut types) = (None, None);
+    let mut bounds: [Option<[f64; 2]>; 3] = [None; 3];
+    lines.next()?; // the first line is a title
+    let mut section = loop {
+        let Some(line) = lines.next()? else {
+            return Err(
+                lines.fail("the file ends within its header; the section `Atoms` is missing")
+            );
+        };
+        let words: Vec<String> = line.split_whitespace().map(str::to_string).collect();
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        match words[..] {
+            [] => {}
+            [n, "atoms"] => count = Some(whole(&lines, n)?),
+            [n, "atom", "types"] => types = Some(whole(&lines, n)?),
+            [low, high, a @ ("xlo" | "ylo" | "zlo"), _] => {
+                let pair = [low, high].map(finite);
+                let [low, high] = pair.map(|x| x.map_err(|e| lines.fail(e)));
+                let (low, high) = (low?, high?);
+                if low >= high {
+                    return Err(lines.fail(format!("the box is empty: {low} is not below {high}")));
+                }
+                bounds[usize::from(a.as_bytes()[0] - b'x')] = Some([low, high]);
+            }
+            [n, what @ ("bonds" | "angles" | "dihedrals" | "impropers")] if n != "0" => {
+                return Err(lines.fail(format!(
+                    "{what} are not supported; `atom_style peri` has none"
+                )));
+            }
+            [_, "bonds" | "angles" | "dihedrals" | "impropers"] => {}
+            [name] if name.starts_with(|c: char| c.is_ascii_uppercase()) => break name.to_string(),
+            _ => {
+                return Err(lines
+                    .fail("this header line is not supported")
+                    .help("supported: N atoms; N atom types; LO HI xlo xhi (ylo yhi, zlo zhi); then the sections Atoms, Velocities"));
+            }
+        }
+    };
+    let count = count.ok_or_else(|| lines.fail("the header has no line `N atoms`"))?;
+    let types = types.ok_or_else(|| lines.fail("the header has no line `N atom types`"))?;
+    let mut corners = [[0.0; 2]; 3];
+    for (a, b) in bounds.into_iter().enumerate() {
+        let axis = ["x", "y", "z"][a];
+        corners[a] = b.ok_or_else(|| {
+            lines.fail(format!("the header has no line `LO HI {axis}lo {axis}hi`"))
+        })?;
+    }
+    let mut atoms: Option<Atoms> = None;
+    let mut had_images = false;
+    loop {
+        match (section.as_str(), atoms.is_some()) {
+            ("Atoms", false) => {
+                atoms = Some(read_atoms(&mut lines, count, types, &mut had_images)?)
+            }
+            ("Velocities", true) => read_velocities(&mut lines, &mut atoms)?,
+            ("Velocities", false) => {
+                return Err(lines.fail("the section `Atoms` must come before `Velocities`"));
+            }
+            ("Atoms", true) => return Err(lines.fail("a second section `Atoms`")),
+            _ => {
+                return Err(lines
+                    .fail(format!("the section `{section}` is not supported"))
+                    .help(format!("supported: {}", SECTIONS.join(", "))));
+            }
+        }
+        match next_filled(&mut lines)? {
+            Some(name) => section = name,
+            None => break,
+        }
+    }
+    let atoms = atoms.unwrap_or_default();
+    Ok(DataFile {
+        types,
+        low: corners.map(|c| c[0]),
+        high: corners.map(|c| c[1]),
+        atoms,
+        had_images,
+    })
+}
+
+fn whole<R: BufRead>(lines: &Lines<R>, word: &str) -> Result<usize> {
+    match word.parse::<usize>() {
+        Ok(n) if n <= u32::MAX as usize => Ok(n),
+        _ => Err(lines.fail(format!("expected a whole number, found `{word}`"))),
+    }
+}
+
+fn next_filled<R: BufRead>(lines: &mut Lines<R>) -> Result<Option<String>> {
+    loop {
+        match lines.next()? {
+            None => return Ok(None),
+            Some("") => {}
+            Some(line) => return Ok(Some(line.to_string())),
+        }
+    }
+}
+
+fn row<R: BufRead>(
+    lines: &mut Lines<R>,
+    section: &str,
+    k: usize,
+    count: usize,
+) -> Result<Vec<String>> {
+    match next_filled(lines)? {
+        Some(line) => Ok(line.split_whitespace().map(str::to_string).collect()),
+        None => Err(lines.fail(format!(
+            "the file ends in section `{section}`: {k} of {count} lines are there"
+        ))),
+    }
+}
+
+fn read_atoms<R: BufRead>(
+    lines: &mut Lines<R>,
+    count: usize,
+    types: usize,
+    had_images: &mut bool,
+) -> Result<Atoms> {
+    // the header is not trusted with memory
+    let mut rows: Vec<(u32, u32, [f64; 5], usize)> = Vec::with_capacity(count.min(1 << 20));
+    for k in 0..count {
+        let words = row(lines, "Atoms", k, count)?;
+        if words.len() != 7 && words.len() != 10 {
+            return Err(lines
+                .fail(format!(
+                    "an atom has 7 numbers (or 10 with image flags), found {}",
+                    words.len()
+                ))
+                .help("atom_style peri: id type volume density x y z [ix iy iz]"));
+        }
+        let id = whole(lines, &words[0])?;
+        let kind = whole(lines, &words[1])?;
+        if id == 0 {
+            return Err(lines.fail("atom ids start at 1"));
+        }
+        if !(1..=types).contains(&kind) {
+            return Err(lines.fail(format!("atom type {kind} is not between 1 and {types}")));
+        }
+        let mut v = [0.0; 5];
+        for (slot, word) in v.iter_mut().zip(&words[2..7]) {
+            *slot = finite(word).map_err(|e| lines.fail(e))?;
+        }
+        for (value, name) in v.iter().zip(["volume", "density"]) {
+            if *value <= 0.0 {
+                return Err(lines.fail(format!("the {name} must be positive, found {value}")));
+            }
+        }
+        for flag in &words[7..] {
+            let flag: i64 = flag
+                .parse()
+                .map_err(|_| lines.fail(format!("image flag `{flag}` is not a whole number")))?;
+            *had_images |= flag != 0;
+        }
+        rows.push((id as u32, kind as u32, v, lines.number));
+    }
+    rows.sort_by_key(|r| r.0);
+    if let Some(w) = rows.windows(2).find(|w| w[0].0 == w[1].0) {
+        return Err(Problem::in_file(
+            &lines.path,
+            w[1].3,
+            "",
+            format!("atom id {} occurs twice", w[1].0),
+        ));
+    }
+    let sequence = rows.iter().enumerate().all(|(k, r)| r.0 as usize == k + 1);
+    fn column<T: Copy + PartialEq>(values: Vec<T>, empty: T) -> Column<T> {
+        match values.first() {
+            None => Column::Uniform(empty),
+            Some(v) if values.iter().all(|x| x == v) => Column::Uniform(*v),
+            Some(_) => Column::Each(values),
+        }
+    }
+    Ok(Atoms {
+        ids: if sequence {
+            Ids::Count(rows.len())
+        } else {
+            Ids::List(rows.iter().map(|r| r.0).collect())
+        },
+        types: column(rows.iter().map(|r| r.1).collect(), 1),
+        volume: column(rows.iter().map(|r| r.2[0]).collect(), 1.0),
+        density: column(rows.iter().map(|r| r.2[1]).collect(), 1.0),
+        reference: Reference::Points(rows.iter().map(|r| [r.2[2], r.2[3], r.2[4]]).collect()),
+        moved: None,
+        velocity: Column::Uniform([0.0; 3]),
+    })
+}
+
+fn read_velocities<R: BufRead>(lines: &mut Lines<R>, atoms: &mut Option<Atoms>) -> Result<()> {
+    let Some(atoms) = atoms else { return Ok(()) };
+    let count = atoms.len();
+    for k in 0..count {
+        let words = row(lines, "Velocities", k, count)?;
+        if words.len() != 4 {
+            return Err(lines.fail(format!(
+                "a velocity has 4 numbers (id vx vy vz), found {}",
+                words.len()
+            )));
+        }
+        let id = whole(lines, &words[0])?;
+        let index = atoms
+            .ids
+            .find(id as u64)
+            .ok_or_else(|| lines.fail(format!("there is no atom with id {id}")))?;
+        let mut v = [0.0; 3];
+        for (slot, word) in v.iter_mut().zip(&words[1..]) {
+            *slot = finite(word).map_err(|e| lines.fail(e))?;
+        }
+        atoms.velocity.each(count)[index] = v;
+    }
+    Ok(())
+}
+
+impl Session<'_> {
+    /// Takes a data file as box and atoms.
+    ///
+    /// # Errors
+    /// Atoms outside the box.
+    pub fn take_data(&mut self, mut data: DataFile, path: &str) -> Result<()> {
+        let domain = SimBox::new(data.low, data.high, self.faces);
+        let n = data.atoms.len();
+        if data.had_images {
+            self.console.note(&format!(
+                "{path}: image flags are read as 0; bonds use the nearest periodic image"
+            ));
+        }
+        for i in 0..n {
+            let mut x = data.atoms.position(i);
+            for (a, x) in x.iter_mut().enumerate() {
+                *x = domain.wrap(a, *x).0;
+                if *x < domain.low[a] || *x > domain.high[a] {
+                    let axis = ["x", "y", "z"][a];
+                    return Err(Problem::new(format!(
+                        "{path}: the atom with id {} lies outside the box: {axis} = {x}",
+                        data.atoms.ids.get(i)
+                    ))
+                    .help(format!("enlarge `{axis}lo {axis}hi` in the file")));
+                }
+            }
+            if let Reference::Points(points) = &mut data.atoms.reference {
+                points[i] = x;
+            }
+        }
+        self.types = data.types;
+        self.ids = data.atoms.ids.clone();
+        self.domain = Some(domain);
+        self.store = super::session::Store::Atoms(data.atoms);
+        Ok(())
+    }
+
+    /// Writes a data file, complete or not at all.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write_data(&mut self, name: &str) -> Result<()> {
+        self.shrink_box()?;
+        let path = self.output_path(name);
+        let io = |e: std::io::Error| Problem::new(format!("cannot write {}: {e}", path.display()));
+        // a half-written file must not look like a whole one
+        let mut part = path.clone().into_os_string();
+        part.push(".part");
+        let mut out = BufWriter::new(File::create(&part).map_err(io)?);
+        let domain = *self.domain()?;
+        let n = self.count();
+        let step = self.progress.step;
+        let mut text = format!(
+            "LAMMPS data file via write_data, peridyne {}, timestep = {step}, units = {}\n\n{n} atoms\n{} atom types\n\n",
+            env!("CARGO_PKG_VERSION"),
+            self.units.name(),
+            self.types
+        );
+        for (a, axis) in ["x", "y", "z"].iter().enumerate() {
+            text += &format!(
+                "{} {} {axis}lo {axis}hi\n",
+                shortest(domain.low[a]),
+                shortest(domain.high[a])
+            );
+        }
+        text += "\nAtoms # peri\n\n";
+        let atom_fields = [Quantity::Type, Quantity::Volume, Quantity::Density].map(Field::Raw);
+        let places = [0, 1, 2]
+            .map(Field::Wrapped)
+            .into_iter()
+            .chain([0, 1, 2].map(Field::Image));
+        let fields: Vec<Field> = atom_fields.into_iter().chain(places).collect();
+        self.write_rows(&fields, &mut text, &mut out)
+            .map_err(|e| e.unwrap_or_else(io))?;
+        text += "\nVelocities\n\n";
+        let fields = [0, 1, 2].map(|a| Field::Raw(Quantity::Velocity(a)));
+        self.write_rows(&fields, &mut text, &mut out)
+            .map_err(|e| e.unwrap_or_else(io))?;
+        out.flush().map_err(io)?;
+        std::fs::rename(&part, &path).map_err(io)?;
+        Ok(())
+    }
+
+    fn write_rows(
+        &self,
+        fields: &[Field],
+        text: &mut String,
+        out: &mut dyn Write,
+    ) -> std::result::Result<(), RowError> {
+        let view = self.view().map_err(RowError::Problem)?;
+        let n = self.count();
+        let block = super::host::BLOCK;
+        let mut values = vec![vec![0.0; block]; fields.len()];
+        for first in (0..n).step_by(block) {
+            let m = block.min(n - first);
+            for (f, v) in fields.iter().zip(&mut values) {
+                view.read(*f, first, &mut v[..m])
+                    .map_err(RowError::Problem)?;
+            }
+            for i in 0..m {
+                *text += &self.ids.get(first + i).to_string();
+                for v in &values {
+                    text.push(' ');
+                    *text += &shortest(v[i]);
+                }
+                text.push('\n');
+            }
+            out.write_all(text.as_bytes()).map_err(RowError::Io)?;
+            text.clear();
+        }
+        out.write_all(text.as_bytes()).map_err(RowError::Io)?;
+        text.clear();
+        Ok(())
+    }
+}
+
+enum RowError {
+    Problem(Box<Problem>),
+    Io(std::io::Error),
+}
+
+impl RowError {
+    fn unwrap_or_else(self, io: impl FnOnce(std::io::Error) -> Box<Problem>) -> Box<Problem> {
+        match self {
+            RowError::Problem(p) => p,
+            RowError::Io(e) => io(e),
+        }
+    }
+}

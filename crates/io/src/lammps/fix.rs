@@ -1,0 +1,144 @@
+//! `fix`: what moves the atoms and what acts on them.
+
+use std::sync::Arc;
+
+use super::atoms::Members;
+use super::error::{Problem, Result, suggestion};
+use super::host::{Condition, Reaction};
+use super::session::{Session, Store};
+
+/// A number, or a variable evaluated at every step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Input {
+    Number(f64),
+    Variable(String),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fix {
+    pub id: String,
+    pub members: Arc<Members>,
+    pub kind: FixKind,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum FixKind {
+    Nve,
+    /// Lengths are multiplied by `unit`.
+    Indent {
+        stiffness: f64,
+        center: [Input; 3],
+        radius: Input,
+        unit: f64,
+    },
+    SetForce([Option<Input>; 3]),
+    AddForce([Input; 3]),
+    Enforce2d,
+}
+
+pub const STYLES: [&str; 5] = ["nve", "indent", "setforce", "addforce", "enforce2d"];
+
+impl Session<'_> {
+    fn input(&mut self, input: &Input) -> Result<f64> {
+        match input {
+            Input::Number(x) => Ok(*x),
+            Input::Variable(name) => self.variable_number(name),
+        }
+    }
+
+    /// The conditions with the values of this moment.
+    ///
+    /// # Errors
+    /// A variable cannot be evaluated.
+    pub fn conditions(&mut self) -> Result<Vec<Condition>> {
+        let mut out = Vec::with_capacity(self.fixes.len());
+        for k in 0..self.fixes.len() {
+            let Fix { members, kind, .. } = self.fixes[k].clone();
+            out.push(match kind {
+                FixKind::Nve => continue,
+                FixKind::Indent {
+                    stiffness,
+                    center,
+                    radius,
+                    unit,
+                } => {
+                    let [x, y, z] = &center;
+                    let center = [
+                        self.input(x)? * unit,
+                        self.input(y)? * unit,
+                        self.input(z)? * unit,
+                    ];
+                    let radius = self.input(&radius)? * unit;
+                    if radius < 0.0 {
+                        return Err(Problem::new(format!(
+                            "the indenter of fix `{}` has the radius {radius}",
+                            self.fixes[k].id
+                        )));
+                    }
+                    Condition::Indent {
+                        members,
+                        stiffness,
+                        center,
+                        radius,
+                    }
+                }
+                FixKind::SetForce(values) => {
+                    let mut force = [None; 3];
+                    for (f, v) in force.iter_mut().zip(&values) {
+                        *f = v.as_ref().map(|v| self.input(v)).transpose()?;
+                    }
+                    Condition::SetForce { members, force }
+                }
+                FixKind::AddForce([x, y, z]) => Condition::AddForce {
+                    members,
+                    force: [self.input(&x)?, self.input(&y)?, self.input(&z)?],
+                },
+                FixKind::Enforce2d => Condition::Enforce2d { members },
+            });
+        }
+        Ok(out)
+    }
+
+    /// Atoms that `fix nve` moves.
+    pub fn moving(&self) -> Option<Arc<Members>> {
+        let n = self.count();
+        let mut moving: Option<Arc<Members>> = None;
+        for fix in self.fixes.iter().filter(|f| f.kind == FixKind::Nve) {
+            moving = Some(match moving {
+                None => fix.members.clone(),
+                Some(m) => Arc::new(Members::collect(n, |i| {
+                    m.contains(i) || fix.members.contains(i)
+                })),
+            });
+        }
+        moving
+    }
+
+    /// `f_ID`, `f_ID[i]` of an indenter: its energy, and the force on it.
+    ///
+    /// # Errors
+    /// No such fix, or one without values.
+    pub fn fix_value(&self, id: &str, index: &[f64]) -> Result<f64> {
+        let acting = self.fixes.iter().filter(|f| f.kind != FixKind::Nve);
+        let Some((number, fix)) = acting.enumerate().find(|(_, f)| f.id == id) else {
+            return Err(Problem::new(format!("there is no fix `{id}` with values"))
+                .help(suggestion(id, self.fixes.iter().map(|f| f.id.as_str()))));
+        };
+        if !matches!(fix.kind, FixKind::Indent { .. }) {
+            return Err(Problem::new(format!(
+                "fix `{id}` has no values: only `fix indent` has"
+            )));
+        }
+        let reaction = match &self.store {
+            Store::Engine(e) => e.reaction(number),
+            Store::Atoms(_) => Reaction::default(),
+        };
+        match index {
+            [] => Ok(reaction.energy),
+            [k] if [1.0, 2.0, 3.0].contains(k) => Ok(reaction.force[*k as usize - 1]),
+            _ => Err(Problem::new(format!(
+                "fix `{id}` has the values f_{id}, f_{id}[1], f_{id}[2] and f_{id}[3]"
+            ))),
+        }
+    }
+}

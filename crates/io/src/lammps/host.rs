@@ -1,0 +1,297 @@
+//! The seam between a LAMMPS script and whatever moves the points.
+//!
+//! The interpreter collects a [`Setup`]; at the first `run` a [`Host`] makes an [`Engine`] of it. From then on
+//! the engine owns all per-atom data and the interpreter reads and writes it through [`Particles`].
+//! All arrays are in order of atom id. Forces and masses are *densities*, as in LAMMPS's `peri` styles.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use super::atoms::{Atoms, Members};
+use super::domain::SimBox;
+use super::units::Units;
+
+/// Why a host cannot do something; the interpreter adds file and line.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct HostError {
+    pub message: String,
+    pub help: Option<String>,
+}
+
+impl HostError {
+    pub fn new(message: impl Into<String>) -> Self {
+        HostError {
+            message: message.into(),
+            help: None,
+        }
+    }
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// One number per atom. Axes are 0, 1, 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Atom type, from 1.
+    Type,
+    /// Mass density ρ.
+    Density,
+    /// Volume V.
+    Volume,
+    /// Current position, *not* wrapped into a periodic box (length).
+    Position(usize),
+    /// Reference position `x0` (length).
+    Reference(usize),
+    Velocity(usize),
+    /// Force density after all conditions (force / volume).
+    Force(usize),
+    /// 1 − unbroken volume / family volume.
+    Damage,
+    Dilatation,
+    /// s0, LAMMPS's `property/atom s0`.
+    CriticalStretch,
+    /// Strain and contact energy density W, without the indenter (energy / volume).
+    Energy,
+}
+
+/// Per-atom data in blocks, so that nobody needs a second copy of everything.
+pub trait Particles {
+    /// Number of atoms.
+    fn count(&self) -> usize;
+
+    /// Fills `out` with `quantity` of atoms `first..first + out.len()`.
+    ///
+    /// # Errors
+    /// The quantity does not exist (yet).
+    fn read(&self, quantity: Quantity, first: usize, out: &mut [f64]) -> Result<(), HostError>;
+
+    /// Sets `quantity` (type, density, volume, position or velocity) of atoms `first..first + values.len()`.
+    ///
+    /// # Errors
+    /// The quantity cannot be set (any more).
+    fn write(&mut self, quantity: Quantity, first: usize, values: &[f64]) -> Result<(), HostError>;
+
+    /// Sets `quantity` of all atoms to one value.
+    ///
+    /// # Errors
+    /// As for [`Particles::write`].
+    fn fill(&mut self, quantity: Quantity, value: f64) -> Result<(), HostError> {
+        fill_in_blocks(self, quantity, value)
+    }
+}
+
+/// Atoms per block when per-atom data are streamed.
+pub const BLOCK: usize = 4096;
+
+/// [`Particles::fill`] by [`Particles::write`].
+pub(super) fn fill_in_blocks<P: Particles + ?Sized>(
+    atoms: &mut P,
+    quantity: Quantity,
+    value: f64,
+) -> Result<(), HostError> {
+    let n = atoms.count();
+    let values = [value; BLOCK];
+    for first in (0..n).step_by(BLOCK) {
+        atoms.write(quantity, first, &values[..BLOCK.min(n - first)])?;
+    }
+    Ok(())
+}
+
+/// What is asked for at the first `run`.
+#[derive(Debug)]
+pub struct Setup {
+    /// The script's file name.
+    pub title: String,
+    /// 2 or 3.
+    pub dimension: usize,
+    pub units: Units,
+    /// Box and boundaries; periodic axes have the length `high − low`.
+    pub domain: SimBox,
+    /// Edge of the cubic (square) cell of the script's `lattice`: volume scaling and contact use it.
+    pub lattice_constant: f64,
+    pub atoms: Atoms,
+    pub pair: Pair,
+}
+
+/// `pair_style` and `pair_coeff`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pair {
+    Pmb(PairTable<PmbCoefficients>),
+    Lps(PairTable<LpsCoefficients>),
+}
+
+/// Coefficients for every pair of atom types; symmetric, complete.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairTable<T> {
+    types: usize,
+    values: Vec<T>,
+}
+
+impl<T: Copy> PairTable<T> {
+    /// `None` if a pair has no coefficients. `values[(i−1)·types + (j−1)]` for types `i`, `j` from 1.
+    pub fn complete(types: usize, values: &[Option<T>]) -> Option<Self> {
+        let values = values.iter().copied().collect::<Option<Vec<T>>>()?;
+        (values.len() == types * types).then_some(PairTable { types, values })
+    }
+    /// Number of atom types.
+    pub fn types(&self) -> usize {
+        self.types
+    }
+    /// For atom types `i` and `j`, from 1 to [`PairTable::types`].
+    pub fn get(&self, i: usize, j: usize) -> T {
+        self.values[(i - 1) * self.types + (j - 1)]
+    }
+}
+
+/// `pair_coeff I J c δ s00 α` of `peri/pmb`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PmbCoefficients {
+    /// Micromodulus c as typed.
+    pub micromodulus: f64,
+    /// Horizon δ as typed (bonds have `r² ≤ δ²`).
+    pub horizon: f64,
+    pub critical_stretch: f64,
+    pub alpha: f64,
+}
+
+/// `pair_coeff I J K G δ s00 α` of `peri/lps`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LpsCoefficients {
+    pub bulk: f64,
+    pub shear: f64,
+    /// Horizon δ as typed.
+    pub horizon: f64,
+    pub critical_stretch: f64,
+    pub alpha: f64,
+}
+
+/// What acts on the atoms besides the bonds, in the order of the script's fixes: each works on the force left
+/// by the ones before it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// Adds the force density `K (R − r)²` along `x − center` where `r < R`; minimum image on periodic axes.
+    Indent {
+        members: Arc<Members>,
+        stiffness: f64,
+        center: [f64; 3],
+        radius: f64,
+    },
+    /// Overwrites the given components of the force density.
+    SetForce {
+        members: Arc<Members>,
+        force: [Option<f64>; 3],
+    },
+    /// Adds a force density.
+    AddForce {
+        members: Arc<Members>,
+        force: [f64; 3],
+    },
+    /// Zeroes the z components of force density and velocity.
+    Enforce2d { members: Arc<Members> },
+}
+
+/// What a `run` starts with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunStart {
+    /// Step counter of the state as it is.
+    pub step: u64,
+    /// Number of steps of this run.
+    pub steps: u64,
+    pub time_step: f64,
+    /// Atoms of `fix nve`; `None`: nothing moves.
+    pub moving: Option<Arc<Members>>,
+    /// The box as it is now.
+    pub domain: SimBox,
+}
+
+/// Sums over all atoms as LAMMPS prints them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energies {
+    /// Σ W (sum of energy densities, not weighted with volumes).
+    pub potential: f64,
+    /// Σ over bonds of r·f with f the force density; `None` if not known (LAMMPS's pressure is then `nan`).
+    pub virial: Option<f64>,
+}
+
+/// Energy and force that a [`Condition::Indent`] had at the last force evaluation.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Reaction {
+    /// Σ K (R − r)³ / 3.
+    pub energy: f64,
+    /// Minus the sum of the force densities on the atoms.
+    pub force: [f64; 3],
+}
+
+/// A model that can be stepped.
+pub trait Engine: Particles {
+    /// Start of a `run`: takes up written positions and velocities and evaluates the forces with `conditions`.
+    /// The first call builds the bonds from the positions of that moment.
+    ///
+    /// # Errors
+    /// The model cannot be run like this.
+    fn setup(&mut self, run: &RunStart, conditions: &[Condition]) -> Result<(), HostError>;
+
+    /// One velocity-Verlet step; `conditions` hold the values at the *end* of the step, in the order (and
+    /// number) of `setup`.
+    ///
+    /// # Errors
+    /// The state went bad.
+    fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError>;
+
+    /// Energies of the current state.
+    ///
+    /// # Errors
+    /// They cannot be computed.
+    fn energies(&mut self) -> Result<Energies, HostError>;
+
+    /// Of condition number `index`; zero if it is no indenter.
+    fn reaction(&self, index: usize) -> Reaction;
+
+    /// Directed bonds of the reference family (each bond counts twice).
+    fn directed_bonds(&self) -> u64;
+
+    /// Bytes that the model holds.
+    fn memory_bytes(&self) -> u64;
+
+    /// For the caller of the interpreter, who knows the type.
+    fn as_any(&mut self) -> &mut dyn Any;
+}
+
+/// Makes engines.
+pub trait Host {
+    /// Called once, at the first `run`. Bonds may be built here or in the first [`Engine::setup`].
+    ///
+    /// # Errors
+    /// The set-up cannot be built.
+    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError>;
+}
+
+/// Where text goes.
+pub trait Console {
+    /// A line of LAMMPS's screen output.
+    fn print(&mut self, line: &str);
+    /// Something worth knowing that is no error.
+    fn note(&mut self, line: &str);
+    /// After each step of a run.
+    fn progress(&mut self, _done: u64, _of: u64) {}
+}
+
+/// A console that prints to standard output and error.
+#[derive(Debug, Default)]
+pub struct StandardConsole;
+
+impl Console for StandardConsole {
+    fn print(&mut self, line: &str) {
+        use std::io::Write;
+        // a closed pipe (`| head`) is no reason to fail
+        let _ = writeln!(std::io::stdout(), "{line}");
+    }
+    fn note(&mut self, line: &str) {
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), "note: {line}");
+    }
+}

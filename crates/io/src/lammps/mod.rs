@@ -1,0 +1,40 @@
+//! LAMMPS scripts for peridynamics: reads and runs them, with LAMMPS's language, formulas and output.
+//!
+//! [`run_file`] reads a script. What is set up before the first `run` is collected in a [`host::Setup`]; a
+//! [`host::Host`] turns it into a [`host::Engine`], which then owns the atoms. The arithmetic of positions,
+//! regions and formulas is LAMMPS's (observed on LAMMPS 22 Jul 2025), so that the same atoms are made.
+//!
+//! Differences that a user can see: snapshots and thermo lines are in order of atom id; the box of `boundary s`
+//! is current at every output (LAMMPS moves it when it rebuilds neighbour lists); positions on periodic axes are
+//! always wrapped; anything unsupported is an error.
+
+mod atoms;
+mod boolean;
+mod command;
+mod compute;
+mod data;
+mod domain;
+mod dump;
+mod error;
+mod fix;
+pub mod host;
+mod lattice;
+mod particles;
+mod printf;
+mod random;
+mod read_dump;
+mod region;
+mod script;
+mod session;
+mod text;
+mod thermo;
+mod units;
+mod variable;
+
+pub use self::atoms::{Atoms, Column, Ids, Members, Reference, SiteLattice};
+pub use self::data::{DataFile, read_data};
+pub use self::domain::{Face, SimBox};
+pub use self::error::{Problem, ScriptError};
+pub use self::read_dump::{Frame, read_frame};
+pub use self::script::{Options, Outcome, run_file, run_text};
+pub use self::units::Units;

@@ -1,0 +1,320 @@
+//! The state of a script between commands.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::atoms::{Atoms, Ids, Members};
+use super::compute::Compute;
+use super::domain::{Face, SimBox};
+use super::dump::Dump;
+use super::error::{Problem, Result, suggestion};
+use super::fix::Fix;
+use super::host::{
+    BLOCK, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
+};
+use super::lattice::Lattice;
+use super::particles::{Field, View};
+use super::random::Ranmar;
+use super::region::Region;
+use super::thermo::Thermo;
+use super::units::Units;
+use super::variable::Variables;
+use super::variable::functions::Clock;
+
+/// Who holds the atoms.
+pub enum Store {
+    /// Before the first `run`.
+    Atoms(Atoms),
+    Engine(Box<dyn Engine>),
+}
+
+impl Store {
+    pub fn particles(&self) -> &dyn Particles {
+        match self {
+            Store::Atoms(a) => a,
+            Store::Engine(e) => e.as_ref(),
+        }
+    }
+    pub fn particles_mut(&mut self) -> &mut dyn Particles {
+        match self {
+            Store::Atoms(a) => a,
+            Store::Engine(e) => e.as_mut(),
+        }
+    }
+}
+
+/// `pair_style` with what `pair_coeff` gave so far, `[types²]`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PairState {
+    Pmb(Vec<Option<PmbCoefficients>>),
+    Lps(Vec<Option<LpsCoefficients>>),
+}
+
+/// Simulation time and steps.
+#[derive(Debug, Clone)]
+pub struct Progress {
+    pub step: u64,
+    /// First and last step of the current run.
+    pub begin: u64,
+    pub end: u64,
+    /// First and last step of a `run ... every`, for functions of the step.
+    pub whole: Option<(u64, u64)>,
+    /// First step of the chain of runs (`elaplong`).
+    pub first: u64,
+    pub time_step: f64,
+    /// Time at step `time_base.0`.
+    pub time_base: (u64, f64),
+    /// Wall clock at the start of the run, `None` before the first.
+    pub started: Option<Instant>,
+    /// Seconds in the time loops of all runs.
+    pub stepping_seconds: f64,
+    pub steps_done: u64,
+}
+
+pub struct Session<'a> {
+    pub host: &'a mut dyn Host,
+    pub console: &'a mut dyn Console,
+    /// Relative output paths start here.
+    pub output: PathBuf,
+    pub title: String,
+    pub units: Units,
+    pub dimension: usize,
+    pub faces: [[Face; 2]; 3],
+    pub atom_style: bool,
+    pub lattice: Option<Lattice>,
+    pub regions: Vec<(String, Region)>,
+    pub domain: Option<SimBox>,
+    /// Number of atom types.
+    pub types: usize,
+    pub store: Store,
+    pub ids: Ids,
+    pub groups: Vec<(String, Arc<Members>)>,
+    pub skin: f64,
+    pub pair: Option<PairState>,
+    pub fixes: Vec<Fix>,
+    pub computes: Vec<Compute>,
+    pub dumps: Vec<Dump>,
+    pub variables: Variables,
+    pub random: [Option<Rc<RefCell<Ranmar>>>; 2],
+    pub thermo: Thermo,
+    pub progress: Progress,
+}
+
+impl<'a> Session<'a> {
+    pub fn new(
+        host: &'a mut dyn Host,
+        console: &'a mut dyn Console,
+        output: PathBuf,
+        title: String,
+    ) -> Self {
+        Session {
+            host,
+            console,
+            output,
+            title,
+            units: Units::Lj,
+            dimension: 3,
+            faces: [[Face::Periodic; 2]; 3],
+            atom_style: false,
+            lattice: None,
+            regions: Vec::new(),
+            domain: None,
+            types: 0,
+            store: Store::Atoms(Atoms::default()),
+            ids: Ids::Count(0),
+            groups: vec![("all".into(), Arc::new(Members::All))],
+            skin: Units::Lj.skin(),
+            pair: None,
+            fixes: Vec::new(),
+            computes: Vec::new(),
+            dumps: Vec::new(),
+            variables: Variables::default(),
+            random: [None, None],
+            thermo: Thermo::default(),
+            progress: Progress {
+                step: 0,
+                begin: 0,
+                end: 0,
+                whole: None,
+                first: 0,
+                time_step: Units::Lj.time_step(),
+                time_base: (0, 0.0),
+                started: None,
+                stepping_seconds: 0.0,
+                steps_done: 0,
+            },
+        }
+    }
+
+    pub fn count(&self) -> usize {
+        self.store.particles().count()
+    }
+
+    /// The box.
+    ///
+    /// # Errors
+    /// There is none yet.
+    pub fn domain(&self) -> Result<&SimBox> {
+        self.domain.as_ref().ok_or_else(no_box)
+    }
+
+    pub fn view(&self) -> Result<View<'_>> {
+        Ok(View {
+            particles: self.store.particles(),
+            ids: &self.ids,
+            domain: self.domain()?,
+            units: self.units,
+        })
+    }
+
+    /// The engine.
+    ///
+    /// # Errors
+    /// There was no `run` yet.
+    pub fn engine(&mut self) -> Result<&mut dyn Engine> {
+        match &mut self.store {
+            Store::Engine(e) => Ok(e.as_mut()),
+            Store::Atoms(_) => Err(Problem::new(
+                "forces and energies do not exist before the first `run`",
+            )
+            .help("write `run 0` before")),
+        }
+    }
+
+    /// Atoms that may still be changed freely.
+    ///
+    /// # Errors
+    /// The first `run` has been.
+    pub fn atoms(&mut self) -> Result<&mut Atoms> {
+        match &mut self.store {
+            Store::Atoms(a) => Ok(a),
+            Store::Engine(_) => Err(Problem::new(
+                "the atoms are fixed since the first `run`, which built their bonds",
+            )
+            .help("move this command before the first `run`")),
+        }
+    }
+
+    pub fn group(&self, name: &str) -> Result<Arc<Members>> {
+        self.groups
+            .iter()
+            .find(|(n, _)| n == name)
+            .map(|(_, m)| m.clone())
+            .ok_or_else(|| {
+                Problem::new(format!("there is no group `{name}`")).help(suggestion(
+                    name,
+                    self.groups.iter().map(|(n, _)| n.as_str()),
+                ))
+            })
+    }
+
+    pub fn region(&self, name: &str) -> Result<&Region> {
+        self.regions
+            .iter()
+            .find(|(n, _)| n == name)
+            .map(|(_, r)| r)
+            .ok_or_else(|| {
+                Problem::new(format!("there is no region `{name}`")).help(suggestion(
+                    name,
+                    self.regions.iter().map(|(n, _)| n.as_str()),
+                ))
+            })
+    }
+
+    /// Length of `units lattice` (true) or `units box`.
+    ///
+    /// # Errors
+    /// Lattice units without a lattice.
+    pub fn length_unit(&self, in_lattice: bool) -> Result<f64> {
+        match (in_lattice, &self.lattice) {
+            (false, _) => Ok(1.0),
+            (true, Some(l)) => Ok(l.constant),
+            (true, None) => Err(Problem::new("lattice units need a `lattice`")
+                .help("write a `lattice` command before, or add `units box`")),
+        }
+    }
+
+    pub fn clock(&self) -> Clock {
+        let p = &self.progress;
+        let (begin, end) = p.whole.unwrap_or((p.begin, p.end));
+        Clock {
+            step: p.step,
+            begin,
+            end,
+            time_step: p.time_step,
+        }
+    }
+
+    /// Simulated time.
+    pub fn time(&self) -> f64 {
+        let p = &self.progress;
+        p.time_base.1 + (p.step - p.time_base.0.min(p.step)) as f64 * p.time_step
+    }
+
+    /// Calls `with` for each block of values of `field`.
+    ///
+    /// # Errors
+    /// The field does not exist (yet).
+    pub fn scan(&self, field: Field, mut with: impl FnMut(usize, &[f64])) -> Result<()> {
+        let view = self.view()?;
+        let mut buffer = [0.0; BLOCK];
+        for first in (0..self.count()).step_by(BLOCK) {
+            let block = &mut buffer[..BLOCK.min(self.count() - first)];
+            view.read(field, first, block)?;
+            with(first, block);
+        }
+        Ok(())
+    }
+
+    /// Positions of all atoms in the box, `[N][3]`.
+    ///
+    /// # Errors
+    /// There is no box.
+    pub fn positions(&self) -> Result<Vec<[f64; 3]>> {
+        let mut x = vec![[0.0; 3]; self.count()];
+        for a in 0..3 {
+            self.scan(Field::Wrapped(a), |first, block| {
+                x[first..]
+                    .iter_mut()
+                    .zip(block)
+                    .for_each(|(p, v)| p[a] = *v);
+            })?;
+        }
+        Ok(x)
+    }
+
+    /// Lets `s` and `m` faces follow the atoms.
+    ///
+    /// # Errors
+    /// There is no box.
+    pub fn shrink_box(&mut self) -> Result<()> {
+        let mut domain = *self.domain()?;
+        if !domain.moves() || self.count() == 0 {
+            return Ok(());
+        }
+        for a in 0..3 {
+            let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+            self.scan(Field::Raw(Quantity::Position(a)), |_, block| {
+                for x in block {
+                    least = least.min(*x);
+                    greatest = greatest.max(*x);
+                }
+            })?;
+            domain.follow(a, least, greatest);
+        }
+        self.domain = Some(domain);
+        Ok(())
+    }
+
+    /// Path of an output file.
+    pub fn output_path(&self, name: &str) -> PathBuf {
+        self.output.join(name)
+    }
+}
+
+pub fn no_box() -> Box<Problem> {
+    Problem::new("there is no simulation box yet").help("write `create_box` or `read_data` before")
+}

@@ -1,0 +1,311 @@
+//! Thermodynamic output: the lines that a run prints.
+
+pub mod columns;
+pub mod keyword;
+
+use self::columns::Column;
+use super::error::{Problem, Result};
+use super::host::Quantity;
+use super::particles::Field;
+use super::printf::{Format, Value};
+use super::session::{Session, Store};
+
+/// What to do about atoms that leave through a fixed face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lost {
+    Error,
+    /// `warn`, `ignore`
+    Allow,
+}
+
+#[derive(Debug, Clone)]
+pub struct Thermo {
+    pub columns: Vec<Column>,
+    /// `thermo_style one` and `multi` add the volume of a box that can change.
+    pub add_volume: bool,
+    pub every: u64,
+    pub lost: Lost,
+    pub normalize: Option<bool>,
+    pub multi: bool,
+    /// `thermo_modify format`
+    pub integer: Option<Format>,
+    pub float: Option<Format>,
+    pub single: Vec<(usize, Format)>,
+}
+
+impl Default for Thermo {
+    fn default() -> Self {
+        Thermo {
+            columns: columns::one(),
+            add_volume: true,
+            every: 0,
+            lost: Lost::Error,
+            normalize: None,
+            multi: false,
+            integer: None,
+            float: None,
+            single: Vec::new(),
+        }
+    }
+}
+
+impl Session<'_> {
+    fn thermo_columns(&self) -> Vec<Column> {
+        let mut columns = self.thermo.columns.clone();
+        if self.thermo.add_volume
+            && self
+                .domain
+                .as_ref()
+                .is_some_and(super::domain::SimBox::moves)
+        {
+            columns.push(Column::Keyword("vol"));
+        }
+        columns
+    }
+
+    /// The line above the numbers.
+    pub fn thermo_header(&mut self) {
+        if self.thermo.multi {
+            return;
+        }
+        let line: Vec<String> = self
+            .thermo_columns()
+            .iter()
+            .map(|c| {
+                let name = c.heading();
+                if c.is_integer() {
+                    format!("{name:^11}")
+                } else {
+                    format!("{name:^14}")
+                }
+            })
+            .collect();
+        self.console.print(&line.join(" "));
+    }
+
+    /// One line (or block) of numbers.
+    ///
+    /// # Errors
+    /// A value cannot be computed; atoms are lost.
+    pub fn thermo_line(&mut self) -> Result<()> {
+        self.shrink_box()?;
+        self.check_lost()?;
+        let columns = self.thermo_columns();
+        let mut values = Vec::with_capacity(columns.len());
+        for column in &columns {
+            values.push(self.column_value(column)?);
+        }
+        let texts: Vec<String> = columns
+            .iter()
+            .zip(&values)
+            .enumerate()
+            .map(|(k, (c, v))| self.thermo_text(k, c, *v))
+            .collect();
+        if self.thermo.multi {
+            return self.print_block(&columns, &texts);
+        }
+        self.console.print(&texts.join(" "));
+        Ok(())
+    }
+
+    fn thermo_text(&self, index: usize, column: &Column, value: f64) -> String {
+        let integer = column.is_integer();
+        let user = self
+            .thermo
+            .single
+            .iter()
+            .rev()
+            .find(|(k, _)| *k == index)
+            .map(|(_, f)| f);
+        let user = user.or(if integer {
+            self.thermo.integer.as_ref()
+        } else {
+            self.thermo.float.as_ref()
+        });
+        let value = if integer {
+            Value::Integer(value as i64)
+        } else {
+            Value::Float(value)
+        };
+        let fallback = match (integer, self.thermo.multi) {
+            (true, false) => "%10d ",
+            (false, false) => "% -14.8g",
+            (true, true) => "%14d",
+            (false, true) => "%14.4f",
+        };
+        match user {
+            Some(f) => f.print(value),
+            None => Format::parse(fallback)
+                .map(|f| f.print(value))
+                .unwrap_or_default(),
+        }
+    }
+
+    fn print_block(&mut self, columns: &[Column], texts: &[String]) -> Result<()> {
+        let cpu = self.thermo_value("cpu")?;
+        let cpu = super::printf::general(cpu, 7, false);
+        let step = self.progress.step;
+        self.console.print(&format!(
+            "------------ Step {step:14} ----- CPU = {cpu:>12} (sec) -------------"
+        ));
+        let cells: Vec<String> = columns
+            .iter()
+            .zip(texts)
+            .map(|(c, t)| format!("{:<8} = {t}", c.heading()))
+            .collect();
+        let rows: Vec<String> = cells.chunks(3).map(|row| row.join(" ")).collect();
+        self.console.print(&rows.join(" \n"));
+        Ok(())
+    }
+
+    /// Atoms outside a fixed face. LAMMPS notices when it rebuilds neighbour lists: at the start of a run, and
+    /// when something has moved by half the skin.
+    fn check_lost(&mut self) -> Result<()> {
+        let domain = *self.domain()?;
+        let slack = if self.progress.step == self.progress.begin {
+            0.0
+        } else {
+            0.5 * self.skin
+        };
+        let mut lost = 0usize;
+        let mut example = None;
+        for a in 0..3 {
+            use super::domain::Face::Fixed;
+            let low = if domain.faces[a][0] == Fixed {
+                domain.low[a] - slack
+            } else {
+                f64::NEG_INFINITY
+            };
+            let high = if domain.faces[a][1] == Fixed {
+                domain.high[a] + slack
+            } else {
+                f64::INFINITY
+            };
+            if low.is_infinite() && high.is_infinite() {
+                continue;
+            }
+            self.scan(Field::Raw(Quantity::Position(a)), |first, block| {
+                for (k, x) in block
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, x)| **x < low || **x > high)
+                {
+                    lost += 1;
+                    example.get_or_insert((first + k, a, *x));
+                }
+            })?;
+        }
+        let Some((index, axis, x)) = example else {
+            return Ok(());
+        };
+        let axis = ["x", "y", "z"][axis];
+        let what = format!(
+            "{lost} atoms left the box through a fixed face by step {}, first the atom with id {}: {axis} = {x:.6e}",
+            self.progress.step,
+            self.ids.get(index)
+        );
+        let help = "use `boundary s` so that the box follows the atoms, or a larger box";
+        match self.thermo.lost {
+            Lost::Error => Err(Problem::new(what).help(help)),
+            Lost::Allow => Err(Problem::new(what).help(format!(
+                "lost atoms cannot be deleted here (`thermo_modify lost warn|ignore`): {help}"
+            ))),
+        }
+    }
+
+    /// Value of a thermo keyword.
+    ///
+    /// # Errors
+    /// It does not exist (yet).
+    pub fn thermo_value(&mut self, name: &str) -> Result<f64> {
+        let step = self.progress.step;
+        let axis = |letter: u8| usize::from(letter - b'x');
+        let bytes = name.as_bytes();
+        Ok(match name {
+            "step" => step as f64,
+            "elapsed" => (step - self.progress.begin.min(step)) as f64,
+            "elaplong" => (step - self.progress.first.min(step)) as f64,
+            "dt" => self.progress.time_step,
+            "time" => self.time(),
+            "cpu" => self.loop_seconds(),
+            "spcpu" | "tpcpu" => {
+                let done = (step - self.progress.begin.min(step)) as f64;
+                let seconds = self.loop_seconds();
+                let rate = if seconds > 0.0 { done / seconds } else { 0.0 };
+                if name == "spcpu" {
+                    rate
+                } else {
+                    rate * self.progress.time_step
+                }
+            }
+            "cpuremain" => {
+                let done = (step - self.progress.begin.min(step)) as f64;
+                let left = (self.progress.end - step.min(self.progress.end)) as f64;
+                if done > 0.0 {
+                    self.loop_seconds() * left / done
+                } else {
+                    0.0
+                }
+            }
+            "atoms" => self.count() as f64,
+            "vol" => {
+                let d = self.domain()?;
+                d.edge(0) * d.edge(1) * if self.dimension == 3 { d.edge(2) } else { 1.0 }
+            }
+            "lx" | "ly" | "lz" => self.domain()?.edge(axis(bytes[1])),
+            "xlo" | "ylo" | "zlo" => self.domain()?.low[axis(bytes[0])],
+            "xhi" | "yhi" | "zhi" => self.domain()?.high[axis(bytes[0])],
+            "temp" => self.temperature()?,
+            "press" => self.pressure()?,
+            "ke" => self.kinetic()?,
+            "pe" | "epair" | "evdwl" => self.engine()?.energies()?.potential,
+            "etotal" => self.kinetic()? + self.engine()?.energies()?.potential,
+            "enthalpy" => {
+                let volume = self.thermo_value("vol")?;
+                let work = self.pressure()? * volume / self.units.pressure();
+                self.kinetic()? + self.engine()?.energies()?.potential + work
+            }
+            // no bonded interactions, charges or tilted boxes
+            _ => 0.0,
+        })
+    }
+
+    fn kinetic(&self) -> Result<f64> {
+        self.reduce(
+            super::compute::Mode::Sum,
+            &super::atoms::Members::All,
+            &super::variable::tree::Tree::Field(Field::Kinetic),
+        )
+    }
+
+    fn temperature(&self) -> Result<f64> {
+        let degrees = (self.dimension * self.count()) as f64 - self.dimension as f64;
+        let kinetic = self.kinetic()?;
+        Ok(if degrees > 0.0 {
+            2.0 * kinetic / (degrees * self.units.boltzmann())
+        } else {
+            0.0
+        })
+    }
+
+    fn pressure(&mut self) -> Result<f64> {
+        let virial = match &mut self.store {
+            Store::Engine(e) => e.energies()?.virial.unwrap_or(f64::NAN),
+            Store::Atoms(_) => f64::NAN,
+        };
+        let volume = self.thermo_value("vol")?;
+        Ok(
+            (2.0 * self.kinetic()? + virial) / (self.dimension as f64 * volume)
+                * self.units.pressure(),
+        )
+    }
+
+    fn loop_seconds(&self) -> f64 {
+        if self.progress.step == self.progress.begin {
+            return 0.0;
+        }
+        self.progress
+            .started
+            .map_or(0.0, |t| t.elapsed().as_secs_f64())
+    }
+}

@@ -1,0 +1,9 @@
+//! LAMMPS scripts against a host whose points rest or fly freely.
+
+mod bad;
+mod files;
+mod fuzz;
+mod host;
+mod output;
+mod real;
+mod values;
