@@ -16,7 +16,7 @@ pub struct DeckError {
     /// Line (1-based) in the file; `None` for an override or when no place is to blame.
     pub line: Option<usize>,
     span: Option<Range<usize>>,
-    text: NamedSource<String>,
+    text: Box<NamedSource<String>>,
 }
 
 impl DeckError {
@@ -34,7 +34,7 @@ impl DeckError {
             .as_ref()
             .filter(|_| !is_override)
             .map(|s| 1 + text[..s.start].matches('\n').count());
-        let text = NamedSource::new(file, text.to_string()).with_language("toml");
+        let text = Box::new(NamedSource::new(file, text.to_string()).with_language("toml"));
         DeckError {
             message,
             help,
@@ -65,7 +65,7 @@ impl Diagnostic for DeckError {
             .map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.span.as_ref().map(|_| &self.text as &dyn SourceCode)
+        self.span.as_ref().map(|_| &*self.text as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.span.clone()?;

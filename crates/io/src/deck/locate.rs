@@ -14,7 +14,7 @@ const UNNAMED: &str = "material";
 fn is_one_material(table: &DeTable) -> bool {
     table.is_empty()
         || table.iter().any(|(key, value)| {
-            MATERIAL.contains(&&*key.get_ref().as_ref()) || !value.get_ref().is_table()
+            MATERIAL.contains(&key.get_ref().as_ref()) || !value.get_ref().is_table()
         })
 }
 

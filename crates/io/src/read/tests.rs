@@ -179,7 +179,7 @@ fn what_is_wrong_is_said_with_its_line() {
         (
             &OLD.replace("3 1 1 0", "3 1 inf 0"),
             "msh",
-            "f:12: y is inf",
+            "f:13: y is inf",
         ),
     ] {
         let got = failure(text, extension);
