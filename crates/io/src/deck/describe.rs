@@ -3,7 +3,8 @@
 use super::units::{Dim, UnitSystem};
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, Criterion, Horizon, IndenterMotion, LawSpec, MaterialSpec, Plane, PmbStiffness, Spec, TimeStep,
+    BodySpec, Criterion, Horizon, IndenterMotion, LawSpec, MaterialSpec, Plane, PmbStiffness, Spec,
+    TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -22,8 +23,16 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         2 => format!(", thickness {}", units.write(spec.section, Dim::LENGTH)),
         _ => String::new(),
     };
-    lines.push(format!("body       {}-D{plane}{section}, {}", spec.dimension, body(&spec.body, units, spec.dimension)));
-    lines.extend(spec.materials.iter().map(|m| format!("material   {}", material(m, units))));
+    lines.push(format!(
+        "body       {}-D{plane}{section}, {}",
+        spec.dimension,
+        body(&spec.body, units, spec.dimension)
+    ));
+    lines.extend(
+        spec.materials
+            .iter()
+            .map(|m| format!("material   {}", material(m, units))),
+    );
     let horizon = match spec.horizon {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),
@@ -36,21 +45,36 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     ));
     for (axis, period) in ["x", "y", "z"].iter().zip(spec.periodic) {
         if let Some(period) = period {
-            lines.push(format!("periodic   {axis} with {}", units.write(period, Dim::LENGTH)));
+            lines.push(format!(
+                "periodic   {axis} with {}",
+                units.write(period, Dim::LENGTH)
+            ));
         }
     }
     if let Some(contact) = spec.contact {
-        lines.push(format!("contact    below {} of the reference distance, within {} spacings", contact.bonded, contact.free));
+        lines.push(format!(
+            "contact    below {} of the reference distance, within {} spacings",
+            contact.bonded, contact.free
+        ));
     }
     for indenter in &spec.indenters {
         let motion = match &indenter.motion {
             IndenterMotion::Kinematic(center) => {
-                let center: Vec<&str> = center.iter().take(spec.dimension).map(|c| c.source()).collect();
+                let center: Vec<&str> = center
+                    .iter()
+                    .take(spec.dimension)
+                    .map(|c| c.source())
+                    .collect();
                 format!("moved along ({})", center.join(", "))
             }
-            IndenterMotion::Free { mass, .. } => format!("free with {}", units.write(*mass, Dim::MASS)),
+            IndenterMotion::Free { mass, .. } => {
+                format!("free with {}", units.write(*mass, Dim::MASS))
+            }
         };
-        lines.push(format!("indenter   sphere of radius {}, {motion}", units.write(indenter.radius, Dim::LENGTH)));
+        lines.push(format!(
+            "indenter   sphere of radius {}, {motion}",
+            units.write(indenter.radius, Dim::LENGTH)
+        ));
     }
     lines.push(format!(
         "acting     {} initial values, {} conditions, {} pre-cracks",
@@ -72,13 +96,33 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
 
 fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> String {
     match body {
-        BodySpec::Lattice { kind, spacing, region, perturb, .. } => {
+        BodySpec::Lattice {
+            kind,
+            spacing,
+            region,
+            perturb,
+            ..
+        } => {
             let perturbed = if perturb.is_some() { ", perturbed" } else { "" };
             let spacing = units.write(*spacing, Dim::LENGTH);
-            format!("{} lattice of {spacing}{perturbed}, {}", kind.name(), extent(region, units, dimension))
+            format!(
+                "{} lattice of {spacing}{perturbed}, {}",
+                kind.name(),
+                extent(region, units, dimension)
+            )
         }
-        BodySpec::Sites { kind, spacing, quarters, .. } => {
-            format!("{} sites of a {} lattice of {}", quarters.len(), kind.name(), units.write(*spacing, Dim::LENGTH))
+        BodySpec::Sites {
+            kind,
+            spacing,
+            quarters,
+            ..
+        } => {
+            format!(
+                "{} sites of a {} lattice of {}",
+                quarters.len(),
+                kind.name(),
+                units.write(*spacing, Dim::LENGTH)
+            )
         }
         BodySpec::Cloud(cloud) => format!("{} points", cloud.position.len()),
     }
@@ -86,7 +130,9 @@ fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> String {
 
 fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
     let (low, high) = region.bounds();
-    let sizes: Vec<String> = (0..dimension).map(|a| units.write(high[a] - low[a], Dim::LENGTH)).collect();
+    let sizes: Vec<String> = (0..dimension)
+        .map(|a| units.write(high[a] - low[a], Dim::LENGTH))
+        .collect();
     format!("within {}", sizes.join(" × "))
 }
 
@@ -95,20 +141,43 @@ fn material(m: &MaterialSpec, units: UnitSystem) -> String {
     let law = match m.law {
         LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(e)),
         LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(k)),
-        LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => format!("pmb, c = {}", units.write(c, Dim::MICROMODULUS)),
-        LawSpec::Lps(moduli) => format!("lps, E = {}, ν = {}", pressure(moduli.young), super::units::short(moduli.poisson)),
-        LawSpec::LpsAsTyped { bulk, shear } => format!("lps as typed, K = {}, G = {}", pressure(bulk), pressure(shear)),
-        LawSpec::EamLike { pair, volume } => format!("eam-like, k = {}, p = {}", pressure(pair), pressure(volume)),
+        LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => {
+            format!("pmb, c = {}", units.write(c, Dim::MICROMODULUS))
+        }
+        LawSpec::Lps(moduli) => format!(
+            "lps, E = {}, ν = {}",
+            pressure(moduli.young),
+            super::units::short(moduli.poisson)
+        ),
+        LawSpec::LpsAsTyped { bulk, shear } => format!(
+            "lps as typed, K = {}, G = {}",
+            pressure(bulk),
+            pressure(shear)
+        ),
+        LawSpec::EamLike { pair, volume } => {
+            format!("eam-like, k = {}, p = {}", pressure(pair), pressure(volume))
+        }
     };
     let fracture = match m.fracture {
         None => "unbreakable".to_string(),
         Some(f) => {
             let criterion = match f.criterion {
                 Criterion::Stretch(s) => format!("breaks at stretch {s}"),
-                Criterion::Energy(g) => format!("breaks at {}", units.write(g, Dim::FRACTURE_ENERGY)),
+                Criterion::Energy(g) => {
+                    format!("breaks at {}", units.write(g, Dim::FRACTURE_ENERGY))
+                }
             };
-            if f.alpha == 0.0 { criterion } else { format!("{criterion}, α = {}", f.alpha) }
+            if f.alpha == 0.0 {
+                criterion
+            } else {
+                format!("{criterion}, α = {}", f.alpha)
+            }
         }
     };
-    format!("{} on {}: {law}, ρ = {}, {fracture}", m.name, m.set, units.write(m.density, Dim::DENSITY))
+    format!(
+        "{} on {}: {law}, ρ = {}, {fracture}",
+        m.name,
+        m.set,
+        units.write(m.density, Dim::DENSITY)
+    )
 }

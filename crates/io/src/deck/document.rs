@@ -74,6 +74,8 @@ pub struct Body {
     pub region: Option<At<Shape>>,
     /// Points (.txt), a mesh (.inp, .msh) or LAMMPS data (.data), relative to the deck.
     pub file: Option<At<String>>,
+    /// What one unit of the file's coordinates is; the deck's unit of length when left out.
+    pub file_unit: Option<Number>,
     pub perturb: Option<Perturb>,
 }
 
@@ -90,14 +92,32 @@ pub struct Perturb {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
     Everything,
-    Block { low: Vector, high: Vector },
-    Cylinder { axis: AxisName, center: Option<Vector>, radius: Number, low: Option<Number>, high: Option<Number> },
+    Block {
+        low: Vector,
+        high: Vector,
+    },
+    Cylinder {
+        axis: AxisName,
+        center: Option<Vector>,
+        radius: Number,
+        low: Option<Number>,
+        high: Option<Number>,
+    },
     /// In 2-D a disk.
-    Sphere { center: Option<Vector>, radius: Number },
+    Sphere {
+        center: Option<Vector>,
+        radius: Number,
+    },
     /// Where normal · (x − point) ≤ 0.
-    HalfSpace { point: Vector, normal: Vector },
+    HalfSpace {
+        point: Vector,
+        normal: Vector,
+    },
     Union(Vec<At<Shape>>),
-    Difference { from: Box<At<Shape>>, minus: Vec<At<Shape>> },
+    Difference {
+        from: Box<At<Shape>>,
+        minus: Vec<At<Shape>>,
+    },
     Intersection(Vec<At<Shape>>),
 }
 

@@ -16,17 +16,33 @@ pub struct DeckError {
     /// Line (1-based) in the file; `None` for an override or when no place is to blame.
     pub line: Option<usize>,
     span: Option<Range<usize>>,
-    text: NamedSource<String>,
+    text: Box<NamedSource<String>>,
 }
 
 impl DeckError {
     /// A mistake at `span` (bytes) of `text`.
-    pub(super) fn new(file: &str, text: &str, span: Option<Range<usize>>, message: String, help: Option<String>) -> Self {
+    pub(super) fn new(
+        file: &str,
+        text: &str,
+        span: Option<Range<usize>>,
+        message: String,
+        help: Option<String>,
+    ) -> Self {
         let span = span.map(|s| s.start.min(text.len())..s.end.min(text.len()));
         let is_override = file.starts_with("--set");
-        let line = span.as_ref().filter(|_| !is_override).map(|s| 1 + text[..s.start].matches('\n').count());
-        let text = NamedSource::new(file, text.to_string()).with_language("toml");
-        DeckError { message, help, file: file.to_string(), line, span, text }
+        let line = span
+            .as_ref()
+            .filter(|_| !is_override)
+            .map(|s| 1 + text[..s.start].matches('\n').count());
+        let text = Box::new(NamedSource::new(file, text.to_string()).with_language("toml"));
+        DeckError {
+            message,
+            help,
+            file: file.to_string(),
+            line,
+            span,
+            text,
+        }
     }
 
     pub fn span(&self) -> Option<Range<usize>> {
@@ -44,10 +60,12 @@ impl std::error::Error for DeckError {}
 
 impl Diagnostic for DeckError {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.help
+            .as_ref()
+            .map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.span.as_ref().map(|_| &self.text as &dyn SourceCode)
+        self.span.as_ref().map(|_| &*self.text as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.span.clone()?;
@@ -56,35 +74,63 @@ impl Diagnostic for DeckError {
 }
 
 /// The candidate most like `name`, if one is like it at all.
-pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(super) fn nearest<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
     candidates
         .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&name.to_lowercase(), &candidate.to_lowercase()), candidate))
+        .map(|candidate| {
+            (
+                strsim::damerau_levenshtein(&name.to_lowercase(), &candidate.to_lowercase()),
+                candidate,
+            )
+        })
         .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 4)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
 }
 
+const WHOLE: &str = "expected a whole number from 0";
+
 /// Says what serde found wrong in words for people.
 pub(super) fn from_toml(source: &Source, span: Option<Range<usize>>, message: &str) -> DeckError {
+    let message = &message
+        .replace("invalid value: ", "invalid type: ")
+        .replace("expected u64", WHOLE)
+        .replace("expected usize", WHOLE)
+        .replace("expected i32", "expected a whole number");
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let known = || quoted.iter().skip(1).copied();
-    let (message, help) = if let Some(name) = message.strip_prefix("unknown field `").and(quoted.first()) {
-        (format!("unknown key `{name}`"), Some(suggest(name, known())))
-    } else if let Some(name) = message.strip_prefix("unknown variant `").and(quoted.first()) {
-        (format!("`{name}` is not known here"), Some(suggest(name, known())))
-    } else if let Some(name) = message.strip_prefix("missing field `").and(quoted.first()) {
-        (format!("the key `{name}` is missing"), None)
-    } else if let Some(rest) = message.strip_prefix("invalid type: ") {
-        match rest.split_once(", expected ") {
-            Some((found, expected)) => (format!("expected {expected}, found {found}"), None),
-            None => (message.to_string(), None),
-        }
-    } else if message.starts_with("wanted exactly 1 element") {
-        ("expected a table with exactly one entry, which says the kind".into(), None)
-    } else {
-        (message.trim().replace('\n', ", "), None)
-    };
+    let (message, help) =
+        if let Some(name) = message.strip_prefix("unknown field `").and(quoted.first()) {
+            (
+                format!("unknown key `{name}`"),
+                Some(suggest(name, known())),
+            )
+        } else if let Some(name) = message
+            .strip_prefix("unknown variant `")
+            .and(quoted.first())
+        {
+            (
+                format!("`{name}` is not known here"),
+                Some(suggest(name, known())),
+            )
+        } else if let Some(name) = message.strip_prefix("missing field `").and(quoted.first()) {
+            (format!("the key `{name}` is missing"), None)
+        } else if let Some(rest) = message.strip_prefix("invalid type: ") {
+            match rest.split_once(", expected ") {
+                Some((found, expected)) => (format!("expected {expected}, found {found}"), None),
+                None => (message.to_string(), None),
+            }
+        } else if message.starts_with("wanted exactly 1 element") {
+            (
+                "expected a table with exactly one entry, which says the kind".into(),
+                None,
+            )
+        } else {
+            (message.trim().replace('\n', ", "), None)
+        };
     source.error(span, message, help)
 }
 

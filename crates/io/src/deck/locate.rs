@@ -13,18 +13,25 @@ const UNNAMED: &str = "material";
 
 fn is_one_material(table: &DeTable) -> bool {
     table.is_empty()
-        || table.iter().any(|(key, value)| MATERIAL.contains(&&*key.get_ref().as_ref()) || !value.get_ref().is_table())
+        || table.iter().any(|(key, value)| {
+            MATERIAL.contains(&key.get_ref().as_ref()) || !value.get_ref().is_table()
+        })
 }
 
 /// Gives the material of a plain `[material]` its name, so that the deck always holds named materials.
 pub(super) fn name_material(tree: &mut DeTable) {
-    let Some(entry) = tree.get_mut("material") else { return };
+    let Some(entry) = tree.get_mut("material") else {
+        return;
+    };
     let span = entry.span();
     if let DeValue::Table(table) = entry.get_mut()
         && is_one_material(table)
     {
         let one = std::mem::take(table);
-        table.insert(Spanned::new(span.clone(), UNNAMED.into()), Spanned::new(span, DeValue::Table(one)));
+        table.insert(
+            Spanned::new(span.clone(), UNNAMED.into()),
+            Spanned::new(span, DeValue::Table(one)),
+        );
     }
 }
 
@@ -46,7 +53,9 @@ pub(super) fn locate(source: &Source, path: &str) -> Option<Range<usize>> {
     let mut segments = path.split('.').filter(|s| !s.is_empty());
     let first = segments.next()?;
     let top = match first {
-        "section" => ["thickness", "area"].into_iter().find_map(|key| tree.get_ref().get(key)),
+        "section" => ["thickness", "area"]
+            .into_iter()
+            .find_map(|key| tree.get_ref().get(key)),
         key => tree.get_ref().get(deck_key(key)),
     }?;
     let mut here = top;
@@ -54,7 +63,9 @@ pub(super) fn locate(source: &Source, path: &str) -> Option<Range<usize>> {
         let index = segment.parse::<usize>().ok();
         let next = match here.get_ref() {
             DeValue::Array(items) => index.and_then(|i| items.get(i)),
-            DeValue::Table(table) if std::ptr::eq(here, top) && first == "materials" && is_one_material(table) => {
+            DeValue::Table(table)
+                if std::ptr::eq(here, top) && first == "materials" && is_one_material(table) =>
+            {
                 // one unnamed material is the deck's `material` itself
                 if index == Some(0) || segment == UNNAMED {
                     continue;

@@ -74,7 +74,11 @@ impl Deck {
     ///
     /// # Errors
     /// The first mistake found, with its place in the deck or in the override.
-    pub fn parse(source: &str, file_name: &str, overrides: &[(String, String)]) -> Result<Deck, DeckError> {
+    pub fn parse(
+        source: &str,
+        file_name: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Deck, DeckError> {
         Deck::parse_with(source, file_name, overrides, None)
     }
 
@@ -104,7 +108,9 @@ impl Deck {
 
     /// Steps of the run once the time step is known.
     pub fn steps(&self, time_step: f64) -> u64 {
-        self.duration.map_or(self.spec.schedule.steps, |duration| lower::steps(duration, time_step))
+        self.duration.map_or(self.spec.schedule.steps, |duration| {
+            lower::steps(duration, time_step)
+        })
     }
 
     /// Where an entry of the spec (`"materials[0].density"`, `"body.region"`) stands in the deck, in bytes; the
@@ -115,7 +121,11 @@ impl Deck {
 
     /// An error of the engine as an error in the deck.
     pub fn explain(&self, error: &BuildError) -> DeckError {
-        self.source.error(self.locate(&error.path), error.message.clone(), error.help.clone())
+        self.source.error(
+            self.locate(&error.path),
+            error.message.clone(),
+            error.help.clone(),
+        )
     }
 
     /// What was understood, in a few lines with units.

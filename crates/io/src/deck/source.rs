@@ -34,9 +34,17 @@ impl Source {
             let line = line(key, value);
             let padded = format!("{}{line}", " ".repeat(start));
             start = padded.len() + 1;
-            lines.push(Override { key: key.clone(), line, padded });
+            lines.push(Override {
+                key: key.clone(),
+                line,
+                padded,
+            });
         }
-        Source { file: file.to_string(), text: text.to_string(), overrides: lines }
+        Source {
+            file: file.to_string(),
+            text: text.to_string(),
+            overrides: lines,
+        }
     }
 
     pub fn text(&self) -> &str {
@@ -49,15 +57,27 @@ impl Source {
 
     /// The text that a place lies in: its name, itself and where it starts.
     fn part(&self, at: usize) -> (String, &str, usize) {
-        let over = self.overrides.iter().find(|o| at > self.text.len() && at <= o.padded.len());
+        let over = self
+            .overrides
+            .iter()
+            .find(|o| at > self.text.len() && at <= o.padded.len());
         match over {
-            Some(o) => (format!("--set {}", o.key), &o.line, o.padded.len() - o.line.len()),
+            Some(o) => (
+                format!("--set {}", o.key),
+                &o.line,
+                o.padded.len() - o.line.len(),
+            ),
             None => (self.file.clone(), &self.text, 0),
         }
     }
 
     /// An error at a span of the whole.
-    pub(super) fn error(&self, span: Option<Range<usize>>, message: impl Into<String>, help: Option<String>) -> DeckError {
+    pub(super) fn error(
+        &self,
+        span: Option<Range<usize>>,
+        message: impl Into<String>,
+        help: Option<String>,
+    ) -> DeckError {
         let (file, text, start) = self.part(span.as_ref().map_or(0, |s| s.start));
         let span = span.map(|s| s.start.saturating_sub(start)..s.end.saturating_sub(start));
         DeckError::new(&file, text, span, message.into(), help)
@@ -66,15 +86,18 @@ impl Source {
     /// The text at a span.
     pub(super) fn slice(&self, span: &Range<usize>) -> &str {
         let (_, text, start) = self.part(span.start);
-        text.get(span.start.saturating_sub(start)..span.end.saturating_sub(start)).unwrap_or("")
+        text.get(span.start.saturating_sub(start)..span.end.saturating_sub(start))
+            .unwrap_or("")
     }
 
     /// Parses everything and lays the overrides over the deck.
     pub(super) fn tree(&self) -> Result<Tree<'_>, DeckError> {
-        let mut tree = DeTable::parse(&self.text).map_err(|e| self.error(e.span(), e.message(), None))?;
+        let mut tree =
+            DeTable::parse(&self.text).map_err(|e| self.error(e.span(), e.message(), None))?;
         for over in &self.overrides {
             let help = || Some("an override is written KEY.PATH=VALUE".to_string());
-            let top = DeTable::parse(&over.padded).map_err(|e| self.error(e.span(), e.message(), help()))?;
+            let top = DeTable::parse(&over.padded)
+                .map_err(|e| self.error(e.span(), e.message(), help()))?;
             merge(tree.get_mut(), top.into_inner());
         }
         Ok(tree)
@@ -85,7 +108,9 @@ impl Source {
 fn merge<'a>(into: &mut DeTable<'a>, over: DeTable<'a>) {
     for (key, value) in over {
         match (into.get_mut(&key).map(Spanned::get_mut), value.get_ref()) {
-            (Some(old @ (DeValue::Table(_) | DeValue::Array(_))), DeValue::Table(_)) => merge_value(old, value),
+            (Some(old @ (DeValue::Table(_) | DeValue::Array(_))), DeValue::Table(_)) => {
+                merge_value(old, value)
+            }
             _ => {
                 // the old key goes too: its place is in the deck
                 into.remove(&key);
@@ -100,12 +125,21 @@ fn merge_value<'a>(old: &mut DeValue<'a>, value: Spanned<DeValue<'a>>) {
     match (old, value.into_inner()) {
         (DeValue::Table(table), DeValue::Table(over)) => merge(table, over),
         (DeValue::Array(items), DeValue::Table(over)) => {
-            let number = |key: &Spanned<_>| AsRef::<str>::as_ref(key.get_ref() as &DeString).parse::<usize>().ok();
-            if over.keys().all(|key| number(key).is_some_and(|n| n < items.len())) {
+            let number = |key: &Spanned<_>| {
+                AsRef::<str>::as_ref(key.get_ref() as &DeString)
+                    .parse::<usize>()
+                    .ok()
+            };
+            if over
+                .keys()
+                .all(|key| number(key).is_some_and(|n| n < items.len()))
+            {
                 for (key, value) in over {
                     if let Some(item) = number(&key).and_then(|n| items.get_mut(n)) {
                         match (item.get_ref(), value.get_ref()) {
-                            (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) => merge_value(item.get_mut(), value),
+                            (DeValue::Table(_) | DeValue::Array(_), DeValue::Table(_)) => {
+                                merge_value(item.get_mut(), value)
+                            }
                             _ => *item = value,
                         }
                     }

@@ -45,10 +45,26 @@ impl Dim {
         (Dim::PRESSURE, "a pressure", "14.9 GPa"),
         (Dim::FRACTURE_ENERGY, "an energy per area", "10 J/m^2"),
         (Dim::FORCE_DENSITY, "a force per volume", "1e6 N/m^3"),
-        (Dim::MICROMODULUS, "a micromodulus (force per volume squared)", "1.6e22 N/m^6"),
-        (Dim::CONTACT_STIFFNESS, "a contact stiffness (force per volume squared and length)", "1e26 N/m^7"),
-        (Dim::INDENTER_STIFFNESS, "an indenter stiffness (force per volume and area)", "1e17 N/m^5"),
-        (Dim::DAMPING, "a damping (mass per volume and time)", "1e6 kg/m^3/s"),
+        (
+            Dim::MICROMODULUS,
+            "a micromodulus (force per volume squared)",
+            "1.6e22 N/m^6",
+        ),
+        (
+            Dim::CONTACT_STIFFNESS,
+            "a contact stiffness (force per volume squared and length)",
+            "1e26 N/m^7",
+        ),
+        (
+            Dim::INDENTER_STIFFNESS,
+            "an indenter stiffness (force per volume and area)",
+            "1e17 N/m^5",
+        ),
+        (
+            Dim::DAMPING,
+            "a damping (mass per volume and time)",
+            "1e6 kg/m^3/s",
+        ),
     ];
 
     pub fn example(self) -> Option<&'static str> {
@@ -68,7 +84,11 @@ impl fmt::Display for Dim {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match Dim::NAMES.iter().find(|n| n.0 == *self) {
             Some((_, name, _)) => f.write_str(name),
-            None => write!(f, "a quantity in m^{} kg^{} s^{}", self.0[0], self.0[1], self.0[2]),
+            None => write!(
+                f,
+                "a quantity in m^{} kg^{} s^{}",
+                self.0[0], self.0[1], self.0[2]
+            ),
         }
     }
 }
@@ -131,7 +151,11 @@ impl UnitSystem {
     /// Factor from plain numbers to computed ones.
     pub fn plain_factor(self, dim: Dim) -> f64 {
         let (plain, computed) = (self.plain(dim), self.computed(dim));
-        if plain == computed { 1.0 } else { plain / computed }
+        if plain == computed {
+            1.0
+        } else {
+            plain / computed
+        }
     }
 
     /// Factor from SI to the unit that a plain number has.
@@ -163,7 +187,11 @@ impl UnitSystem {
             _ => (si, "SI"),
         };
         let number = short(scaled);
-        if unit.is_empty() { number } else { format!("{number} {unit}") }
+        if unit.is_empty() {
+            number
+        } else {
+            format!("{number} {unit}")
+        }
     }
 }
 
@@ -173,88 +201,158 @@ pub(super) fn short(value: f64) -> String {
         return format!("{value}");
     }
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+    if (1e-3..1e6).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 fn engineering(si: f64, unit: &'static str) -> (f64, &'static str) {
     let table: &[(f64, &str)] = match unit {
         "m" => &[(1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
-        "s" => &[(1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"), (1e-12, "ps")],
+        "s" => &[
+            (1.0, "s"),
+            (1e-3, "ms"),
+            (1e-6, "µs"),
+            (1e-9, "ns"),
+            (1e-12, "ps"),
+        ],
         _ => &[(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")],
     };
-    let (scale, name) = *table.iter().find(|(s, _)| si.abs() >= s * 0.0999).unwrap_or(&table[table.len() - 1]);
+    let (scale, name) = *table
+        .iter()
+        .find(|(s, _)| si.abs() >= s * 0.0999)
+        .unwrap_or(&table[table.len() - 1]);
     (si / scale, name)
 }
 
-/// Units that take SI prefixes: name, SI value, dimension.
-const PREFIXED: &[(&str, f64, Dim)] = &[
-    ("m", 1.0, Dim::LENGTH),
-    ("g", 1e-3, Dim::MASS),
-    ("s", 1.0, Dim::TIME),
-    ("N", 1.0, Dim::FORCE),
-    ("Pa", 1.0, Dim::PRESSURE),
-    ("J", 1.0, Dim::ENERGY),
-    ("W", 1.0, Dim([2, 1, -3])),
-    ("Hz", 1.0, Dim([0, 0, -1])),
-    ("eV", EV, Dim::ENERGY),
-    ("bar", 1e5, Dim::PRESSURE),
+/// A unit: `scale · 10^ten` in SI. Powers of ten are kept apart so that "0.5 mm" is the number 0.0005 and not its
+/// neighbour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    scale: f64,
+    ten: i32,
+    pub dim: Dim,
+}
+
+impl Unit {
+    const fn new(scale: f64, ten: i32, dim: Dim) -> Unit {
+        Unit { scale, ten, dim }
+    }
+
+    /// SI value of so many of it.
+    pub fn si(self, value: f64) -> f64 {
+        let text = format!("{value:e}");
+        let shifted = text.split_once('e').and_then(|(digits, exponent)| {
+            let exponent: i32 = exponent.parse().ok()?;
+            format!("{digits}e{}", exponent + self.ten).parse().ok()
+        });
+        // infinities have no exponent
+        shifted.unwrap_or(value) * self.scale
+    }
+
+    fn power(self, power: i8) -> Option<Unit> {
+        let dim = Dim::NUMBER.plus(self.dim, power)?;
+        Some(Unit {
+            scale: self.scale.powi(i32::from(power)),
+            ten: self.ten * i32::from(power),
+            dim,
+        })
+    }
+
+    fn times(self, other: Unit) -> Option<Unit> {
+        Some(Unit {
+            scale: self.scale * other.scale,
+            ten: self.ten.checked_add(other.ten)?,
+            dim: self.dim.plus(other.dim, 1)?,
+        })
+    }
+}
+
+/// Units that take SI prefixes.
+const PREFIXED: &[(&str, Unit)] = &[
+    ("m", Unit::new(1.0, 0, Dim::LENGTH)),
+    ("g", Unit::new(1.0, -3, Dim::MASS)),
+    ("s", Unit::new(1.0, 0, Dim::TIME)),
+    ("N", Unit::new(1.0, 0, Dim::FORCE)),
+    ("Pa", Unit::new(1.0, 0, Dim::PRESSURE)),
+    ("J", Unit::new(1.0, 0, Dim::ENERGY)),
+    ("W", Unit::new(1.0, 0, Dim([2, 1, -3]))),
+    ("Hz", Unit::new(1.0, 0, Dim([0, 0, -1]))),
+    ("eV", Unit::new(1.602176634, -19, Dim::ENERGY)),
+    ("bar", Unit::new(1.0, 5, Dim::PRESSURE)),
 ];
 
-const PREFIXES: &[(&str, f64)] = &[
-    ("f", 1e-15),
-    ("p", 1e-12),
-    ("n", 1e-9),
-    ("u", 1e-6),
-    ("µ", 1e-6),
-    ("μ", 1e-6),
-    ("m", 1e-3),
-    ("c", 1e-2),
-    ("k", 1e3),
-    ("M", 1e6),
-    ("G", 1e9),
-    ("T", 1e12),
+/// Powers of ten; both signs for micro.
+const PREFIXES: &[(&str, i32)] = &[
+    ("f", -15),
+    ("p", -12),
+    ("n", -9),
+    ("u", -6),
+    ("\u{b5}", -6),
+    ("\u{3bc}", -6),
+    ("m", -3),
+    ("c", -2),
+    ("k", 3),
+    ("M", 6),
+    ("G", 9),
+    ("T", 12),
 ];
 
-const OTHERS: &[(&str, f64, Dim)] = &[
-    ("Å", 1e-10, Dim::LENGTH),
-    ("Å", 1e-10, Dim::LENGTH),
-    ("angstrom", 1e-10, Dim::LENGTH),
-    ("inch", 0.0254, Dim::LENGTH),
-    ("min", 60.0, Dim::TIME),
-    ("h", 3600.0, Dim::TIME),
-    ("t", 1e3, Dim::MASS),
-    ("u", 1e-3 / AVOGADRO, Dim::MASS),
-    ("mol", AVOGADRO, Dim::NUMBER),
-    ("l", 1e-3, Dim::VOLUME),
-    ("atm", 101325.0, Dim::PRESSURE),
-    ("psi", 6894.757293168, Dim::PRESSURE),
-    ("%", 0.01, Dim::NUMBER),
+/// Units without prefixes; both signs for ångström.
+const OTHERS: &[(&str, Unit)] = &[
+    ("\u{c5}", Unit::new(1.0, -10, Dim::LENGTH)),
+    ("\u{212b}", Unit::new(1.0, -10, Dim::LENGTH)),
+    ("angstrom", Unit::new(1.0, -10, Dim::LENGTH)),
+    ("inch", Unit::new(2.54, -2, Dim::LENGTH)),
+    ("min", Unit::new(6.0, 1, Dim::TIME)),
+    ("h", Unit::new(3.6, 3, Dim::TIME)),
+    ("t", Unit::new(1.0, 3, Dim::MASS)),
+    ("u", Unit::new(1e-3 / AVOGADRO, 0, Dim::MASS)),
+    ("mol", Unit::new(6.02214076, 23, Dim::NUMBER)),
+    ("l", Unit::new(1.0, -3, Dim::VOLUME)),
+    ("atm", Unit::new(1.01325, 5, Dim::PRESSURE)),
+    ("psi", Unit::new(6894.757293168, 0, Dim::PRESSURE)),
+    ("%", Unit::new(1.0, -2, Dim::NUMBER)),
 ];
 
-fn named(name: &str) -> Option<(f64, Dim)> {
+fn named(name: &str) -> Option<Unit> {
     let exact = PREFIXED.iter().chain(OTHERS).find(|u| u.0 == name);
-    exact.map(|u| (u.1, u.2)).or_else(|| {
-        PREFIXES.iter().find_map(|(prefix, scale)| {
+    exact.map(|u| u.1).or_else(|| {
+        PREFIXES.iter().find_map(|(prefix, ten)| {
             let rest = name.strip_prefix(prefix)?;
-            PREFIXED.iter().find(|u| u.0 == rest).map(|u| (scale * u.1, u.2))
+            PREFIXED.iter().find(|u| u.0 == rest).map(|u| Unit {
+                ten: u.1.ten + ten,
+                ..u.1
+            })
         })
     })
 }
 
-/// SI value and dimension of a unit such as `kg/m^3`, `N/m²`, `J/(m^2)` without brackets, `eV/Å^3`, `kg/m3`.
-pub fn unit(text: &str) -> Result<(f64, Dim), String> {
-    let text = text.replace('²', "^2").replace('³', "^3").replace("**", "^").replace('·', "*");
-    let (mut value, mut dim, mut sign) = (1.0, Dim::NUMBER, 1i8);
+/// A unit such as `kg/m^3`, `N/m²`, `J/m^2/s`, `eV/Å^3`, `kg/m3`; each `/` divides by what follows it only.
+pub fn unit(text: &str) -> Result<Unit, String> {
+    const LARGE: &str = "the powers of the unit are too large";
+    let text = text
+        .replace('²', "^2")
+        .replace('³', "^3")
+        .replace("**", "^")
+        .replace('·', "*");
+    let (mut product, mut sign) = (Unit::new(1.0, 0, Dim::NUMBER), 1i8);
     let mut rest = text.trim();
     loop {
-        let length = rest.find(|c: char| !(c.is_alphabetic() || c == '%')).unwrap_or(rest.len());
+        let length = rest
+            .find(|c: char| !(c.is_alphabetic() || c == '%'))
+            .unwrap_or(rest.len());
         let name = &rest[..length];
         if name.is_empty() {
-            return Err(if rest.is_empty() { "a unit is missing".into() } else { format!("`{rest}` is not a unit") });
+            return Err(if rest.is_empty() {
+                "a unit is missing".into()
+            } else {
+                format!("`{rest}` is not a unit")
+            });
         }
-        let Some((scale, of)) = named(name) else {
-            return Err(unknown(name));
-        };
+        let factor = named(name).ok_or_else(|| unknown(name))?;
         rest = rest[length..].trim_start();
         let explicit = rest.strip_prefix('^').map(str::trim_start);
         let digits = explicit.unwrap_or(rest);
@@ -266,14 +364,20 @@ pub fn unit(text: &str) -> Result<(f64, Dim), String> {
             "" if explicit.is_none() => 1,
             digits => match digits.parse() {
                 Ok(power) if (-9..=9).contains(&power) => power,
-                _ => return Err(format!("`{name}^{digits}`: the power of a unit is a whole number from -9 to 9")),
+                _ => {
+                    return Err(format!(
+                        "`{name}^{digits}`: the power of a unit is a whole number from -9 to 9"
+                    ));
+                }
             },
         };
-        value *= scale.powi(i32::from(sign * power));
-        dim = dim.plus(of, sign * power).ok_or("the powers of the unit are too large")?;
+        product = factor
+            .power(sign * power)
+            .and_then(|f| product.times(f))
+            .ok_or(LARGE)?;
         rest = digits[end..].trim_start();
         if rest.is_empty() {
-            return Ok((value, dim));
+            return Ok(product);
         }
         (sign, rest) = match rest.strip_prefix('/') {
             Some(after) => (-1, after.trim_start()),
@@ -283,14 +387,20 @@ pub fn unit(text: &str) -> Result<(f64, Dim), String> {
 }
 
 fn unknown(name: &str) -> String {
-    let prefixed = PREFIXES.iter().flat_map(|(p, _)| PREFIXED.iter().map(move |u| format!("{p}{}", u.0)));
+    let prefixed = PREFIXES
+        .iter()
+        .flat_map(|(p, _)| PREFIXED.iter().map(move |u| format!("{p}{}", u.0)));
     let plain = PREFIXED.iter().chain(OTHERS).map(|u| u.0.to_string());
     let lower = name.to_lowercase();
     // a wrong case is the commonest slip: mpa, gpa, hz
-    let near = plain.chain(prefixed).find(|known| known.to_lowercase() == lower);
+    let near = plain
+        .chain(prefixed)
+        .find(|known| known.to_lowercase() == lower);
     match near {
         Some(near) => format!("unknown unit `{name}`, did you mean `{near}`?"),
-        None => format!("unknown unit `{name}`; known are m, g, s, N, Pa, J, W, Hz, eV, bar with prefixes f to T, and Å, inch, min, h, t, u, mol, l, atm, psi, %"),
+        None => format!(
+            "unknown unit `{name}`; known are m, g, s, N, Pa, J, W, Hz, eV, bar with prefixes f to T, and Å, inch, min, h, t, u, mol, l, atm, psi, %"
+        ),
     }
 }
 
@@ -314,9 +424,19 @@ mod tests {
 
     fn is(text: &str, value: f64, dim: Dim) {
         let (number, unit_text) = split(text).unwrap_or_else(|| panic!("{text}"));
-        let (scale, found) = unit(unit_text).unwrap_or_else(|e| panic!("{text}: {e}"));
-        assert_eq!(found, dim, "{text}");
-        assert!((number * scale - value).abs() <= 1e-14 * value.abs(), "{text}: {}", number * scale);
+        let unit = unit(unit_text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(unit.dim, dim, "{text}");
+        // decimal shifts are exact
+        let bound = if unit.scale == 1.0 {
+            0.0
+        } else {
+            1e-14 * value.abs()
+        };
+        assert!(
+            (unit.si(number) - value).abs() <= bound,
+            "{text}: {}",
+            unit.si(number)
+        );
     }
 
     #[test]
@@ -331,6 +451,7 @@ mod tests {
         is("5 N m^-2", 5.0, Dim::PRESSURE);
         is("10 J/m^2", 10.0, Dim::FRACTURE_ENERGY);
         is("10 kN/m", 1e4, Dim::FRACTURE_ENERGY);
+        is("100 ns", 1e-7, Dim::TIME);
         is("-3 µs", -3e-6, Dim::TIME);
         is("58.69 g/mol", 58.69e-3 / AVOGADRO, Dim::MASS);
         is("1 eV/Å^3", EV / 1e-30, Dim::PRESSURE);

@@ -18,7 +18,10 @@ pub struct At<T> {
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let spanned = toml::Spanned::<T>::deserialize(deserializer)?;
-        Ok(At { span: spanned.span(), value: spanned.into_inner() })
+        Ok(At {
+            span: spanned.span(),
+            value: spanned.into_inner(),
+        })
     }
 }
 
@@ -103,13 +106,22 @@ impl<'de> Deserialize<'de> for Numbers {
                 f.write_str("a list of numbers such as [0, \"0.5 mm\"]")
             }
             fn visit_i64<E: Error>(self, v: i64) -> Result<Numbers, E> {
-                Ok(Numbers(vec![At { value: Written::Plain(v as f64), span: 0..0 }]))
+                Ok(Numbers(vec![At {
+                    value: Written::Plain(v as f64),
+                    span: 0..0,
+                }]))
             }
             fn visit_f64<E: Error>(self, v: f64) -> Result<Numbers, E> {
-                Ok(Numbers(vec![At { value: Written::Plain(v), span: 0..0 }]))
+                Ok(Numbers(vec![At {
+                    value: Written::Plain(v),
+                    span: 0..0,
+                }]))
             }
             fn visit_str<E: Error>(self, v: &str) -> Result<Numbers, E> {
-                Ok(Numbers(vec![At { value: Written::Text(v.to_string()), span: 0..0 }]))
+                Ok(Numbers(vec![At {
+                    value: Written::Text(v.to_string()),
+                    span: 0..0,
+                }]))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Numbers, A::Error> {
                 list(seq).map(Numbers)
@@ -223,7 +235,10 @@ impl<A: JsonSchema, T: JsonSchema> JsonSchema for Or<A, T> {
         format!("{}Or{}", A::schema_name(), T::schema_name()).into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let (bare, table) = (generator.subschema_for::<A>(), generator.subschema_for::<T>());
+        let (bare, table) = (
+            generator.subschema_for::<A>(),
+            generator.subschema_for::<T>(),
+        );
         json_schema!({ "anyOf": [bare, table] })
     }
 }

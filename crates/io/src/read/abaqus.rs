@@ -14,12 +14,30 @@ fn element(kind: &str) -> Option<(usize, Kind)> {
     let families: [(&str, &[(&str, Kind)]); 2] = [
         (
             "C3D",
-            &[("20", Kind::Hexa), ("15", Kind::Prism), ("10", Kind::Tetra), ("8", Kind::Hexa), ("6", Kind::Prism), ("5", Kind::Pyramid), ("4", Kind::Tetra)],
+            &[
+                ("20", Kind::Hexa),
+                ("15", Kind::Prism),
+                ("10", Kind::Tetra),
+                ("8", Kind::Hexa),
+                ("6", Kind::Prism),
+                ("5", Kind::Pyramid),
+                ("4", Kind::Tetra),
+            ],
         ),
-        ("CP", &[("3", Kind::Triangle), ("4", Kind::Quad), ("6", Kind::Triangle), ("8", Kind::Quad)]),
+        (
+            "CP",
+            &[
+                ("3", Kind::Triangle),
+                ("4", Kind::Quad),
+                ("6", Kind::Triangle),
+                ("8", Kind::Quad),
+            ],
+        ),
     ];
     for (prefix, members) in families {
-        let Some(mut rest) = kind.strip_prefix(prefix) else { continue };
+        let Some(mut rest) = kind.strip_prefix(prefix) else {
+            continue;
+        };
         if prefix == "CP" {
             // CPS plane stress, CPE plane strain
             rest = rest.strip_prefix(['S', 'E'])?;
@@ -55,10 +73,14 @@ struct Mesh {
 
 impl Mesh {
     fn set(&mut self, name: &str) -> &mut Vec<u64> {
-        let at = self.sets.iter().position(|(known, _)| known.eq_ignore_ascii_case(name)).unwrap_or_else(|| {
-            self.sets.push((name.to_string(), Vec::new()));
-            self.sets.len() - 1
-        });
+        let at = self
+            .sets
+            .iter()
+            .position(|(known, _)| known.eq_ignore_ascii_case(name))
+            .unwrap_or_else(|| {
+                self.sets.push((name.to_string(), Vec::new()));
+                self.sets.len() - 1
+            });
         &mut self.sets[at].1
     }
 }
@@ -75,7 +97,9 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
             "*NODE" => nodes(&mut lines, &mut mesh)?,
             "*ELEMENT" => elements(&mut lines, &mut mesh, line)?,
             "*ELSET" => element_set(&mut lines, &mut mesh, line)?,
-            "*INCLUDE" => return Err(lines.error("*INCLUDE is not followed: put the mesh into one file")),
+            "*INCLUDE" => {
+                return Err(lines.error("*INCLUDE is not followed: put the mesh into one file"));
+            }
             _ => {}
         }
     }
@@ -123,7 +147,9 @@ fn nodes(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
             x[2] = lines.finite(Some(z), "z")?;
         }
         if mesh.nodes.insert(id, x).is_some() {
-            return Err(lines.error(format!("node {id} is defined twice; several parts cannot be told apart")));
+            return Err(lines.error(format!(
+                "node {id} is defined twice; several parts cannot be told apart"
+            )));
         }
     }
     Ok(())
@@ -134,7 +160,9 @@ fn elements(lines: &mut Lines, mesh: &mut Mesh, header: &str) -> Result<(), Read
         return Err(lines.error("*ELEMENT needs TYPE="));
     };
     let Some((count, kind)) = element(name) else {
-        let message = format!("unknown element type {name}; known are C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, C3D20, CPS3, CPS4, CPE3, CPE4, CPS6, CPS8, CPE6, CPE8");
+        let message = format!(
+            "unknown element type {name}; known are C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, C3D20, CPS3, CPS4, CPE3, CPE4, CPS6, CPS8, CPE6, CPE8"
+        );
         return Err(lines.error(message));
     };
     let set = option(header, "elset").map(str::to_string);
@@ -148,10 +176,17 @@ fn elements(lines: &mut Lines, mesh: &mut Mesh, header: &str) -> Result<(), Read
                 None => break,
             }
         }
-        let fields: Vec<&str> = text.split(',').map(str::trim).filter(|f| !f.is_empty()).collect();
+        let fields: Vec<&str> = text
+            .split(',')
+            .map(str::trim)
+            .filter(|f| !f.is_empty())
+            .collect();
         let id: u64 = lines.parse(fields.first().copied(), "an element number")?;
         if fields.len() != count + 1 {
-            let message = format!("element {id} of type {name} has {} nodes instead of {count}", fields.len() - 1);
+            let message = format!(
+                "element {id} of type {name} has {} nodes instead of {count}",
+                fields.len() - 1
+            );
             return Err(lines.error_at(at, message));
         }
         let mut nodes = Vec::with_capacity(kind.corners());
@@ -161,7 +196,13 @@ fn elements(lines: &mut Lines, mesh: &mut Mesh, header: &str) -> Result<(), Read
         if mesh.index.insert(id, mesh.cells.len()).is_some() {
             return Err(lines.error_at(at, format!("element {id} is defined twice")));
         }
-        mesh.cells.push(Cell { kind, id, nodes, mark: 0, line: at });
+        mesh.cells.push(Cell {
+            kind,
+            id,
+            nodes,
+            mark: 0,
+            line: at,
+        });
         if let Some(set) = &set {
             mesh.set(set).push(id);
         }
@@ -173,14 +214,18 @@ fn element_set(lines: &mut Lines, mesh: &mut Mesh, header: &str) -> Result<(), R
     let Some(name) = option(header, "elset").map(str::to_string) else {
         return Err(lines.error("*ELSET needs ELSET="));
     };
-    let generate = header.split(',').any(|part| part.trim().eq_ignore_ascii_case("generate"));
+    let generate = header
+        .split(',')
+        .any(|part| part.trim().eq_ignore_ascii_case("generate"));
     let mut members: Vec<u64> = Vec::new();
     while let Some(line) = data(lines) {
         let mut fields = line.split(',').map(str::trim).filter(|f| !f.is_empty());
         if generate {
             let first: u64 = lines.parse(fields.next(), "the first element")?;
             let last: u64 = lines.parse(fields.next(), "the last element")?;
-            let step: usize = fields.next().map_or(Ok(1), |f| lines.parse(Some(f), "the step"))?;
+            let step: usize = fields
+                .next()
+                .map_or(Ok(1), |f| lines.parse(Some(f), "the step"))?;
             if step == 0 || last < first || last - first > 1 << 24 {
                 return Err(lines.error("expected first, last, step with first ≤ last, a step above 0 and at most 16 million members"));
             }
@@ -188,9 +233,14 @@ fn element_set(lines: &mut Lines, mesh: &mut Mesh, header: &str) -> Result<(), R
             continue;
         }
         for field in fields {
-            match mesh.sets.iter().find(|(known, _)| known.eq_ignore_ascii_case(field)) {
+            match mesh
+                .sets
+                .iter()
+                .find(|(known, _)| known.eq_ignore_ascii_case(field))
+            {
                 Some((_, other)) => members.extend(other),
-                None => members.push(lines.parse(Some(field), "an element number or the name of a set")?),
+                None => members
+                    .push(lines.parse(Some(field), "an element number or the name of a set")?),
             }
         }
     }

@@ -27,7 +27,11 @@ impl Kind {
     }
 
     pub fn dimension(self) -> usize {
-        if matches!(self, Kind::Triangle | Kind::Quad) { 2 } else { 3 }
+        if matches!(self, Kind::Triangle | Kind::Quad) {
+            2
+        } else {
+            3
+        }
     }
 
     /// Simplices that make the cell, by corner.
@@ -38,7 +42,14 @@ impl Kind {
             Kind::Tetra => &[[0, 1, 2, 3]],
             Kind::Pyramid => &[[0, 1, 2, 4], [0, 2, 3, 4]],
             Kind::Prism => &[[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]],
-            Kind::Hexa => &[[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]],
+            Kind::Hexa => &[
+                [0, 1, 2, 6],
+                [0, 2, 3, 6],
+                [0, 3, 7, 6],
+                [0, 7, 4, 6],
+                [0, 4, 5, 6],
+                [0, 5, 1, 6],
+            ],
         }
     }
 }
@@ -63,7 +74,9 @@ pub(super) fn points(
     mut names: Vec<(i32, String)>,
 ) -> Result<Sourced, ReadError> {
     let Some(dimension) = cells.iter().map(|c| c.kind.dimension()).max() else {
-        return Err(lines.error("the mesh has no cells (triangles, quadrilaterals, tetrahedra, prisms, hexahedra)"));
+        return Err(lines.error(
+            "the mesh has no cells (triangles, quadrilaterals, tetrahedra, prisms, hexahedra)",
+        ));
     };
     let mut cloud = Cloud::default();
     let mut sources = Vec::new();
@@ -76,14 +89,24 @@ pub(super) fn points(
     }
     names.retain(|(mark, _)| cloud.mark.contains(mark));
     cloud.names = names;
-    Ok(Sourced { cloud, dimension: Some(dimension), lines: sources })
+    Ok(Sourced {
+        cloud,
+        dimension: Some(dimension),
+        lines: sources,
+    })
 }
 
 fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<([f64; 3], f64), ReadError> {
     let mut corners = Vec::with_capacity(8);
     for id in &cell.nodes {
         let x = nodes.get(id).ok_or_else(|| {
-            lines.error_at(cell.line, format!("element {} refers to node {id}, which does not exist", cell.id))
+            lines.error_at(
+                cell.line,
+                format!(
+                    "element {} refers to node {id}, which does not exist",
+                    cell.id
+                ),
+            )
         })?;
         corners.push(*x);
     }
@@ -98,7 +121,9 @@ fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<([f64; 3], f64),
             (e[0] * f[1] - e[1] * f[0]) / 2.0
         } else {
             let g = edge(3);
-            (e[0] * (f[1] * g[2] - f[2] * g[1]) - e[1] * (f[0] * g[2] - f[2] * g[0]) + e[2] * (f[0] * g[1] - f[1] * g[0])) / 6.0
+            (e[0] * (f[1] * g[2] - f[2] * g[1]) - e[1] * (f[0] * g[2] - f[2] * g[0])
+                + e[2] * (f[0] * g[1] - f[1] * g[0]))
+                / 6.0
         };
         volume += part;
         for (a, m) in moment.iter_mut().enumerate() {
@@ -108,8 +133,15 @@ fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<([f64; 3], f64),
     let centroid = moment.map(|m| m / volume);
     // the orientation of a cell does not matter, its emptiness does
     if !(volume.abs() > 0.0 && volume.is_finite() && centroid.iter().all(|c| c.is_finite())) {
-        let what = if flat { "area in the x-y plane" } else { "volume" };
-        return Err(lines.error_at(cell.line, format!("element {} has no positive {what}: {volume}", cell.id)));
+        let what = if flat {
+            "area in the x-y plane"
+        } else {
+            "volume"
+        };
+        return Err(lines.error_at(
+            cell.line,
+            format!("element {} has no positive {what}: {volume}", cell.id),
+        ));
     }
     Ok((centroid, volume.abs()))
 }

@@ -60,7 +60,11 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
     mesh.new = match version {
         "2.2" | "2" | "2.1" => false,
         "4.1" => true,
-        _ => return Err(lines.error(format!("format {version} is not read: export 4.1 or 2.2 (gmsh -format msh41)"))),
+        _ => {
+            return Err(lines.error(format!(
+                "format {version} is not read: export 4.1 or 2.2 (gmsh -format msh41)"
+            )));
+        }
     };
     if fields.next() != Some("0") {
         return Err(lines.error("the mesh is binary: export it as ASCII"));
@@ -76,27 +80,56 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
                 let closing = format!("$End{}", &other[1..]);
                 while lines.expect(&closing)? != closing {}
             }
-            other => return Err(lines.error(format!("expected a section such as $Nodes, found `{other}`"))),
+            other => {
+                return Err(lines.error(format!(
+                    "expected a section such as $Nodes, found `{other}`"
+                )));
+            }
         }
     }
-    let dimension = mesh.cells.iter().map(|c| c.kind.dimension()).max().unwrap_or(0);
-    let names = mesh.names.iter().filter(|n| n.0 == dimension).map(|n| (n.1, n.2.clone())).collect();
+    let dimension = mesh
+        .cells
+        .iter()
+        .map(|c| c.kind.dimension())
+        .max()
+        .unwrap_or(0);
+    let names = mesh
+        .names
+        .iter()
+        .filter(|n| n.0 == dimension)
+        .map(|n| (n.1, n.2.clone()))
+        .collect();
     cell::points(&lines, &mesh.nodes, &mesh.cells, names)
 }
 
 fn end(lines: &mut Lines, closing: &str) -> Result<(), ReadError> {
     let line = lines.expect(closing)?;
-    if line == closing { Ok(()) } else { Err(lines.error(format!("expected {closing}, found `{line}`"))) }
+    if line == closing {
+        Ok(())
+    } else {
+        Err(lines.error(format!("expected {closing}, found `{line}`")))
+    }
 }
 
 fn physical_names(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
-    let count: usize = lines.expect("the number of names").and_then(|l| lines.parse(Some(l), "the number of names"))?;
+    let count: usize = lines
+        .expect("the number of names")
+        .and_then(|l| lines.parse(Some(l), "the number of names"))?;
     for _ in 0..count {
         let line = lines.expect("a physical name")?;
         let mut fields = line.splitn(3, char::is_whitespace);
         let dimension = lines.parse(fields.next(), "a dimension")?;
         let group = lines.parse(fields.next(), "the number of a group")?;
-        mesh.names.push((dimension, group, fields.next().unwrap_or("").trim().trim_matches('"').to_string()));
+        mesh.names.push((
+            dimension,
+            group,
+            fields
+                .next()
+                .unwrap_or("")
+                .trim()
+                .trim_matches('"')
+                .to_string(),
+        ));
     }
     end(lines, "$EndPhysicalNames")
 }
@@ -104,8 +137,10 @@ fn physical_names(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
 /// Format 4.1: the physical group of every point, curve, surface and volume.
 fn entities(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
     let line = lines.expect("the numbers of entities")?;
-    let counts: Vec<usize> =
-        line.split_whitespace().map(|f| lines.parse(Some(f), "a number of entities")).collect::<Result<_, _>>()?;
+    let counts: Vec<usize> = line
+        .split_whitespace()
+        .map(|f| lines.parse(Some(f), "a number of entities"))
+        .collect::<Result<_, _>>()?;
     if counts.len() != 4 {
         return Err(lines.error("expected the numbers of points, curves, surfaces and volumes"));
     }
@@ -119,15 +154,23 @@ fn entities(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
             let groups: usize = lines.parse(fields.next(), "the number of physical groups")?;
             if groups > 0 {
                 let group: i32 = lines.parse(fields.next(), "a physical group")?;
-                mesh.entities.insert((dimension, tag), group.saturating_abs());
+                mesh.entities
+                    .insert((dimension, tag), group.saturating_abs());
             }
         }
     }
     end(lines, "$EndEntities")
 }
 
-fn position<'a>(lines: &Lines, mut fields: impl Iterator<Item = &'a str>) -> Result<[f64; 3], ReadError> {
-    Ok([lines.finite(fields.next(), "x")?, lines.finite(fields.next(), "y")?, lines.finite(fields.next(), "z")?])
+fn position<'a>(
+    lines: &Lines,
+    mut fields: impl Iterator<Item = &'a str>,
+) -> Result<[f64; 3], ReadError> {
+    Ok([
+        lines.finite(fields.next(), "x")?,
+        lines.finite(fields.next(), "y")?,
+        lines.finite(fields.next(), "z")?,
+    ])
 }
 
 fn insert(lines: &Lines, mesh: &mut Mesh, id: u64, x: [f64; 3]) -> Result<(), ReadError> {
@@ -184,12 +227,23 @@ fn push<'a>(
         Some(Element::Nothing(count)) => (None, count),
         None => return Err(lines.error(format!("unknown element type {kind} of element {id}"))),
     };
-    let nodes: Vec<u64> = fields.map(|f| lines.parse(Some(f), "a node number")).collect::<Result<_, _>>()?;
+    let nodes: Vec<u64> = fields
+        .map(|f| lines.parse(Some(f), "a node number"))
+        .collect::<Result<_, _>>()?;
     if nodes.len() != count {
-        return Err(lines.error(format!("element {id} of type {kind} has {} nodes instead of {count}", nodes.len())));
+        return Err(lines.error(format!(
+            "element {id} of type {kind} has {} nodes instead of {count}",
+            nodes.len()
+        )));
     }
     if let Some(kind) = cell {
-        mesh.cells.push(Cell { kind, id, nodes: nodes[..kind.corners()].to_vec(), mark, line: lines.number });
+        mesh.cells.push(Cell {
+            kind,
+            id,
+            nodes: nodes[..kind.corners()].to_vec(),
+            mark,
+            line: lines.number,
+        });
     }
     Ok(())
 }
@@ -204,16 +258,30 @@ fn elements(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
             let id = lines.parse(fields.next(), "an element number")?;
             let kind = lines.parse(fields.next(), "an element type")?;
             let tags: usize = lines.parse(fields.next(), "the number of tags")?;
-            let tags: Vec<i32> =
-                fields.by_ref().take(tags).map(|f| lines.parse(Some(f), "a tag")).collect::<Result<_, _>>()?;
-            push(lines, mesh, id, kind, tags.first().map_or(0, |t| t.saturating_abs()), fields)?;
+            let tags: Vec<i32> = fields
+                .by_ref()
+                .take(tags)
+                .map(|f| lines.parse(Some(f), "a tag"))
+                .collect::<Result<_, _>>()?;
+            push(
+                lines,
+                mesh,
+                id,
+                kind,
+                tags.first().map_or(0, |t| t.saturating_abs()),
+                fields,
+            )?;
             continue;
         }
         let dimension = lines.parse(fields.next(), "a dimension")?;
         let entity = lines.parse(fields.next(), "the tag of an entity")?;
         let kind = lines.parse(fields.next(), "an element type")?;
         let count: usize = lines.parse(fields.next(), "the number of elements of the block")?;
-        let mark = mesh.entities.get(&(dimension, entity)).copied().unwrap_or(0);
+        let mark = mesh
+            .entities
+            .get(&(dimension, entity))
+            .copied()
+            .unwrap_or(0);
         for _ in 0..count {
             let line = lines.expect("an element")?;
             let mut fields = line.split_whitespace();

@@ -12,7 +12,11 @@ pub(super) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     pub fn new(text: &'a str, name: &'a str) -> Self {
-        Lines { name, rest: text.lines().enumerate().peekable(), number: 0 }
+        Lines {
+            name,
+            rest: text.lines().enumerate().peekable(),
+            number: 0,
+        }
     }
 
     /// The next line that is not blank, trimmed.
@@ -35,7 +39,8 @@ impl<'a> Lines<'a> {
 
     /// The next line, which must exist.
     pub fn expect(&mut self, what: &str) -> Result<&'a str, ReadError> {
-        self.next().ok_or_else(|| self.error(format!("the file ends where {what} should follow")))
+        self.next()
+            .ok_or_else(|| self.error(format!("the file ends where {what} should follow")))
     }
 
     /// The line after this one, untouched.
@@ -48,17 +53,28 @@ impl<'a> Lines<'a> {
     }
 
     pub fn error_at(&self, line: usize, message: impl Into<String>) -> ReadError {
-        ReadError { file: self.name.to_string(), line: Some(line), message: message.into() }
+        ReadError {
+            file: self.name.to_string(),
+            line: Some(line),
+            message: message.into(),
+        }
     }
 
     pub fn parse<T: FromStr>(&self, text: Option<&str>, what: &str) -> Result<T, ReadError> {
-        let text = text.ok_or_else(|| self.error(format!("expected {what}, the line ends")))?.trim();
-        text.parse().map_err(|_| self.error(format!("expected {what}, found `{text}`")))
+        let text = text
+            .ok_or_else(|| self.error(format!("expected {what}, the line ends")))?
+            .trim();
+        text.parse()
+            .map_err(|_| self.error(format!("expected {what}, found `{text}`")))
     }
 
     /// A number that is neither NaN nor infinite.
     pub fn finite(&self, text: Option<&str>, what: &str) -> Result<f64, ReadError> {
         let value: f64 = self.parse(text, what)?;
-        if value.is_finite() { Ok(value) } else { Err(self.error(format!("{what} is {value}"))) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.error(format!("{what} is {value}")))
+        }
     }
 }

@@ -38,13 +38,24 @@ pub struct ReadError {
 /// The file cannot be read, is of another kind, truncated, has NaN, cells without volume, or points that coincide.
 pub fn points(path: &Path) -> Result<Points, ReadError> {
     let name = path.display().to_string();
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
-    let error = |message: String| ReadError { file: name.clone(), line: None, message };
+    let extension = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or("")
+        .to_lowercase();
+    let error = |message: String| ReadError {
+        file: name.clone(),
+        line: None,
+        message,
+    };
     if !["inp", "msh", "txt", "dat", "xyz", "csv"].contains(&extension.as_str()) {
-        return Err(error(format!("unknown kind of file \".{extension}\": points come as .txt, .inp, .msh or .data")));
+        return Err(error(format!(
+            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh or .data"
+        )));
     }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
-    let text = String::from_utf8(bytes).map_err(|_| error("it is not text; save meshes as ASCII".into()))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| error("it is not text; save meshes as ASCII".into()))?;
     parse(&text, &name, &extension)
 }
 
@@ -59,11 +70,24 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
     for (i, (x, line)) in points.cloud.position.iter().zip(&points.lines).enumerate() {
         // + 0.0 makes −0 and 0 one
         if let Some(first) = seen.insert(x.map(|c| (c + 0.0).to_bits()), *line) {
-            let message = format!("point {} at ({}, {}, {}) coincides with that of line {first}", i + 1, x[0], x[1], x[2]);
-            return Err(ReadError { file: name.into(), line: Some(*line), message });
+            let message = format!(
+                "point {} at ({}, {}, {}) coincides with that of line {first}",
+                i + 1,
+                x[0],
+                x[1],
+                x[2]
+            );
+            return Err(ReadError {
+                file: name.into(),
+                line: Some(*line),
+                message,
+            });
         }
     }
-    Ok(Points { cloud: points.cloud, dimension: points.dimension })
+    Ok(Points {
+        cloud: points.cloud,
+        dimension: points.dimension,
+    })
 }
 
 /// Points and the line that each came from.

@@ -11,16 +11,25 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
     let mut columns = None;
     while let Some(line) = lines.next() {
         let line = line.split('#').next().unwrap_or("");
-        let fields: Vec<&str> = line.split([' ', '\t', ',', ';']).filter(|f| !f.is_empty()).collect();
+        let fields: Vec<&str> = line
+            .split([' ', '\t', ',', ';'])
+            .filter(|f| !f.is_empty())
+            .collect();
         if fields.is_empty() {
             continue;
         }
         let first = *columns.get_or_insert(fields.len());
         if !(4..=5).contains(&fields.len()) {
-            return Err(lines.error(format!("expected `x y z volume [mark]`, found {} columns", fields.len())));
+            return Err(lines.error(format!(
+                "expected `x y z volume [mark]`, found {} columns",
+                fields.len()
+            )));
         }
         if fields.len() != first {
-            return Err(lines.error(format!("{} columns, where the lines before have {first}", fields.len())));
+            return Err(lines.error(format!(
+                "{} columns, where the lines before have {first}",
+                fields.len()
+            )));
         }
         let mut x = [0.0; 3];
         for (a, c) in x.iter_mut().enumerate() {
@@ -31,14 +40,24 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
             return Err(lines.error(format!("the volume must be positive, it is {volume}")));
         }
         if let Some(mark) = fields.get(4) {
-            cloud.mark.push(lines.parse(Some(mark), "a whole number as mark")?);
+            cloud
+                .mark
+                .push(lines.parse(Some(mark), "a whole number as mark")?);
         }
         cloud.position.push(x);
         cloud.volume.push(volume);
         sources.push(lines.number);
     }
     if sources.is_empty() {
-        return Err(ReadError { file: name.into(), line: None, message: "the file has no points".into() });
+        return Err(ReadError {
+            file: name.into(),
+            line: None,
+            message: "the file has no points".into(),
+        });
     }
-    Ok(Sourced { cloud, dimension: None, lines: sources })
+    Ok(Sourced {
+        cloud,
+        dimension: None,
+        lines: sources,
+    })
 }

@@ -2,8 +2,8 @@
 
 use super::Files;
 use super::context::{Context, Result};
-use crate::deck::document::{Body, Mark, Periods, Set, Shape};
 use crate::deck::document::{AxisName, LatticeName};
+use crate::deck::document::{Body, Mark, Periods, Set, Shape};
 use crate::deck::error::nearest;
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Vector};
@@ -29,29 +29,66 @@ impl From<LatticeName> for LatticeKind {
     }
 }
 
-/// Reads the body and settles the dimension of `context`.
-pub(super) fn body(context: &mut Context, body: &At<Body>, asked: Option<&At<usize>>, files: &Files) -> Result<BodySpec> {
+/// Reads the body and settles the dimension of `context`; cells of a 2-D mesh still have areas as volumes.
+pub(super) fn body(
+    context: &mut Context,
+    body: &At<Body>,
+    asked: Option<&At<usize>>,
+    files: &Files,
+) -> Result<BodySpec> {
     let written = &body.value;
-    let given = [("lattice", written.lattice.is_some()), ("file", written.file.is_some())];
+    let given = [
+        ("lattice", written.lattice.is_some()),
+        ("file", written.file.is_some()),
+    ];
     let (spec, natural) = match context.one_of(&body.span, "the body", &given)? {
-        0 => (None, written.lattice.as_ref().map(|l| LatticeKind::from(l.value).dimension())),
+        0 => (
+            None,
+            written
+                .lattice
+                .as_ref()
+                .map(|l| LatticeKind::from(l.value).dimension()),
+        ),
         _ => {
-            let (cloud, dimension) = files.read(context, written)?;
-            (Some(cloud), dimension)
+            let points = files.read(context, written)?;
+            (Some(points.cloud), points.dimension)
         }
     };
     context.dimension = dimension(context, asked, natural, written.lattice.is_some())?;
+    if let (Some(_), Some(unit)) = (&written.lattice, &written.file_unit) {
+        return Err(context.error(
+            &unit.span,
+            "file_unit belongs to a file; a lattice has its spacing",
+        ));
+    }
     match (&written.lattice, spec) {
         (Some(kind), _) => lattice(context, body, LatticeKind::from(kind.value)),
         (None, Some(mut cloud)) => {
-            if let Some(lost) = written.origin.as_ref().map(|o| &o.span).or(written.region.as_ref().map(|r| &r.span)) {
-                return Err(context.error(lost, "origin and region belong to a lattice; a file brings its points"));
+            if let Some(lost) = written
+                .origin
+                .as_ref()
+                .map(|o| &o.span)
+                .or(written.region.as_ref().map(|r| &r.span))
+            {
+                return Err(context.error(
+                    lost,
+                    "origin and region belong to a lattice; a file brings its points",
+                ));
             }
             if let Some(perturb) = &written.perturb {
-                return Err(context.error(&perturb.amplitude.span, "only a lattice can be perturbed"));
+                return Err(
+                    context.error(&perturb.amplitude.span, "only a lattice can be perturbed")
+                );
             }
             if let Some(spacing) = &written.spacing {
                 cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
+            }
+            if let Some(unit) = &written.file_unit {
+                let unit = context.positive(unit, Dim::LENGTH, "the unit of the file")?;
+                // areas of a 2-D mesh, volumes otherwise
+                let power = if natural == Some(2) { 2 } else { 3 };
+                cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
+                cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
             }
             Ok(BodySpec::Cloud(cloud))
         }
@@ -59,15 +96,24 @@ pub(super) fn body(context: &mut Context, body: &At<Body>, asked: Option<&At<usi
     }
 }
 
-fn dimension(context: &Context, asked: Option<&At<usize>>, natural: Option<usize>, lattice: bool) -> Result<usize> {
+fn dimension(
+    context: &Context,
+    asked: Option<&At<usize>>,
+    natural: Option<usize>,
+    lattice: bool,
+) -> Result<usize> {
     match (asked, natural) {
         (None, natural) => Ok(natural.unwrap_or(3)),
-        (Some(asked), _) if !(1..=3).contains(&asked.value) => {
-            Err(context.error(&asked.span, format!("the dimension is 1, 2 or 3, not {}", asked.value)))
-        }
+        (Some(asked), _) if !(1..=3).contains(&asked.value) => Err(context.error(
+            &asked.span,
+            format!("the dimension is 1, 2 or 3, not {}", asked.value),
+        )),
         (Some(asked), Some(natural)) if asked.value != natural => {
             let what = if lattice { "lattice" } else { "mesh" };
-            Err(context.error(&asked.span, format!("the {what} is {natural}-D, not {}-D", asked.value)))
+            Err(context.error(
+                &asked.span,
+                format!("the {what} is {natural}-D, not {}-D", asked.value),
+            ))
         }
         (Some(asked), _) => Ok(asked.value),
     }
@@ -76,78 +122,143 @@ fn dimension(context: &Context, asked: Option<&At<usize>>, natural: Option<usize
 fn lattice(context: &Context, body: &At<Body>, kind: LatticeKind) -> Result<BodySpec> {
     let written = &body.value;
     let missing = |key: &str, example: &str| {
-        context.error_with(&body.span, format!("a lattice body needs `{key}`"), format!("add {key} = {example}"))
+        context.error_with(
+            &body.span,
+            format!("a lattice body needs `{key}`"),
+            format!("add {key} = {example}"),
+        )
     };
-    let spacing = written.spacing.as_ref().ok_or_else(|| missing("spacing", "\"0.5 mm\""))?;
+    let spacing = written
+        .spacing
+        .as_ref()
+        .ok_or_else(|| missing("spacing", "\"0.5 mm\""))?;
     let spacing = context.positive(spacing, Dim::LENGTH, "the spacing")?;
-    let shape = written.region.as_ref().ok_or_else(|| missing("region", "{ block = { low = .., high = .. } }"))?;
-    let origin = written.origin.as_ref().map_or(Ok([0.0; 3]), |o| context.finite_vector(o, Dim::LENGTH))?;
+    let shape = written
+        .region
+        .as_ref()
+        .ok_or_else(|| missing("region", "{ block = { low = .., high = .. } }"))?;
+    let origin = written
+        .origin
+        .as_ref()
+        .map_or(Ok([0.0; 3]), |o| context.finite_vector(o, Dim::LENGTH))?;
     let perturb = match &written.perturb {
         None => None,
         Some(perturb) => {
             let amplitude = context.finite(&perturb.amplitude, Dim::LENGTH)?;
             let half = 0.5 * spacing * kind.nearest();
             if !(0.0..half).contains(&amplitude) {
-                let message = format!("the amplitude must lie between 0 and half the distance of points, {}", short(half));
+                let message = format!(
+                    "the amplitude must lie between 0 and half the distance of points, {}",
+                    context.units.write(half, Dim::LENGTH)
+                );
                 return Err(context.error(&perturb.amplitude.span, message));
             }
-            Some(Perturbation { amplitude, seed: perturb.seed })
+            Some(Perturbation {
+                amplitude,
+                seed: perturb.seed,
+            })
         }
     };
-    Ok(BodySpec::Lattice { kind, spacing, origin, region: region(context, shape)?, perturb })
+    Ok(BodySpec::Lattice {
+        kind,
+        spacing,
+        origin,
+        region: region(context, shape)?,
+        perturb,
+    })
 }
 
 pub(super) fn region(context: &Context, shape: &At<Shape>) -> Result<Region> {
     let length = Dim::LENGTH;
-    let all = |parts: &[At<Shape>]| parts.iter().map(|part| region(context, part)).collect::<Result<Vec<_>>>();
-    let center = |c: &Option<Vector>| c.as_ref().map_or(Ok([0.0; 3]), |c| context.finite_vector(c, length));
+    let all = |parts: &[At<Shape>]| {
+        parts
+            .iter()
+            .map(|part| region(context, part))
+            .collect::<Result<Vec<_>>>()
+    };
+    let center = |c: &Option<Vector>| {
+        c.as_ref()
+            .map_or(Ok([0.0; 3]), |c| context.finite_vector(c, length))
+    };
     let region = match &shape.value {
         Shape::Everything => Region::Everything,
-        Shape::Block { low, high } => {
-            Region::Block { low: context.vector(low, length, -INF)?, high: context.vector(high, length, INF)? }
-        }
-        Shape::Cylinder { axis, center: c, radius, low, high } => Region::Cylinder {
+        Shape::Block { low, high } => Region::Block {
+            low: context.vector(low, length, -INF)?,
+            high: context.vector(high, length, INF)?,
+        },
+        Shape::Cylinder {
+            axis,
+            center: c,
+            radius,
+            low,
+            high,
+        } => Region::Cylinder {
             axis: *axis as usize,
             center: center(c)?,
             radius: context.positive(radius, length, "the radius")?,
-            low: low.as_ref().map_or(Ok(-INF), |n| context.number(n, length))?,
-            high: high.as_ref().map_or(Ok(INF), |n| context.number(n, length))?,
+            low: low
+                .as_ref()
+                .map_or(Ok(-INF), |n| context.number(n, length))?,
+            high: high
+                .as_ref()
+                .map_or(Ok(INF), |n| context.number(n, length))?,
         },
-        Shape::Sphere { center: c, radius } => {
-            Region::Sphere { center: center(c)?, radius: context.positive(radius, length, "the radius")? }
-        }
+        Shape::Sphere { center: c, radius } => Region::Sphere {
+            center: center(c)?,
+            radius: context.positive(radius, length, "the radius")?,
+        },
         Shape::HalfSpace { point, normal } => Region::HalfSpace {
             point: context.finite_vector(point, length)?,
             normal: context.finite_vector(normal, Dim::NUMBER)?,
         },
         Shape::Union(parts) => Region::Union(all(parts)?),
-        Shape::Difference { from, minus } => Region::Difference(Box::new(self::region(context, from)?), all(minus)?),
+        Shape::Difference { from, minus } => {
+            Region::Difference(Box::new(self::region(context, from)?), all(minus)?)
+        }
         Shape::Intersection(parts) => Region::Intersection(all(parts)?),
     };
-    region.check().map_err(|message| context.error(&shape.span, message))?;
+    region
+        .check()
+        .map_err(|message| context.error(&shape.span, message))?;
     Ok(region)
 }
 
 /// The named sets, and one for each named mark of the file that the deck does not name itself.
-pub(super) fn sets(context: &Context, written: &BTreeMap<String, At<Set>>, body: &BodySpec) -> Result<Vec<SetSpec>> {
+pub(super) fn sets(
+    context: &Context,
+    written: &BTreeMap<String, At<Set>>,
+    body: &BodySpec,
+) -> Result<Vec<SetSpec>> {
     let mut sets = Vec::new();
     for (name, set) in written {
         if name == "all" {
-            return Err(context.error(&set.span, "the set \"all\" exists already: choose another name"));
+            return Err(context.error(
+                &set.span,
+                "the set \"all\" exists already: choose another name",
+            ));
         }
-        let given = [("region", set.value.region.is_some()), ("mark", set.value.mark.is_some())];
+        let given = [
+            ("region", set.value.region.is_some()),
+            ("mark", set.value.mark.is_some()),
+        ];
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
         let members = match (&set.value.region, &set.value.mark) {
             (Some(shape), _) => Members::Region(region(context, shape)?),
             (_, Some(mark)) => Members::Mark(mark_number(context, mark, body)?),
             (None, None) => Members::All,
         };
-        sets.push(SetSpec { name: name.clone(), members });
+        sets.push(SetSpec {
+            name: name.clone(),
+            members,
+        });
     }
     if let BodySpec::Cloud(cloud) = body {
         for (mark, name) in &cloud.names {
             if name != "all" && !written.contains_key(name) {
-                sets.push(SetSpec { name: name.clone(), members: Members::Mark(*mark) });
+                sets.push(SetSpec {
+                    name: name.clone(),
+                    members: Members::Mark(*mark),
+                });
             }
         }
     }
@@ -161,14 +272,25 @@ fn mark_number(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<i3
     };
     match &mark.value {
         Mark::Number(number) => Ok(*number),
-        Mark::Name(name) => names.iter().find(|(_, known)| known == name).map(|(number, _)| *number).ok_or_else(|| {
-            let known: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
-            let help = match nearest(name, known.iter().copied()) {
-                Some(near) => format!("did you mean \"{near}\"?"),
-                None => format!("the file names: {}", if known.is_empty() { "none".into() } else { known.join(", ") }),
-            };
-            context.error_with(&mark.span, format!("the file has no mark \"{name}\""), help)
-        }),
+        Mark::Name(name) => names
+            .iter()
+            .find(|(_, known)| known == name)
+            .map(|(number, _)| *number)
+            .ok_or_else(|| {
+                let known: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
+                let help = match nearest(name, known.iter().copied()) {
+                    Some(near) => format!("did you mean \"{near}\"?"),
+                    None => format!(
+                        "the file names: {}",
+                        if known.is_empty() {
+                            "none".into()
+                        } else {
+                            known.join(", ")
+                        }
+                    ),
+                };
+                context.error_with(&mark.span, format!("the file has no mark \"{name}\""), help)
+            }),
     }
 }
 
@@ -180,14 +302,23 @@ pub(super) fn periods(
     body: &mut BodySpec,
 ) -> Result<[Option<f64>; 3]> {
     let mut out = [None; 3];
-    let Some(written) = written else { return Ok(out) };
+    let Some(written) = written else {
+        return Ok(out);
+    };
     let mut wanted: Vec<(usize, Range<usize>, Option<f64>)> = Vec::new();
     match &written.value {
-        Or::Bare(axes) => wanted.extend(axes.iter().map(|axis| (axis.value as usize, axis.span.clone(), None))),
+        Or::Bare(axes) => wanted.extend(
+            axes.iter()
+                .map(|axis| (axis.value as usize, axis.span.clone(), None)),
+        ),
         Or::Table(periods) => {
             for (a, number) in [&periods.x, &periods.y, &periods.z].into_iter().enumerate() {
                 if let Some(number) = number {
-                    wanted.push((a, number.span.clone(), Some(context.positive(number, Dim::LENGTH, "the period")?)));
+                    wanted.push((
+                        a,
+                        number.span.clone(),
+                        Some(context.positive(number, Dim::LENGTH, "the period")?),
+                    ));
                 }
             }
         }
@@ -195,31 +326,57 @@ pub(super) fn periods(
     for (a, span, period) in wanted {
         let axis = ["x", "y", "z"][a];
         if a >= context.dimension {
-            return Err(context.error(&span, format!("there is no {axis} in {}-D", context.dimension)));
+            return Err(context.error(
+                &span,
+                format!("there is no {axis} in {}-D", context.dimension),
+            ));
         }
         out[a] = Some(match body {
-            BodySpec::Lattice { kind, spacing, region, .. } => {
+            BodySpec::Lattice {
+                kind,
+                spacing,
+                region,
+                ..
+            } => {
                 let (low, high) = region.bounds();
                 let length = period.unwrap_or(high[a] - low[a]);
                 let edge = *spacing * kind.edges()[a];
                 let cells = length / edge;
                 if !length.is_finite() || !low[a].is_finite() {
                     let help = "clip the region with a block along it";
-                    return Err(context.error_with(&span, format!("the body has no end along {axis} to be a period"), help));
+                    return Err(context.error_with(
+                        &span,
+                        format!("the body has no end along {axis} to be a period"),
+                        help,
+                    ));
                 }
                 if (cells - cells.round()).abs() > 1e-6 || cells.round() < 1.0 {
-                    let message = format!("the period along {axis} is {} lattice cells", short(cells));
-                    let help = format!("make it a whole number of cells of {}", short(edge));
+                    let message =
+                        format!("the period along {axis} is {} lattice cells", short(cells));
+                    let help = format!(
+                        "make it a whole number of cells of {}",
+                        context.units.write(edge, Dim::LENGTH)
+                    );
                     return Err(context.error_with(&span, message, help));
                 }
                 let (mut from, mut to) = ([-INF; 3], [INF; 3]);
                 (from[a], to[a]) = (low[a], low[a] + length - edge / 8.0);
                 let whole = std::mem::replace(region, Region::Everything);
-                *region = Region::Intersection(vec![whole, Region::Block { low: from, high: to }]);
+                *region = Region::Intersection(vec![
+                    whole,
+                    Region::Block {
+                        low: from,
+                        high: to,
+                    },
+                ]);
                 length
             }
             _ => period.ok_or_else(|| {
-                context.error_with(&span, "points from a file do not say their period", format!("write periodic = {{ {axis} = \"50 mm\" }}"))
+                context.error_with(
+                    &span,
+                    "points from a file do not say their period",
+                    format!("write periodic = {{ {axis} = \"50 mm\" }}"),
+                )
             })?,
         });
     }

@@ -25,8 +25,17 @@ enum Meaning {
 }
 
 impl<'a> Context<'a> {
-    pub fn new(source: &'a Source, units: UnitSystem, constants: &BTreeMap<String, Number>) -> Result<Self> {
-        let mut context = Context { source, units, dimension: 3, constants: BTreeMap::new() };
+    pub fn new(
+        source: &'a Source,
+        units: UnitSystem,
+        constants: &BTreeMap<String, Number>,
+    ) -> Result<Self> {
+        let mut context = Context {
+            source,
+            units,
+            dimension: 3,
+            constants: BTreeMap::new(),
+        };
         // constants may use each other in any order; each round settles at least one, or the first error is real
         let mut open: Vec<(&String, &Number)> = constants.iter().collect();
         while !open.is_empty() {
@@ -53,19 +62,30 @@ impl<'a> Context<'a> {
 
     fn named_constant(&self, name: &str, number: &Number) -> Result<(f64, Option<Dim>)> {
         if ["x", "y", "z", "t"].contains(&name) {
-            return Err(self.error(&number.span, format!("the constant \"{name}\" would hide the coordinate {name}")));
+            return Err(self.error(
+                &number.span,
+                format!("the constant \"{name}\" would hide the coordinate {name}"),
+            ));
         }
         let valid = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
             && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         if !valid {
-            return Err(self.error(&number.span, format!("\"{name}\" cannot be used in expressions: letters, digits and _ make a name")));
+            return Err(self.error(
+                &number.span,
+                format!(
+                    "\"{name}\" cannot be used in expressions: letters, digits and _ make a name"
+                ),
+            ));
         }
         if let Written::Text(text) = &number.value
             && let Some((value, unit)) = units::split(text)
             && !unit.is_empty()
         {
-            let (scale, dim) = self.unit(unit, &number.span)?;
-            return Ok((value * scale * self.units.from_si(dim), Some(dim)));
+            let unit = self.unit(unit, &number.span)?;
+            return Ok((
+                unit.si(value) * self.units.from_si(unit.dim),
+                Some(unit.dim),
+            ));
         }
         Ok((self.plain(number)?, None))
     }
@@ -74,13 +94,22 @@ impl<'a> Context<'a> {
         self.source.error(Some(span.clone()), message, None)
     }
 
-    pub fn error_with(&self, span: &Range<usize>, message: impl Into<String>, help: impl Into<String>) -> DeckError {
-        self.source.error(Some(span.clone()), message, Some(help.into()))
+    pub fn error_with(
+        &self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> DeckError {
+        self.source
+            .error(Some(span.clone()), message, Some(help.into()))
     }
 
-    fn unit(&self, unit: &str, span: &Range<usize>) -> Result<(f64, Dim)> {
+    fn unit(&self, unit: &str, span: &Range<usize>) -> Result<units::Unit> {
         if !self.units.has_units() {
-            let message = format!("numbers carry no units in the unit system {}: `{unit}`", self.units.name());
+            let message = format!(
+                "numbers carry no units in the unit system {}: `{unit}`",
+                self.units.name()
+            );
             return Err(self.error_with(span, message, "write plain numbers, or units = \"si\""));
         }
         units::unit(unit).map_err(|message| self.error(span, message))
@@ -89,18 +118,20 @@ impl<'a> Context<'a> {
     /// A text is a quantity, the name of a constant, or an expression; the value is in plain numbers of the deck.
     fn meaning(&self, text: &str, span: &Range<usize>, dim: Dim) -> Result<Meaning> {
         let wrong = |found: Dim| {
-            let help = dim.example().map_or("write it in other units".into(), |e| format!("write for example \"{e}\""));
+            let help = dim.example().map_or("write it in other units".into(), |e| {
+                format!("write for example \"{e}\"")
+            });
             self.error_with(span, format!("expected {dim}, \"{text}\" is {found}"), help)
         };
         if let Some((value, unit)) = units::split(text) {
             if unit.is_empty() {
                 return Ok(Meaning::Value(value));
             }
-            let (scale, found) = self.unit(unit, span)?;
-            if found != dim {
-                return Err(wrong(found));
+            let unit = self.unit(unit, span)?;
+            if unit.dim != dim {
+                return Err(wrong(unit.dim));
             }
-            return Ok(Meaning::Value(value * scale * self.units.from_si(dim)));
+            return Ok(Meaning::Value(unit.si(value) * self.units.from_si(dim)));
         }
         if let Some((value, found)) = self.constants.get(text.trim()) {
             return match found {
@@ -112,12 +143,22 @@ impl<'a> Context<'a> {
     }
 
     fn compile(&self, text: &str, span: &Range<usize>) -> Result<Expression> {
-        let constants: Vec<(&str, f64)> = self.constants.iter().map(|(name, v)| (name.as_str(), v.0)).collect();
-        Expression::parse(text, &constants).map_err(|error| self.expression_error(text, span, error))
+        let constants: Vec<(&str, f64)> = self
+            .constants
+            .iter()
+            .map(|(name, v)| (name.as_str(), v.0))
+            .collect();
+        Expression::parse(text, &constants)
+            .map_err(|error| self.expression_error(text, span, error))
     }
 
     /// Carries the place inside an expression over to the deck, if the text stands there as it is.
-    fn expression_error(&self, text: &str, span: &Range<usize>, error: ExpressionError) -> DeckError {
+    fn expression_error(
+        &self,
+        text: &str,
+        span: &Range<usize>,
+        error: ExpressionError,
+    ) -> DeckError {
         let inner = match self.source.slice(span).find(text) {
             Some(offset) => {
                 let start = span.start + offset;
@@ -141,7 +182,11 @@ impl<'a> Context<'a> {
 
     fn constant_value(&self, expression: Expression, span: &Range<usize>) -> Result<f64> {
         expression.as_constant().ok_or_else(|| {
-            self.error_with(span, "this number may not depend on x, y, z or t", "use numbers and [constants] only")
+            self.error_with(
+                span,
+                "this number may not depend on x, y, z or t",
+                "use numbers and [constants] only",
+            )
         })
     }
 
@@ -162,7 +207,11 @@ impl<'a> Context<'a> {
 
     pub fn finite(&self, number: &Number, dim: Dim) -> Result<f64> {
         let value = self.number(number, dim)?;
-        if value.is_finite() { Ok(value) } else { Err(self.error(&number.span, "this number must be finite")) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.error(&number.span, "this number must be finite"))
+        }
     }
 
     /// A number above zero; `what` names it.
@@ -171,7 +220,13 @@ impl<'a> Context<'a> {
         if value > 0.0 {
             Ok(value)
         } else {
-            Err(self.error(&number.span, format!("{what} must be positive, it is {}", units::short(value))))
+            Err(self.error(
+                &number.span,
+                format!(
+                    "{what} must be positive, it is {}",
+                    self.units.write(value, dim)
+                ),
+            ))
         }
     }
 
@@ -194,7 +249,9 @@ impl<'a> Context<'a> {
         }
         let message = match (numbers.len(), self.dimension) {
             (given, 1) => format!("expected one component in 1-D, found {given}"),
-            (given, dimension) => format!("expected {dimension} components in {dimension}-D, found {given}"),
+            (given, dimension) => {
+                format!("expected {dimension} components in {dimension}-D, found {given}")
+            }
         };
         Err(self.error(span, message))
     }
@@ -241,7 +298,8 @@ impl<'a> Context<'a> {
                 for (a, number) in axes.iter().enumerate() {
                     let Some(number) = number else { continue };
                     if a >= self.dimension {
-                        let message = format!("there is no {} in {}-D", ["x", "y", "z"][a], self.dimension);
+                        let message =
+                            format!("there is no {} in {}-D", ["x", "y", "z"][a], self.dimension);
                         return Err(self.error(&number.span, message));
                     }
                     out[a] = Some(self.expression(number, dim)?);
@@ -262,7 +320,10 @@ impl<'a> Context<'a> {
             }
             _ => {
                 let names: Vec<&str> = found.iter().map(|i| given[*i].0).collect();
-                Err(self.error(span, format!("{what} has {}: give one of them", names.join(" and "))))
+                Err(self.error(
+                    span,
+                    format!("{what} has {}: give one of them", names.join(" and ")),
+                ))
             }
         }
     }
@@ -272,17 +333,32 @@ impl<'a> Context<'a> {
         if name.value == "all" || sets.iter().any(|set| set.name == name.value) {
             return Ok(name.value.clone());
         }
-        let names: Vec<&str> = sets.iter().map(|set| set.name.as_str()).chain(["all"]).collect();
+        let names: Vec<&str> = sets
+            .iter()
+            .map(|set| set.name.as_str())
+            .chain(["all"])
+            .collect();
         let help = match nearest(&name.value, names.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
             None => format!("known sets: {}", names.join(", ")),
         };
-        Err(self.error_with(&name.span, format!("there is no set \"{}\"", name.value), help))
+        Err(self.error_with(
+            &name.span,
+            format!("there is no set \"{}\"", name.value),
+            help,
+        ))
     }
 }
 
 /// A lone number in the place of a vector has no place of its own.
 fn placed(number: &Number, span: &Range<usize>) -> Number {
-    let span = if number.span.is_empty() { span.clone() } else { number.span.clone() };
-    At { value: number.value.clone(), span }
+    let span = if number.span.is_empty() {
+        span.clone()
+    } else {
+        number.span.clone()
+    };
+    At {
+        value: number.value.clone(),
+        span,
+    }
 }

@@ -4,7 +4,9 @@ use super::context::{Context, Result};
 use crate::deck::document::{Elastic, Fracture, Law, Material};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number};
-use peridyne::spec::{Criterion, FractureSpec, LawSpec, MaterialSpec, Moduli, PmbStiffness, SetSpec};
+use peridyne::spec::{
+    Criterion, FractureSpec, LawSpec, MaterialSpec, Moduli, PmbStiffness, SetSpec,
+};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -23,7 +25,11 @@ pub(super) fn materials(
             None if several && sets.iter().any(|s| s.name == *name) => name.clone(),
             None if several => {
                 let message = format!("the material \"{name}\" is one of several and needs `set`");
-                return Err(context.error_with(&material.span, message, "say which set is made of it: set = \"NAME\""));
+                return Err(context.error_with(
+                    &material.span,
+                    message,
+                    "say which set is made of it: set = \"NAME\"",
+                ));
             }
             None => "all".to_string(),
         };
@@ -31,15 +37,26 @@ pub(super) fn materials(
         if let Some(first) = materials.first()
             && std::mem::discriminant(&first.law) != std::mem::discriminant(&law)
         {
-            let message = format!("the materials \"{}\" and \"{name}\" have different kinds of law", first.name);
-            return Err(context.error_with(&given.law.span, message, "all materials of a body use the same kind of law"));
+            let message = format!(
+                "the materials \"{}\" and \"{name}\" have different kinds of law",
+                first.name
+            );
+            return Err(context.error_with(
+                &given.law.span,
+                message,
+                "all materials of a body use the same kind of law",
+            ));
         }
         materials.push(MaterialSpec {
             name: name.clone(),
             set,
             density: context.positive(&given.density, Dim::DENSITY, "the density")?,
             law,
-            fracture: given.fracture.as_ref().map(|f| fracture(context, f)).transpose()?,
+            fracture: given
+                .fracture
+                .as_ref()
+                .map(|f| fracture(context, f))
+                .transpose()?,
         });
     }
     Ok(materials)
@@ -53,7 +70,11 @@ fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
                 let help = "Poisson's ratio of a bond-based law is 1/4 (plane stress 1/3); use lps to choose it";
                 return Err(context.error_with(&wrong.span, "pmb takes one modulus", help));
             }
-            let stiffness = [("young", e.young.as_ref()), ("bulk", e.bulk.as_ref()), ("micromodulus", e.micromodulus.as_ref())];
+            let stiffness = [
+                ("young", e.young.as_ref()),
+                ("bulk", e.bulk.as_ref()),
+                ("micromodulus", e.micromodulus.as_ref()),
+            ];
             let given = stiffness.map(|(name, n)| (name, n.is_some()));
             let which = context.one_of(&law.span, "pmb", &given)?;
             let Some(number) = stiffness[which].1 else {
@@ -62,48 +83,91 @@ fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
             Ok(LawSpec::Pmb(match which {
                 0 => PmbStiffness::Young(pressure(number, "Young's modulus")?),
                 1 => PmbStiffness::Bulk(pressure(number, "the bulk modulus")?),
-                _ => PmbStiffness::Micromodulus(context.positive(number, Dim::MICROMODULUS, "the micromodulus")?),
+                _ => PmbStiffness::Micromodulus(context.positive(
+                    number,
+                    Dim::MICROMODULUS,
+                    "the micromodulus",
+                )?),
             }))
         }
         Law::Lps(e) => moduli(context, &law.span, e).map(LawSpec::Lps),
         Law::LpsAsTyped(e) => match e {
-            Elastic { bulk: Some(bulk), shear: Some(shear), young: None, poisson: None, micromodulus: None } => {
-                Ok(LawSpec::LpsAsTyped { bulk: pressure(bulk, "the bulk modulus")?, shear: pressure(shear, "the shear modulus")? })
-            }
+            Elastic {
+                bulk: Some(bulk),
+                shear: Some(shear),
+                young: None,
+                poisson: None,
+                micromodulus: None,
+            } => Ok(LawSpec::LpsAsTyped {
+                bulk: pressure(bulk, "the bulk modulus")?,
+                shear: pressure(shear, "the shear modulus")?,
+            }),
             _ => Err(context.error(&law.span, "lps_as_typed takes bulk and shear")),
         },
-        Law::EamLike(e) => {
-            Ok(LawSpec::EamLike { pair: pressure(&e.pair, "the stiffness of the pairs")?, volume: context.finite(&e.volume, Dim::PRESSURE)? })
-        }
+        Law::EamLike(e) => Ok(LawSpec::EamLike {
+            pair: pressure(&e.pair, "the stiffness of the pairs")?,
+            volume: context.finite(&e.volume, Dim::PRESSURE)?,
+        }),
     }
 }
 
 /// Two of the four moduli make the other two (three-dimensional solid).
 fn moduli(context: &Context, span: &Range<usize>, e: &Elastic) -> Result<Moduli> {
     if let Some(c) = &e.micromodulus {
-        return Err(context.error(&c.span, "lps takes two of young, poisson, bulk, shear, not a micromodulus"));
+        return Err(context.error(
+            &c.span,
+            "lps takes two of young, poisson, bulk, shear, not a micromodulus",
+        ));
     }
     let get = |n: &Option<Number>, what: &str| {
-        n.as_ref().map(|n| context.positive(n, Dim::PRESSURE, what)).transpose()
+        n.as_ref()
+            .map(|n| context.positive(n, Dim::PRESSURE, what))
+            .transpose()
     };
-    let (young, bulk, shear) =
-        (get(&e.young, "Young's modulus")?, get(&e.bulk, "the bulk modulus")?, get(&e.shear, "the shear modulus")?);
-    let poisson = e.poisson.as_ref().map(|n| context.finite(n, Dim::NUMBER)).transpose()?;
+    let (young, bulk, shear) = (
+        get(&e.young, "Young's modulus")?,
+        get(&e.bulk, "the bulk modulus")?,
+        get(&e.shear, "the shear modulus")?,
+    );
+    let poisson = e
+        .poisson
+        .as_ref()
+        .map(|n| context.finite(n, Dim::NUMBER))
+        .transpose()?;
     let moduli = match (young, poisson, bulk, shear) {
         (Some(young), Some(poisson), None, None) => Moduli { young, poisson },
         (None, None, Some(bulk), Some(shear)) => Moduli::from_bulk_shear(bulk, shear),
-        (Some(young), None, Some(bulk), None) => Moduli { young, poisson: (3.0 * bulk - young) / (6.0 * bulk) },
-        (Some(young), None, None, Some(shear)) => Moduli { young, poisson: young / (2.0 * shear) - 1.0 },
-        (None, Some(poisson), Some(bulk), None) => Moduli { young: 3.0 * bulk * (1.0 - 2.0 * poisson), poisson },
-        (None, Some(poisson), None, Some(shear)) => Moduli { young: 2.0 * shear * (1.0 + poisson), poisson },
+        (Some(young), None, Some(bulk), None) => Moduli {
+            young,
+            poisson: (3.0 * bulk - young) / (6.0 * bulk),
+        },
+        (Some(young), None, None, Some(shear)) => Moduli {
+            young,
+            poisson: young / (2.0 * shear) - 1.0,
+        },
+        (None, Some(poisson), Some(bulk), None) => Moduli {
+            young: 3.0 * bulk * (1.0 - 2.0 * poisson),
+            poisson,
+        },
+        (None, Some(poisson), None, Some(shear)) => Moduli {
+            young: 2.0 * shear * (1.0 + poisson),
+            poisson,
+        },
         _ => {
             let help = "write for example lps = { young = \"65 GPa\", poisson = 0.2 }";
-            return Err(context.error_with(span, "lps takes two of young, poisson, bulk, shear", help));
+            return Err(context.error_with(
+                span,
+                "lps takes two of young, poisson, bulk, shear",
+                help,
+            ));
         }
     };
     if !(moduli.poisson > -1.0 && moduli.poisson < 0.5) {
         let span = e.poisson.as_ref().map_or(span, |n| &n.span);
-        let message = format!("Poisson's ratio must lie between -1 and 0.5, it is {}", short(moduli.poisson));
+        let message = format!(
+            "Poisson's ratio must lie between -1 and 0.5, it is {}",
+            short(moduli.poisson)
+        );
         return Err(context.error(span, message));
     }
     Ok(moduli)
@@ -111,17 +175,32 @@ fn moduli(context: &Context, span: &Range<usize>, e: &Elastic) -> Result<Moduli>
 
 fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<FractureSpec> {
     let f = &fracture.value;
-    let given = [("critical_stretch", f.critical_stretch.is_some()), ("energy", f.energy.is_some())];
+    let given = [
+        ("critical_stretch", f.critical_stretch.is_some()),
+        ("energy", f.energy.is_some()),
+    ];
     context.one_of(&fracture.span, "fracture", &given)?;
     let criterion = match (&f.critical_stretch, &f.energy) {
-        (Some(stretch), _) => Criterion::Stretch(context.positive(stretch, Dim::NUMBER, "the critical stretch")?),
-        (_, Some(energy)) => Criterion::Energy(context.positive(energy, Dim::FRACTURE_ENERGY, "the fracture energy")?),
+        (Some(stretch), _) => {
+            Criterion::Stretch(context.positive(stretch, Dim::NUMBER, "the critical stretch")?)
+        }
+        (_, Some(energy)) => Criterion::Energy(context.positive(
+            energy,
+            Dim::FRACTURE_ENERGY,
+            "the fracture energy",
+        )?),
         (None, None) => return Err(context.error(&fracture.span, "fracture needs a criterion")),
     };
-    let alpha = f.alpha.as_ref().map_or(Ok(0.0), |a| context.finite(a, Dim::NUMBER))?;
+    let alpha = f
+        .alpha
+        .as_ref()
+        .map_or(Ok(0.0), |a| context.finite(a, Dim::NUMBER))?;
     if alpha < 0.0 {
         let span = f.alpha.as_ref().map_or(&fracture.span, |a| &a.span);
-        return Err(context.error(span, format!("alpha must not be negative, it is {}", short(alpha))));
+        return Err(context.error(
+            span,
+            format!("alpha must not be negative, it is {}", short(alpha)),
+        ));
     }
     Ok(FractureSpec { criterion, alpha })
 }

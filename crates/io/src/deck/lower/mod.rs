@@ -9,17 +9,19 @@ mod schedule;
 pub(super) use schedule::steps;
 
 use super::document::{
-    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InterfaceName, PlaneName,
+    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InterfaceName,
+    PlaneName,
 };
 use super::error::DeckError;
 use super::source::Source;
 use super::units::{Dim, short};
 use super::value::{At, Or, Written};
 use super::{OutputSpec, ReadCloud};
+use crate::read::Points;
 use context::{Context, Result};
 use peridyne::spec::{
-    BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule, LawSpec, MaterialSpec,
-    Plane, Spec,
+    BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule,
+    LawSpec, MaterialSpec, Plane, Spec,
 };
 use std::path::Path;
 
@@ -31,16 +33,32 @@ pub(super) struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// The points of `body.file` and, if the file says so, their dimension.
-    fn read(&self, context: &Context, body: &Body) -> Result<(Cloud, Option<usize>)> {
-        let Some(file) = &body.file else { return Ok((Cloud::default(), None)) };
+    /// The points of `body.file`.
+    fn read(&self, context: &Context, body: &Body) -> Result<Points> {
+        let Some(file) = &body.file else {
+            return Ok(Points {
+                cloud: Cloud::default(),
+                dimension: None,
+            });
+        };
         let path = self.folder.join(&file.value);
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
+        let extension = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .unwrap_or("")
+            .to_lowercase();
         let failed = |message: String| context.error(&file.span, message);
         match (extension.as_str(), self.lammps) {
-            ("data" | "lammps", Some(read)) => read(&path).map(|cloud| (cloud, None)).map_err(failed),
-            ("data" | "lammps", None) => Err(failed("LAMMPS data files cannot be read here".into())),
-            _ => crate::read::points(&path).map(|p| (p.cloud, p.dimension)).map_err(|e| failed(e.to_string())),
+            ("data" | "lammps", Some(read)) => read(&path)
+                .map(|cloud| Points {
+                    cloud,
+                    dimension: None,
+                })
+                .map_err(failed),
+            ("data" | "lammps", None) => {
+                Err(failed("LAMMPS data files cannot be read here".into()))
+            }
+            _ => crate::read::points(&path).map_err(|e| failed(e.to_string())),
         }
     }
 }
@@ -52,10 +70,19 @@ pub(super) struct Lowered {
     pub duration: Option<f64>,
 }
 
-pub(super) fn lower(source: &Source, document: &Document, files: &Files) -> std::result::Result<Lowered, DeckError> {
+pub(super) fn lower(
+    source: &Source,
+    document: &Document,
+    files: &Files,
+) -> std::result::Result<Lowered, DeckError> {
     let units = document.units.as_ref().map(|u| u.value).unwrap_or_default();
     let mut context = Context::new(source, units, &document.constants)?;
-    let mut body = body::body(&mut context, &document.body, document.dimension.as_ref(), files)?;
+    let mut body = body::body(
+        &mut context,
+        &document.body,
+        document.dimension.as_ref(),
+        files,
+    )?;
     let periodic = body::periods(&context, document.periodic.as_ref(), &mut body)?;
     let mut sets = body::sets(&context, &document.sets, &body)?;
     let materials = material::materials(&context, &document.material, &sets)?;
@@ -67,6 +94,13 @@ pub(super) fn lower(source: &Source, document: &Document, files: &Files) -> std:
     for (index, at) in document.condition.iter().enumerate() {
         conditions.extend(motion::condition(&context, index, at, &mut sets)?);
     }
+    let section = section(&context, document)?;
+    if let (2, BodySpec::Cloud(cloud), Some(file)) =
+        (context.dimension, &mut body, &document.body.value.file)
+        && (file.value.ends_with(".inp") || file.value.ends_with(".msh"))
+    {
+        cloud.volume.iter_mut().for_each(|area| *area *= section);
+    }
     let run = schedule::schedule(&context, &document.run)?;
     let spec = Spec {
         title: document.title.clone().unwrap_or_default(),
@@ -75,7 +109,7 @@ pub(super) fn lower(source: &Source, document: &Document, files: &Files) -> std:
             Some(PlaneName::Strain) => Plane::Strain,
             Some(PlaneName::Stress) | None => Plane::Stress,
         },
-        section: section(&context, document)?,
+        section,
         horizon: horizon(&context, &document.horizon, &body)?,
         interface: match document.interface {
             Some(InterfaceName::Parallel) => InterfaceRule::Parallel,
@@ -89,11 +123,19 @@ pub(super) fn lower(source: &Source, document: &Document, files: &Files) -> std:
         },
         influence: influence(document.influence, &materials),
         periodic,
-        precracks: document.precrack.iter().map(|p| motion::precrack(&context, p)).collect::<Result<_>>()?,
+        precracks: document
+            .precrack
+            .iter()
+            .map(|p| motion::precrack(&context, p))
+            .collect::<Result<_>>()?,
         contact: contact(&context, document, &materials)?,
         initial,
         conditions,
-        indenters: document.indenter.iter().map(|i| motion::indenter(&context, i)).collect::<Result<_>>()?,
+        indenters: document
+            .indenter
+            .iter()
+            .map(|i| motion::indenter(&context, i))
+            .collect::<Result<_>>()?,
         family: match document.family {
             Some(FamilyName::Stencil) => FamilyChoice::Stencil,
             Some(FamilyName::List) => FamilyChoice::List,
@@ -105,7 +147,12 @@ pub(super) fn lower(source: &Source, document: &Document, files: &Files) -> std:
         materials,
     };
     let output = schedule::output(&context, &document.output)?;
-    Ok(Lowered { spec, output, threads: run.threads, duration: run.duration })
+    Ok(Lowered {
+        spec,
+        output,
+        threads: run.threads,
+        duration: run.duration,
+    })
 }
 
 fn section(context: &Context, document: &Document) -> Result<f64> {
@@ -113,21 +160,34 @@ fn section(context: &Context, document: &Document) -> Result<f64> {
     if let Some(plane) = &document.plane
         && d != 2
     {
-        return Err(context.error(&plane.span, format!("plane stress and strain are 2-D; this body is {d}-D")));
+        return Err(context.error(
+            &plane.span,
+            format!("plane stress and strain are 2-D; this body is {d}-D"),
+        ));
     }
     match (&document.thickness, &document.area) {
-        (Some(thickness), None) if d == 2 => context.positive(thickness, Dim::LENGTH, "the thickness"),
+        (Some(thickness), None) if d == 2 => {
+            context.positive(thickness, Dim::LENGTH, "the thickness")
+        }
         (None, Some(area)) if d == 1 => context.positive(area, Dim::AREA, "the area"),
         (None, None) => Ok(1.0),
-        (Some(thickness), _) if d != 2 => {
-            Err(context.error(&thickness.span, format!("thickness belongs to a 2-D body; this one is {d}-D")))
-        }
-        (_, Some(area)) => Err(context.error(&area.span, format!("area belongs to a 1-D body; this one is {d}-D"))),
+        (Some(thickness), _) if d != 2 => Err(context.error(
+            &thickness.span,
+            format!("thickness belongs to a 2-D body; this one is {d}-D"),
+        )),
+        (_, Some(area)) => Err(context.error(
+            &area.span,
+            format!("area belongs to a 1-D body; this one is {d}-D"),
+        )),
         (Some(_), None) => Ok(1.0),
     }
 }
 
-fn horizon(context: &Context, written: &At<Or<Written, HorizonRatio>>, body: &BodySpec) -> Result<Horizon> {
+fn horizon(
+    context: &Context,
+    written: &At<Or<Written, HorizonRatio>>,
+    body: &BodySpec,
+) -> Result<Horizon> {
     // the length of the shortest bond, where it is known
     let lattice = match body {
         BodySpec::Lattice { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
@@ -135,13 +195,17 @@ fn horizon(context: &Context, written: &At<Or<Written, HorizonRatio>>, body: &Bo
         BodySpec::Sites { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
     };
     let below = |length: f64, shortest: f64| {
+        let [length, shortest] = [length, shortest].map(|l| context.units.write(l, Dim::LENGTH));
         let message =
-            format!("the horizon {} is below the distance of points {}: no bonds", short(length), short(shortest));
+            format!("the horizon {length} is below the distance of points {shortest}: no bonds");
         context.error_with(&written.span, message, "write horizon = { m_ratio = 3 }")
     };
     match &written.value {
         Or::Bare(number) => {
-            let number = At { value: number.clone(), span: written.span.clone() };
+            let number = At {
+                value: number.clone(),
+                span: written.span.clone(),
+            };
             let length = context.positive(&number, Dim::LENGTH, "the horizon")?;
             match lattice {
                 Some((_, shortest)) if length < shortest => Err(below(length, shortest)),
@@ -152,13 +216,23 @@ fn horizon(context: &Context, written: &At<Or<Written, HorizonRatio>>, body: &Bo
             let ratio = context.positive(m_ratio, Dim::NUMBER, "m_ratio")?;
             let Some((spacing, shortest)) = lattice else {
                 let help = "give body.spacing, or the horizon as a length";
-                return Err(context.error_with(&m_ratio.span, "m_ratio counts spacings, and these points have none", help));
+                return Err(context.error_with(
+                    &m_ratio.span,
+                    "m_ratio counts spacings, and these points have none",
+                    help,
+                ));
             };
             let whole = ratio.fract() == 0.0 && ratio <= f64::from(u32::MAX);
             if ratio * spacing < shortest {
                 Err(below(ratio * spacing, shortest))
             } else if ratio > 1000.0 {
-                Err(context.error(&m_ratio.span, format!("m_ratio = {} would bond everything: 3 is usual", short(ratio))))
+                Err(context.error(
+                    &m_ratio.span,
+                    format!(
+                        "m_ratio = {} would bond everything: 3 is usual",
+                        short(ratio)
+                    ),
+                ))
             } else if whole && !matches!(body, BodySpec::Cloud(_)) {
                 Ok(Horizon::Ratio(ratio as u32))
             } else {
@@ -183,18 +257,34 @@ fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
     }
 }
 
-fn contact(context: &Context, document: &Document, materials: &[MaterialSpec]) -> Result<Option<ContactSpec>> {
-    let standard = ContactSpec { bonded: 0.9, free: 1.35, stiffness: None };
+fn contact(
+    context: &Context,
+    document: &Document,
+    materials: &[MaterialSpec],
+) -> Result<Option<ContactSpec>> {
+    let standard = ContactSpec {
+        bonded: 0.9,
+        free: 1.35,
+        stiffness: None,
+    };
     match &document.contact {
         Some(Or::Bare(false)) => Ok(None),
         Some(Or::Bare(true)) => Ok(Some(standard)),
-        None => Ok(materials.iter().any(|m| m.fracture.is_some()).then_some(standard)),
+        None => Ok(materials
+            .iter()
+            .any(|m| m.fracture.is_some())
+            .then_some(standard)),
         Some(Or::Table(c)) => {
             let get = |n: &Option<_>, or: f64, what: &str| {
-                n.as_ref().map_or(Ok(or), |n| context.positive(n, Dim::NUMBER, what))
+                n.as_ref()
+                    .map_or(Ok(or), |n| context.positive(n, Dim::NUMBER, what))
             };
             Ok(Some(ContactSpec {
-                bonded: get(&c.bonded, standard.bonded, "the fraction of the reference distance")?,
+                bonded: get(
+                    &c.bonded,
+                    standard.bonded,
+                    "the fraction of the reference distance",
+                )?,
                 free: get(&c.free, standard.free, "the range")?,
                 stiffness: c
                     .stiffness

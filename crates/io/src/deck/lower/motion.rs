@@ -7,8 +7,8 @@ use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::expression::Expression;
 use peridyne::spec::{
-    ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion, IndenterSpec, InitialSpec, Members, PrecrackSpec,
-    SetSpec,
+    ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion, IndenterSpec, InitialSpec,
+    Members, PrecrackSpec, SetSpec,
 };
 use std::ops::Range;
 
@@ -22,24 +22,44 @@ fn target(
     sets: &mut Vec<SetSpec>,
 ) -> Result<String> {
     match (set, shape) {
-        (Some(_), Some(_)) => Err(context.error(span, format!("{what} has set and region: give one of them"))),
+        (Some(_), Some(_)) => {
+            Err(context.error(span, format!("{what} has set and region: give one of them")))
+        }
         (Some(set), None) => context.known_set(set, sets),
         (None, Some(shape)) => {
-            sets.push(SetSpec { name: what.clone(), members: Members::Region(region(context, shape)?) });
+            sets.push(SetSpec {
+                name: what.clone(),
+                members: Members::Region(region(context, shape)?),
+            });
             Ok(what)
         }
         (None, None) => Ok("all".into()),
     }
 }
 
-pub(super) fn initial(context: &Context, index: usize, at: &At<Initial>, sets: &mut Vec<SetSpec>) -> Result<InitialSpec> {
+pub(super) fn initial(
+    context: &Context,
+    index: usize,
+    at: &At<Initial>,
+    sets: &mut Vec<SetSpec>,
+) -> Result<InitialSpec> {
     let written = &at.value;
     if written.displacement.is_none() && written.velocity.is_none() {
         return Err(context.error(&at.span, "an initial value needs displacement or velocity"));
     }
-    let get = |c: &Option<_>, dim| c.as_ref().map_or(Ok([const { None }; 3]), |c| context.components(c, dim));
+    let get = |c: &Option<_>, dim| {
+        c.as_ref()
+            .map_or(Ok([const { None }; 3]), |c| context.components(c, dim))
+    };
     Ok(InitialSpec {
-        set: target(context, &at.span, format!("initial {}", index + 1), &written.set, &written.region, sets)?,
+        set: target(
+            context,
+            &at.span,
+            format!("initial {}", index + 1),
+            &written.set,
+            &written.region,
+            sets,
+        )?,
         displacement: get(&written.displacement, Dim::LENGTH)?,
         velocity: get(&written.velocity, Dim::VELOCITY)?,
     })
@@ -53,21 +73,37 @@ pub(super) fn condition(
     sets: &mut Vec<SetSpec>,
 ) -> Result<Vec<ConditionSpec>> {
     let c = &at.value;
-    let set = target(context, &at.span, format!("condition {}", index + 1), &c.set, &c.region, sets)?;
+    let set = target(
+        context,
+        &at.span,
+        format!("condition {}", index + 1),
+        &c.set,
+        &c.region,
+        sets,
+    )?;
     let mut kinds = Vec::new();
     if let Some(v) = &c.displacement {
-        kinds.push(ConditionKind::Displacement(context.components(v, Dim::LENGTH)?));
+        kinds.push(ConditionKind::Displacement(
+            context.components(v, Dim::LENGTH)?,
+        ));
     }
     if let Some(v) = &c.velocity {
-        kinds.push(ConditionKind::Velocity(context.components(v, Dim::VELOCITY)?));
+        kinds.push(ConditionKind::Velocity(
+            context.components(v, Dim::VELOCITY)?,
+        ));
     }
     if let Some(v) = &c.body_force {
-        kinds.push(ConditionKind::BodyForce(context.components(v, Dim::FORCE_DENSITY)?));
+        kinds.push(ConditionKind::BodyForce(
+            context.components(v, Dim::FORCE_DENSITY)?,
+        ));
     }
     match (&c.traction, &c.area) {
         (Some(v), area) => kinds.push(ConditionKind::Traction {
             value: context.components(v, Dim::PRESSURE)?,
-            area: area.as_ref().map(|a| context.positive(a, Dim::AREA, "the area")).transpose()?,
+            area: area
+                .as_ref()
+                .map(|a| context.positive(a, Dim::AREA, "the area"))
+                .transpose()?,
         }),
         (None, Some(area)) => return Err(context.error(&area.span, "area belongs to a traction")),
         (None, None) => {}
@@ -76,10 +112,17 @@ pub(super) fn condition(
         kinds.push(ConditionKind::Damping(context.expression(v, Dim::DAMPING)?));
     }
     if kinds.is_empty() {
-        let message = "a condition needs one of displacement, velocity, body_force, traction, damping";
+        let message =
+            "a condition needs one of displacement, velocity, body_force, traction, damping";
         return Err(context.error(&at.span, message));
     }
-    Ok(kinds.into_iter().map(|kind| ConditionSpec { set: set.clone(), kind }).collect())
+    Ok(kinds
+        .into_iter()
+        .map(|kind| ConditionSpec {
+            set: set.clone(),
+            kind,
+        })
+        .collect())
 }
 
 pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterSpec> {
@@ -88,7 +131,10 @@ pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterS
         Some(mass) => IndenterMotion::Free {
             mass: context.positive(mass, Dim::MASS, "the mass")?,
             center: context.finite_vector(&i.center, Dim::LENGTH)?,
-            velocity: i.velocity.as_ref().map_or(Ok([0.0; 3]), |v| context.finite_vector(v, Dim::VELOCITY))?,
+            velocity: i
+                .velocity
+                .as_ref()
+                .map_or(Ok([0.0; 3]), |v| context.finite_vector(v, Dim::VELOCITY))?,
         },
         None => {
             let mut center = context.expressions(&i.center, Dim::LENGTH)?;
@@ -96,7 +142,10 @@ pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterS
                 let speed = context.finite_vector(velocity, Dim::VELOCITY)?;
                 for (a, c) in center.iter_mut().enumerate() {
                     let Some(start) = c.as_constant() else {
-                        return Err(context.error(&velocity.span, "the centre moves already by its expression: drop one of them"));
+                        return Err(context.error(
+                            &velocity.span,
+                            "the centre moves already by its expression: drop one of them",
+                        ));
                     };
                     if speed[a] != 0.0 {
                         *c = Expression::parse(&format!("{start:e} + {:e}*t", speed[a]), &[])
@@ -134,7 +183,10 @@ pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackS
     let point = |v| context.finite_vector(v, Dim::LENGTH);
     let shape = if let Some(s) = &p.segment {
         only(&[2, 3], "segment")?;
-        CrackShape::Segment { from: point(&s.from)?, to: point(&s.to)? }
+        CrackShape::Segment {
+            from: point(&s.from)?,
+            to: point(&s.to)?,
+        }
     } else if let Some(d) = &p.disk {
         only(&[3], "disk")?;
         let normal = context.finite_vector(&d.normal, Dim::NUMBER)?;
@@ -143,17 +195,28 @@ pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackS
             return Err(context.error(&d.normal.span, "the normal is zero"));
         }
         let radius = context.positive(&d.radius, Dim::LENGTH, "the radius")?;
-        CrackShape::Disk { center: point(&d.center)?, normal: normal.map(|n| n / length), radius }
+        CrackShape::Disk {
+            center: point(&d.center)?,
+            normal: normal.map(|n| n / length),
+            radius,
+        }
     } else if let Some(polygon) = &p.polygon {
         only(&[3], "polygon")?;
         if polygon.value.len() < 3 {
-            let message = format!("a polygon has three or more corners, not {}", polygon.value.len());
+            let message = format!(
+                "a polygon has three or more corners, not {}",
+                polygon.value.len()
+            );
             return Err(context.error(&polygon.span, message));
         }
-        CrackShape::Polygon { corners: polygon.value.iter().map(point).collect::<Result<_>>()? }
+        CrackShape::Polygon {
+            corners: polygon.value.iter().map(point).collect::<Result<_>>()?,
+        }
     } else if let Some(x) = &p.point {
         only(&[1], "point")?;
-        CrackShape::Point { x: context.finite(x, Dim::LENGTH)? }
+        CrackShape::Point {
+            x: context.finite(x, Dim::LENGTH)?,
+        }
     } else {
         return Err(context.error(&at.span, "a precrack needs a shape"));
     };

@@ -18,29 +18,58 @@ pub(super) fn schedule(context: &Context, run: &At<Run>) -> Result<RunSpec> {
     let written = &run.value;
     let time_step = match &written.time_step {
         None => TimeStep::Fraction(0.8),
-        Some(At { value: Or::Bare(Written::Text(text)), .. }) if text == "auto" => TimeStep::Fraction(0.8),
-        Some(At { value: Or::Bare(number), span }) => {
-            let number = At { value: number.clone(), span: span.clone() };
+        Some(At {
+            value: Or::Bare(Written::Text(text)),
+            ..
+        }) if text == "auto" => TimeStep::Fraction(0.8),
+        Some(At {
+            value: Or::Bare(number),
+            span,
+        }) => {
+            let number = At {
+                value: number.clone(),
+                span: span.clone(),
+            };
             TimeStep::Fixed(context.positive(&number, Dim::TIME, "the time step")?)
         }
-        Some(At { value: Or::Table(Safety { safety }), .. }) => {
+        Some(At {
+            value: Or::Table(Safety { safety }),
+            ..
+        }) => {
             let fraction = context.positive(safety, Dim::NUMBER, "the safety factor")?;
             if fraction > 1.0 && !written.force_unstable {
-                let message = format!("a safety factor of {} is above the stability limit", short(fraction));
-                return Err(context.error_with(&safety.span, message, "use 0.8, or add force_unstable = true"));
+                let message = format!(
+                    "a safety factor of {} is above the stability limit",
+                    short(fraction)
+                );
+                return Err(context.error_with(
+                    &safety.span,
+                    message,
+                    "use 0.8, or add force_unstable = true",
+                ));
             }
             TimeStep::Fraction(fraction)
         }
     };
-    let given = [("steps", written.steps.is_some()), ("duration", written.duration.is_some())];
+    let given = [
+        ("steps", written.steps.is_some()),
+        ("duration", written.duration.is_some()),
+    ];
     context.one_of(&run.span, "run", &given)?;
-    let duration = written.duration.as_ref().map(|d| context.positive(d, Dim::TIME, "the duration").map(|v| (v, d)));
+    let duration = written.duration.as_ref().map(|d| {
+        context
+            .positive(d, Dim::TIME, "the duration")
+            .map(|v| (v, d))
+    });
     let (steps, duration) = match (&written.steps, duration.transpose()?, time_step) {
         (Some(steps), _, _) => (steps.value, None),
         (None, Some((duration, at)), TimeStep::Fixed(step)) => {
             let steps = steps(duration, step);
             if steps > 1 << 53 {
-                return Err(context.error(&at.span, "that takes more steps than can be counted: check the units"));
+                return Err(context.error(
+                    &at.span,
+                    "that takes more steps than can be counted: check the units",
+                ));
             }
             (steps, None)
         }
@@ -50,10 +79,22 @@ pub(super) fn schedule(context: &Context, run: &At<Run>) -> Result<RunSpec> {
     if let Some(threads) = &written.threads
         && threads.value == 0
     {
-        return Err(context.error_with(&threads.span, "a run needs a thread", "leave threads out to use all cores"));
+        return Err(context.error_with(
+            &threads.span,
+            "a run needs a thread",
+            "leave threads out to use all cores",
+        ));
     }
-    let schedule = Schedule { steps, time_step, force_unstable: written.force_unstable };
-    Ok(RunSpec { schedule, threads: written.threads.as_ref().map(|t| t.value), duration })
+    let schedule = Schedule {
+        steps,
+        time_step,
+        force_unstable: written.force_unstable,
+    };
+    Ok(RunSpec {
+        schedule,
+        threads: written.threads.as_ref().map(|t| t.value),
+        duration,
+    })
 }
 
 /// Whole steps that cover a duration; round-off does not add one.
@@ -63,9 +104,11 @@ pub(in crate::deck) fn steps(duration: f64, time_step: f64) -> u64 {
 
 pub(super) fn output(context: &Context, written: &Output) -> Result<OutputSpec> {
     let positive = |number: &Option<At<u64>>, what: &str| match number {
-        Some(n) if n.value == 0 => {
-            Err(context.error_with(&n.span, format!("{what} counts steps from 1"), "leave it out to get the ends only"))
-        }
+        Some(n) if n.value == 0 => Err(context.error_with(
+            &n.span,
+            format!("{what} counts steps from 1"),
+            "leave it out to get the ends only",
+        )),
         other => Ok(other.as_ref().map(|n| n.value)),
     };
     let all = [

@@ -1,0 +1,252 @@
+use super::*;
+use peridyne::spec::*;
+use proptest::prelude::*;
+
+const IMPACT: &str = r#"title = "impact"
+horizon = { m_ratio = 3 }
+[constants]
+R = "5 mm"
+v = "-100 m/s"
+[body]
+lattice = "cubic"
+spacing = "0.5 mm"
+region = { cylinder = { axis = "y", radius = "37 mm", low = 0, high = "2.5 mm" } }
+[material]
+density = "2200 kg/m^3"
+law = { pmb = { bulk = "14.9 GPa" } }
+fracture = { critical_stretch = 0.0005, alpha = 0.25 }
+[[initial]]
+velocity = { y = "x > 2*R ? v : 0" }
+[[indenter]]
+stiffness = "1e17 N/m^5"
+radius = "R"
+center = [0, "2.5 mm", 0]
+velocity = [0, "v", 0]
+[run]
+steps = 2000
+time_step = "100 ns"
+"#;
+
+fn parse(text: &str) -> Deck {
+    Deck::parse(text, "impact.toml", &[])
+        .unwrap_or_else(|e| panic!("{e} {:?} {:?}", e.line, e.help))
+}
+
+fn with(key: &str, value: &str) -> Result<Deck, DeckError> {
+    Deck::parse(IMPACT, "impact.toml", &[(key.into(), value.into())])
+}
+
+#[test]
+fn a_deck_becomes_a_spec() {
+    let spec = parse(IMPACT).spec;
+    assert_eq!(spec.dimension, 3);
+    assert!(matches!(spec.body, BodySpec::Lattice { spacing, .. } if spacing == 0.5e-3));
+    assert_eq!(
+        spec.materials[0].law,
+        LawSpec::Pmb(PmbStiffness::Bulk(14.9e9))
+    );
+    assert_eq!(
+        spec.materials[0].fracture,
+        Some(FractureSpec {
+            criterion: Criterion::Stretch(0.0005),
+            alpha: 0.25
+        })
+    );
+    assert_eq!(spec.horizon, Horizon::Ratio(3));
+    assert_eq!(
+        spec.contact,
+        Some(ContactSpec {
+            bonded: 0.9,
+            free: 1.35,
+            stiffness: None
+        })
+    );
+    assert_eq!(spec.schedule.time_step, TimeStep::Fixed(1e-7));
+    let velocity = spec.initial[0].velocity[1].as_ref().unwrap();
+    assert_eq!(velocity.eval(&[0.02, 0.0, 0.0], 0.0), -100.0);
+    assert!(spec.initial[0].velocity[0].is_none());
+    assert_eq!(spec.indenters[0].radius, 0.005);
+    let IndenterMotion::Kinematic(center) = &spec.indenters[0].motion else {
+        panic!()
+    };
+    assert!((center[1].eval(&[0.0; 3], 1e-5) - 0.0015).abs() < 1e-15);
+}
+
+#[test]
+fn overrides_lie_over_the_deck_and_are_blamed_for_their_mistakes() {
+    let deck = with("material.law.pmb.bulk", "20 GPa").unwrap();
+    assert_eq!(
+        deck.spec.materials[0].law,
+        LawSpec::Pmb(PmbStiffness::Bulk(20e9))
+    );
+    assert_eq!(
+        with("initial.0.velocity.y", "7").unwrap().spec.initial[0].velocity[1]
+            .as_ref()
+            .unwrap()
+            .as_constant(),
+        Some(7.0)
+    );
+    assert_eq!(with("output.every", "5").unwrap().output.every, Some(5));
+    assert!(with("horizon", "{ m_ratio = 4 }").is_ok_and(|d| d.spec.horizon == Horizon::Ratio(4)));
+    for (key, value, message) in [
+        ("body.spacing", "-1 mm", "the spacing must be positive"),
+        ("body.spacin", "1 mm", "unknown key `spacin`"),
+        (
+            "run.steps",
+            "many",
+            "expected a whole number from 0, found string \"many\"",
+        ),
+        ("run.", "1", ""),
+    ] {
+        let error = with(key, value).unwrap_err();
+        assert!(error.message.contains(message), "{error}");
+        assert_eq!((error.file, error.line), (format!("--set {key}"), None));
+    }
+}
+
+#[test]
+fn an_error_of_the_engine_finds_its_line() {
+    let deck = parse(IMPACT);
+    for (path, text) in [
+        ("body.region", "{ cylinder"),
+        ("body.region.cylinder.radius", "\"37 mm\""),
+        ("materials[0].density", "\"2200 kg/m^3\""),
+        ("materials.material.law", "{ pmb"),
+        ("schedule.time_step", "\"100 ns\""),
+        ("conditions.0", ""),
+        ("indenters[0].radius", "\"R\""),
+        ("horizon", "{ m_ratio"),
+    ] {
+        let found = deck.locate(path).map_or("", |span| &IMPACT[span]);
+        assert!(
+            found.starts_with(text) && found.is_empty() == text.is_empty(),
+            "{path}: {found}"
+        );
+    }
+    let error = deck.explain(&BuildError::new("body.region", "empty").help("grow it"));
+    assert_eq!((error.line, error.file.as_str()), (Some(9), "impact.toml"));
+}
+
+#[test]
+fn two_materials_keep_their_names_and_places() {
+    let text = IMPACT.replace("[material]", "[material.glass]\nset = \"left\"")
+        + "[sets.left]\nregion = { half_space = { point = [0,0,0], normal = [1,0,0] } }\n[sets.right]\nregion = { half_space = { point = [0.1,0,0], normal = [-1,0,0] } }\n[material.steel]\nset = \"right\"\ndensity = \"7.8 g/cm^3\"\nlaw = { pmb = { young = \"210 GPa\" } }\n";
+    let deck = parse(&text);
+    let names: Vec<_> = deck
+        .spec
+        .materials
+        .iter()
+        .map(|m| (m.name.as_str(), m.set.as_str()))
+        .collect();
+    assert_eq!(names, [("glass", "left"), ("steel", "right")]);
+    assert!((deck.spec.materials[1].density - 7800.0).abs() < 1e-9);
+    assert_eq!(
+        &text[deck.locate("materials.steel.density").unwrap()],
+        "\"7.8 g/cm^3\""
+    );
+}
+
+#[test]
+fn a_periodic_body_is_one_period_long() {
+    let text = IMPACT.replace(
+        "region = {",
+        "region = { block = { low = [0,0,0], high = [0.01, 0.01, 0.01] } }\n#",
+    ) + "\n";
+    let deck = Deck::parse(&text, "f", &[("periodic".into(), "[\"x\"]".into())]).unwrap();
+    assert!(
+        (deck.spec.periodic[0].unwrap() - 0.01).abs() < 1e-15 && deck.spec.periodic[1].is_none()
+    );
+    let BodySpec::Lattice {
+        kind,
+        spacing,
+        origin,
+        region,
+        ..
+    } = deck.spec.body
+    else {
+        panic!()
+    };
+    let lattice = peridyne::space::lattice::Lattice {
+        kind,
+        spacing,
+        origin,
+    };
+    assert_eq!(
+        peridyne::space::fill::fill(&lattice, &region)
+            .unwrap()
+            .len(),
+        20 * 21 * 21
+    );
+}
+
+#[test]
+fn metal_units_are_made_consistent() {
+    let text = "units = \"metal\"\nhorizon = 9\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = 2.7\nlaw = { pmb = { bulk = \"76 GPa\" } }\n[run]\nduration = 1\n[[condition]]\ntraction = { x = \"1e4*t\" }\n";
+    let deck = parse(text);
+    assert!(
+        matches!(deck.spec.body, BodySpec::Lattice { spacing, .. } if (spacing - 4.0).abs() < 1e-12)
+    );
+    let LawSpec::Pmb(PmbStiffness::Bulk(k)) = deck.spec.materials[0].law else {
+        panic!()
+    };
+    assert!((k - 0.474354689).abs() < 1e-6, "{k}"); // eV/Å³
+    assert!((deck.spec.materials[0].density - 2.7 * 6.02214076e-1 * 1.036426966e-4).abs() < 1e-10);
+    let ConditionKind::Traction { value, .. } = &deck.spec.conditions[0].kind else {
+        panic!()
+    };
+    assert!((value[0].as_ref().unwrap().eval(&[0.0; 3], 2.0) - 2e4 * 6.241509074e-7).abs() < 1e-12);
+    assert_eq!((deck.duration, deck.steps(0.003)), (Some(1.0), 334));
+}
+
+#[test]
+fn the_header_says_what_was_understood() {
+    let text = parse(IMPACT).describe();
+    for part in [
+        "impact",
+        "cubic lattice of 0.5 mm, within 74 mm × 2.5 mm × 74 mm",
+        "pmb, K = 14.9 GPa",
+        "2200 kg/m^3",
+        "3 spacings",
+        "2000 steps of 0.1 µs",
+        "radius 5 mm",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+#[test]
+fn the_schema_knows_every_table() {
+    let schema = schema();
+    for key in [
+        "body",
+        "material",
+        "horizon",
+        "run",
+        "condition",
+        "precrack",
+    ] {
+        assert!(schema["properties"][key].is_object(), "{key}");
+    }
+    assert_eq!(schema["additionalProperties"], false);
+}
+
+proptest! {
+    /// No damage to a deck makes the reader panic, and every complaint has words.
+    #[test]
+    fn damaged_decks_are_read_or_refused(
+        at in 0.0..1.0f64,
+        cut in 0usize..40,
+        put in "[-\\[\\]{}=\"0-9$*,. \\na-z]{0,12}",
+        key in "[a-z.0-9]{0,12}",
+        value in "\\PC{0,12}",
+    ) {
+        let start = (at * IMPACT.len() as f64) as usize;
+        let damaged = format!("{}{put}{}", &IMPACT[..start], &IMPACT[(start + cut).min(IMPACT.len())..]);
+        for (text, overrides) in [(damaged.as_str(), vec![]), (IMPACT, vec![(key, value)])] {
+            match Deck::parse(text, "f.toml", &overrides) {
+                Ok(deck) => prop_assert!(!deck.describe().is_empty()),
+                Err(error) => prop_assert!(!error.message.is_empty()),
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Every deck of the repository: the good ones are understood, the bad ones say what their first line expects.
+
+use peridyne_io::deck::Deck;
+use std::path::{Path, PathBuf};
+
+fn decks(folder: &str) -> Vec<(PathBuf, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../decks")
+        .join(folder);
+    let mut decks: Vec<(PathBuf, String)> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .map(|path| (path.clone(), std::fs::read_to_string(&path).unwrap()))
+        .collect();
+    decks.sort();
+    decks
+}
+
+/// `# expect: MESSAGE (line N)`, the line being optional.
+fn expectation(text: &str) -> Option<(&str, Option<usize>)> {
+    let rest = text.lines().next()?.strip_prefix("# expect: ")?;
+    Some(match rest.rsplit_once(" (line ") {
+        Some((message, line)) => (message, line.strip_suffix(')')?.parse().ok()),
+        None => (rest, None),
+    })
+}
+
+#[test]
+fn good_decks_are_understood() {
+    let decks = decks("good");
+    assert!(decks.len() >= 8);
+    for (path, text) in decks {
+        match Deck::parse(&text, path.to_str().unwrap(), &[]) {
+            Ok(deck) => assert!(deck.describe().contains("run  "), "{}", path.display()),
+            Err(error) => panic!(
+                "{}:{:?}: {error} ({:?})",
+                path.display(),
+                error.line,
+                error.help
+            ),
+        }
+    }
+}
+
+#[test]
+fn bad_decks_say_what_is_wrong_and_where() {
+    let decks = decks("bad");
+    assert!(decks.len() >= 40);
+    let mut wrong = Vec::new();
+    for (path, text) in &decks {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let Some((message, line)) = expectation(text) else {
+            wrong.push(format!(
+                "{name}: its first line is not `# expect: MESSAGE (line N)`"
+            ));
+            continue;
+        };
+        match Deck::parse(text, path.to_str().unwrap(), &[]) {
+            Ok(_) => wrong.push(format!("{name}: was accepted")),
+            Err(error) if !error.message.contains(message) => {
+                wrong.push(format!("{name}: said {:?}", error.message))
+            }
+            Err(error) if line.is_some() && error.line != line => {
+                wrong.push(format!("{name}: line {:?}, not {line:?}", error.line));
+            }
+            Err(_) => {}
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// What only the engine can tell passes the deck.
+#[test]
+fn decks_that_fail_in_the_build_are_well_written() {
+    for (path, text) in decks("bad/build") {
+        assert!(expectation(&text).is_some(), "{}", path.display());
+        if let Err(error) = Deck::parse(&text, path.to_str().unwrap(), &[]) {
+            panic!("{}: {error}", path.display());
+        }
+    }
+}
