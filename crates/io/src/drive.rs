@@ -46,14 +46,22 @@ pub enum DriveError {
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("{error}\nthe last good state, step {step}, is in {}", dir.display())]
-    Run { error: RunError, step: u64, dir: PathBuf },
+    Run {
+        error: RunError,
+        step: u64,
+        dir: PathBuf,
+    },
 }
 
 /// Run and write. On a [`RunError`] the last good state is written like a last frame and `run.json` says why.
 ///
 /// # Errors
 /// What stopped the run, or the first file that could not be written.
-pub fn drive(sim: &mut dyn Simulation, plan: &Plan, progress: &mut dyn Progress) -> Result<RunReport, DriveError> {
+pub fn drive(
+    sim: &mut dyn Simulation,
+    plan: &Plan,
+    progress: &mut dyn Progress,
+) -> Result<RunReport, DriveError> {
     let mut series = Series::new(&plan.dir, plan.series.clone())?;
     let mut columns = vec![Column::new("time", &plan.time_unit)];
     columns.extend(ledger_columns(&plan.energy_unit));
@@ -91,7 +99,10 @@ pub fn drive(sim: &mut dyn Simulation, plan: &Plan, progress: &mut dyn Progress)
             history.push(sim.step_number(), &row)?;
             progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());
         }
-        if !last && (n == 0 || plan.every.is_some_and(|e| n % e == 0)) && (plan.series.points || plan.series.bonds) {
+        if !last
+            && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
+            && (plan.series.points || plan.series.bonds)
+        {
             series.write(&sim.snapshot(plan.snapshot))?;
         }
     }
@@ -115,7 +126,11 @@ pub fn drive(sim: &mut dyn Simulation, plan: &Plan, progress: &mut dyn Progress)
         steps: sim.step_number(),
         time_step: info.time_step,
         seconds_stepping: stepping.as_secs_f64(),
-        ns_per_bond_step: run_json::ns_per_bond_step(stepping.as_secs_f64(), info.directed_bonds, sim.step_number()),
+        ns_per_bond_step: run_json::ns_per_bond_step(
+            stepping.as_secs_f64(),
+            info.directed_bonds,
+            sim.step_number(),
+        ),
         peak_memory_bytes: run_json::peak_memory_bytes(),
         broken_directed_bonds: sim.broken(),
         fragments: Some(sim.fragments()),
@@ -127,12 +142,18 @@ pub fn drive(sim: &mut dyn Simulation, plan: &Plan, progress: &mut dyn Progress)
     report.write(&plan.dir.join("run.json"))?;
     match stopped {
         None => Ok(report),
-        Some(error) => Err(DriveError::Run { error, step: sim.step_number(), dir: plan.dir.to_path_buf() }),
+        Some(error) => Err(DriveError::Run {
+            error,
+            step: sim.step_number(),
+            dir: plan.dir.to_path_buf(),
+        }),
     }
 }
 
 /// The folder a deck's results go to if nobody says otherwise: `out/<deck name>`.
 pub fn default_dir(deck: &Path) -> PathBuf {
-    let name = deck.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned());
+    let name = deck
+        .file_stem()
+        .map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned());
     Path::new("out").join(name)
 }

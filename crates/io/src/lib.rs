@@ -2,7 +2,6 @@
 
 pub mod deck;
 pub mod drive;
+pub mod lammps;
 pub mod read;
 pub mod write;
-//! io
-pub mod lammps;
