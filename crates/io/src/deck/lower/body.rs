@@ -2,7 +2,7 @@
 
 use super::Files;
 use super::context::{Context, Result};
-use crate::deck::document::{AxisName, LatticeName};
+use crate::deck::document::LatticeName;
 use crate::deck::document::{Body, Mark, Periodic, Set, Shape};
 use crate::deck::error::nearest;
 use crate::deck::units::{Dim, short};
