@@ -46,7 +46,7 @@ pub struct Document {
     /// auto when left out.
     pub family: Option<FamilyName>,
     /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
-    pub periodic: Option<At<Or<Vec<At<AxisName>>, Periods>>>,
+    pub periodic: Option<At<Periodic>>,
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,
     /// On when a material can fracture; false turns it off.
@@ -193,6 +193,9 @@ pub struct Fracture {
 pub struct HorizonRatio {
     pub m_ratio: Number,
 }
+
+/// Axes whose period is the region, or the period of each.
+pub type Periodic = Or<Vec<At<AxisName>>, Periods>;
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

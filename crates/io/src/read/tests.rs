@@ -65,9 +65,9 @@ fn solids_have_their_volumes() {
             "{element}: {}",
             points.cloud.volume[0]
         );
-        for a in 0..3 {
+        for (got, wanted) in points.cloud.position[0].iter().zip(centroid) {
             assert!(
-                (points.cloud.position[0][a] - centroid[a]).abs() < 1e-14,
+                (got - wanted).abs() < 1e-14,
                 "{element}: {:?}",
                 points.cloud.position
             );

@@ -2,8 +2,8 @@
 
 use super::Files;
 use super::context::{Context, Result};
-use crate::deck::document::{AxisName, LatticeName};
-use crate::deck::document::{Body, Mark, Periods, Set, Shape};
+use crate::deck::document::LatticeName;
+use crate::deck::document::{Body, Mark, Periodic, Set, Shape};
 use crate::deck::error::nearest;
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Vector};
@@ -298,7 +298,7 @@ fn mark_number(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<i3
 /// one at the lower end.
 pub(super) fn periods(
     context: &Context,
-    written: Option<&At<Or<Vec<At<AxisName>>, Periods>>>,
+    written: Option<&At<Periodic>>,
     body: &mut BodySpec,
 ) -> Result<[Option<f64>; 3]> {
     let mut out = [None; 3];
