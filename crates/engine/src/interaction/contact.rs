@@ -7,7 +7,7 @@
 
 use super::Repulsion;
 use crate::body::{Body, Field};
-use crate::family::neighbours::{Neighbours, image};
+use crate::family::neighbours::{Neighbours, periods};
 
 /// A listed pair, in the order of the list.
 #[derive(Debug, Clone, Copy)]
@@ -80,11 +80,17 @@ impl<const D: usize> Contact<D> {
         }
         self.pairs.clear();
         for (i, row) in self.neighbours.rows() {
+            let p = body.position(i);
             for &j in row {
                 let j = j as usize;
+                let q = body.position(j);
+                let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
+                let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
+                let (then, now) = (periods(body, &xi), periods(body, &now));
+                let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
                 self.pairs.push(Pair {
-                    base: image(body, u, i, j).0,
-                    distance: self.repulsion.distance(reference_distance(body, i, j)),
+                    base: std::array::from_fn(|a| xi[a] - now[a]),
+                    distance: self.repulsion.distance(square.sqrt()),
                 });
             }
         }
@@ -136,18 +142,6 @@ impl<const D: usize> Contact<D> {
             }
         }
     }
-}
-
-/// Distance in the reference, to the nearest image.
-fn reference_distance<const D: usize>(body: &Body<D>, i: usize, j: usize) -> f64 {
-    let (xi, xj) = (body.position(i), body.position(j));
-    let mut square = 0.0;
-    for a in 0..D {
-        let x = xj[a] - xi[a];
-        let x = x - body.period[a].map_or(0.0, |p| p * (x / p).round());
-        square += x * x;
-    }
-    square.sqrt()
 }
 
 #[cfg(test)]

@@ -70,7 +70,7 @@ impl<const D: usize> Cells<D> {
 
     /// Put all points into their cells at displacement `u`.
     pub fn sort(&mut self, body: &Body<D>, u: &Field<D>) {
-        let inverse = self.length.map(|l| 1.0 / l);
+        let inverse = self.length.map(|l| FULL / l);
         let place = |slot: usize, x: [f64; D]| -> [u32; D] {
             std::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
         };
@@ -111,9 +111,9 @@ impl<const D: usize> Cells<D> {
         for cell in 0..self.len() {
             let own = self.start[cell] as usize..self.start[cell + 1] as usize;
             if !own.is_empty() {
-                self.each_adjacent(at, |other| {
+                self.each_adjacent(cell, at, |other| {
                     let theirs = self.start[other] as usize..self.start[other + 1] as usize;
-                    if other < cell || theirs.is_empty() || skip(cell, other) {
+                    if theirs.is_empty() || skip(cell, other) {
                         return;
                     }
                     for p in own.clone() {
@@ -143,26 +143,29 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// The distinct cells around a cell, itself included.
-    fn each_adjacent(&self, at: [usize; D], mut visit: impl FnMut(usize)) {
-        let around: [usize; D] = self.count.map(|n| n.min(3));
-        for k in 0..around.iter().product() {
-            let mut k: usize = k;
-            let (mut cell, mut stride) = (0, 1);
-            for a in 0..D {
-                let c = at[a] + k % around[a];
-                // n − 1, 0 and 1 cells on; with two cells on the ring only 0 and 1
-                let c = if around[a] == 3 {
-                    c + self.count[a] - 1
-                } else {
-                    c
-                };
-                cell += c % self.count[a] * stride;
-                stride *= self.count[a];
-                k /= around[a];
+    /// The distinct cells around a cell, itself included, that do not come before it.
+    fn each_adjacent(&self, cell: usize, at: [usize; D], mut visit: impl FnMut(usize)) {
+        // 3^D of them, built up axis by axis
+        let mut around = [0usize; 27];
+        let (mut len, mut stride) = (1, 1);
+        for a in 0..D {
+            let n = self.count[a];
+            let up = if at[a] + 1 == n { 0 } else { at[a] + 1 };
+            let down = if at[a] == 0 { n - 1 } else { at[a] - 1 };
+            let ring = [at[a], up, down];
+            let distinct = n.min(3);
+            for k in (0..len).rev() {
+                for (r, c) in ring[..distinct].iter().enumerate().rev() {
+                    around[r * len + k] = around[k] + c * stride;
+                }
             }
-            visit(cell);
+            len *= distinct;
+            stride *= n;
         }
+        around[..len]
+            .iter()
+            .filter(|c| **c >= cell)
+            .for_each(|c| visit(*c));
     }
 
     pub fn bytes(&self) -> usize {
@@ -170,11 +173,9 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// The fraction of `t` above the whole number below it, in units of 2⁻³².
+/// The fraction of `t / 2³²` above a whole number, in units of 2⁻³²: the low half of the integer.
 fn wind(t: f64) -> u32 {
-    let rest = t - (t as i64) as f64;
-    let rest = if rest < 0.0 { rest + 1.0 } else { rest };
-    (rest * FULL) as u64 as u32
+    t as i64 as u32
 }
 
 /// Slot and reference position of every point. On a grid, walked row by row: finding the coordinates of a single slot
