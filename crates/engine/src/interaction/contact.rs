@@ -27,8 +27,11 @@ pub struct Contact<const D: usize> {
 }
 
 impl<const D: usize> Contact<D> {
-    /// Contact in `body`, inclusive of its periodic images. All pairs whose reference distance is less than `horizon`
-    /// must be in a family (as after `Interaction::in_family`); 0 promises nothing, and costs time.
+    /// Contact in `body`, to the nearest image on periodic axes.
+    ///
+    /// `horizon` (length) is a promise that `in_family` holds for all pairs closer than that in the reference, broken
+    /// or not; it lets the search pass over what has hardly deformed. 0 promises nothing, for families that forget
+    /// bonds that a crack made absent.
     pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64) -> Self {
         // two points out of a body that holds together come that close only if their displacements differ by the rest
         // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed

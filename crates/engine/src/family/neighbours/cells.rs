@@ -9,6 +9,9 @@ use crate::body::{Body, Field, Layout};
 
 const FULL: f64 = (1u64 << 32) as f64;
 
+/// Pairs that are tested at a time.
+const LANES: usize = 8;
+
 #[derive(Debug, Clone)]
 pub(super) struct Cells<const D: usize> {
     reach: f64,
@@ -18,9 +21,9 @@ pub(super) struct Cells<const D: usize> {
     length: [f64; D],
     /// `[cells + 1]` first point of every cell.
     start: Vec<u32>,
-    /// Slots, and their coordinates on the rings, in order of cells.
+    /// Slots, and their coordinates on the rings (with room to read whole lanes at the end), in order of cells.
     order: Vec<u32>,
-    place: Vec<[u32; D]>,
+    place: [Vec<u32>; D],
 }
 
 impl<const D: usize> Cells<D> {
@@ -54,7 +57,7 @@ impl<const D: usize> Cells<D> {
             length: std::array::from_fn(|a| body.period[a].unwrap_or(count[a] as f64 * edge)),
             start: vec![0; count.iter().product::<usize>() + 1],
             order: vec![0; body.points()],
-            place: vec![[0; D]; body.points()],
+            place: std::array::from_fn(|_| vec![0; body.points() + LANES]),
         }
     }
 
@@ -92,7 +95,9 @@ impl<const D: usize> Cells<D> {
             let p = place(slot, x);
             let next = &mut self.start[cell(&p)];
             self.order[*next as usize] = slot as u32;
-            self.place[*next as usize] = p;
+            for a in 0..D {
+                self.place[a][*next as usize] = p[a];
+            }
             *next += 1;
         });
         // every start has become the next one
@@ -104,9 +109,10 @@ impl<const D: usize> Cells<D> {
     /// Every pair of points that are closer than the reach on the rings, once, except between cells that `skip`.
     pub fn each_near(&self, skip: impl Fn(usize, usize) -> bool, mut visit: impl FnMut(u32, u32)) {
         let unit = self.length.map(|l| l / FULL);
-        // each coordinate is cut off to its unit
-        let slack = 2.0 * unit.iter().sum::<f64>();
-        let limit = (self.reach + slack) * (self.reach + slack);
+        // each coordinate is cut off to its unit; squares are relative to the reach, in single precision
+        let limit = 1.0 + 2.0 * unit.iter().sum::<f64>() / self.reach;
+        let limit = (limit * limit * (1.0 + 1e-6)) as f32;
+        let unit = unit.map(|l| (l / self.reach) as f32);
         let mut at = [0usize; D];
         for cell in 0..self.len() {
             let own = self.start[cell] as usize..self.start[cell + 1] as usize;
@@ -117,17 +123,19 @@ impl<const D: usize> Cells<D> {
                         return;
                     }
                     for p in own.clone() {
-                        let x = self.place[p];
+                        let x: [u32; D] = std::array::from_fn(|a| self.place[a][p]);
                         let from = if other == cell { p + 1 } else { theirs.start };
-                        for q in from..theirs.end {
-                            let y = &self.place[q];
-                            let mut square = 0.0;
-                            for a in 0..D {
-                                let d = y[a].wrapping_sub(x[a]) as i32 as f64 * unit[a];
-                                square += d * d;
+                        for q in (from..theirs.end).step_by(LANES) {
+                            let mut near = self.near(x, q, unit, limit);
+                            if theirs.end - q < LANES {
+                                near &= (1 << (theirs.end - q)) - 1;
                             }
-                            if square <= limit {
-                                visit(self.order[p], self.order[q]);
+                            while near != 0 {
+                                visit(
+                                    self.order[p],
+                                    self.order[q + near.trailing_zeros() as usize],
+                                );
+                                near &= near - 1;
                             }
                         }
                     }
@@ -141,6 +149,23 @@ impl<const D: usize> Cells<D> {
                 at[a] = 0;
             }
         }
+    }
+
+    /// Which of the points from the `q`th on are near to a place: one bit each.
+    #[inline(always)]
+    fn near(&self, x: [u32; D], q: usize, unit: [f32; D], limit: f32) -> u32 {
+        let mut square = [0f32; LANES];
+        for a in 0..D {
+            for (s, y) in square.iter_mut().zip(&self.place[a][q..q + LANES]) {
+                let d = y.wrapping_sub(x[a]) as i32 as f32 * unit[a];
+                *s += d * d;
+            }
+        }
+        let mut near = 0;
+        for (l, s) in square.iter().enumerate() {
+            near |= ((*s <= limit) as u32) << l;
+        }
+        near
     }
 
     /// The distinct cells around a cell, itself included, that do not come before it.
@@ -169,7 +194,7 @@ impl<const D: usize> Cells<D> {
     }
 
     pub fn bytes(&self) -> usize {
-        4 * (self.start.len() + self.order.len() + D * self.place.len())
+        4 * (self.start.len() + self.order.len() + D * self.place[0].len())
     }
 }
 
