@@ -61,7 +61,7 @@ impl<const D: usize> Neighbours<D> {
         u: &Field<D>,
         keep: &dyn Fn(usize, usize) -> bool,
     ) -> bool {
-        if !self.moved.exceeds(u) {
+        if self.reach.is_nan() || self.reach <= 0.0 || !self.moved.exceeds(u) {
             return false;
         }
         self.moved.record(body, u);

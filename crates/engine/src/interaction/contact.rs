@@ -36,7 +36,7 @@ impl<const D: usize> Contact<D> {
         // two points out of a body that holds together come that close only if their displacements differ by the rest
         // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed
         let range = repulsion.range;
-        let skin = (0.5 * (horizon - range)).clamp(0.25 * range, 0.5 * range);
+        let skin = (0.5 * (horizon - range)).max(0.25 * range).min(0.5 * range);
         // bonds within round-off of the horizon may be in the family or not
         let apart = (horizon * (1.0 - 1e-6) - range - skin).max(0.0);
         Contact {

@@ -37,11 +37,11 @@ impl<const D: usize> Cells<D> {
                 high[a] = high[a].max(x[a]);
             }
         });
-        // a little wider than the reach, for the round-off of points far out
-        let edge = reach * (1.0 + 1e-6);
+        // a little wider than the reach, for the round-off of points far out; nothing is gained by cells without points
+        let edge = reach.max(body.spacing) * (1.0 + 1e-6);
         let mut count: [usize; D] = std::array::from_fn(|a| match body.period[a] {
             Some(p) => ((p / edge) as usize).max(1),
-            None => ((high[a] - low[a]) / edge) as usize + 3,
+            None => ((high[a] - low[a]) / edge).min(1e9) as usize + 3,
         });
         // mostly empty space gets wound up tighter
         let limit = (body.points() / 2).max(27);
