@@ -4,6 +4,9 @@
 //! answers with [`observe::Snapshot`]s. Lengths, masses and times are in whatever consistent unit system the
 //! spec uses; the engine itself is free of units.
 
+// loops over axes index several arrays at once
+#![allow(clippy::needless_range_loop)]
+
 pub mod body;
 pub mod condition;
 pub mod dynamics;

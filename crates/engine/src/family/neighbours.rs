@@ -16,8 +16,8 @@ pub struct Neighbours<const D: usize> {
     reach: f64,
     apart: f64,
     cells: Cells<D>,
-    /// Greatest displacement relative to the first point of each cell.
-    radius: Vec<f32>,
+    /// A ball around the displacements of each cell: centre and radius.
+    balls: Vec<([f32; D], f32)>,
     moved: Moved<D>,
     /// `i << 32 | j` as found.
     found: Vec<u64>,
@@ -37,7 +37,7 @@ impl<const D: usize> Neighbours<D> {
             reach,
             apart: 0.0,
             cells: Cells::new(body, reach),
-            radius: vec![],
+            balls: vec![],
             moved: Moved::new(skin),
             found: vec![],
             rows: vec![],
@@ -61,7 +61,7 @@ impl<const D: usize> Neighbours<D> {
         u: &Field<D>,
         keep: &dyn Fn(usize, usize) -> bool,
     ) -> bool {
-        if !self.moved.exceeds(u) {
+        if self.reach.is_nan() || self.reach <= 0.0 || !self.moved.exceeds(u) {
             return false;
         }
         self.moved.record(body, u);
@@ -80,23 +80,30 @@ impl<const D: usize> Neighbours<D> {
                 .map(|d| d * d)
                 .sum::<f64>()
         };
-        self.radius.clear();
+        self.balls.clear();
         if apart > 0.0 {
-            self.radius.extend((0..cells.len()).map(|c| {
+            self.balls.extend((0..cells.len()).map(|c| {
                 let slots = cells.slots(c);
-                let most = slots
-                    .iter()
-                    .map(|s| difference(slots[0], *s))
-                    .fold(0.0, f64::max);
+                let Some(first) = slots.first() else {
+                    return ([0.0; D], 0.0);
+                };
+                let center: [f32; D] = std::array::from_fn(|a| u[a][*first as usize] as f32);
+                let mut most = 0.0;
+                for &s in slots {
+                    let d: [f64; D] = std::array::from_fn(|a| u[a][s as usize] - center[a] as f64);
+                    most = f64::max(most, d.iter().map(|c| c * c).sum());
+                }
                 // rounded up
-                (most.sqrt() * (1.0 + 1e-6)) as f32
+                (center, (most.sqrt() * (1.0 + 1e-6)) as f32)
             }));
         }
-        let radius = &self.radius;
+        let balls = &self.balls;
         let alike = |a: usize, b: usize| {
             apart > 0.0 && {
-                let room = apart - radius[a] as f64 - radius[b] as f64;
-                room > 0.0 && difference(cells.slots(a)[0], cells.slots(b)[0]) < room * room
+                let ((p, pr), (q, qr)) = (&balls[a], &balls[b]);
+                let room = apart - *pr as f64 - *qr as f64;
+                let square: f64 = (0..D).map(|a| (q[a] as f64 - p[a] as f64).powi(2)).sum();
+                room > 0.0 && square < room * room
             }
         };
         let found = &mut self.found;
@@ -109,7 +116,11 @@ impl<const D: usize> Neighbours<D> {
             if !keep(i as usize, j as usize) {
                 return;
             }
-            let y = image(body, u, i as usize, j as usize).1;
+            let (p, q) = (body.position(i as usize), body.position(j as usize));
+            let y: [f64; D] =
+                std::array::from_fn(|a| q[a] - p[a] + (u[a][j as usize] - u[a][i as usize]));
+            let back = periods(body, &y);
+            let y: [f64; D] = std::array::from_fn(|a| y[a] - back[a]);
             if y.iter().map(|c| c * c).sum::<f64>() < reach * reach {
                 found.push((i as u64) << 32 | j as u64);
             }
@@ -159,29 +170,15 @@ impl<const D: usize> Neighbours<D> {
     pub fn bytes(&self) -> usize {
         self.cells.bytes()
             + self.moved.bytes()
-            + 4 * self.radius.capacity()
+            + size_of::<([f32; D], f32)>() * self.balls.capacity()
             + 8 * (self.found.capacity() + self.rows.capacity())
             + 4 * self.partner.capacity()
     }
 }
 
-/// Vector from i to the nearest image of j: in the reference, but to the image that is nearest at `u`, and at `u`.
-pub fn image<const D: usize>(
-    body: &Body<D>,
-    u: &Field<D>,
-    i: usize,
-    j: usize,
-) -> ([f64; D], [f64; D]) {
-    let (xi, xj) = (body.position(i), body.position(j));
-    let mut base = [0.0; D];
-    let mut now = [0.0; D];
-    for a in 0..D {
-        let (x, eta) = (xj[a] - xi[a], u[a][j] - u[a][i]);
-        let back = body.period[a].map_or(0.0, |p| p * ((x + eta) / p).round());
-        base[a] = x - back;
-        now[a] = base[a] + eta;
-    }
-    (base, now)
+/// The whole periods in a vector between two points: what is left without them leads to the nearest image.
+pub fn periods<const D: usize>(body: &Body<D>, y: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|a| body.period[a].map_or(0.0, |p| p * (y[a] / p).round()))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 
 use super::Repulsion;
 use crate::body::{Body, Field};
-use crate::family::neighbours::{Neighbours, image};
+use crate::family::neighbours::{Neighbours, periods};
 
 /// A listed pair, in the order of the list.
 #[derive(Debug, Clone, Copy)]
@@ -27,13 +27,16 @@ pub struct Contact<const D: usize> {
 }
 
 impl<const D: usize> Contact<D> {
-    /// Contact in `body`, inclusive of its periodic images. All pairs whose reference distance is less than `horizon`
-    /// must be in a family (as after `Interaction::in_family`); 0 promises nothing, and costs time.
+    /// Contact in `body`, to the nearest image on periodic axes.
+    ///
+    /// `horizon` (length) is a promise that `in_family` holds for all pairs closer than that in the reference, broken
+    /// or not; it lets the search pass over what has hardly deformed. 0 promises nothing, for families that forget
+    /// bonds that a crack made absent.
     pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64) -> Self {
         // two points out of a body that holds together come that close only if their displacements differ by the rest
         // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed
         let range = repulsion.range;
-        let skin = (0.5 * (horizon - range)).clamp(0.25 * range, 0.5 * range);
+        let skin = (0.5 * (horizon - range)).max(0.25 * range).min(0.5 * range);
         // bonds within round-off of the horizon may be in the family or not
         let apart = (horizon * (1.0 - 1e-6) - range - skin).max(0.0);
         Contact {
@@ -80,11 +83,17 @@ impl<const D: usize> Contact<D> {
         }
         self.pairs.clear();
         for (i, row) in self.neighbours.rows() {
+            let p = body.position(i);
             for &j in row {
                 let j = j as usize;
+                let q = body.position(j);
+                let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
+                let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
+                let (then, now) = (periods(body, &xi), periods(body, &now));
+                let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
                 self.pairs.push(Pair {
-                    base: image(body, u, i, j).0,
-                    distance: self.repulsion.distance(reference_distance(body, i, j)),
+                    base: std::array::from_fn(|a| xi[a] - now[a]),
+                    distance: self.repulsion.distance(square.sqrt()),
                 });
             }
         }
@@ -136,18 +145,6 @@ impl<const D: usize> Contact<D> {
             }
         }
     }
-}
-
-/// Distance in the reference, to the nearest image.
-fn reference_distance<const D: usize>(body: &Body<D>, i: usize, j: usize) -> f64 {
-    let (xi, xj) = (body.position(i), body.position(j));
-    let mut square = 0.0;
-    for a in 0..D {
-        let x = xj[a] - xi[a];
-        let x = x - body.period[a].map_or(0.0, |p| p * (x / p).round());
-        square += x * x;
-    }
-    square.sqrt()
 }
 
 #[cfg(test)]

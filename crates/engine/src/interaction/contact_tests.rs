@@ -199,6 +199,24 @@ fn a_cloud_with_volumes_of_its_own() {
 }
 
 #[test]
+fn a_range_of_nothing_or_next_to_nothing_is_harmless() {
+    let quarters = sites([30, 30, 1], |_| true);
+    let (body, law) = lattice::<2>(LatticeKind::Square, &quarters, 1.0, 2, [false; 2]);
+    for range in [0.0, -1.0, f64::NAN, 1e-9, 1e-300] {
+        let rule = Repulsion { range, ..RULE };
+        let mut contact = Contact::new(rule, &body, 2.0);
+        let mut f = zeros::<2>(body.len);
+        let asked = std::cell::Cell::new(0);
+        contact.add_forces(&body, &body.at_rest(), &mut f, &|i, j| {
+            asked.set(asked.get() + 1);
+            law.in_family(&body, i, j)
+        });
+        assert!(f.iter().flatten().all(|x| *x == 0.0));
+        assert_eq!(asked.get(), 0, "{range}");
+    }
+}
+
+#[test]
 fn force_is_the_gradient_of_energy() {
     let quarters = sites([5, 12, 1], |x| x[1] < 3 || x[1] >= 9);
     let (body, law) = lattice::<2>(LatticeKind::Square, &quarters, 1.0, 3, [false; 2]);

@@ -9,6 +9,9 @@ use crate::body::{Body, Field, Layout};
 
 const FULL: f64 = (1u64 << 32) as f64;
 
+/// Pairs that are tested at a time.
+const LANES: usize = 8;
+
 #[derive(Debug, Clone)]
 pub(super) struct Cells<const D: usize> {
     reach: f64,
@@ -18,9 +21,9 @@ pub(super) struct Cells<const D: usize> {
     length: [f64; D],
     /// `[cells + 1]` first point of every cell.
     start: Vec<u32>,
-    /// Slots, and their coordinates on the rings, in order of cells.
+    /// Slots, and their coordinates on the rings (with room to read whole lanes at the end), in order of cells.
     order: Vec<u32>,
-    place: Vec<[u32; D]>,
+    place: [Vec<u32>; D],
 }
 
 impl<const D: usize> Cells<D> {
@@ -34,11 +37,11 @@ impl<const D: usize> Cells<D> {
                 high[a] = high[a].max(x[a]);
             }
         });
-        // a little wider than the reach, for the round-off of points far out
-        let edge = reach * (1.0 + 1e-6);
+        // a little wider than the reach, for the round-off of points far out; nothing is gained by cells without points
+        let edge = reach.max(body.spacing) * (1.0 + 1e-6);
         let mut count: [usize; D] = std::array::from_fn(|a| match body.period[a] {
             Some(p) => ((p / edge) as usize).max(1),
-            None => ((high[a] - low[a]) / edge) as usize + 3,
+            None => ((high[a] - low[a]) / edge).min(1e9) as usize + 3,
         });
         // mostly empty space gets wound up tighter
         let limit = (body.points() / 2).max(27);
@@ -54,7 +57,7 @@ impl<const D: usize> Cells<D> {
             length: std::array::from_fn(|a| body.period[a].unwrap_or(count[a] as f64 * edge)),
             start: vec![0; count.iter().product::<usize>() + 1],
             order: vec![0; body.points()],
-            place: vec![[0; D]; body.points()],
+            place: std::array::from_fn(|_| vec![0; body.points() + LANES]),
         }
     }
 
@@ -70,7 +73,7 @@ impl<const D: usize> Cells<D> {
 
     /// Put all points into their cells at displacement `u`.
     pub fn sort(&mut self, body: &Body<D>, u: &Field<D>) {
-        let inverse = self.length.map(|l| 1.0 / l);
+        let inverse = self.length.map(|l| FULL / l);
         let place = |slot: usize, x: [f64; D]| -> [u32; D] {
             std::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
         };
@@ -92,7 +95,9 @@ impl<const D: usize> Cells<D> {
             let p = place(slot, x);
             let next = &mut self.start[cell(&p)];
             self.order[*next as usize] = slot as u32;
-            self.place[*next as usize] = p;
+            for a in 0..D {
+                self.place[a][*next as usize] = p[a];
+            }
             *next += 1;
         });
         // every start has become the next one
@@ -104,30 +109,33 @@ impl<const D: usize> Cells<D> {
     /// Every pair of points that are closer than the reach on the rings, once, except between cells that `skip`.
     pub fn each_near(&self, skip: impl Fn(usize, usize) -> bool, mut visit: impl FnMut(u32, u32)) {
         let unit = self.length.map(|l| l / FULL);
-        // each coordinate is cut off to its unit
-        let slack = 2.0 * unit.iter().sum::<f64>();
-        let limit = (self.reach + slack) * (self.reach + slack);
+        // each coordinate is cut off to its unit; squares are relative to the reach, in single precision
+        let limit = 1.0 + 2.0 * unit.iter().sum::<f64>() / self.reach;
+        let limit = (limit * limit * (1.0 + 1e-6)) as f32;
+        let unit = unit.map(|l| (l / self.reach) as f32);
         let mut at = [0usize; D];
         for cell in 0..self.len() {
             let own = self.start[cell] as usize..self.start[cell + 1] as usize;
             if !own.is_empty() {
-                self.each_adjacent(at, |other| {
+                self.each_adjacent(cell, at, |other| {
                     let theirs = self.start[other] as usize..self.start[other + 1] as usize;
-                    if other < cell || theirs.is_empty() || skip(cell, other) {
+                    if theirs.is_empty() || skip(cell, other) {
                         return;
                     }
                     for p in own.clone() {
-                        let x = self.place[p];
+                        let x: [u32; D] = std::array::from_fn(|a| self.place[a][p]);
                         let from = if other == cell { p + 1 } else { theirs.start };
-                        for q in from..theirs.end {
-                            let y = &self.place[q];
-                            let mut square = 0.0;
-                            for a in 0..D {
-                                let d = y[a].wrapping_sub(x[a]) as i32 as f64 * unit[a];
-                                square += d * d;
+                        for q in (from..theirs.end).step_by(LANES) {
+                            let mut near = self.near(x, q, unit, limit);
+                            if theirs.end - q < LANES {
+                                near &= (1 << (theirs.end - q)) - 1;
                             }
-                            if square <= limit {
-                                visit(self.order[p], self.order[q]);
+                            while near != 0 {
+                                visit(
+                                    self.order[p],
+                                    self.order[q + near.trailing_zeros() as usize],
+                                );
+                                near &= near - 1;
                             }
                         }
                     }
@@ -143,38 +151,56 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// The distinct cells around a cell, itself included.
-    fn each_adjacent(&self, at: [usize; D], mut visit: impl FnMut(usize)) {
-        let around: [usize; D] = self.count.map(|n| n.min(3));
-        for k in 0..around.iter().product() {
-            let mut k: usize = k;
-            let (mut cell, mut stride) = (0, 1);
-            for a in 0..D {
-                let c = at[a] + k % around[a];
-                // n − 1, 0 and 1 cells on; with two cells on the ring only 0 and 1
-                let c = if around[a] == 3 {
-                    c + self.count[a] - 1
-                } else {
-                    c
-                };
-                cell += c % self.count[a] * stride;
-                stride *= self.count[a];
-                k /= around[a];
+    /// Which of the points from the `q`th on are near to a place: one bit each.
+    #[inline(always)]
+    fn near(&self, x: [u32; D], q: usize, unit: [f32; D], limit: f32) -> u32 {
+        let mut square = [0f32; LANES];
+        for a in 0..D {
+            for (s, y) in square.iter_mut().zip(&self.place[a][q..q + LANES]) {
+                let d = y.wrapping_sub(x[a]) as i32 as f32 * unit[a];
+                *s += d * d;
             }
-            visit(cell);
         }
+        let mut near = 0;
+        for (l, s) in square.iter().enumerate() {
+            near |= ((*s <= limit) as u32) << l;
+        }
+        near
+    }
+
+    /// The distinct cells around a cell, itself included, that do not come before it.
+    fn each_adjacent(&self, cell: usize, at: [usize; D], mut visit: impl FnMut(usize)) {
+        // 3^D of them, built up axis by axis
+        let mut around = [0usize; 27];
+        let (mut len, mut stride) = (1, 1);
+        for a in 0..D {
+            let n = self.count[a];
+            let up = if at[a] + 1 == n { 0 } else { at[a] + 1 };
+            let down = if at[a] == 0 { n - 1 } else { at[a] - 1 };
+            let ring = [at[a], up, down];
+            let distinct = n.min(3);
+            for k in (0..len).rev() {
+                for (r, c) in ring[..distinct].iter().enumerate().rev() {
+                    around[r * len + k] = around[k] + c * stride;
+                }
+            }
+            len *= distinct;
+            stride *= n;
+        }
+        around[..len]
+            .iter()
+            .filter(|c| **c >= cell)
+            .for_each(|c| visit(*c));
     }
 
     pub fn bytes(&self) -> usize {
-        4 * (self.start.len() + self.order.len() + D * self.place.len())
+        4 * (self.start.len() + self.order.len() + D * self.place[0].len())
     }
 }
 
-/// The fraction of `t` above the whole number below it, in units of 2⁻³².
+/// The fraction of `t / 2³²` above a whole number, in units of 2⁻³²: the low half of the integer.
 fn wind(t: f64) -> u32 {
-    let rest = t - (t as i64) as f64;
-    let rest = if rest < 0.0 { rest + 1.0 } else { rest };
-    (rest * FULL) as u64 as u32
+    t as i64 as u32
 }
 
 /// Slot and reference position of every point. On a grid, walked row by row: finding the coordinates of a single slot

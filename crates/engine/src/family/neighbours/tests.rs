@@ -40,7 +40,7 @@ fn walk<const D: usize>(body: &Body<D>, h: f64, seed: u64) {
     let mut list = Neighbours::new(body, cutoff, skin);
     let mut u = body.at_rest();
     let mut random = Random(seed);
-    let keep = |i: usize, j: usize| (i + j) % 5 != 0;
+    let keep = |i: usize, j: usize| !(i + j).is_multiple_of(5);
     let mut kept_old = 0;
     for step in 0..60 {
         for &s in &body.slots {
