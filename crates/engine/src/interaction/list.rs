@@ -321,7 +321,12 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     continue;
                 }
                 let (xi, _) = view.constant(i as usize, j);
-                if crosses(from, std::array::from_fn(|a| from[a] + xi[a])) {
+                let to = body.position(j);
+                let to: [f64; D] = std::array::from_fn(|a| to[a]);
+                // a bond through a periodic face is in two places; either end must see the same
+                if crosses(from, std::array::from_fn(|a| from[a] + xi[a]))
+                    || (self.is_periodic() && crosses(std::array::from_fn(|a| to[a] - xi[a]), to))
+                {
                     cut.push((line, 1u8 << (row % TILE)));
                 }
             }
