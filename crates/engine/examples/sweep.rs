@@ -153,7 +153,7 @@ fn measure(
     }
     let mut f = zeros::<3>(body.len);
     let mut best = f64::MAX;
-    for _ in 0..if simd == Simd::Portable { 2 } else { 8 } {
+    for _ in 0..if simd == Simd::Portable { 2 } else { 15 } {
         let t = Instant::now();
         it.forces(body, &u, &mut f, Sweep::Evolve);
         best = best.min(t.elapsed().as_secs_f64());
