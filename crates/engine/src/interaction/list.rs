@@ -78,8 +78,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             record[..3].copy_from_slice(&body.position(slot));
             record[3] = body.volume.at(slot);
         }
-        let breaks = toughness.iter().any(|t| t.s00.is_finite());
-        let critical = if breaks {
+        let remembers = repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite());
+        let critical = if remembers {
             vec![f64::INFINITY; body.len]
         } else {
             vec![]
@@ -133,6 +133,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             period: self.period,
             inv_period: self.inv_period,
             repulsion: self.repulsion,
+            periodic: self.is_periodic(),
         }
     }
 
@@ -146,16 +147,16 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         for_each_block(self.simd, &kernel, unit);
     }
 
-    fn share<const PERIODIC: bool>(&mut self, unit: &mut [()]) {
+    fn share(&mut self, unit: &mut [()]) {
         let alive = Shared(self.alive.as_mut_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
-        let kernel = Share::<D, W, PERIODIC> {
+        let kernel = Share::<D, W> {
             view: self.view_of(&self.moved, alive, fields),
         };
         for_each_block(self.simd, &kernel, unit);
     }
 
-    fn sweep<const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool>(
+    fn sweep<const FULL: bool>(
         &mut self,
         body: &Body<D>,
         f: &mut Field<D>,
@@ -165,7 +166,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         let alive = Shared(self.alive.as_mut_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
         let next = Shared(self.next.as_mut_ptr());
-        let kernel = Forces::<D, W, FRACTURE, CONTACT, PERIODIC> {
+        let kernel = Forces::<D, W, FULL> {
             view: self.view_of(&self.moved, alive, fields),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             next,
@@ -217,30 +218,20 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         let mut unit = std::mem::take(&mut self.unit);
         self.pack(u, &mut moved, &mut unit);
         self.moved = moved;
-        let periodic = self.is_periodic();
         if W::SHARES {
-            match periodic {
-                false => self.share::<false>(&mut unit),
-                true => self.share::<true>(&mut unit),
-            }
+            self.share(&mut unit);
         }
         self.unit = unit;
         let motion = match sweep {
             Sweep::Evolve { v, dt } => Some((v, dt)),
             Sweep::Hold => None,
         };
-        let fracture = motion.is_some() && !self.critical.is_empty();
-        match (fracture, self.repulsion.is_some(), periodic) {
-            (false, false, false) => self.sweep::<false, false, false>(body, f, motion),
-            (false, false, true) => self.sweep::<false, false, true>(body, f, motion),
-            (false, true, false) => self.sweep::<false, true, false>(body, f, motion),
-            (false, true, true) => self.sweep::<false, true, true>(body, f, motion),
-            (true, false, false) => self.sweep::<true, false, false>(body, f, motion),
-            (true, false, true) => self.sweep::<true, false, true>(body, f, motion),
-            (true, true, false) => self.sweep::<true, true, false>(body, f, motion),
-            (true, true, true) => self.sweep::<true, true, true>(body, f, motion),
+        if self.critical.is_empty() {
+            self.sweep::<false>(body, f, motion);
+        } else {
+            self.sweep::<true>(body, f, motion);
         }
-        if fracture {
+        if motion.is_some() && !self.critical.is_empty() {
             std::mem::swap(&mut self.critical, &mut self.next);
         }
         let mut total = Tally::default();
@@ -341,7 +332,12 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     continue;
                 }
                 let (xi, _) = view.constant(i as usize, j);
-                if crosses(from, std::array::from_fn(|a| from[a] + xi[a])) {
+                let to = body.position(j);
+                let to: [f64; D] = std::array::from_fn(|a| to[a]);
+                // a bond through a periodic face is in two places; either end must see the same
+                if crosses(from, std::array::from_fn(|a| from[a] + xi[a]))
+                    || (self.is_periodic() && crosses(std::array::from_fn(|a| to[a] - xi[a]), to))
+                {
                     cut.push((line, 1u8 << (row % TILE)));
                 }
             }

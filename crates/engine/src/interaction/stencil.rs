@@ -20,15 +20,16 @@ const BLOCK: usize = 32;
 
 /// A bond of the stencil with its constants.
 #[derive(Debug, Clone, Copy)]
+#[repr(C)] // what the hot loop reads comes first
 struct Bond<const D: usize> {
     /// Slots from i to j.
     shift: isize,
     xi: [f64; D],
     inv_r0_squared: f64,
     k: f64,
-    r0_squared: f64,
-    /// Repulsion acts where `e` is below this.
+    /// Repulsion acts where `e` is below this; −1 without repulsion.
     contact_e: f64,
+    r0_squared: f64,
     contact_distance: f64,
     cell: [i32; D],
     to: usize,
@@ -154,8 +155,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 }
             }
         }
-        let breaks = toughness.iter().any(|t| t.s00.is_finite());
-        let critical = if breaks {
+        let remembers = repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite());
+        let critical = if remembers {
             vec![f64::INFINITY; body.len]
         } else {
             vec![]
@@ -205,15 +206,15 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         }
     }
 
-    fn sweep<const FRACTURE: bool, const CONTACT: bool>(
+    fn sweep<const FULL: bool>(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
         f: &mut Field<D>,
-        sweep: Sweep<D>,
+        motion: Option<(&Field<D>, f64)>,
     ) {
         let mut tallies = std::mem::take(&mut self.tallies);
-        let kernel = Forces::<D, W, FRACTURE, CONTACT> {
+        let kernel = Forces::<D, W, FULL> {
             view: self.view(body, u),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             critical: &self.critical,
@@ -221,11 +222,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             memory: Shared(self.alive.as_ptr().cast_mut()),
             toughness: &self.toughness,
             pressure: &self.pressure,
-            v: if let Sweep::Evolve { v, dt } = sweep {
-                Some((v, dt))
-            } else {
-                None
-            },
+            motion,
         };
         for_each_block(self.simd, &kernel, &mut tallies);
         self.tallies = tallies;
@@ -318,8 +315,8 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 }
 
-/// Force pass.
-struct Forces<'a, const D: usize, W, const FRACTURE: bool, const CONTACT: bool> {
+/// Force pass; `FULL` with breaking and repulsion.
+struct Forces<'a, const D: usize, W, const FULL: bool> {
     view: View<'a, D, W>,
     f: [Shared; D],
     critical: &'a [f64],
@@ -327,13 +324,11 @@ struct Forces<'a, const D: usize, W, const FRACTURE: bool, const CONTACT: bool> 
     memory: Shared<u8>,
     toughness: &'a [Toughness],
     pressure: &'a [f64],
-    /// Velocity of the step's middle, and the step.
-    v: Option<(&'a Field<D>, f64)>,
+    /// Velocity of the step's middle, and the step; none if bonds must not break.
+    motion: Option<(&'a Field<D>, f64)>,
 }
 
-impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool> Kernel
-    for Forces<'_, D, W, FRACTURE, CONTACT>
-{
+impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
     type Out = Tally;
 
     #[inline(always)]
@@ -362,9 +357,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool> Kernel
     }
 }
 
-impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
-    Forces<'_, D, W, FRACTURE, CONTACT>
-{
+impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     /// All bonds of the `N` points at slot `i`.
     #[inline(always)]
     unsafe fn points<L: Lane, const MASKED: bool>(
@@ -380,7 +373,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
             let zero = L::splat(0.0);
             let ui = v.displacement::<L>(i);
             let own = v.fields::<L>(i);
-            let critical_i = if FRACTURE {
+            let critical_i = if FULL {
                 L::load(self.critical.as_ptr().add(i))
             } else {
                 zero
@@ -397,12 +390,12 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
                 let other = v.fields::<L>(j);
                 let mut rare = lane::beyond_series(e);
                 let mut limit = zero;
-                if FRACTURE {
+                if FULL {
                     limit = L::load(self.critical.as_ptr().add(j)).min(critical_i);
                     rare = L::or(rare, limit.lt(e));
                     lowest = e.min(lowest);
                 }
-                if CONTACT && MASKED {
+                if FULL && MASKED {
                     rare = L::or(rare, raw.lt(L::splat(b.contact_e)));
                 }
                 let k = L::splat(b.k);
@@ -412,13 +405,13 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
                     if MASKED {
                         pull = pull.zero_if(dead);
                     }
-                    if CONTACT {
+                    if FULL {
                         let close = raw.lt(L::splat(b.contact_e));
                         if L::any(close) {
                             pull = pull + v.repel(b, i, raw, close).0;
                         }
                     }
-                    if FRACTURE {
+                    if FULL && self.motion.is_some() {
                         let breaks = limit.lt(e);
                         let which = L::bits(breaks);
                         if which != 0 {
@@ -449,7 +442,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
             for a in 0..D {
                 acc[a].store(self.f[a].at(i));
             }
-            if FRACTURE {
+            if FULL {
                 self.next_critical(i, lowest);
                 if let Some(lost) = lost {
                     self.release(i, own, lost, tally);
@@ -462,7 +455,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool>
     /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner.
     #[inline(always)]
     unsafe fn farewell<L: Lane>(&self, pull: L, y: [L; D], i: usize, j: usize) -> L {
-        let Some((v, dt)) = self.v else {
+        let Some((v, dt)) = self.motion else {
             return L::splat(0.0);
         };
         let mut rate = L::splat(0.0);
@@ -667,14 +660,16 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.fields[0] = pressure;
             self.unit = unit;
         }
-        let fracture = matches!(sweep, Sweep::Evolve { .. }) && !self.critical.is_empty();
-        match (fracture, self.repulsion.is_some()) {
-            (false, false) => self.sweep::<false, false>(body, u, f, sweep),
-            (false, true) => self.sweep::<false, true>(body, u, f, sweep),
-            (true, false) => self.sweep::<true, false>(body, u, f, sweep),
-            (true, true) => self.sweep::<true, true>(body, u, f, sweep),
+        let motion = match sweep {
+            Sweep::Evolve { v, dt } => Some((v, dt)),
+            Sweep::Hold => None,
+        };
+        if self.critical.is_empty() {
+            self.sweep::<false>(body, u, f, motion);
+        } else {
+            self.sweep::<true>(body, u, f, motion);
         }
-        if fracture {
+        if motion.is_some() && !self.critical.is_empty() {
             std::mem::swap(&mut self.critical, &mut self.next);
             body.fill_images(&mut self.critical);
         }

@@ -70,13 +70,23 @@ impl BondWeight {
 #[inline(always)]
 fn gaussian<L: Lane>(q: L) -> L {
     let t = L::splat(0.5) - q * q;
-    let mut p = L::splat(1.0);
-    for n in (1..=14).rev() {
-        p = (p * L::splat(1.0 / n as f64)).fma(t, L::splat(1.0));
+    let mut p = L::splat(INVERSE_FACTORIALS[14]);
+    for c in INVERSE_FACTORIALS[..14].iter().rev() {
+        p = p.fma(t, L::splat(*c));
     }
     let square = p * p;
     L::splat(E_MINUS_TWO) * square * square
 }
+
+const INVERSE_FACTORIALS: [f64; 15] = {
+    let mut c = [1.0; 15];
+    let mut n = 1;
+    while n < 15 {
+        c[n] = c[n - 1] / n as f64;
+        n += 1;
+    }
+    c
+};
 
 const E_MINUS_TWO: f64 = 0.135_335_283_236_612_7;
 

@@ -82,14 +82,14 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
 const ROOT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;
 
 /// `1/√a` for normal a > 0 within 2 units in the last place, without division or root: the estimate and two steps
-/// of fourth order, `y (1 + h/2 + 3h²/8 + 5h³/16)` with `h = 1 − a y²` (|h| ≤ 0.07, then 1e-5, then round-off).
+/// of fourth order, `y (1 − h/2 + 3h²/8 − 5h³/16)` with `h = a y² − 1` (|h| ≤ 0.07, then 1e-5, then round-off).
 #[inline(always)]
 pub fn inv_sqrt<L: Lane>(a: L) -> L {
     let mut y = a.inv_sqrt_estimate();
     for _ in 0..2 {
-        let h = (L::splat(0.0) - a * y).fma(y, L::splat(1.0));
-        let p = L::splat(0.3125).fma(h, L::splat(0.375));
-        let p = p.fma(h, L::splat(0.5));
+        let h = (a * y).fma(y, L::splat(-1.0));
+        let p = L::splat(-0.3125).fma(h, L::splat(0.375));
+        let p = p.fma(h, L::splat(-0.5));
         y = (y * h).fma(p, y);
     }
     y

@@ -32,6 +32,7 @@ pub struct View<'a, const D: usize, W> {
     pub period: [f64; D],
     pub inv_period: [f64; D],
     pub repulsion: Option<Repulsion>,
+    pub periodic: bool,
 }
 
 /// One end of a bond.
@@ -101,10 +102,10 @@ impl<const D: usize, W: Law> View<'_, D, W> {
 
     /// `ξ` from i to the nearest image of j.
     #[inline(always)]
-    fn reference<L: Lane, const PERIODIC: bool>(&self, i: &[L; D], j: &[L; D]) -> [L; D] {
+    fn reference<L: Lane>(&self, i: &[L; D], j: &[L; D]) -> [L; D] {
         std::array::from_fn(|a| {
             let xi = j[a] - i[a];
-            if PERIODIC {
+            if self.periodic {
                 let turns = (xi * L::splat(self.inv_period[a])).round();
                 turns.fma(L::splat(-self.period[a]), xi)
             } else {
@@ -114,8 +115,8 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 
     #[inline(always)]
-    fn bond<L: Lane, const PERIODIC: bool>(&self, i: &End<L, D>, j: &End<L, D>) -> Bond<L, D> {
-        let xi = self.reference::<L, PERIODIC>(&i.x, &j.x);
+    fn bond<L: Lane>(&self, i: &End<L, D>, j: &End<L, D>) -> Bond<L, D> {
+        let xi = self.reference::<L>(&i.x, &j.x);
         let mut r0_squared = xi[0] * xi[0];
         for x in &xi[1..] {
             r0_squared = x.fma(*x, r0_squared);
@@ -144,8 +145,8 @@ impl<const D: usize, W: Law> View<'_, D, W> {
                 self.end::<f64, false>(&(j as u32)),
             )
         };
-        let b = self.bond::<f64, true>(&i, &j);
-        (self.reference::<f64, true>(&i.x, &j.x), b.k * b.r0_squared)
+        let b = self.bond::<f64>(&i, &j);
+        (self.reference::<f64>(&i.x, &j.x), b.k * b.r0_squared)
     }
 
     /// Which lanes of really there bonds are closer than repulsion allows, given that `e` may be low enough.
@@ -240,14 +241,7 @@ impl<const D: usize> Kernel for Pack<'_, D> {
 }
 
 /// Force pass.
-pub struct Forces<
-    'a,
-    const D: usize,
-    W,
-    const FRACTURE: bool,
-    const CONTACT: bool,
-    const PERIODIC: bool,
-> {
+pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub view: View<'a, D, W>,
     pub f: [Shared; D],
     pub next: Shared,
@@ -258,9 +252,7 @@ pub struct Forces<
     pub motion: Option<(&'a Field<D>, f64)>,
 }
 
-impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool> Kernel
-    for Forces<'_, D, W, FRACTURE, CONTACT, PERIODIC>
-{
+impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
     type Out = Tally;
 
     #[inline(always)]
@@ -277,9 +269,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PE
     }
 }
 
-impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool>
-    Forces<'_, D, W, FRACTURE, CONTACT, PERIODIC>
-{
+impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     /// All bonds of `N` points.
     #[inline(always)]
     unsafe fn points<L: Lane>(
@@ -302,27 +292,27 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PE
             for line in lines {
                 let partners = v.partners::<L>(line, part);
                 let j = v.end::<L, true>(partners);
-                let b = v.bond::<L, PERIODIC>(&i, &j);
+                let b = v.bond::<L>(&i, &j);
                 let dead = L::dead(*v.alive.at(line), part);
                 let e = b.e.nan_if(dead);
                 let mut rare = lane::beyond_series(e);
                 let mut limit = zero;
-                if FRACTURE {
+                if FULL {
                     limit = j.critical.min(i.critical);
                     rare = L::or(rare, limit.lt(e));
                     lowest = e.min(lowest);
                 }
-                if CONTACT {
+                if FULL {
                     rare = L::or(rare, b.e.lt(contact_e));
                 }
                 let mut pull;
                 if L::any(rare) {
                     let g = lane::extension_over_length(e);
                     pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
-                    if CONTACT {
+                    if FULL {
                         pull = pull + v.repel(&b, j.volume).0;
                     }
-                    if FRACTURE {
+                    if FULL && self.motion.is_some() {
                         let breaks = limit.lt(e);
                         let which = L::bits(breaks);
                         if which != 0 {
@@ -350,7 +340,7 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PE
             for a in 0..D {
                 scatter(acc[a], self.f[a], rows, 1);
             }
-            if FRACTURE {
+            if FULL {
                 let material = |l: usize| {
                     let slot = *rows.add(l) as usize;
                     self.material.get(slot).map_or(0, |m| *m as usize)
@@ -371,11 +361,11 @@ impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PE
 }
 
 /// Share pass: `P = q Σ k r0² s` into field 0.
-pub struct Share<'a, const D: usize, W, const PERIODIC: bool> {
+pub struct Share<'a, const D: usize, W> {
     pub view: View<'a, D, W>,
 }
 
-impl<const D: usize, W: Law, const PERIODIC: bool> Kernel for Share<'_, D, W, PERIODIC> {
+impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
     type Out = ();
 
     #[inline(always)]
@@ -390,7 +380,7 @@ impl<const D: usize, W: Law, const PERIODIC: bool> Kernel for Share<'_, D, W, PE
                     let mut sum = L::splat(0.0);
                     for line in v.list.start[slice]..v.list.start[slice + 1] {
                         let j = v.end::<L, false>(v.partners::<L>(line, part));
-                        let b = v.bond::<L, PERIODIC>(&i, &j);
+                        let b = v.bond::<L>(&i, &j);
                         let dead = L::dead(*v.alive.at(line), part);
                         let e = b.e.nan_if(dead);
                         let s = if L::any(lane::beyond_series(e)) {
@@ -408,9 +398,7 @@ impl<const D: usize, W: Law, const PERIODIC: bool> Kernel for Share<'_, D, W, PE
     }
 }
 
-impl<const D: usize, W: Law, const FRACTURE: bool, const CONTACT: bool, const PERIODIC: bool>
-    Forces<'_, D, W, FRACTURE, CONTACT, PERIODIC>
-{
+impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
     /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner.
     #[inline(always)]
@@ -473,7 +461,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                         (zero, zero, zero, zero);
                     for line in v.list.start[slice]..v.list.start[slice + 1] {
                         let j = v.end::<L, true>(v.partners::<L>(line, part));
-                        let b = v.bond::<L, true>(&i, &j);
+                        let b = v.bond::<L>(&i, &j);
                         let dead = L::dead(*v.alive.at(line), part);
                         let s = lane::stretch(b.e.nan_if(dead)).zero_if(dead);
                         let kr = (b.k * b.r0_squared).zero_if(dead);
