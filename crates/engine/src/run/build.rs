@@ -243,6 +243,17 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
             )
             .help("three spacings are usual: horizon = { m_ratio = 3 }"));
         }
+        if stencil.bonds() > crate::interaction::stencil::MOST {
+            return Err(BuildError::new(
+                "horizon",
+                format!(
+                    "{} bonds per point; at most {}",
+                    stencil.bonds(),
+                    crate::interaction::stencil::MOST
+                ),
+            )
+            .help("choose a shorter horizon: three to six spacings are usual"));
+        }
         let body = Body::<D>::on_lattice(
             Lattice {
                 kind,
