@@ -175,7 +175,13 @@ impl Session<'_> {
         while self.progress.step < end {
             // conditions hold at the end of the step
             self.progress.step += 1;
-            let result = self.conditions().and_then(|c| Ok(self.engine()?.step(&c)?));
+            let result = self.conditions().and_then(|c| {
+                self.engine()?.step(&c).map_err(|e| {
+                    let mut problem = Box::<Problem>::from(e);
+                    problem.while_running = true;
+                    problem
+                })
+            });
             if let Err(p) = result {
                 self.progress.step -= 1;
                 return Err(p);
