@@ -5,6 +5,7 @@ use super::probe;
 use super::recipe::{Laws, Recipe};
 use super::{Info, Simulation};
 use crate::body::{Body, Layout, Values, zeros};
+use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -69,6 +70,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     };
     let sets = sets(spec, &body)?;
     assign_materials(spec, &mut body, &sets)?;
+    if let BodySpec::Cloud(cloud) = &spec.body
+        && !cloud.density.is_empty()
+    {
+        body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
+    }
     let near_horizon = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
     if near_horizon > 0 {
         warnings.push(format!(
@@ -193,6 +199,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         body,
         loads: vec![],
         constraints: vec![],
+        driven: vec![],
+        still: Still::new(vec![]),
         indenters: vec![],
         sets,
         dt,
@@ -335,16 +343,13 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
                 cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
             let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
             let period = std::array::from_fn(|a| spec.periodic[a]);
-            let mut body = Body::<D>::from_cloud(
+            let body = Body::<D>::from_cloud(
                 &cloud.position,
                 &cloud.volume,
                 &cloud.mark,
                 spacing,
                 period,
             )?;
-            if !cloud.density.is_empty() {
-                body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
-            }
             Ok((body, None, horizon_length(spec, spacing)))
         }
     }
