@@ -75,14 +75,25 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     {
         body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
     }
-    let near_horizon = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
-    if near_horizon > 0 {
-        warnings.push(format!(
-            "{near_horizon} bonds of the stencil end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio)"
-        ));
-    }
+    let ends = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
     let recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
     let mut interaction = recipe.interaction(&body, None)?;
+    // a ratio is meant inclusively; only a length leaves the decision to round-off
+    let near_horizon = if recipe.ratio {
+        0
+    } else {
+        ends.max(interaction.near_horizon())
+    };
+    if near_horizon > 0 {
+        let what = if ends > 0 {
+            "bonds of the stencil"
+        } else {
+            "directed bonds"
+        };
+        warnings.push(format!(
+            "{near_horizon} {what} end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances"
+        ));
+    }
     let mut cut = 0;
     for kind in [CrackKind::Absent, CrackKind::Broken] {
         if kind == CrackKind::Broken {
@@ -128,7 +139,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         TimeStep::Fraction(x) if stable_step.is_finite() => x * stable_step,
         TimeStep::Fraction(_) => {
             return Err(BuildError::new(
-                "run.time_step",
+                "schedule.time_step",
                 "nothing resists: no stable step can be derived",
             )
             .help("give time_step as a number"));
@@ -137,7 +148,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     };
     if !(dt > 0.0 && dt.is_finite()) {
         return Err(BuildError::new(
-            "run.time_step",
+            "schedule.time_step",
             format!("the time step is {dt}, expected a positive number"),
         ));
     }
@@ -146,7 +157,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             "the time step {dt:.4e} is above the stability limit {stable_step:.4e} of this body"
         );
         if !spec.schedule.force_unstable {
-            return Err(BuildError::new("run.time_step", message)
+            return Err(BuildError::new("schedule.time_step", message)
                 .help(format!("write time_step = {:.3e} or \"auto\"; force = true under [run] runs it all the same", 0.8 * stable_step)));
         }
         warnings.push(message);
@@ -175,6 +186,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             near_horizon,
             horizon,
             spacing: body.spacing,
+            section: spec.section,
             mass: body.mass(),
             volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
             micromodulus: if let Laws::Bond(c) = &recipe.laws {
@@ -494,7 +506,7 @@ fn assign_materials<const D: usize>(
     }
     if materials.len() > u8::MAX as usize {
         return Err(BuildError::new(
-            "material",
+            "materials",
             format!("{} materials; at most 255", materials.len()),
         ));
     }
@@ -507,7 +519,7 @@ fn assign_materials<const D: usize>(
         } else {
             let Some((_, ids)) = sets.iter().find(|(name, _)| *name == m.set) else {
                 return Err(BuildError::new(
-                    format!("material[{n}].set"),
+                    format!("materials[{n}].set"),
                     format!(
                         "material `{}` is on set `{}`, which does not exist",
                         m.name, m.set
@@ -520,7 +532,7 @@ fn assign_materials<const D: usize>(
             if let Some(other) = of[id as usize].replace(n as u8) {
                 let x = body.position(body.slots[id as usize] as usize);
                 return Err(BuildError::new(
-                    format!("material[{n}].set"),
+                    format!("materials[{n}].set"),
                     format!(
                         "point {} at {x:?} belongs to material `{}` and to material `{}`",
                         id + 1,
@@ -535,7 +547,7 @@ fn assign_materials<const D: usize>(
     if let Some(id) = of.iter().position(Option::is_none) {
         let x = body.position(body.slots[id] as usize);
         return Err(BuildError::new(
-            "material",
+            "materials",
             format!("point {} at {x:?} belongs to no material", id + 1),
         )
         .help("make the materials' sets cover the body"));

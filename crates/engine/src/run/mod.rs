@@ -27,6 +27,8 @@ pub struct Info {
     pub near_horizon: u64,
     pub horizon: f64,
     pub spacing: f64,
+    /// Thickness in 2-D, cross-section in 1-D, 1 in 3-D.
+    pub section: f64,
     pub mass: f64,
     pub volume: f64,
     /// Micromodulus per material of bond-based bodies (force / volume²).
@@ -64,6 +66,19 @@ pub enum PointField {
     Volume,
     Density,
     CriticalStretch,
+}
+
+/// What surrounds every point in the reference, in order of point id.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Families {
+    /// `[N]` sizes.
+    pub size: Vec<u32>,
+    /// `[N]` volumes of the partners whose bonds are whole (length^D times the section).
+    pub volume: Vec<f64>,
+    /// `[N]` indices of materials.
+    pub material: Vec<u8>,
+    /// `[N]` is there a partner of another material?
+    pub foreign: Vec<bool>,
 }
 
 /// A running model of any dimension, law and family. All arrays are in order of point id.
@@ -109,6 +124,8 @@ pub trait Simulation: Send {
     /// Critical stretch s0 of every point.
     fn critical_stretch(&self) -> Vec<f64>;
 
+    /// Sizes, volumes and materials of all families now.
+    fn families(&self) -> Families;
     /// Strain energy density of every point under the homogeneous strain ε (`[3][3]`, no contact, whole bonds).
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64>;
     /// Force densities under a given displacement (bonds and repulsion in the family, no breaking).

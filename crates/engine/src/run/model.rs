@@ -1,6 +1,6 @@
 //! The running model: state, forces, motion and accounts.
 
-use super::{Info, PointField, Simulation, SnapshotOptions};
+use super::{Families, Info, PointField, Simulation, SnapshotOptions};
 use crate::body::{Body, Field};
 use crate::condition::Program;
 use crate::condition::constraint::{Constraint, Prescribed};
@@ -484,6 +484,28 @@ impl<const D: usize> Simulation for Model<D> {
         self.by_id(|i| self.interaction.critical_stretch(i))
     }
 
+    fn families(&self) -> Families {
+        let mut volume = vec![0.0; self.body.len];
+        let mut foreign = vec![false; self.body.len];
+        let of = |i: usize| self.body.material.get(i).copied().unwrap_or(0);
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, _, state| {
+                if state == BondState::Whole {
+                    volume[i] += self.body.volume.at(j);
+                    volume[j] += self.body.volume.at(i);
+                    let unlike = of(i) != of(j);
+                    foreign[i] |= unlike;
+                    foreign[j] |= unlike;
+                }
+            });
+        Families {
+            size: self.by_id(|i| self.interaction.family_size(i) as u32),
+            volume: self.by_id(|i| volume[i]),
+            material: self.by_id(of),
+            foreign: self.by_id(|i| foreign[i]),
+        }
+    }
+
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
         let mut u = self.body.at_rest();
         for &s in &self.body.slots {
@@ -524,7 +546,7 @@ impl<const D: usize> Simulation for Model<D> {
         let (mut loads, mut constraints) = (vec![], vec![]);
         for (n, c) in conditions.iter().enumerate() {
             let (slots, points) = self.members(&c.set, sets).map_err(|e| BuildError {
-                path: format!("condition[{n}].set"),
+                path: format!("conditions[{n}].set"),
                 ..e
             })?;
             let load = |kind| Load::new(kind, slots.clone(), points.clone());
