@@ -213,6 +213,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         constraints: vec![],
         driven: vec![],
         still: Still::new(vec![]),
+        watch: false,
+        watched: None,
         indenters: vec![],
         sets,
         dt,

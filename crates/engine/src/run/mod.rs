@@ -145,6 +145,12 @@ pub trait Simulation: Send {
     /// beyond the dimension do not exist: both are left alone. Call [`Simulation::start`] afterwards.
     fn write(&mut self, field: PointField, first: usize, values: &[f64]);
 
+    /// Keep energies and dilatations of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its
+    /// forces see them: with the bonds that break in it. LAMMPS prints these.
+    fn watch_next(&mut self);
+    /// Strain and contact energy density and dilatation of the last force evaluation, if it was watched.
+    fn watched(&self) -> Option<(Vec<f64>, Vec<f64>)>;
+
     /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
     /// order in which they act, after all other forces. Replaces those of the last call.
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);

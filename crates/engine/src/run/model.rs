@@ -33,6 +33,9 @@ pub struct Model<const D: usize> {
     pub(super) indenters: Vec<Indenter<D>>,
     pub(super) driven: Vec<Driven<D>>,
     pub(super) still: Still<D>,
+    /// Shall the next force evaluation be watched, and what the last watched one saw.
+    pub(super) watch: bool,
+    pub(super) watched: Option<PointEnergies>,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
     pub(super) dt: f64,
@@ -69,6 +72,7 @@ impl<const D: usize> Model<D> {
     fn forces(&mut self, bonds: bool, dt: f64) {
         self.refresh_images();
         let t = self.time();
+        self.watched = std::mem::take(&mut self.watch).then(|| self.energies_of_bonds(bonds));
         if bonds {
             let tally = self.interaction.forces(
                 &self.body,
@@ -89,6 +93,9 @@ impl<const D: usize> Model<D> {
             contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
                 interaction.in_family(body, i, j)
             });
+            if let Some(watched) = &mut self.watched {
+                contact.add_energy_density(body, &self.u, &mut watched.repulsion);
+            }
         }
         for indenter in &mut self.indenters {
             indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
@@ -99,6 +106,17 @@ impl<const D: usize> Model<D> {
         for d in &mut self.driven {
             d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);
         }
+    }
+
+    fn energies_of_bonds(&self, bonds: bool) -> PointEnergies {
+        let mut out = PointEnergies::default();
+        if bonds {
+            self.interaction.observe(&self.body, &self.u, &mut out);
+        } else {
+            let zeros = || vec![0.0; self.body.len];
+            (out.strain, out.repulsion, out.dilatation) = (zeros(), zeros(), zeros());
+        }
+        out
     }
 
     /// Bring velocities to the whole step.
@@ -629,6 +647,17 @@ impl<const D: usize> Simulation for Model<D> {
         for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
             component[s as usize] = *value;
         }
+    }
+
+    fn watch_next(&mut self) {
+        self.watch = true;
+    }
+
+    fn watched(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        self.watched.as_ref().map(|w| {
+            let energy = self.by_id(|i| w.strain[i] + w.repulsion[i]);
+            (energy, self.by_id(|i| w.dilatation[i]))
+        })
     }
 
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {

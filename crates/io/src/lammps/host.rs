@@ -244,6 +244,10 @@ pub trait Engine: Particles {
     /// The state went bad.
     fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError>;
 
+    /// Values will be asked for after the next step: LAMMPS's energies and dilatations still have the bonds that
+    /// break in that step. [`Engine::setup`] expects it always.
+    fn expect_output(&mut self) {}
+
     /// Energies of the current state.
     ///
     /// # Errors

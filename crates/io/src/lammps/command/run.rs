@@ -175,8 +175,16 @@ impl Session<'_> {
         while self.progress.step < end {
             // conditions hold at the end of the step
             self.progress.step += 1;
+            let now = self.progress.step;
+            let last = now == self.progress.end;
+            let thermo = last || (self.thermo.every > 0 && now.is_multiple_of(self.thermo.every));
+            let output = thermo || self.dumps.iter().any(|d| now.is_multiple_of(d.every));
             let result = self.conditions().and_then(|c| {
-                self.engine()?.step(&c).map_err(|e| {
+                let engine = self.engine()?;
+                if output {
+                    engine.expect_output();
+                }
+                engine.step(&c).map_err(|e| {
                     let mut problem = Box::<Problem>::from(e);
                     problem.while_running = true;
                     problem
@@ -187,11 +195,10 @@ impl Session<'_> {
                 return Err(p);
             }
             self.progress.steps_done += 1;
-            let (now, p) = (self.progress.step, &self.progress);
+            let p = &self.progress;
             self.console.progress(now - p.begin, p.end - p.begin);
-            let last = now == self.progress.end;
             self.write_dumps(false)?;
-            if last || (self.thermo.every > 0 && now.is_multiple_of(self.thermo.every)) {
+            if thermo {
                 self.thermo_line()?;
             }
         }

@@ -143,6 +143,13 @@ impl ModelEngine {
         *self.derived.get_mut() = Derived::default();
     }
 
+    fn keep_watched(&mut self) {
+        if let Some((energy, dilatation)) = self.sim.get_mut().watched() {
+            let kept = self.derived.get_mut();
+            (kept.energy, kept.dilatation) = (Some(energy), Some(dilatation));
+        }
+    }
+
     /// Hands the values of this instant to the model.
     fn drive(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
         let sim = self.sim.get_mut();
@@ -277,8 +284,10 @@ impl Engine for ModelEngine {
             driven.extend(drive.map(|d| (d, conditions::members(condition, n))));
         }
         sim.set_driven(&driven);
+        sim.watch_next();
         sim.start(self.bonded);
         self.bonded = true;
+        self.keep_watched();
         Ok(())
     }
 
@@ -286,7 +295,13 @@ impl Engine for ModelEngine {
         self.changed();
         self.drive(conditions)?;
         let sim = self.sim.get_mut();
-        sim.step().map_err(|e| HostError::new(e.to_string()))
+        sim.step().map_err(|e| HostError::new(e.to_string()))?;
+        self.keep_watched();
+        Ok(())
+    }
+
+    fn expect_output(&mut self) {
+        self.sim.get_mut().watch_next();
     }
 
     fn energies(&mut self) -> Result<Energies, HostError> {
