@@ -3,8 +3,8 @@
 use crate::body::{Body, Layout};
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
-use crate::interaction::stencil::{PointConstants, StencilInteraction, StencilParts};
-use crate::interaction::{Interaction, Toughness};
+use crate::interaction::stencil::{StencilInteraction, StencilParts};
+use crate::interaction::{Interaction, PointConstants, Toughness};
 use crate::law::solid::bond_based::BondBased;
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::spec::Horizon;

@@ -1,0 +1,202 @@
+//! The moduli asked for are the moduli had: energy under homogeneous strain, in every dimension.
+
+use crate::sample::*;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::*;
+
+/// Lamé constants (λ, G) that act in the dimensions of the body, from textbooks: `W = ½ λ tr²ε + G ε:ε`.
+fn lame(law: LawSpec, d: usize, plane: Plane) -> (f64, f64) {
+    let n = d as f64;
+    // an isotropic family averages (n·ε·n)² to (tr²ε + 2 ε:ε)/(D(D+2))
+    let typed = |k: f64, g: f64| {
+        let shear = 15.0 * g / (n * (n + 2.0));
+        (9.0 * (k - 5.0 / 3.0 * g) / (n * n) + shear, shear)
+    };
+    let from = |e: f64, nu: f64| {
+        let g = e / (2.0 * (1.0 + nu));
+        match (d, plane) {
+            // W = ½ E ε²; on a line λ and G come only together
+            (1, _) => (e - 2.0 * g, g),
+            (2, Plane::Stress) => (e * nu / (1.0 - nu * nu), g),
+            _ => (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), g),
+        }
+    };
+    let bond_based = if d == 2 && plane == Plane::Stress {
+        1.0 / 3.0
+    } else {
+        0.25
+    };
+    match law {
+        LawSpec::Pmb(PmbStiffness::Young(e)) => from(e, bond_based),
+        LawSpec::Pmb(PmbStiffness::Bulk(e)) if d == 1 => from(e, bond_based),
+        LawSpec::Pmb(PmbStiffness::Bulk(k)) => from(3.0 * k * (1.0 - 2.0 * bond_based), bond_based),
+        LawSpec::Pmb(PmbStiffness::Micromodulus(_)) => panic!("no modulus was asked for"),
+        LawSpec::Lps(m) => from(m.young, m.poisson),
+        LawSpec::LpsAsTyped { bulk, shear } => typed(bulk, shear),
+        LawSpec::EamLike { pair, volume } => {
+            let g = pair / 30.0;
+            typed(volume / 3.0 + 5.0 / 3.0 * g, g)
+        }
+    }
+}
+
+fn density((lambda, g): (f64, f64), e: &[[f64; 3]; 3]) -> f64 {
+    let trace = e[0][0] + e[1][1] + e[2][2];
+    0.5 * lambda * trace * trace + g * e.iter().flatten().map(|c| c * c).sum::<f64>()
+}
+
+const SMALL: f64 = 1e-6;
+
+/// Uniaxial and shear strain in the plane of the first axes.
+const UNIAXIAL: [[f64; 3]; 3] = [[SMALL, 0.0, 0.0], [0.0; 3], [0.0; 3]];
+const SHEAR: [[f64; 3]; 3] = [[0.0, SMALL, 0.0], [SMALL, 0.0, 0.0], [0.0; 3]];
+
+fn isotropic(d: usize, strain: f64) -> [[f64; 3]; 3] {
+    std::array::from_fn(|a| std::array::from_fn(|b| if a == b && a < d { strain } else { 0.0 }))
+}
+
+/// Smallest and largest energy density over the expected one, in a periodic body: all points are in the bulk.
+fn ratio(spec: &Spec, law: LawSpec, strain: [[f64; 3]; 3]) -> (f64, f64) {
+    let sim = at_rest(spec);
+    let w = sim.energy_under_strain(strain);
+    let expected = density(lame(law, spec.dimension, spec.plane), &strain);
+    w.iter().fold((f64::INFINITY, 0.0), |(a, b), w| {
+        (f64::min(a, w / expected), f64::max(b, w / expected))
+    })
+}
+
+#[test]
+fn bulk_modulus_is_exact() {
+    let mut worst: f64 = 0.0;
+    for case in cases() {
+        let mut spec = case.periodic();
+        let laws = case.material.laws.clone();
+        for (n, law) in laws.into_iter().enumerate() {
+            spec.sets.clear();
+            spec.materials = vec![MaterialSpec {
+                set: "all".into(),
+                ..case.spec().materials[n].clone()
+            }];
+            // not infinitesimal: stretches are those of the whole body
+            let (low, high) = ratio(&spec, law, isotropic(case.d(), 0.01));
+            let off = (low - 1.0).abs().max((high - 1.0).abs());
+            worst = worst.max(off);
+            assert!(off < 1e-12, "{}: {low} to {high}", case.name());
+        }
+    }
+    println!("energy under isotropic strain exact to {worst:.1e}");
+}
+
+#[test]
+fn a_line_has_youngs_modulus_and_triangles_are_isotropic() {
+    for case in cases().into_iter().filter(|c| c.material.laws.len() == 1) {
+        if !matches!(
+            case.place.kind,
+            LatticeKind::Chain | LatticeKind::Triangular
+        ) {
+            continue;
+        }
+        let law = case.material.laws[0];
+        let mut strains = vec![UNIAXIAL];
+        if case.d() == 2 {
+            strains.push(SHEAR);
+        } else {
+            let (l, g) = lame(law, 1, Plane::Stress);
+            if let LawSpec::Lps(Moduli { young, .. }) | LawSpec::Pmb(PmbStiffness::Young(young)) =
+                law
+            {
+                assert!((l + 2.0 * g - young).abs() < 1e-12);
+            }
+        }
+        for strain in strains {
+            let (low, high) = ratio(&case.periodic(), law, strain);
+            assert!(
+                (low - 1.0).abs() < 1e-5 && (high - 1.0).abs() < 1e-5,
+                "{} under {strain:?}: {low} to {high}",
+                case.name()
+            );
+        }
+    }
+}
+
+/// Shear and uniaxial strain on square and cubic lattices: what the lattice's anisotropy leaves, by m_ratio.
+#[test]
+fn anisotropy_shrinks_with_the_family() {
+    for (kind, plane) in [
+        (LatticeKind::Square, Plane::Stress),
+        (LatticeKind::Square, Plane::Strain),
+        (LatticeKind::Cubic, Plane::Stress),
+    ] {
+        for name in ["pmb", "pmb conical", "lps"] {
+            let off = |m: u32, strain| {
+                let cells =
+                    std::array::from_fn(|a| if a < kind.dimension() { m as usize } else { 1 });
+                let place = Place {
+                    kind,
+                    plane,
+                    ratio: m,
+                    cells,
+                };
+                let case = Case::of(name, place);
+                let (low, high) = ratio(&case.periodic(), case.material.laws[0], strain);
+                assert!(
+                    (high - low).abs() < 1e-9 * high,
+                    "the bulk is the same everywhere"
+                );
+                high - 1.0
+            };
+            let both: Vec<[f64; 2]> = (2..=6).map(|m| [off(m, SHEAR), off(m, UNIAXIAL)]).collect();
+            println!("{name} on {kind:?}, {plane:?}: shear and uniaxial energy off by");
+            for (m, [s, u]) in both.iter().enumerate() {
+                println!(
+                    "  m_ratio {}: {:7.2} % {:7.2} %",
+                    m + 2,
+                    100.0 * s,
+                    100.0 * u
+                );
+            }
+            let worst = |k: usize| both[k][0].abs().max(both[k][1].abs());
+            assert!(worst(4) < 0.02, "m_ratio 6: {}", worst(4));
+            assert!(worst(4) < 0.5 * worst(0), "{} to {}", worst(0), worst(4));
+        }
+    }
+}
+
+#[test]
+fn continuum_constants_converge_with_the_family() {
+    for (kind, large) in [
+        (LatticeKind::Chain, 40),
+        (LatticeKind::Square, 20),
+        (LatticeKind::Triangular, 20),
+        (LatticeKind::Cubic, 9),
+    ] {
+        for name in ["pmb", "pmb conical", "lps"] {
+            let off = |m: u32| {
+                let place =
+                    Place {
+                        kind,
+                        plane: Plane::Stress,
+                        ratio: m,
+                        cells: std::array::from_fn(|a| {
+                            if a < kind.dimension() { m as usize } else { 1 }
+                        }),
+                    };
+                let case = Case::of(name, place);
+                let mut spec = case.periodic();
+                spec.calibration = Calibration::Continuum;
+                let law = case.material.laws[0];
+                (ratio(&spec, law, isotropic(case.d(), 1e-3)).1 - 1.0).abs()
+            };
+            let (coarse, fine) = (off(3), off(large));
+            println!(
+                "{name} on {kind:?}, continuum: bulk off by {coarse:.1e} at m_ratio 3, {fine:.1e} at {large}"
+            );
+            assert!(fine < 0.01, "{name} on {kind:?}: {fine}");
+            // state-based solids are normalised by their own family, whatever the calibration
+            assert!(
+                fine < 0.5 * coarse || fine < 1e-12,
+                "{name} on {kind:?}: {coarse} to {fine}"
+            );
+        }
+    }
+}
