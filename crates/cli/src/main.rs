@@ -6,6 +6,7 @@ mod failure;
 mod laws;
 mod progress;
 mod run;
+mod script;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;

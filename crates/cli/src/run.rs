@@ -4,6 +4,7 @@ use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::progress::Terminal;
+use crate::script;
 use peridyne::run::SnapshotOptions;
 use peridyne_io::deck::{Deck, FieldName, UnitSystem};
 use peridyne_io::drive::{DriveError, Plan, default_dir, drive};
@@ -16,7 +17,8 @@ use std::path::PathBuf;
 pub struct RunArguments {
     #[command(flatten)]
     pub input: Input,
-    /// Folder for the results; `out/<name of the file>` if neither this nor the deck says otherwise.
+    /// Folder for the results; `out/<name of the file>` if neither this nor the deck says otherwise. Files that a
+    /// LAMMPS script names go there too; without it, to the current folder.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads; all cores if not given. Results do not depend on it.
@@ -26,7 +28,9 @@ pub struct RunArguments {
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if !deck::is_deck(&arguments.input) {
-        return Err(Failure::input("LAMMPS scripts are not connected yet"));
+        return with_threads(arguments.threads, |threads| {
+            script::run(&arguments.input, arguments.out.as_deref(), threads)
+        });
     }
     let deck = deck::read(&arguments.input)?;
     let threads = arguments.threads.or(deck.threads);

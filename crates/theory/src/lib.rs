@@ -1,1 +1,5 @@
-//! theory
+//! Model to model: what a model of points is as a continuum.
+
+pub mod elastic;
+pub mod fracture;
+pub mod stiffness;

@@ -2,8 +2,10 @@
 //! Each keeps the account of its own work.
 
 pub mod constraint;
+pub mod driven;
 pub mod indenter;
 pub mod load;
+pub(crate) mod still;
 
 use crate::expression::Expression;
 use crate::space::Point;
@@ -20,6 +22,8 @@ enum Component {
     Free,
     Fixed(Vec<f64>),
     Changing(Expression),
+    /// The same everywhere, set from outside.
+    Given(f64),
 }
 
 impl<const D: usize> Program<D> {
@@ -32,6 +36,21 @@ impl<const D: usize> Program<D> {
                 Some(e) => Component::Fixed(points.iter().map(|x| e.eval(x, 0.0)).collect()),
             }),
             scale: 1.0,
+        }
+    }
+
+    /// Values that are the same on all points and change from outside.
+    pub fn given(values: [Option<f64>; 3]) -> Self {
+        Program {
+            component: std::array::from_fn(|a| values[a].map_or(Component::Free, Component::Given)),
+            scale: 1.0,
+        }
+    }
+
+    /// New values for [`Program::given`].
+    pub fn give(&mut self, values: [Option<f64>; 3]) {
+        for (c, v) in self.component.iter_mut().zip(values) {
+            *c = v.map_or(Component::Free, Component::Given);
         }
     }
 
@@ -53,6 +72,7 @@ impl<const D: usize> Program<D> {
             Component::Free => 0.0,
             Component::Fixed(v) => self.scale * v[k],
             Component::Changing(e) => self.scale * e.eval(x, t),
+            Component::Given(v) => self.scale * v,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The arithmetic of one bond, shared by all families.
 
-use crate::execute::lane::{self, Lane};
+use crate::execute::lane::Lane;
+use crate::execute::lane::series::stretch;
 
 /// `ξ+η` and `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = η·(ξ + (ξ+η))`.
 #[inline(always)]
@@ -23,9 +24,5 @@ pub fn critical_e(s0: f64) -> f64 {
 
 /// The stretch that a critical `e` stands for.
 pub fn critical_stretch(e0: f64) -> f64 {
-    if e0.is_infinite() {
-        e0
-    } else {
-        lane::stretch(e0)
-    }
+    if e0.is_infinite() { e0 } else { stretch(e0) }
 }

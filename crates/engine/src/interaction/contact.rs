@@ -113,6 +113,17 @@ impl<const D: usize> Contact<D> {
         energy
     }
 
+    /// Add the energy density of all contacts to `out`, per slot, half of a pair's at each end (energy / volume).
+    /// `u` as for [`Contact::energy`].
+    pub fn add_energy_density(&self, body: &Body<D>, u: &Field<D>, out: &mut [f64]) {
+        let stiffness = self.repulsion.stiffness;
+        self.each_contact(u, |i, j, _, r, d| {
+            let quarter = 0.25 * stiffness * (r - d) * (r - d);
+            out[i] += quarter * body.volume.at(j);
+            out[j] += quarter * body.volume.at(i);
+        });
+    }
+
     /// Number of pairs that repel, at the `u` of the last [`Contact::add_forces`] or [`Contact::update`].
     pub fn pairs_in_contact(&self, u: &Field<D>) -> usize {
         let mut count = 0;

@@ -394,6 +394,10 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.sum(row, &self.list.present, |_| 1.0) as usize
     }
 
+    fn near_horizon(&self) -> u64 {
+        self.list.near_horizon
+    }
+
     fn critical_stretch(&self, slot: usize) -> f64 {
         self.critical
             .get(slot)

@@ -128,6 +128,11 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Size of the family of every slot.
     fn family_size(&self, slot: usize) -> usize;
 
+    /// Directed pairs whose distance is within round-off of the horizon, in or out, where that was counted.
+    fn near_horizon(&self) -> u64 {
+        0
+    }
+
     /// Critical stretch s0 of a slot (∞ before the first sweep).
     fn critical_stretch(&self, slot: usize) -> f64;
 

@@ -1,39 +1,22 @@
 //! Any law on a lattice stencil: tiles of eight points walk the offsets together; one bit per bond is all that is
 //! stored.
 
-use super::bond::{critical_stretch, deform};
+mod kernel;
+
+use super::bond::critical_stretch;
 use super::{
     BondState, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally, Toughness,
-    history,
 };
 use crate::body::{Body, Field, Grid, Layout};
 use crate::execute::blocks::{Shared, for_each_block};
-use crate::execute::lane::{self, Lane, TILE};
-use crate::execute::simd::{Kernel, Simd};
+use crate::execute::lane::TILE;
+use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
 use crate::family::stencil::Stencil;
 use crate::law::Law;
 use crate::spec::CrackKind;
-
-/// Tiles per block of work.
-const BLOCK: usize = 32;
-
-/// A bond of the stencil with its constants.
-#[derive(Debug, Clone, Copy)]
-#[repr(C)] // what the hot loop reads comes first
-struct Bond<const D: usize> {
-    /// Slots from i to j.
-    shift: isize,
-    xi: [f64; D],
-    inv_r0_squared: f64,
-    k: f64,
-    /// Repulsion acts where `e` is below this; −1 without repulsion.
-    contact_e: f64,
-    r0_squared: f64,
-    contact_distance: f64,
-    cell: [i32; D],
-    to: usize,
-}
+pub use kernel::MOST;
+use kernel::{BLOCK, Bond, Energies, EnergyFields, Forces, Share, View};
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {
@@ -109,8 +92,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             .map(|(from, list)| {
                 list.iter()
                     .map(|o| {
-                        let xi: [f64; D] =
-                            std::array::from_fn(|a| h * edges[a] * (o.quarter[a] as f64 / 4.0));
+                        let back: [f64; D] =
+                            std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
                         let r0_squared = h * h * (o.squared as f64 / 16.0);
                         let r0 = r0_squared.sqrt();
                         let d = repulsion.map_or(0.0, |c| c.distance(r0));
@@ -118,7 +101,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                         Bond {
                             shift: grid.shift(cell.map(i64::from), o.to as i64 - from as i64)
                                 as isize,
-                            xi,
+                            back,
                             inv_r0_squared: 1.0 / r0_squared,
                             k: law.constant(r0, 1.0 / r0, weight(r0) * volume),
                             r0_squared,
@@ -132,6 +115,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             })
             .collect();
         let width = stencil.bonds();
+        assert!(width <= MOST, "checked when the horizon was read");
         let tiles: Vec<u32> = (0..grid.tiles())
             .filter(|t| grid.owned[*t] != 0)
             .map(|t| t as u32)
@@ -201,6 +185,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             alive: &self.alive,
             u: std::array::from_fn(|a| u[a].as_slice()),
             fields: [&self.fields[0], &self.fields[1]],
+            pressure: &self.pressure,
             volume: self.volume,
             repulsion: self.repulsion,
         }
@@ -221,7 +206,6 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             next: Shared(self.next.as_ptr().cast_mut()),
             memory: Shared(self.alive.as_ptr().cast_mut()),
             toughness: &self.toughness,
-            pressure: &self.pressure,
             motion,
         };
         for_each_block(self.simd, &kernel, &mut tallies);
@@ -244,407 +228,6 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     }
 }
 
-/// What all kernels read.
-struct View<'a, const D: usize, W> {
-    law: W,
-    grid: &'a Grid<D>,
-    body: &'a Body<D>,
-    bonds: &'a [Vec<Bond<D>>],
-    width: usize,
-    tiles: &'a [u32],
-    alive: &'a [u8],
-    u: [&'a [f64]; D],
-    fields: [&'a [f64]; 2],
-    volume: f64,
-    repulsion: Option<Repulsion>,
-}
-
-impl<const D: usize, W: Law> View<'_, D, W> {
-    #[inline(always)]
-    unsafe fn displacement<L: Lane>(&self, slot: usize) -> [L; D] {
-        // SAFETY: slots and their neighbours lie between the guards
-        std::array::from_fn(|a| unsafe { L::load(self.u[a].as_ptr().add(slot)) })
-    }
-
-    #[inline(always)]
-    unsafe fn fields<L: Lane>(&self, slot: usize) -> [L; 2] {
-        std::array::from_fn(|a| {
-            if a < W::FIELDS {
-                unsafe { L::load(self.fields[a].as_ptr().add(slot)) }
-            } else {
-                L::splat(0.0)
-            }
-        })
-    }
-
-    /// `ξ+η` and `e` of bond `b` for the points at `i`.
-    #[inline(always)]
-    unsafe fn deform<L: Lane>(&self, b: &Bond<D>, i: usize, ui: &[L; D]) -> ([L; D], L) {
-        let j = i.wrapping_add_signed(b.shift);
-        let uj = unsafe { self.displacement::<L>(j) };
-        let eta = std::array::from_fn(|a| uj[a] - ui[a]);
-        deform(eta, b.xi.map(L::splat), L::splat(b.inv_r0_squared))
-    }
-
-    fn block(&self, block: usize) -> std::ops::Range<usize> {
-        block * BLOCK..((block + 1) * BLOCK).min(self.tiles.len())
-    }
-
-    /// Coefficient of `ξ+η` from repulsion in the lanes that are closer than allowed and really there, and their
-    /// energy density.
-    #[inline(always)]
-    fn repel<L: Lane>(&self, b: &Bond<D>, i: usize, e: L, close: L::Mask) -> (L, L) {
-        let Some(c) = self.repulsion else {
-            return (L::splat(0.0), L::splat(0.0));
-        };
-        let mut there = 0u8;
-        for l in 0..L::N {
-            if L::bits(close) >> l & 1 == 1
-                && self.grid.is_owned(i + l)
-                && self.grid.neighbour(i + l, b.cell, b.to).is_some()
-            {
-                there |= 1 << l;
-            }
-        }
-        let absent = L::dead(there, 0);
-        let r = (L::splat(b.r0_squared) * (L::splat(1.0) + e)).sqrt();
-        let d = L::splat(b.contact_distance);
-        let pull = (L::splat(c.stiffness * self.volume) * (r - d)).div(r);
-        let energy = L::splat(0.5 * c.stiffness * self.volume) * (r - d) * (r - d) * L::splat(0.5);
-        (pull.zero_if(absent), energy.zero_if(absent))
-    }
-}
-
-/// Force pass; `FULL` with breaking and repulsion.
-struct Forces<'a, const D: usize, W, const FULL: bool> {
-    view: View<'a, D, W>,
-    f: [Shared; D],
-    critical: &'a [f64],
-    next: Shared,
-    memory: Shared<u8>,
-    toughness: &'a [Toughness],
-    pressure: &'a [f64],
-    /// Velocity of the step's middle, and the step; none if bonds must not break.
-    motion: Option<(&'a Field<D>, f64)>,
-}
-
-impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
-    type Out = Tally;
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
-        let v = &self.view;
-        let mut tally = Tally::default();
-        for n in v.block(block) {
-            let tile = v.tiles[n] as usize;
-            let bonds = v.bonds[v.grid.tile_sublattice(tile)].as_slice();
-            // SAFETY: tiles lie inside the arrays, offsets inside the guards; each tile is written by one block
-            unsafe {
-                let row =
-                    std::slice::from_raw_parts_mut(self.memory.0.add(n * v.width), bonds.len());
-                let whole = row.iter().all(|b| *b == 0xff);
-                for part in 0..TILE / L::N {
-                    let i = v.grid.tile_slot(tile) + part * L::N;
-                    if whole {
-                        self.points::<L, false>(bonds, row, i, part, &mut tally);
-                    } else {
-                        self.points::<L, true>(bonds, row, i, part, &mut tally);
-                    }
-                }
-            }
-        }
-        tally
-    }
-}
-
-impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// All bonds of the `N` points at slot `i`.
-    #[inline(always)]
-    unsafe fn points<L: Lane, const MASKED: bool>(
-        &self,
-        bonds: &[Bond<D>],
-        row: &mut [u8],
-        i: usize,
-        part: usize,
-        tally: &mut Tally,
-    ) {
-        let v = &self.view;
-        unsafe {
-            let zero = L::splat(0.0);
-            let ui = v.displacement::<L>(i);
-            let own = v.fields::<L>(i);
-            let critical_i = if FULL {
-                L::load(self.critical.as_ptr().add(i))
-            } else {
-                zero
-            };
-            let mut lowest = L::splat(f64::INFINITY);
-            let mut acc = [zero; D];
-            // broken bonds: Σ x and Σ k r0² s, rare
-            let mut lost: Option<[L; 2]> = None;
-            for (b, bits) in bonds.iter().zip(row.iter_mut()) {
-                let (y, raw) = v.deform(b, i, &ui);
-                let dead = L::dead(*bits, part);
-                let e = if MASKED { raw.nan_if(dead) } else { raw };
-                let j = i.wrapping_add_signed(b.shift);
-                let other = v.fields::<L>(j);
-                let mut rare = lane::beyond_series(e);
-                let mut limit = zero;
-                if FULL {
-                    limit = L::load(self.critical.as_ptr().add(j)).min(critical_i);
-                    rare = L::or(rare, limit.lt(e));
-                    lowest = e.min(lowest);
-                }
-                if FULL && MASKED {
-                    rare = L::or(rare, raw.lt(L::splat(b.contact_e)));
-                }
-                let k = L::splat(b.k);
-                let mut pull;
-                if L::any(rare) {
-                    pull = v.law.pull(k, lane::extension_over_length(e), own, other);
-                    if MASKED {
-                        pull = pull.zero_if(dead);
-                    }
-                    if FULL {
-                        let close = raw.lt(L::splat(b.contact_e));
-                        if L::any(close) {
-                            pull = pull + v.repel(b, i, raw, close).0;
-                        }
-                    }
-                    if FULL && self.motion.is_some() {
-                        let breaks = limit.lt(e);
-                        let which = L::bits(breaks);
-                        if which != 0 {
-                            *bits &= !((which as u8) << (part * L::N));
-                            tally.broken += which.count_ones() as u64;
-                            let s = lane::stretch(e);
-                            let share = k * L::splat(b.r0_squared) * s;
-                            let held = v.law.pair_energy(share * s, own, other)
-                                + self.farewell(pull, y, i, j);
-                            let x = L::select(breaks, held, zero);
-                            let share = L::select(breaks, share, zero);
-                            let sum = lost.unwrap_or([zero; 2]);
-                            lost = Some([sum[0] + x, sum[1] + share]);
-                        }
-                    }
-                } else {
-                    pull = v
-                        .law
-                        .pull(k, lane::extension_over_length_series(e), own, other);
-                    if MASKED {
-                        pull = pull.zero_if(dead);
-                    }
-                }
-                for a in 0..D {
-                    acc[a] = pull.fma(y[a], acc[a]);
-                }
-            }
-            for a in 0..D {
-                acc[a].store(self.f[a].at(i));
-            }
-            if FULL {
-                self.next_critical(i, lowest);
-                if let Some(lost) = lost {
-                    self.release(i, own, lost, tally);
-                }
-            }
-        }
-    }
-
-    /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
-    /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner.
-    #[inline(always)]
-    unsafe fn farewell<L: Lane>(&self, pull: L, y: [L; D], i: usize, j: usize) -> L {
-        let Some((v, dt)) = self.motion else {
-            return L::splat(0.0);
-        };
-        let mut rate = L::splat(0.0);
-        for a in 0..D {
-            let relative = unsafe { L::load(v[a].as_ptr().add(j)) - L::load(v[a].as_ptr().add(i)) };
-            rate = y[a].fma(relative, rate);
-        }
-        L::splat(0.25 * dt) * pull * rate
-    }
-
-    /// `s0 = s00 − α s_min` for the points at slot `i`, as a critical `e`.
-    #[inline(always)]
-    unsafe fn next_critical<L: Lane>(&self, i: usize, lowest: L) {
-        let material = |l| self.view.body.material_of(i + l);
-        let e0 = history::next_critical(self.toughness, material, lowest);
-        unsafe { e0.store(self.next.at(i)) };
-    }
-
-    /// Energy of the bonds that the points at `i` just lost, from `Σ x` and `Σ k r0² s` over them.
-    #[inline(always)]
-    unsafe fn release<L: Lane>(&self, i: usize, own: [L; 2], lost: [L; 2], tally: &mut Tally) {
-        let q: L = unsafe { pressure_factor(&self.view, self.pressure, i) };
-        let energy = history::released::<L, W>(q, own, lost);
-        // one by one: the order of the sum must not depend on the width
-        for x in &energy.to_array()[..L::N] {
-            tally.released += x * self.view.volume;
-        }
-    }
-}
-
-/// Share pass: `P = q Σ k r0² s` into field 0.
-struct Share<'a, const D: usize, W> {
-    view: View<'a, D, W>,
-    out: Shared,
-    pressure: &'a [f64],
-}
-
-impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
-    type Out = ();
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) {
-        let v = &self.view;
-        for n in v.block(block) {
-            let tile = v.tiles[n] as usize;
-            let bonds = v.bonds[v.grid.tile_sublattice(tile)].as_slice();
-            let row = &v.alive[n * v.width..n * v.width + bonds.len()];
-            let whole = row.iter().all(|b| *b == 0xff);
-            for part in 0..TILE / L::N {
-                let i = v.grid.tile_slot(tile) + part * L::N;
-                // SAFETY: as in the force pass
-                unsafe {
-                    let sum = if whole {
-                        self.sum::<L, false>(bonds, row, i, part)
-                    } else {
-                        self.sum::<L, true>(bonds, row, i, part)
-                    };
-                    let q: L = pressure_factor(v, self.pressure, i);
-                    (q * sum).store(self.out.at(i));
-                }
-            }
-        }
-    }
-}
-
-impl<const D: usize, W: Law> Share<'_, D, W> {
-    #[inline(always)]
-    unsafe fn sum<L: Lane, const MASKED: bool>(
-        &self,
-        bonds: &[Bond<D>],
-        row: &[u8],
-        i: usize,
-        part: usize,
-    ) -> L {
-        let v = &self.view;
-        unsafe {
-            let ui = v.displacement::<L>(i);
-            let mut sum = L::splat(0.0);
-            for (b, bits) in bonds.iter().zip(row) {
-                let (_, raw) = v.deform(b, i, &ui);
-                let dead = L::dead(*bits, part);
-                let e = if MASKED { raw.nan_if(dead) } else { raw };
-                let mut s = if L::any(lane::beyond_series(e)) {
-                    lane::stretch(e)
-                } else {
-                    lane::stretch_series(e)
-                };
-                if MASKED {
-                    s = s.zero_if(dead);
-                }
-                sum = L::splat(b.k * b.r0_squared).fma(s, sum);
-            }
-            sum
-        }
-    }
-}
-
-/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds. Sums are returned,
-/// fields are written where wanted.
-struct Energies<'a, const D: usize, W> {
-    view: View<'a, D, W>,
-    pressure: &'a [f64],
-    fields: Option<EnergyFields>,
-}
-
-#[derive(Clone, Copy)]
-struct EnergyFields {
-    strain: Shared,
-    repulsion: Shared,
-    share: Shared,
-    weight: Shared,
-}
-
-impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
-    /// Strain and repulsion energy of the block (energy).
-    type Out = [f64; 2];
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
-        let v = &self.view;
-        let mut sums = [0.0; 2];
-        for n in v.block(block) {
-            let tile = v.tiles[n] as usize;
-            let bonds = v.bonds[v.grid.tile_sublattice(tile)].as_slice();
-            for part in 0..TILE / L::N {
-                let i = v.grid.tile_slot(tile) + part * L::N;
-                // SAFETY: as in the force pass
-                unsafe {
-                    let zero = L::splat(0.0);
-                    let ui = v.displacement::<L>(i);
-                    let own = v.fields::<L>(i);
-                    let (mut strain, mut repulsion, mut share, mut weight) =
-                        (zero, zero, zero, zero);
-                    for (k, b) in bonds.iter().enumerate() {
-                        let (_, e) = v.deform(b, i, &ui);
-                        let dead = L::dead(v.alive[n * v.width + k], part);
-                        let s = lane::stretch(e.nan_if(dead)).zero_if(dead);
-                        let kr = L::splat(b.k * b.r0_squared);
-                        let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
-                        strain = strain + v.law.pair_energy(kr * s * s, own, other).zero_if(dead);
-                        share = kr.fma(s, share);
-                        weight = weight + kr.zero_if(dead);
-                        if v.repulsion.is_some() {
-                            let close = e.lt(L::splat(b.contact_e));
-                            if L::any(close) {
-                                repulsion = repulsion + v.repel(b, i, e, close).1;
-                            }
-                        }
-                    }
-                    if W::SHARES {
-                        let q = pressure_factor(v, self.pressure, i);
-                        strain = strain + L::splat(0.5) * q * share * share;
-                    }
-                    // lane by lane, so that the width does not show in the sum
-                    for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
-                        x.to_array()[..L::N]
-                            .iter()
-                            .for_each(|x| *sum += x * v.volume);
-                    }
-                    if let Some(out) = self.fields {
-                        strain.store(out.strain.at(i));
-                        repulsion.store(out.repulsion.at(i));
-                        share.store(out.share.at(i));
-                        weight.store(out.weight.at(i));
-                    }
-                }
-            }
-        }
-        sums
-    }
-}
-
-/// `P / Σ k r0² s` of the points at slot `i`.
-#[inline(always)]
-unsafe fn pressure_factor<L: Lane, const D: usize, W: Law>(
-    v: &View<D, W>,
-    factors: &[f64],
-    i: usize,
-) -> L {
-    // SAFETY: slots lie inside the arrays
-    unsafe {
-        if factors.is_empty() {
-            v.law.pressure_factor(L::load(v.fields[1].as_ptr().add(i)))
-        } else {
-            L::load(factors.as_ptr().add(i))
-        }
-    }
-}
-
 impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally {
         if W::SHARES {
@@ -653,7 +236,6 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             let kernel = Share {
                 view: self.view(body, u),
                 out: Shared(pressure.as_mut_ptr()),
-                pressure: &self.pressure,
             };
             for_each_block(self.simd, &kernel, &mut unit);
             body.fill_images(&mut pressure);
@@ -684,7 +266,6 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let mut sums = std::mem::take(&mut self.sums);
         let kernel = Energies {
             view: self.view(body, u),
-            pressure: &self.pressure,
             fields: None,
         };
         for_each_block(self.simd, &kernel, &mut sums);
@@ -703,7 +284,6 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         }
         let kernel = Energies {
             view: self.view(body, u),
-            pressure: &self.pressure,
             fields: Some(EnergyFields {
                 strain: Shared(out.strain.as_mut_ptr()),
                 repulsion: Shared(out.repulsion.as_mut_ptr()),
@@ -749,7 +329,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                         } else {
                             BondState::Broken
                         };
-                        visit(first + l, j, b.xi, state);
+                        visit(first + l, j, b.back.map(|x| -x), state);
                     }
                 }
             }
@@ -811,10 +391,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                         original.get(&partner).is_some_and(|o| {
                             let x = grid.position(*o as usize);
                             let to: [f64; D] = std::array::from_fn(|a| x[a]);
-                            crosses(std::array::from_fn(|a| to[a] - b.xi[a]), to)
+                            crosses(std::array::from_fn(|a| to[a] + b.back[a]), to)
                         })
                     };
-                    if crosses(from, std::array::from_fn(|a| from[a] + b.xi[a])) || elsewhere() {
+                    if crosses(from, std::array::from_fn(|a| from[a] - b.back[a])) || elsewhere() {
                         *byte &= !(1 << l);
                         count += 1;
                         if kind == CrackKind::Absent {

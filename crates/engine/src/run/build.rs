@@ -5,6 +5,7 @@ use super::probe;
 use super::recipe::{Laws, Recipe};
 use super::{Info, Simulation};
 use crate::body::{Body, Layout, Values, zeros};
+use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -75,14 +76,30 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         bulk.unwrap_or_else(|| Moments::continuum(D, horizon, spec.section, spec.influence));
     let sets = sets(spec, &body)?;
     assign_materials(spec, &mut body, &sets)?;
-    let near_horizon = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
-    if near_horizon > 0 {
-        warnings.push(format!(
-            "{near_horizon} bonds of the stencil end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio)"
-        ));
+    if let BodySpec::Cloud(cloud) = &spec.body
+        && !cloud.density.is_empty()
+    {
+        body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
     }
+    let ends = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
     let recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
     let mut interaction = recipe.interaction(&body, None)?;
+    // a ratio is meant inclusively; only a length leaves the decision to round-off
+    let near_horizon = if recipe.ratio {
+        0
+    } else {
+        ends.max(interaction.near_horizon())
+    };
+    if near_horizon > 0 {
+        let what = if ends > 0 {
+            "bonds of the stencil"
+        } else {
+            "directed bonds"
+        };
+        warnings.push(format!(
+            "{near_horizon} {what} end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances"
+        ));
+    }
     let mut cut = 0;
     for kind in [CrackKind::Absent, CrackKind::Broken] {
         if kind == CrackKind::Broken {
@@ -128,7 +145,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         TimeStep::Fraction(x) if stable_step.is_finite() => x * stable_step,
         TimeStep::Fraction(_) => {
             return Err(BuildError::new(
-                "run.time_step",
+                "schedule.time_step",
                 "nothing resists: no stable step can be derived",
             )
             .help("give time_step as a number"));
@@ -137,7 +154,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     };
     if !(dt > 0.0 && dt.is_finite()) {
         return Err(BuildError::new(
-            "run.time_step",
+            "schedule.time_step",
             format!("the time step is {dt}, expected a positive number"),
         ));
     }
@@ -146,7 +163,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             "the time step {dt:.4e} is above the stability limit {stable_step:.4e} of this body"
         );
         if !spec.schedule.force_unstable {
-            return Err(BuildError::new("run.time_step", message)
+            return Err(BuildError::new("schedule.time_step", message)
                 .help(format!("write time_step = {:.3e} or \"auto\"; force = true under [run] runs it all the same", 0.8 * stable_step)));
         }
         warnings.push(message);
@@ -175,6 +192,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             near_horizon,
             horizon,
             spacing: body.spacing,
+            section: spec.section,
             mass: body.mass(),
             volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
             micromodulus: if let Laws::Bond(c) = &recipe.laws {
@@ -199,6 +217,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         body,
         loads: vec![],
         constraints: vec![],
+        driven: vec![],
+        still: Still::new(vec![]),
         indenters: vec![],
         sets,
         dt,
@@ -270,6 +290,17 @@ fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
                 ),
             )
             .help("three spacings are usual: horizon = { m_ratio = 3 }"));
+        }
+        if stencil.bonds() > crate::interaction::stencil::MOST {
+            return Err(BuildError::new(
+                "horizon",
+                format!(
+                    "{} bonds per point; at most {}",
+                    stencil.bonds(),
+                    crate::interaction::stencil::MOST
+                ),
+            )
+            .help("choose a shorter horizon: three to six spacings are usual"));
         }
         let body = Body::<D>::on_lattice(
             Lattice {
@@ -365,16 +396,13 @@ fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
                 cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
             let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
             let period = std::array::from_fn(|a| spec.periodic[a]);
-            let mut body = Body::<D>::from_cloud(
+            let body = Body::<D>::from_cloud(
                 &cloud.position,
                 &cloud.volume,
                 &cloud.mark,
                 spacing,
                 period,
             )?;
-            if !cloud.density.is_empty() {
-                body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
-            }
             Ok(Reference {
                 body,
                 stencil: None,
@@ -524,7 +552,7 @@ fn assign_materials<const D: usize>(
     }
     if materials.len() > u8::MAX as usize {
         return Err(BuildError::new(
-            "material",
+            "materials",
             format!("{} materials; at most 255", materials.len()),
         ));
     }
@@ -537,7 +565,7 @@ fn assign_materials<const D: usize>(
         } else {
             let Some((_, ids)) = sets.iter().find(|(name, _)| *name == m.set) else {
                 return Err(BuildError::new(
-                    format!("material[{n}].set"),
+                    format!("materials[{n}].set"),
                     format!(
                         "material `{}` is on set `{}`, which does not exist",
                         m.name, m.set
@@ -550,7 +578,7 @@ fn assign_materials<const D: usize>(
             if let Some(other) = of[id as usize].replace(n as u8) {
                 let x = body.position(body.slots[id as usize] as usize);
                 return Err(BuildError::new(
-                    format!("material[{n}].set"),
+                    format!("materials[{n}].set"),
                     format!(
                         "point {} at {x:?} belongs to material `{}` and to material `{}`",
                         id + 1,
@@ -565,7 +593,7 @@ fn assign_materials<const D: usize>(
     if let Some(id) = of.iter().position(Option::is_none) {
         let x = body.position(body.slots[id] as usize);
         return Err(BuildError::new(
-            "material",
+            "materials",
             format!("point {} at {x:?} belongs to no material", id + 1),
         )
         .help("make the materials' sets cover the body"));

@@ -8,7 +8,8 @@ mod recipe;
 pub use build::{Options, build, build_in};
 pub use model::Model;
 
-use crate::error::RunError;
+use crate::condition::driven::{Drive, Reaction};
+use crate::error::{BuildError, RunError};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
 
@@ -26,6 +27,8 @@ pub struct Info {
     pub near_horizon: u64,
     pub horizon: f64,
     pub spacing: f64,
+    /// Thickness in 2-D, cross-section in 1-D, 1 in 3-D.
+    pub section: f64,
     pub mass: f64,
     pub volume: f64,
     /// Micromodulus per material of bond-based bodies (force / volume²).
@@ -49,6 +52,33 @@ pub struct SnapshotOptions {
     pub energies: bool,
     pub fragments: bool,
     pub bonds: bool,
+}
+
+/// A number per point that can be read in blocks; axes are 0, 1, 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointField {
+    /// Reference position (length).
+    Reference(usize),
+    Displacement(usize),
+    Velocity(usize),
+    /// Force density of the last sweep with all that acts (force / volume).
+    Force(usize),
+    Volume,
+    Density,
+    CriticalStretch,
+}
+
+/// What surrounds every point in the reference, in order of point id.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Families {
+    /// `[N]` sizes.
+    pub size: Vec<u32>,
+    /// `[N]` volumes of the partners whose bonds are whole (length^D times the section).
+    pub volume: Vec<f64>,
+    /// `[N]` indices of materials.
+    pub material: Vec<u8>,
+    /// `[N]` is there a partner of another material?
+    pub foreign: Vec<bool>,
 }
 
 /// A running model of any dimension, law and family. All arrays are in order of point id.
@@ -89,21 +119,40 @@ pub trait Simulation: Send {
     fn densities(&self) -> Vec<f64>;
     fn damage(&self) -> Vec<f64>;
     fn dilatation(&self) -> Vec<f64>;
-    /// Strain and contact energy density.
-    fn energy_density(&self) -> Vec<f64>;
+    /// Strain and contact energy density (energy / volume), half of a pair's energy at each end.
+    fn energy_density(&mut self) -> Vec<f64>;
     /// Critical stretch s0 of every point.
     fn critical_stretch(&self) -> Vec<f64>;
 
+    /// Sizes, volumes and materials of all families now.
+    fn families(&self) -> Families;
     /// Strain energy density of every point under the homogeneous strain ε (`[3][3]`, no contact, whole bonds).
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64>;
     /// Force densities under a given displacement (bonds and repulsion in the family, no breaking).
     fn forces_under(&mut self, u: &[Point]) -> Vec<Point>;
 
-    /// Replace loads, constraints and indenters (a LAMMPS script changes its fixes between runs).
+    /// Replace loads, constraints and indenters; driven conditions go.
     fn set_conditions(
         &mut self,
         conditions: &[crate::spec::ConditionSpec],
         sets: &[(String, Vec<u32>)],
         indenters: &[crate::spec::IndenterSpec],
-    ) -> Result<(), crate::error::BuildError>;
+    ) -> Result<(), BuildError>;
+
+    /// Values of points `first..first + out.len()`; 0 on axes beyond the dimension.
+    fn read(&mut self, field: PointField, first: usize, out: &mut [f64]);
+    /// Sets displacements or velocities of points `first..first + values.len()`; other fields cannot be set, axes
+    /// beyond the dimension do not exist: both are left alone. Call [`Simulation::start`] afterwards.
+    fn write(&mut self, field: PointField, first: usize, values: &[f64]);
+
+    /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
+    /// order in which they act, after all other forces. Replaces those of the last call.
+    fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);
+    /// Values of driven condition `index` for the next force evaluation ([`Simulation::start`] or
+    /// [`Simulation::step`]); false if there is no such condition or it is of another kind.
+    fn drive(&mut self, index: usize, value: &Drive) -> bool;
+    /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
+    fn reaction(&self, index: usize) -> Reaction;
+    /// Points that no step moves; they keep their velocity. Replaces those of the last call.
+    fn set_still(&mut self, ids: &[u32]);
 }

@@ -1,11 +1,13 @@
 //! The running model: state, forces, motion and accounts.
 
-use super::{Info, Simulation, SnapshotOptions};
+use super::{Families, Info, PointField, Simulation, SnapshotOptions};
 use crate::body::{Body, Field, Layout};
 use crate::condition::Program;
 use crate::condition::constraint::{Constraint, Prescribed};
+use crate::condition::driven::{Drive, Driven, Reaction};
 use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
+use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
@@ -29,6 +31,8 @@ pub struct Model<const D: usize> {
     pub(super) loads: Vec<Load<D>>,
     pub(super) constraints: Vec<Constraint<D>>,
     pub(super) indenters: Vec<Indenter<D>>,
+    pub(super) driven: Vec<Driven<D>>,
+    pub(super) still: Still<D>,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
     pub(super) dt: f64,
@@ -92,6 +96,9 @@ impl<const D: usize> Model<D> {
         for load in &mut self.loads {
             load.add(&self.body, &self.v, &mut self.f, t, dt);
         }
+        for d in &mut self.driven {
+            d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);
+        }
     }
 
     /// Bring velocities to the whole step.
@@ -102,6 +109,7 @@ impl<const D: usize> Model<D> {
             for c in &self.constraints {
                 c.settle(&mut self.v, t, dt);
             }
+            self.still.settle(&mut self.v);
             self.pending = false;
         }
     }
@@ -139,6 +147,12 @@ impl<const D: usize> Model<D> {
         }
         ledger.work_conditions += self.constraints.iter().map(|c| c.work).sum::<f64>();
         ledger.work_indenter += self.indenters.iter().map(|i| i.work).sum::<f64>();
+        for d in &self.driven {
+            match d {
+                Driven::Indenter(i) => ledger.work_indenter += i.work,
+                Driven::Load(l) => ledger.work_conditions += l.work,
+            }
+        }
         ledger.initial = self.initial_energy.unwrap_or(0.0);
         ledger
     }
@@ -270,6 +284,11 @@ impl<const D: usize> Simulation for Model<D> {
             c.start(&mut self.u, &mut self.v, t, dt);
         }
         self.indenters.iter_mut().for_each(Indenter::look_again);
+        for d in &mut self.driven {
+            if let Driven::Indenter(i) = d {
+                i.look_again();
+            }
+        }
         self.forces(bonds, 0.0);
         // energy that came in from outside counts as initial
         let now = self.energy_now();
@@ -281,6 +300,7 @@ impl<const D: usize> Simulation for Model<D> {
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
         }
+        self.still.begin(&mut self.v, &mut self.f, !self.pending);
         let limit = self.body.spacing;
         let fastest = self.verlet.advance(
             &self.body,
@@ -296,6 +316,7 @@ impl<const D: usize> Simulation for Model<D> {
             self.verlet
                 .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, limit);
             self.pending = false;
+            self.still.settle(&mut self.v);
             return Err(error);
         }
         self.step += 1;
@@ -308,6 +329,9 @@ impl<const D: usize> Simulation for Model<D> {
         }
         for indenter in &mut self.indenters {
             indenter.begin(&self.body, &self.v, t, dt, fastest.sqrt());
+        }
+        for d in &mut self.driven {
+            d.begin(&self.body, &self.v, t, dt, fastest.sqrt());
         }
         self.forces(true, dt);
         for c in &mut self.constraints {
@@ -466,14 +490,42 @@ impl<const D: usize> Simulation for Model<D> {
         self.by_id(|i| out.dilatation[i])
     }
 
-    fn energy_density(&self) -> Vec<f64> {
+    fn energy_density(&mut self) -> Vec<f64> {
+        self.refresh_images();
         let mut out = PointEnergies::default();
         self.interaction.observe(&self.body, &self.u, &mut out);
+        if let Some(pairs) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
+        }
         self.by_id(|i| out.strain[i] + out.repulsion[i])
     }
 
     fn critical_stretch(&self) -> Vec<f64> {
         self.by_id(|i| self.interaction.critical_stretch(i))
+    }
+
+    fn families(&self) -> Families {
+        let mut volume = vec![0.0; self.body.len];
+        let mut foreign = vec![false; self.body.len];
+        let of = |i: usize| self.body.material.get(i).copied().unwrap_or(0);
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, _, state| {
+                if state == BondState::Whole {
+                    volume[i] += self.body.volume.at(j);
+                    volume[j] += self.body.volume.at(i);
+                    let unlike = of(i) != of(j);
+                    foreign[i] |= unlike;
+                    foreign[j] |= unlike;
+                }
+            });
+        Families {
+            size: self.by_id(|i| self.interaction.family_size(i) as u32),
+            volume: self.by_id(|i| volume[i]),
+            material: self.by_id(of),
+            foreign: self.by_id(|i| foreign[i]),
+        }
     }
 
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
@@ -546,7 +598,7 @@ impl<const D: usize> Simulation for Model<D> {
         let (mut loads, mut constraints) = (vec![], vec![]);
         for (n, c) in conditions.iter().enumerate() {
             let (slots, points) = self.members(&c.set, sets).map_err(|e| BuildError {
-                path: format!("condition[{n}].set"),
+                path: format!("conditions[{n}].set"),
                 ..e
             })?;
             let load = |kind| Load::new(kind, slots.clone(), points.clone());
@@ -591,10 +643,81 @@ impl<const D: usize> Simulation for Model<D> {
         self.finish();
         let now = self.energy_now();
         self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
+        self.driven.clear();
         self.loads = loads;
         self.constraints = constraints;
         self.indenters = indenters.iter().map(Indenter::new).collect();
         Ok(())
+    }
+
+    fn read(&mut self, field: PointField, first: usize, out: &mut [f64]) {
+        if matches!(field, PointField::Velocity(_)) {
+            self.finish();
+        }
+        let component = |x: &Field<D>, a: usize, i: usize| x.get(a).map_or(0.0, |c| c[i]);
+        let body = &self.body;
+        for (value, &s) in out.iter_mut().zip(&body.slots[first..]) {
+            let i = s as usize;
+            *value = match field {
+                PointField::Reference(a) => body.position(i)[a],
+                PointField::Displacement(a) => component(&self.u, a, i),
+                PointField::Velocity(a) => component(&self.v, a, i),
+                PointField::Force(a) => component(&self.f, a, i),
+                PointField::Volume => body.volume.at(i),
+                PointField::Density => body.density.at(i),
+                PointField::CriticalStretch => self.interaction.critical_stretch(i),
+            };
+        }
+    }
+
+    fn write(&mut self, field: PointField, first: usize, values: &[f64]) {
+        self.finish();
+        let component = match field {
+            PointField::Displacement(a) => self.u.get_mut(a),
+            PointField::Velocity(a) => self.v.get_mut(a),
+            _ => None,
+        };
+        let Some(component) = component else { return };
+        for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
+            component[s as usize] = *value;
+        }
+    }
+
+    fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
+        self.finish();
+        let slot = |id: &u32| self.body.slots[*id as usize];
+        let new = driven.iter().map(|(drive, ids)| {
+            let slots = match ids {
+                None => self.body.slots.clone(),
+                Some(ids) => ids.iter().map(slot).collect(),
+            };
+            let at = |s: &u32| self.body.position(*s as usize);
+            let points = slots.iter().map(at).collect();
+            Driven::new(drive, slots, points)
+        });
+        let new: Vec<_> = new.collect();
+        for old in std::mem::replace(&mut self.driven, new) {
+            match old {
+                Driven::Load(l) => self.past_work[1] += l.work,
+                Driven::Indenter(i) => self.past_work[2] += i.work,
+            }
+        }
+    }
+
+    fn drive(&mut self, index: usize, value: &Drive) -> bool {
+        self.driven.get_mut(index).is_some_and(|d| d.set(value))
+    }
+
+    fn reaction(&self, index: usize) -> Reaction {
+        self.driven
+            .get(index)
+            .map_or_else(Reaction::default, Driven::reaction)
+    }
+
+    fn set_still(&mut self, ids: &[u32]) {
+        self.finish();
+        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
+        self.still = Still::new(slots.collect());
     }
 }
 

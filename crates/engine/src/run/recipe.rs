@@ -54,7 +54,7 @@ impl Recipe {
             Calibration::Continuum => continuum,
             Calibration::Discrete => discrete,
         };
-        let at = |n: usize, key: &str| format!("material[{n}].{key}");
+        let at = |n: usize, key: &str| format!("materials[{n}].{key}");
         let mut bond = vec![];
         let mut solid = vec![];
         let mut repulsive: f64 = 0.0;
@@ -117,10 +117,10 @@ impl Recipe {
         let laws = match (bond.is_empty(), solid.is_empty()) {
             (false, true) => Laws::Bond(bond),
             (true, false) => Laws::Solid(solid),
-            (true, true) => return Err(BuildError::new("material", "the body has no material")),
+            (true, true) => return Err(BuildError::new("materials", "the body has no material")),
             (false, false) => {
                 return Err(BuildError::new(
-                    "material",
+                    "materials",
                     "bond-based and state-based materials in one body",
                 )
                 .help("give all materials the same kind of law: bonds across need one"));

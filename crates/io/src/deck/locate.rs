@@ -35,6 +35,21 @@ pub(super) fn name_material(tree: &mut DeTable) {
     }
 }
 
+/// A set that a region of the deck makes is called after its entry: `"condition 2"` is `condition[1].region`. Other
+/// sets that the deck does not write come with the body's file.
+fn made_set(tree: &DeTable, path: &str) -> Option<String> {
+    let name = path.strip_prefix("sets.")?;
+    let written = tree.get("sets").and_then(|s| s.get_ref().as_table());
+    if written.is_some_and(|sets| sets.contains_key(name)) {
+        return None;
+    }
+    let entry = ["condition", "initial"].into_iter().find_map(|key| {
+        let number: usize = name.strip_prefix(key)?.trim_start().parse().ok()?;
+        Some(format!("{key}[{}].region", number.checked_sub(1)?))
+    });
+    Some(entry.unwrap_or_else(|| "body.file".into()))
+}
+
 /// The key in the deck of a top-level entry of the spec.
 fn deck_key(spec_key: &str) -> &str {
     match spec_key {
@@ -49,6 +64,8 @@ fn deck_key(spec_key: &str) -> &str {
 
 pub(super) fn locate(source: &Source, path: &str) -> Option<Range<usize>> {
     let tree = source.tree().ok()?;
+    let made = made_set(tree.get_ref(), path);
+    let path = made.as_deref().unwrap_or(path);
     let path = path.replace('[', ".").replace(']', "");
     let mut segments = path.split('.').filter(|s| !s.is_empty());
     let first = segments.next()?;

@@ -13,6 +13,8 @@ pub struct ScriptError {
     pub message: String,
     #[help]
     pub help: Option<String>,
+    /// Did the state go bad in the middle of a run, as opposed to a mistake in the input?
+    pub while_running: bool,
     #[source_code]
     source_code: NamedSource<String>,
     #[label("here")]
@@ -44,6 +46,8 @@ pub struct Problem {
     pub message: String,
     pub help: Option<String>,
     pub place: Place,
+    /// As in [`ScriptError`].
+    pub while_running: bool,
 }
 
 /// Boxed: errors are rare, results are not.
@@ -55,6 +59,7 @@ impl Problem {
             message: message.into(),
             help: None,
             place: Place::Command,
+            while_running: false,
         })
     }
 
@@ -63,6 +68,7 @@ impl Problem {
             message: message.into(),
             help: None,
             place: Place::Span(span),
+            while_running: false,
         })
     }
 
@@ -79,6 +85,7 @@ impl Problem {
                 line,
                 text,
             },
+            while_running: false,
         })
     }
 
@@ -106,6 +113,7 @@ impl ScriptError {
             line: 0,
             message: format!("cannot read the script: {reason}"),
             help: None,
+            while_running: false,
             source_code: NamedSource::new(path, String::new()),
             span: None,
         })
@@ -134,6 +142,7 @@ impl ScriptError {
         Box::new(ScriptError {
             message: problem.message,
             help: problem.help,
+            while_running: problem.while_running,
             source_code: NamedSource::new(&path, source),
             path,
             line,

@@ -113,6 +113,8 @@ pub struct Setup {
     pub domain: SimBox,
     /// Edge of the cubic (square) cell of the script's `lattice`: volume scaling and contact use it.
     pub lattice_constant: f64,
+    /// Time step as it is at the first `run`.
+    pub time_step: f64,
     pub atoms: Atoms,
     pub pair: Pair,
 }
@@ -256,6 +258,11 @@ pub trait Engine: Particles {
 
     /// Bytes that the model holds.
     fn memory_bytes(&self) -> u64;
+
+    /// What the user should know since the last call: printed as notes after each set-up.
+    fn notes(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// For the caller of the interpreter, who knows the type.
     fn as_any(&mut self) -> &mut dyn Any;

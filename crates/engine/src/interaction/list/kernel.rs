@@ -2,6 +2,7 @@
 
 use crate::body::Field;
 use crate::execute::blocks::Shared;
+use crate::execute::lane::series::{self, Series};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
@@ -282,6 +283,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         let v = &self.view;
         let zero = L::splat(0.0);
         let contact_e = L::splat(v.contact_e());
+        let series = Series::extension_over_length();
         unsafe {
             let rows = v.rows::<L>(slice, part);
             let i = v.end::<L, true>(rows);
@@ -295,7 +297,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let b = v.bond::<L>(&i, &j);
                 let dead = L::dead(*v.alive.at(line), part);
                 let e = b.e.nan_if(dead);
-                let mut rare = lane::beyond_series(e);
+                let mut rare = series.beyond(e);
                 let mut limit = zero;
                 if FULL {
                     limit = j.critical.min(i.critical);
@@ -307,7 +309,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 }
                 let mut pull;
                 if L::any(rare) {
-                    let g = lane::extension_over_length(e);
+                    let g = series::extension_over_length(e);
                     pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
                     if FULL {
                         pull = pull + v.repel(&b, j.volume).0;
@@ -318,7 +320,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                         if which != 0 {
                             *v.alive.at(line) &= !((which as u8) << (part * L::N));
                             tally.broken += which.count_ones() as u64;
-                            let s = lane::stretch(e);
+                            let s = series::stretch(e);
                             let share = b.k * b.r0_squared * s;
                             let x = v.law.pair_energy(share * s, i.field, j.field)
                                 + self.farewell(pull, b.y, rows, partners);
@@ -330,7 +332,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                         }
                     }
                 } else {
-                    let g = lane::extension_over_length_series(e);
+                    let g = series.at(e);
                     pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
                 }
                 for a in 0..D {
@@ -371,6 +373,7 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         let v = &self.view;
+        let series = Series::stretch();
         for slice in v.block(block) {
             for part in 0..TILE / L::N {
                 // SAFETY: as in the force pass; pressures are written, stiffnesses read
@@ -383,10 +386,10 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                         let b = v.bond::<L>(&i, &j);
                         let dead = L::dead(*v.alive.at(line), part);
                         let e = b.e.nan_if(dead);
-                        let s = if L::any(lane::beyond_series(e)) {
-                            lane::stretch(e)
+                        let s = if L::any(series.beyond(e)) {
+                            series::stretch(e)
                         } else {
-                            lane::stretch_series(e)
+                            series.at(e)
                         };
                         sum = (b.k * b.r0_squared * s).zero_if(dead) + sum;
                     }
@@ -463,7 +466,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                         let j = v.end::<L, true>(v.partners::<L>(line, part));
                         let b = v.bond::<L>(&i, &j);
                         let dead = L::dead(*v.alive.at(line), part);
-                        let s = lane::stretch(b.e.nan_if(dead)).zero_if(dead);
+                        let s = series::stretch(b.e.nan_if(dead)).zero_if(dead);
                         let kr = (b.k * b.r0_squared).zero_if(dead);
                         let x = v.law.pair_energy(kr * s * s, i.field, j.field);
                         strain = strain + x.zero_if(dead);

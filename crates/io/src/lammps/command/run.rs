@@ -103,6 +103,7 @@ impl Session<'_> {
             units: self.units,
             domain,
             lattice_constant,
+            time_step: self.progress.time_step,
             atoms,
             pair,
         };
@@ -141,6 +142,9 @@ impl Session<'_> {
             let engine = self.engine()?;
             engine.setup(&start, &conditions)?;
             let (bonds, bytes) = (engine.directed_bonds(), engine.memory_bytes());
+            for note in engine.notes() {
+                self.console.note(&note);
+            }
             if self.progress.steps_done == 0 && self.progress.started.is_none() {
                 let mean = general(bonds as f64 / atoms.max(1) as f64, 6, false);
                 self.print(&format!(
@@ -171,7 +175,13 @@ impl Session<'_> {
         while self.progress.step < end {
             // conditions hold at the end of the step
             self.progress.step += 1;
-            let result = self.conditions().and_then(|c| Ok(self.engine()?.step(&c)?));
+            let result = self.conditions().and_then(|c| {
+                self.engine()?.step(&c).map_err(|e| {
+                    let mut problem = Box::<Problem>::from(e);
+                    problem.while_running = true;
+                    problem
+                })
+            });
             if let Err(p) = result {
                 self.progress.step -= 1;
                 return Err(p);

@@ -1,0 +1,222 @@
+//! `peridyne run` for LAMMPS scripts: LAMMPS's own output, and ours at the end.
+
+use crate::Input;
+use crate::deck;
+use crate::failure::{Failure, say};
+use indicatif::{ProgressBar, ProgressStyle};
+use peridyne::run::{Simulation, SnapshotOptions};
+use peridyne_io::drive::default_dir;
+use peridyne_io::lammps::host::{Console, StandardConsole};
+use peridyne_io::lammps::model::{ModelEngine, ModelHost};
+use peridyne_io::lammps::{Options, Outcome, run_text};
+use peridyne_io::write::picture::PictureOptions;
+use peridyne_io::write::run_json::{self, EnergyReport, RunReport, Status};
+use peridyne_io::write::{Series, SeriesOptions, WriteError};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+/// Run a script. Files that it names go to `out`, or to the current folder as with LAMMPS; the report, the picture
+/// and the last state go to `out`, or to `out/<name of the script>`.
+pub fn run(input: &Input, out: Option<&Path>, threads: usize) -> Result<(), Failure> {
+    if let Some((key, _)) = input.set.first() {
+        return Err(Failure::input(format!(
+            "--set {key}: a LAMMPS script has no keys; its index variables are set with --var name=value"
+        )));
+    }
+    let text = deck::text(input)?;
+    let name = input.file.display().to_string();
+    let results = out.map_or_else(|| folder(&input.file), Path::to_path_buf);
+    let options = Options {
+        variables: input
+            .var
+            .iter()
+            .map(|(n, v)| {
+                (
+                    n.clone(),
+                    v.split_whitespace().map(str::to_string).collect(),
+                )
+            })
+            .collect(),
+        output: out.map(Path::to_path_buf).unwrap_or_default(),
+    };
+    if let Some(dir) = out {
+        std::fs::create_dir_all(dir)
+            .map_err(|e| Failure::Run(format!("cannot create {}: {e}", dir.display())))?;
+    }
+    let mut host = ModelHost {
+        simd: deck::simd(input)?,
+    };
+    let mut console = Terminal::default();
+    let result = run_text(&name, &text, &options, &mut host, &mut console);
+    console.end();
+    let mut outcome = result.map_err(|e| {
+        if e.while_running {
+            Failure::Run(match &e.help {
+                Some(help) => format!("{e}\n{help}"),
+                None => e.to_string(),
+            })
+        } else {
+            Failure::Input((*e).into())
+        }
+    })?;
+    finish(&mut outcome, &name, &text, &results, threads).map_err(|e| Failure::Run(e.to_string()))
+}
+
+/// Report, last state and picture of a script that ran.
+fn finish(
+    outcome: &mut Outcome,
+    name: &str,
+    text: &str,
+    dir: &Path,
+    threads: usize,
+) -> Result<(), WriteError> {
+    let engine = outcome.engine.as_mut().map(|e| e.as_any());
+    let Some(model) = engine.and_then(|e| e.downcast_mut::<ModelEngine>()) else {
+        say("the script has no `run`: nothing was computed");
+        return Ok(());
+    };
+    let sim = model.simulation();
+    let series_options = SeriesOptions {
+        picture: Some(PictureOptions {
+            title: name.to_string(),
+            length_unit: "m".into(),
+            time_unit: "s".into(),
+            ..PictureOptions::default()
+        }),
+        ..SeriesOptions::default()
+    };
+    let snapshot = sim.snapshot(SnapshotOptions {
+        energies: true,
+        ..SnapshotOptions::default()
+    });
+    let mut series = Series::new(dir, series_options)?;
+    series.write(&snapshot)?;
+    let picture = series.finish(&snapshot)?;
+    drop(snapshot);
+    let report = report(
+        sim,
+        outcome.steps,
+        outcome.seconds_stepping,
+        name,
+        text,
+        threads,
+    );
+    report.write(&dir.join("run.json"))?;
+    say(&format!(
+        "done: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
+        report.steps,
+        report.seconds_stepping,
+        report.ns_per_bond_step.map_or(String::new(), |ns| format!(
+            ", {ns:.2} ns per bond and step"
+        )),
+        report.broken_directed_bonds,
+        report.fragments.unwrap_or(0),
+        dir.display(),
+    ));
+    if let Some(path) = picture {
+        say(&format!("picture: {}", path.display()));
+    }
+    Ok(())
+}
+
+fn report(
+    sim: &mut dyn Simulation,
+    steps: u64,
+    seconds: f64,
+    name: &str,
+    text: &str,
+    threads: usize,
+) -> RunReport {
+    let mut warnings = sim.info().warnings.clone();
+    let ledger = sim.ledger().unwrap_or_else(|e| {
+        warnings.push(e.to_string());
+        Default::default()
+    });
+    let info = sim.info();
+    RunReport {
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        deck: name.to_string(),
+        deck_hash: run_json::deck_hash(text.as_bytes()),
+        title: info_title(name),
+        status: Status::Done,
+        particles: info.points,
+        directed_bonds: info.directed_bonds,
+        steps,
+        time_step: info.time_step,
+        seconds_stepping: seconds,
+        ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
+        peak_memory_bytes: run_json::peak_memory_bytes(),
+        broken_directed_bonds: sim.broken(),
+        fragments: Some(sim.fragments()),
+        threads,
+        simd: info.simd.to_string(),
+        energy: EnergyReport::from(&ledger),
+        warnings,
+    }
+}
+
+/// `decks/in.impact_disk` is called `impact_disk`.
+fn info_title(name: &str) -> String {
+    let path = Path::new(name);
+    let file = path
+        .file_name()
+        .map_or_else(|| name.to_string(), |f| f.to_string_lossy().into_owned());
+    match file.strip_prefix("in.") {
+        Some(rest) if !rest.is_empty() => rest.to_string(),
+        _ => path
+            .file_stem()
+            .map_or(file.clone(), |s| s.to_string_lossy().into_owned()),
+    }
+}
+
+fn folder(script: &Path) -> PathBuf {
+    default_dir(Path::new(&info_title(&script.to_string_lossy())))
+}
+
+/// LAMMPS's lines on standard output, a bar or notes on standard error.
+#[derive(Default)]
+struct Terminal {
+    bar: Option<ProgressBar>,
+    lines: StandardConsole,
+}
+
+impl Terminal {
+    fn end(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Console for Terminal {
+    fn print(&mut self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| self.lines.print(line)),
+            None => self.lines.print(line),
+        }
+    }
+
+    fn note(&mut self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| self.lines.note(line)),
+            None => self.lines.note(line),
+        }
+    }
+
+    fn progress(&mut self, done: u64, of: u64) {
+        if done == of {
+            self.end();
+        } else if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        } else if std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new(of);
+            let style = "{bar:30.cyan} {pos}/{len} steps  {per_sec}  {eta} left";
+            bar.set_style(
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar.set_position(done);
+            self.bar = Some(bar);
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Patch test: the stiffness that a given set of points really has, in the bulk and where families are cut.
+//!
+//! Under homogeneous strains the strain energy density of every point is a quadratic form, whose coefficients the
+//! D(D+1)/2 unit strains and their pair sums give. Points are sorted by how much of a full family they have.
+
+use crate::stiffness::{Stiffness, axes, components};
+use peridyne::run::Simulation;
+use std::f64::consts::PI;
+
+/// So small that laws are linear, so large that round-off of positions does not count.
+const STRAIN: f64 = 1e-6;
+/// A family with this part of a full one counts as full.
+const FULL: f64 = 0.9;
+
+/// Where a point is, by how much of a full family it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// 90 % or more.
+    Bulk,
+    /// As at a flat face or below it: about half and more. In 2-D an edge of the sheet, in 1-D an end.
+    Face,
+    /// As at an edge: about a quarter to a half. In 2-D a corner.
+    Edge,
+    /// As at a corner: less.
+    Corner,
+    /// Partners of another material.
+    Interface,
+}
+
+impl Place {
+    /// What it is called in a body of `dimension` dimensions.
+    pub fn name(self, dimension: usize) -> &'static str {
+        match (self, dimension) {
+            (Place::Bulk, _) => "bulk",
+            (Place::Face, 1) => "end",
+            (Place::Face, 2) => "edge",
+            (Place::Face, _) => "face",
+            (Place::Edge, 2) => "corner",
+            (Place::Edge, _) => "edge",
+            (Place::Corner, _) => "corner",
+            (Place::Interface, _) => "interface",
+        }
+    }
+}
+
+/// Points of one material in one kind of place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Class {
+    pub material: usize,
+    pub place: Place,
+    pub points: usize,
+    /// Mean size of their families.
+    pub family: f64,
+    /// Mean part of a full family.
+    pub part: f64,
+    /// Mean stiffness, weighted by volume.
+    pub stiffness: Stiffness,
+}
+
+/// What a patch test finds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PatchTest {
+    /// Volume of a full family: the median of those that come near the ball's, or the ball's if none does.
+    pub full: f64,
+    /// Classes that have points, by material, then from bulk to interface.
+    pub classes: Vec<Class>,
+}
+
+impl PatchTest {
+    /// The class nearest to the bulk of a material.
+    pub fn best(&self, material: usize) -> Option<&Class> {
+        self.classes.iter().find(|c| c.material == material)
+    }
+}
+
+/// Stiffness of every class of points. Takes one pass over the bonds per coefficient: 1, 6 or 21.
+pub fn patch_test(sim: &dyn Simulation) -> PatchTest {
+    let info = sim.info();
+    let d = info.dimension;
+    let families = sim.families();
+    let volume = sim.volumes();
+    let full = full_family(sim, &families.volume);
+    let cell = info.volume / info.points.max(1) as f64 / info.section;
+    let m = info.horizon / cell.powf(1.0 / d as f64);
+    let part: Vec<f64> = families.volume.iter().map(|v| v / full).collect();
+    let mut of_point = Vec::with_capacity(part.len());
+    let mut keys: Vec<(usize, Place)> = vec![];
+    for i in 0..part.len() {
+        let place = if families.foreign[i] {
+            Place::Interface
+        } else {
+            place(d, m, part[i])
+        };
+        let key = (families.material[i] as usize, place);
+        let k = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
+            keys.push(key);
+            keys.len() - 1
+        });
+        of_point.push(k);
+    }
+    let mut classes: Vec<Class> = keys
+        .iter()
+        .map(|&(material, place)| Class {
+            material,
+            place,
+            points: 0,
+            family: 0.0,
+            part: 0.0,
+            stiffness: Stiffness {
+                dimension: d,
+                c: [[0.0; 6]; 6],
+            },
+        })
+        .collect();
+    let mut weight = vec![0.0; classes.len()];
+    for (i, &k) in of_point.iter().enumerate() {
+        weight[k] += volume[i];
+        classes[k].points += 1;
+        classes[k].family += families.size[i] as f64;
+        classes[k].part += part[i];
+    }
+    for class in &mut classes {
+        class.family /= class.points as f64;
+        class.part /= class.points as f64;
+    }
+    let mut add = |strain: [f64; 6], i: usize, j: usize| {
+        let energies = sim.energy_under_strain(tensor(d, strain));
+        for ((w, &k), v) in energies.iter().zip(&of_point).zip(&volume) {
+            classes[k].stiffness.c[i][j] += w * v / weight[k] / (STRAIN * STRAIN);
+        }
+    };
+    for i in 0..components(d) {
+        for j in 0..=i {
+            let mut strain = [0.0; 6];
+            strain[i] += STRAIN;
+            if j < i {
+                strain[j] += STRAIN;
+            }
+            add(strain, i, j);
+        }
+    }
+    for class in &mut classes {
+        let energy = class.stiffness.c;
+        for i in 0..components(d) {
+            for j in 0..i {
+                let c = energy[i][j] - energy[i][i] - energy[j][j];
+                class.stiffness.c[i][j] = c;
+                class.stiffness.c[j][i] = c;
+            }
+            class.stiffness.c[i][i] = 2.0 * energy[i][i];
+        }
+    }
+    classes.sort_by_key(|c| (c.material, c.place));
+    PatchTest { full, classes }
+}
+
+/// Strain tensor of Voigt components with engineering shears.
+fn tensor(d: usize, voigt: [f64; 6]) -> [[f64; 3]; 3] {
+    let mut strain = [[0.0; 3]; 3];
+    for (c, e) in voigt.iter().enumerate().take(components(d)) {
+        let (a, b) = axes(d, c);
+        if a == b {
+            strain[a][a] = *e;
+        } else {
+            strain[a][b] = 0.5 * e;
+            strain[b][a] = 0.5 * e;
+        }
+    }
+    strain
+}
+
+/// Length, area or volume of the ball of radius r in `d` dimensions.
+fn ball(d: usize, r: f64) -> f64 {
+    match d {
+        1 => 2.0 * r,
+        2 => PI * r * r,
+        _ => 4.0 / 3.0 * PI * r * r * r,
+    }
+}
+
+/// Volume of a full family.
+fn full_family(sim: &dyn Simulation, families: &[f64]) -> f64 {
+    let info = sim.info();
+    let cell = info.volume / info.points.max(1) as f64;
+    let by_ball = ball(info.dimension, info.horizon) * info.section - cell;
+    let mut near: Vec<f64> = families
+        .iter()
+        .copied()
+        .filter(|v| *v >= FULL * by_ball)
+        .collect();
+    near.sort_by(f64::total_cmp);
+    near.get(near.len() / 2).copied().unwrap_or(by_ball)
+}
+
+/// A point on a flat face of a body with m spacings in a horizon keeps half of its family and half of the layer that
+/// it lies in, `φ`; at a square edge it keeps φ², at a corner φ³. The borders are halfway between, in powers.
+fn place(d: usize, m: f64, part: f64) -> Place {
+    let layer = match d {
+        1 => 0.0,
+        2 => 2.0 / (PI * m),
+        _ => 0.75 / m,
+    };
+    let face = 0.5 * (1.0 + layer.min(1.0));
+    if part >= FULL {
+        Place::Bulk
+    } else if d == 1 || part >= face.powf(1.5) {
+        Place::Face
+    } else if d == 2 || part >= face.powf(2.5) {
+        Place::Edge
+    } else {
+        Place::Corner
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cube_of_three_spacings_has_its_places() {
+        // whole families, and those of the outermost points of a block: 122, 75, 46, 28 of 122
+        for (size, expected) in [
+            (122.0, Place::Bulk),
+            (121.0, Place::Bulk),
+            (100.0, Place::Face),
+            (75.0, Place::Face),
+            (46.0, Place::Edge),
+            (28.0, Place::Corner),
+        ] {
+            assert_eq!(place(3, 3.0, size / 122.0), expected, "{size}");
+        }
+        assert_eq!(place(2, 3.0, 17.0 / 28.0), Place::Face);
+        assert_eq!(place(2, 3.0, 10.0 / 28.0), Place::Edge);
+        assert_eq!(place(1, 3.0, 0.5), Place::Face);
+    }
+
+    #[test]
+    fn voigt_components_are_engineering_strains() {
+        let e = tensor(3, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(e, [[1.0, 3.0, 2.5], [3.0, 2.0, 2.0], [2.5, 2.0, 3.0]]);
+        assert_eq!(tensor(2, [1.0, 2.0, 6.0, 0.0, 0.0, 0.0])[0][1], 3.0);
+    }
+}
