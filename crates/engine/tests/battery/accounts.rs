@@ -249,13 +249,13 @@ fn a_free_fall_is_a_parabola() {
         let mut spec = case.spec();
         spec.conditions = vec![on(
             "all",
-            ConditionKind::BodyForce([Some(e("0.3")), None, None]),
+            ConditionKind::BodyForce([Some(e("0.003")), None, None]),
         )];
         spec.materials.iter_mut().for_each(|m| m.density = RHO);
         let mut sim = made(&spec);
         sim.start(true);
         steps(sim.as_mut(), 100);
-        let fall = 0.5 * 0.3 / RHO * sim.time().powi(2);
+        let fall = 0.5 * 0.003 / RHO * sim.time().powi(2);
         for u in sim.displacements() {
             assert!((u[0] / fall - 1.0).abs() < 1e-11, "{}: {u:?}", case.name());
         }

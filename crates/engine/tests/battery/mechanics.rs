@@ -195,6 +195,30 @@ fn force_is_the_derivative_of_energy() {
     println!("f = −∂W/∂u to {worst:.1e}, whole, broken and repelling");
 }
 
+/// What is set is what is seen, through periodic faces too.
+#[test]
+fn energies_see_displacements_that_were_just_set() {
+    for case in cases() {
+        let mut case = case.clone();
+        case.place.cells = case.place.cells.map(|c| if c > 1 { 7 } else { 1 });
+        let mut spec = case.periodic();
+        let mut sims = [FamilyChoice::Stencil, FamilyChoice::List].map(|family| {
+            spec.family = family;
+            at_rest(&spec)
+        });
+        let u = Random(61).vectors(sims[0].reference().len(), case.d(), 0.05 * H);
+        let [a, b] = [0, 1].map(|k| {
+            sims[k].set_displacements(&u);
+            (sims[k].dilatation(), sims[k].energy_density())
+        });
+        let close = |a: &[f64], b: &[f64]| {
+            let top = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12 * top)
+        };
+        assert!(close(&a.0, &b.0) && close(&a.1, &b.1), "{}", case.name());
+    }
+}
+
 /// Two blocks pressed into each other: all forces, contact included, against the ledger.
 #[test]
 fn contact_force_is_the_derivative_of_contact_energy() {

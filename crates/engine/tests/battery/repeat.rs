@@ -3,7 +3,6 @@
 use crate::allocations;
 use crate::sample::*;
 use peridyne::execute::simd::Simd;
-use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
@@ -36,15 +35,15 @@ fn busy(name: &str, kind: LatticeKind, family: FamilyChoice) -> Spec {
     breaking(&mut spec, 0.02);
     spec.contact = Some(CONTACT);
     spec.schedule.time_step = TimeStep::Fixed(0.05 * H);
-    let x = 0.5 * H * place.cells[0] as f64;
+    // on a line it comes from the end
+    let x = match kind.dimension() {
+        1 => "-0.9+0.1*t".to_string(),
+        _ => format!("{}", 0.5 * H * place.cells[0] as f64),
+    };
     spec.indenters = vec![IndenterSpec {
         stiffness: 100.0,
         radius: 2.0 * H,
-        motion: IndenterMotion::Kinematic([
-            Expression::parse("a", &[("a", x)]).unwrap(),
-            e("-0.9+0.5*t"),
-            e("0.3"),
-        ]),
+        motion: IndenterMotion::Kinematic([e(&x), e("-0.9+0.5*t"), e("0.3")]),
     }];
     spec.conditions = vec![
         ConditionSpec {
@@ -140,8 +139,8 @@ fn a_step_allocates_nothing() {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let mut spec = busy(name, kind, family);
                 // the indenter rests in the body: what it touches does not grow
-                spec.indenters[0].motion =
-                    IndenterMotion::Kinematic([e("1.3"), e("-0.2"), e("0.3")]);
+                let x = e(if kind.dimension() == 1 { "-0.7" } else { "1.3" });
+                spec.indenters[0].motion = IndenterMotion::Kinematic([x, e("-0.2"), e("0.3")]);
                 pool.install(|| {
                     let mut sim = at_rest(&spec);
                     sim.set_time_step(0.05 * H);
