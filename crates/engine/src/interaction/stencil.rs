@@ -368,6 +368,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
+        let original: std::collections::HashMap<u32, u32> = body.images.iter().copied().collect();
         let mut count = 0;
         for n in 0..self.tiles.len() {
             let t = self.tiles[n] as usize;
@@ -381,9 +382,19 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 let from: [f64; D] = std::array::from_fn(|a| x[a]);
                 for (k, b) in bonds.iter().enumerate() {
                     let byte = &mut self.alive[n * self.width + k];
-                    if *byte >> l & 1 == 1
-                        && crosses(from, std::array::from_fn(|a| from[a] - b.back[a]))
-                    {
+                    if *byte >> l & 1 == 0 {
+                        continue;
+                    }
+                    // a bond through a periodic face is in two places; either end must see the same
+                    let partner = slot.wrapping_add_signed(b.shift) as u32;
+                    let elsewhere = || {
+                        original.get(&partner).is_some_and(|o| {
+                            let x = grid.position(*o as usize);
+                            let to: [f64; D] = std::array::from_fn(|a| x[a]);
+                            crosses(std::array::from_fn(|a| to[a] + b.back[a]), to)
+                        })
+                    };
+                    if crosses(from, std::array::from_fn(|a| from[a] - b.back[a])) || elsewhere() {
                         *byte &= !(1 << l);
                         count += 1;
                         if kind == CrackKind::Absent {

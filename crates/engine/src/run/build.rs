@@ -18,7 +18,8 @@ use crate::space::fill::fill;
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::space::{AXES, Point};
 use crate::spec::{
-    BodySpec, CrackKind, FamilyChoice, Horizon, Members, Perturbation, Spec, TimeStep,
+    BodySpec, Calibration, CrackKind, FamilyChoice, Horizon, LawSpec, MaterialSpec, Members,
+    Perturbation, Spec, TimeStep,
 };
 
 /// How to build, as opposed to what.
@@ -55,19 +56,24 @@ pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, Build
 pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D>, BuildError> {
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = vec![];
-    let (mut body, stencil, horizon) = body::<D>(spec)?;
-    let cell = match &spec.body {
-        BodySpec::Lattice {
-            kind: LatticeKind::Cubic | LatticeKind::Square | LatticeKind::Chain,
-            spacing,
-            ..
-        } => *spacing,
-        _ => body.spacing,
-    };
-    let discrete = match &stencil {
-        Some(s) => stencil_moments::<D>(spec, &body, s, horizon, cell),
-        None => Moments::continuum(D, horizon, spec.section, spec.influence),
-    };
+    let Reference {
+        mut body,
+        stencil,
+        bulk,
+        horizon,
+    } = reference::<D>(spec)?;
+    let cell = cell(spec, &body);
+    let bond_based = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_));
+    if bulk.is_none()
+        && spec.calibration == Calibration::Discrete
+        && spec.materials.iter().any(bond_based)
+    {
+        warnings.push(
+            "a cloud of points has no lattice family to calibrate to: the constants are those of the continuum".into(),
+        );
+    }
+    let discrete =
+        bulk.unwrap_or_else(|| Moments::continuum(D, horizon, spec.section, spec.influence));
     let sets = sets(spec, &body)?;
     assign_materials(spec, &mut body, &sets)?;
     if let BodySpec::Cloud(cloud) = &spec.body
@@ -234,8 +240,30 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     Ok(model)
 }
 
-/// Reference body, the stencil if there is one, and the horizon (length).
-fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), BuildError> {
+/// Where the points are, and what their family is.
+struct Reference<const D: usize> {
+    body: Body<D>,
+    /// The family, if it is a stencil.
+    stencil: Option<Stencil>,
+    /// Sums over a full family of the lattice that the points come from, whatever the family is.
+    bulk: Option<Moments>,
+    /// Length.
+    horizon: f64,
+}
+
+/// Distance over which the horizon cuts cells.
+fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
+    match &spec.body {
+        BodySpec::Lattice {
+            kind: LatticeKind::Cubic | LatticeKind::Square | LatticeKind::Chain,
+            spacing,
+            ..
+        } => *spacing,
+        _ => body.spacing,
+    }
+}
+
+fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
     let on_lattice = |kind: LatticeKind,
                       spacing: f64,
                       origin: [f64; 3],
@@ -301,13 +329,23 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
                 ));
             }
         }
-        Ok((body, Some(stencil), horizon))
+        let bulk = stencil_moments::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
+        Ok(Reference {
+            body,
+            stencil: Some(stencil),
+            bulk: Some(bulk),
+            horizon,
+        })
     };
-    let list_if_asked = |(body, stencil, horizon): (Body<D>, Option<Stencil>, f64)| {
+    let list_if_asked = |r: Reference<D>| {
         if spec.family == FamilyChoice::List {
-            Ok((body.to_cloud()?, None, horizon))
+            Ok(Reference {
+                body: r.body.to_cloud()?,
+                stencil: None,
+                ..r
+            })
         } else {
-            Ok((body, stencil, horizon))
+            Ok(r)
         }
     };
     match &spec.body {
@@ -332,9 +370,12 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
             let sites = fill(&lattice, region)?;
             match perturb {
                 Some(p) => {
-                    let (body, _, horizon) =
-                        on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?;
-                    Ok((perturbed(&body, p)?, None, horizon))
+                    let r = on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?;
+                    Ok(Reference {
+                        body: perturbed(&r.body, p)?,
+                        stencil: None,
+                        ..r
+                    })
                 }
                 None => list_if_asked(on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?),
             }
@@ -364,7 +405,12 @@ fn body<const D: usize>(spec: &Spec) -> Result<(Body<D>, Option<Stencil>, f64), 
                 spacing,
                 period,
             )?;
-            Ok((body, None, horizon_length(spec, spacing)))
+            Ok(Reference {
+                body,
+                stencil: None,
+                bulk: None,
+                horizon: horizon_length(spec, spacing),
+            })
         }
     }
 }

@@ -1,0 +1,202 @@
+//! Things that must be the same: stencil and list; LPS and PMB at ν = ¼ (plane stress ⅓); LPS and EAM-like.
+
+use crate::sample::*;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::*;
+
+#[test]
+fn a_stencil_is_a_list() {
+    let mut worst: f64 = 0.0;
+    for case in cases() {
+        let mut runs = vec![];
+        for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+            let mut spec = case.spec();
+            breaking(&mut spec, 0.03);
+            spec.contact = Some(CONTACT);
+            spec.family = family;
+            spec.schedule.time_step = TimeStep::Fixed(0.05 * H);
+            let mut sim = made(&spec);
+            let v = Random(13).vectors(sim.reference().len(), case.d(), 0.15);
+            sim.set_velocities(&v);
+            sim.start(true);
+            steps(sim.as_mut(), 50);
+            let ledger = sim.ledger();
+            runs.push((
+                sim.displacements(),
+                sim.broken(),
+                sim.damage(),
+                sim.info().clone(),
+                ledger,
+                sim.energy_density(),
+            ));
+        }
+        let [a, b] = &runs[..] else {
+            unreachable!("two runs")
+        };
+        assert_eq!((a.3.family_kind, b.3.family_kind), ("stencil", "list"));
+        assert_eq!(a.3.directed_bonds, b.3.directed_bonds, "{}", case.name());
+        for (c, d) in a.3.micromodulus.iter().zip(&b.3.micromodulus) {
+            assert!(
+                (c - d).abs() <= 1e-14 * c,
+                "{}: {c} is not {d}",
+                case.name()
+            );
+        }
+        assert!(
+            a.1 > 0 && a.1 < a.3.directed_bonds,
+            "{}: {} broken",
+            case.name(),
+            a.1
+        );
+        let off = distance(&a.0, &b.0) / largest(&a.0);
+        worst = worst.max(off);
+        assert!(off < 1e-12, "{}: {off:e}", case.name());
+        assert_eq!(a.1, b.1, "{}: broken", case.name());
+        for (x, y) in a.2.iter().zip(&b.2) {
+            assert!((x - y).abs() < 1e-14, "{}: damage", case.name());
+        }
+        let top = a.5.iter().fold(0.0f64, |m, w| m.max(*w));
+        for (x, y) in a.5.iter().zip(&b.5) {
+            assert!((x - y).abs() < 1e-11 * top, "{}: energy", case.name());
+        }
+        if let (Ok(x), Ok(y)) = (&a.4, &b.4) {
+            assert!(
+                (x.released - y.released).abs() < 1e-11 * x.released.abs(),
+                "{}: {} {}",
+                case.name(),
+                x.released,
+                y.released
+            );
+        }
+    }
+    println!("stencil = list after 50 breaking steps to {worst:.1e}");
+}
+
+/// All points of a periodic body are in the bulk. Both laws on all lattices.
+#[test]
+fn lps_is_pmb_where_poissons_ratio_is_that_of_bonds() {
+    let mut worst: f64 = 0.0;
+    for place in places() {
+        // on a line λ = E − 2G is G at ν = ½
+        let poisson = match (place.kind.dimension(), place.plane) {
+            (1, _) => 0.5,
+            (2, Plane::Stress) => 1.0 / 3.0,
+            _ => 0.25,
+        };
+        let young = 3.0;
+        let mut spec = Case::of("pmb", place).periodic();
+        let d = spec.dimension;
+        let mut pmb = at_rest(&spec);
+        spec.materials[0].law = LawSpec::Lps(Moduli { young, poisson });
+        spec.influence = Influence::Inverse;
+        let mut lps = at_rest(&spec);
+        let n = pmb.reference().len();
+        let u = Random(17).vectors(n, d, 0.1 * H);
+        let (f, g) = (pmb.forces_under(&u), lps.forces_under(&u));
+        let off = distance(&f, &g) / largest(&f);
+        worst = worst.max(off);
+        assert!(off < 1e-12, "{place:?}: {off:e}");
+        // and with another ratio they differ
+        {
+            spec.materials[0].law = LawSpec::Lps(Moduli {
+                young,
+                poisson: 0.1,
+            });
+            let other = at_rest(&spec).forces_under(&u);
+            assert!(distance(&f, &other) > 1e-2 * largest(&f));
+        }
+    }
+    println!("LPS = PMB at ν = ¼ (plane stress ⅓) to {worst:.1e}");
+}
+
+/// seleson2014 (A.26): k̄ = 30 G, p = 3K − 5G.
+#[test]
+fn lps_is_eam_like() {
+    let mut worst: f64 = 0.0;
+    for place in places() {
+        let (bulk, shear) = (2.0, 0.7);
+        let case = Case::of("lps as typed", place);
+        let mut spec = case.spec();
+        let mut laws = vec![
+            LawSpec::LpsAsTyped { bulk, shear },
+            LawSpec::EamLike {
+                pair: 30.0 * shear,
+                volume: 3.0 * bulk - 5.0 * shear,
+            },
+        ];
+        if case.d() == 3 {
+            laws.push(LawSpec::Lps(Moduli::from_bulk_shear(bulk, shear)));
+        }
+        let forces: Vec<_> = laws
+            .into_iter()
+            .map(|law| {
+                spec.materials[0].law = law;
+                let mut sim = at_rest(&spec);
+                let u = Random(19).vectors(sim.reference().len(), case.d(), 0.1 * H);
+                sim.forces_under(&u)
+            })
+            .collect();
+        for f in &forces[1..] {
+            let off = distance(f, &forces[0]) / largest(f);
+            worst = worst.max(off);
+            assert!(off < 1e-13, "{place:?}: {off:e}");
+        }
+    }
+    println!("LPS = EAM-like to {worst:.1e}");
+}
+
+/// One material in two names is one material.
+#[test]
+fn two_equal_materials_are_one() {
+    for place in places() {
+        for (mixed, name) in [("pmb mixed", "pmb"), ("lps mixed", "lps")] {
+            let case = Case::of(mixed, place);
+            let mut spec = case.spec();
+            let law = Case::of(name, place).material.laws[0];
+            spec.materials.iter_mut().for_each(|m| m.law = law);
+            let mut one = Case::of(name, place).spec();
+            one.influence = spec.influence;
+            let (mut a, mut b) = (at_rest(&spec), at_rest(&one));
+            let u = Random(23).vectors(a.reference().len(), case.d(), 0.1 * H);
+            let (f, g) = (a.forces_under(&u), b.forces_under(&u));
+            assert!(distance(&f, &g) < 1e-13 * largest(&f), "{place:?} {name}");
+        }
+    }
+}
+
+/// Interface rules of bonds between unlike materials: series, parallel, minimum, on a chain of nearest neighbours.
+#[test]
+fn interface_bonds_follow_their_rule() {
+    let place = Place {
+        kind: LatticeKind::Chain,
+        plane: Plane::Stress,
+        ratio: 1,
+        cells: [6, 1, 1],
+    };
+    for (rule, expected) in [
+        (InterfaceRule::Series, 2.0 * 3.0 / 4.0),
+        (InterfaceRule::Parallel, 2.0),
+        (InterfaceRule::Minimum, 1.0),
+    ] {
+        let mut spec = Case::of("pmb mixed", place).spec();
+        spec.interface = rule;
+        let mut sim = at_rest(&spec);
+        // open the bond at the interface only, then one within the stiffer half
+        let open = |at: usize| -> Vec<[f64; 3]> {
+            (0..6)
+                .map(|i| [if i >= at { 1e-3 } else { 0.0 }, 0.0, 0.0])
+                .collect()
+        };
+        let (left, across, right) = (
+            sim.forces_under(&open(1))[0][0],
+            sim.forces_under(&open(3))[2][0],
+            sim.forces_under(&open(5))[4][0],
+        );
+        assert!((left / right - 3.0).abs() < 1e-12, "{left} {right}");
+        assert!(
+            (across / right - expected).abs() < 1e-12,
+            "{rule:?}: {}",
+            across / right
+        );
+    }
+}
