@@ -67,8 +67,10 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     stiffness(found, &mut say);
     for (m, spec) in found.materials.iter().zip(&spec.materials) {
-        if matches!(spec.law, LawSpec::EamLike { .. } | LawSpec::LpsAsTyped { .. })
-            && m.asked.is_none()
+        if matches!(
+            spec.law,
+            LawSpec::EamLike { .. } | LawSpec::LpsAsTyped { .. }
+        ) && m.asked.is_none()
         {
             say(
                 format!(
@@ -104,7 +106,12 @@ fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
             "write horizon = { m_ratio = 3 }",
         );
     }
-    let lonely = found.families.size.iter().filter(|n| **n < d as u32).count();
+    let lonely = found
+        .families
+        .size
+        .iter()
+        .filter(|n| **n < d as u32)
+        .count();
     if lonely > 0 {
         say(
             format!("{lonely} points have fewer than {d} bonds and are mechanisms"),
@@ -170,7 +177,7 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
             }
         }
         if let Some(a) = class.stiffness.anisotropy()
-            && (a.zener - 1.0).abs() > 0.15
+            && (a.zener - 1.0).abs() > 0.2
         {
             say(
                 format!(

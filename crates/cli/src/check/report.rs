@@ -185,8 +185,10 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
     let line = |name: &str, real: Moduli, asked: Option<Moduli>, more: &str| {
         let cell = |value: f64, asked: Option<f64>, width: usize, scale: f64| {
             let percent = match asked {
+                // + 0.0 makes −0 and 0 one
                 Some(a) if a.is_finite() && a != 0.0 => {
-                    format!("{:+.1} %", 100.0 * (value / a - 1.0))
+                    let tenths = (1000.0 * (value / a - 1.0)).round() + 0.0;
+                    format!("{:+.1} %", 0.1 * tenths)
                 }
                 _ => String::new(),
             };
@@ -199,10 +201,10 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
             text += &cell(real.shear(), asked.map(|a| a.shear()), 20, scale.factor);
             text += &cell(real.poisson, asked.map(|a| a.poisson), 18, 1.0);
         }
-        text + more
+        (text + more).trim_end().to_string()
     };
     if let Some(asked) = m.asked {
-        let _ = writeln!(out, "{}", line("asked", asked, None, "").trim_end());
+        let _ = writeln!(out, "{}", line("asked", asked, None, ""));
     }
     for class in patch.classes.iter().filter(|c| c.material == n) {
         let real = class.stiffness.hill().solid(d, found.deck.spec.plane);
@@ -265,15 +267,20 @@ fn tensor(out: &mut String, class: &Class, scale: &Scale) {
         "      {}",
         names.iter().map(|n| format!("{n:>10}")).collect::<String>()
     );
+    // as many decimals as the largest entry has
     let largest = (0..n).map(|i| class.stiffness.c[i][i]).fold(0.0, f64::max);
+    let whole = digits(largest / scale.factor);
+    let decimals = whole.split_once('.').map_or(0, |(_, d)| d.len());
     for i in 0..n {
         let cells: String = (0..=i)
             .map(|j| {
                 let c = class.stiffness.c[i][j];
                 if c.abs() < 1e-6 * largest {
                     format!("{:>10}", "0")
-                } else {
+                } else if whole.contains('e') {
                     format!("{:>10}", digits(c / scale.factor))
+                } else {
+                    format!("{:>10.decimals$}", c / scale.factor)
                 }
             })
             .collect();
@@ -517,6 +524,7 @@ fn memory(bytes: f64) -> String {
 
 fn duration(seconds: f64) -> String {
     match seconds {
+        s if s < 1.0 => format!("{:.0} ms", (1e3 * s).max(1.0)),
         s if s < 60.0 => format!("{s:.1} s"),
         s if s < 3600.0 => format!("{:.1} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
