@@ -69,7 +69,7 @@ velocity = { x = "0.1*sin(1e6*y)" }
 [run]
 steps = 1000
 time_step = "2 us"
-force = true
+force_unstable = true
 [output]
 history = 100000
 picture = false
@@ -132,7 +132,11 @@ fn what_cannot_be_written_exits_with_1() {
     std::fs::write(&file, "in the way").unwrap();
     let crack = deck("good/minimal_crack.toml");
     let more = ["--set", "run.duration=1 us"];
-    for out in [file.as_path(), &file.join("below"), Path::new("/dev/full/x")] {
+    for out in [
+        file.as_path(),
+        &file.join("below"),
+        Path::new("/dev/full/x"),
+    ] {
         let output = run(&crack, out, &more);
         assert_eq!(output.status.code(), Some(1), "{}", out.display());
         assert!(
@@ -190,7 +194,10 @@ fn ten_lines_make_all_results() {
     }
     let pvd = std::fs::read_to_string(dir.path().join("points.pvd")).unwrap();
     for frame in ["points_00000000.vtu", "points_00000020.vtu"] {
-        assert!(pvd.contains(frame) && dir.path().join(frame).exists(), "{frame}");
+        assert!(
+            pvd.contains(frame) && dir.path().join(frame).exists(),
+            "{frame}"
+        );
     }
     let history = std::fs::read_to_string(dir.path().join("history.csv")).unwrap();
     assert!(history.lines().count() > 20, "{history}");

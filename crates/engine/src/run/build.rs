@@ -159,7 +159,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         );
         if !spec.schedule.force_unstable {
             return Err(BuildError::new("schedule.time_step", message)
-                .help(format!("write time_step = {:.3e} or \"auto\"; force = true under [run] runs it all the same", 0.8 * stable_step)));
+                .help(format!("write time_step = {:.3e} or \"auto\"; force_unstable = true under [run] runs it all the same", 0.8 * stable_step)));
         }
         warnings.push(message);
     }
