@@ -1,19 +1,187 @@
-//! `peridyne check`.
+//! `peridyne check`: what would run, what the body really is, and what it costs.
+
+mod advice;
+mod json;
+mod report;
 
 use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
+use crate::run::with_threads;
+use peridyne::law::micromodulus::Moments;
+use peridyne::run::{Families, Simulation};
+use peridyne::spec::{Criterion, Moduli};
+use peridyne_io::deck::Deck;
+use peridyne_theory::asked::asked;
+use peridyne_theory::elastic::{PatchTest, patch_test};
+use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
+use std::time::{Duration, Instant};
+
+/// Time spent on trial steps.
+const TRIAL: Duration = Duration::from_millis(500);
+/// Visits of bonds by the patch test above which it takes minutes.
+const PATIENCE: u64 = 50_000_000_000;
 
 #[derive(clap::Args)]
 pub struct CheckArguments {
     #[command(flatten)]
     pub input: Input,
+    /// Print JSON instead of a table; numbers are in the units of the run.
+    #[arg(long)]
+    pub json: bool,
+    /// Threads for the trial steps; all cores if not given.
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+/// Everything that `check` finds, in the units of the run.
+struct Findings<'a> {
+    deck: &'a Deck,
+    sim: &'a dyn Simulation,
+    families: Families,
+    /// Smallest and largest coordinate of the points.
+    low: [f64; 3],
+    high: [f64; 3],
+    /// `None`: the body is too large for one.
+    patch: Option<PatchTest>,
+    materials: Vec<Material>,
+    steps: u64,
+    trial: Trial,
+    threads: usize,
+}
+
+/// One material beside what the deck asked for.
+struct Material {
+    name: String,
+    density: f64,
+    asked: Option<Moduli>,
+    /// Speeds of long pressure and shear waves (length / time); no shear waves in 1-D.
+    pressure_wave: f64,
+    shear_wave: Option<f64>,
+    /// Critical stretch and fracture energy (energy / area), if it breaks; the energy if a formula is known.
+    fracture: Option<(f64, Option<f64>)>,
+}
+
+/// Steps taken to see how long one takes.
+struct Trial {
+    steps: u64,
+    seconds_per_step: Option<f64>,
+    /// Why the trial ended early.
+    failed: Option<String>,
 }
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
+    if !deck::is_deck(&arguments.input) {
+        return Err(Failure::input(format!(
+            "{}: check reads decks (.toml); `peridyne run` takes a LAMMPS script, and its `run 0` builds without stepping",
+            arguments.input.file.display()
+        )));
+    }
     let deck = deck::read(&arguments.input)?;
-    let sim = deck::model(&deck, &arguments.input)?;
-    say(&deck.describe());
-    say(&deck::headline(sim.as_ref()));
-    Ok(())
+    let threads = arguments.threads.or(deck.threads);
+    with_threads(threads, |threads| {
+        let mut sim = deck::model(&deck, &arguments.input)?;
+        let patch = patience(sim.as_ref()).then(|| patch_test(sim.as_ref()));
+        let families = sim.families();
+        let trial = trial(sim.as_mut());
+        let found = find(&deck, sim.as_ref(), patch, families, trial, threads);
+        say(&if arguments.json {
+            json::write(&found)
+        } else {
+            report::write(&found)
+        });
+        Ok(())
+    })
+}
+
+fn patience(sim: &dyn Simulation) -> bool {
+    let passes = [1, 6, 21][sim.info().dimension.clamp(1, 3) - 1];
+    sim.info().directed_bonds.saturating_mul(passes) < PATIENCE
+}
+
+fn find<'a>(
+    deck: &'a Deck,
+    sim: &'a dyn Simulation,
+    patch: Option<PatchTest>,
+    families: Families,
+    trial: Trial,
+    threads: usize,
+) -> Findings<'a> {
+    let reference = sim.reference();
+    let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
+        std::array::from_fn(|a| reference.iter().map(|x| x[a]).fold(start, pick))
+    };
+    Findings {
+        low: bound(f64::min, f64::INFINITY),
+        high: bound(f64::max, f64::NEG_INFINITY),
+        materials: materials(deck, sim, patch.as_ref()),
+        steps: deck.steps(sim.info().time_step),
+        deck,
+        sim,
+        families,
+        patch,
+        trial,
+        threads,
+    }
+}
+
+fn materials(deck: &Deck, sim: &dyn Simulation, patch: Option<&PatchTest>) -> Vec<Material> {
+    let (spec, info) = (&deck.spec, sim.info());
+    let d = info.dimension;
+    let moments = Moments::continuum(d, info.horizon, spec.section, spec.influence);
+    let body = Body {
+        dimension: d,
+        plane: spec.plane,
+        horizon: info.horizon,
+        moments,
+    };
+    let each = spec.materials.iter().enumerate().map(|(n, m)| {
+        let asked = asked(&m.law, d, spec.plane, moments);
+        let s00 = info.critical_stretch.get(n).copied();
+        let (k, g) = match patch.and_then(|p| p.best(n)) {
+            Some(class) => {
+                let m = class.stiffness.hill();
+                (m.bulk, m.shear)
+            }
+            None => (f64::NAN, f64::NAN),
+        };
+        // of the D-dimensional solid: K + 2G(D − 1)/D, in 1-D the bar's E
+        let pressure = k + 2.0 * g * (d as f64 - 1.0) / d as f64;
+        Material {
+            name: m.name.clone(),
+            density: m.density,
+            asked,
+            pressure_wave: (pressure / m.density).sqrt(),
+            shear_wave: (d > 1).then(|| (g / m.density).sqrt()),
+            fracture: s00.filter(|s| s.is_finite()).map(|s| {
+                let energy = match m.fracture.map(|f| f.criterion) {
+                    Some(Criterion::Energy(energy)) => Some(energy),
+                    _ => {
+                        energy_per_stretch_squared(&m.law, info.micromodulus.get(n).copied(), body)
+                            .map(|e| e * s * s)
+                    }
+                };
+                (s, energy)
+            }),
+        }
+    });
+    each.collect()
+}
+
+fn trial(sim: &mut dyn Simulation) -> Trial {
+    sim.start(true);
+    let begin = Instant::now();
+    let (mut steps, mut failed) = (0, None);
+    while begin.elapsed() < TRIAL {
+        if let Err(error) = sim.step() {
+            failed = Some(error.to_string());
+            break;
+        }
+        steps += 1;
+    }
+    Trial {
+        steps,
+        seconds_per_step: (steps > 0).then(|| begin.elapsed().as_secs_f64() / steps as f64),
+        failed,
+    }
 }

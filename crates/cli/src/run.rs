@@ -38,7 +38,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
 }
 
 /// Everything runs inside a pool of its own, so that sweeps never cross into another.
-fn with_threads(
+pub fn with_threads(
     threads: Option<usize>,
     work: impl FnOnce(usize) -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {

@@ -28,6 +28,14 @@ pub enum Place {
 }
 
 impl Place {
+    pub const ALL: [Place; 5] = [
+        Place::Bulk,
+        Place::Face,
+        Place::Edge,
+        Place::Corner,
+        Place::Interface,
+    ];
+
     /// What it is called in a body of `dimension` dimensions.
     pub fn name(self, dimension: usize) -> &'static str {
         match (self, dimension) {

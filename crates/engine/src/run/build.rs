@@ -143,6 +143,13 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     };
     let dt = match spec.schedule.time_step {
         TimeStep::Fraction(x) if stable_step.is_finite() => x * stable_step,
+        TimeStep::Fraction(_) if body.points() == 1 => {
+            return Err(BuildError::new(
+                "body",
+                "the body has one point, and a point alone has no bonds",
+            )
+            .help("a larger region or a smaller spacing"));
+        }
         TimeStep::Fraction(_) => {
             return Err(BuildError::new(
                 "schedule.time_step",
@@ -164,7 +171,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         );
         if !spec.schedule.force_unstable {
             return Err(BuildError::new("schedule.time_step", message)
-                .help(format!("write time_step = {:.3e} or \"auto\"; force = true under [run] runs it all the same", 0.8 * stable_step)));
+                .help(format!("write time_step = {:.3e} or \"auto\"; force_unstable = true under [run] runs it all the same", 0.8 * stable_step)));
         }
         warnings.push(message);
     }

@@ -202,8 +202,13 @@ fn what_is_wrong_is_said_with_its_line() {
 proptest! {
     /// No damage to a file makes a reader panic.
     #[test]
-    fn damaged_files_are_read_or_refused(which in 0usize..3, at in 0.0..1.0f64, cut in 0usize..40, put in "[-0-9$*,. \\nA-Za-z]{0,12}") {
-        let (text, extension) = [(PLATE, "inp"), (OLD, "msh"), (NEW, "msh")][which];
+    fn damaged_files_are_read_or_refused(which in 0usize..4, at in 0.0..1.0f64, cut in 0usize..40, put in "[-0-9$*,. \\nA-Za-z]{0,12}") {
+        let (text, extension) = [
+            (PLATE, "inp"),
+            (OLD, "msh"),
+            (NEW, "msh"),
+            ("# x y z V mark\n0 0 0 1e-9 1\n\n1, 0, 0, 2e-9, -4 # last\n", "txt"),
+        ][which];
         let start = (at * text.len() as f64) as usize;
         let damaged = format!("{}{put}{}", &text[..start], &text[(start + cut).min(text.len())..]);
         if let Err(error) = parse(&damaged, "f", extension) {

@@ -1,0 +1,191 @@
+//! What looks wrong, and what to write instead.
+
+use super::Findings;
+use peridyne::spec::{Calibration, Horizon, LawSpec};
+use peridyne_io::deck::UnitSystem;
+use peridyne_theory::elastic::Place;
+
+/// A warning with its fix.
+pub struct Advice {
+    pub what: String,
+    pub fix: Option<String>,
+}
+
+pub fn advice(found: &Findings) -> Vec<Advice> {
+    let mut all: Vec<Advice> = vec![];
+    let mut say = |what: String, fix: &str| {
+        all.push(Advice {
+            what,
+            fix: (!fix.is_empty()).then(|| fix.to_string()),
+        });
+    };
+    let (spec, info) = (&found.deck.spec, found.sim.info());
+    for warning in &info.warnings {
+        say(warning.clone(), "");
+    }
+    geometry(found, &mut say);
+    let fraction = info.time_step / info.stable_step;
+    if fraction < 0.05 {
+        say(
+            format!(
+                "the time step is {:.1} % of the stability limit",
+                100.0 * fraction
+            ),
+            "leave run.time_step out (80 % of the limit), or write time_step = { safety = 0.5 }",
+        );
+    }
+    for m in &found.materials {
+        let speed = m.pressure_wave;
+        if found.deck.units == UnitSystem::Si && speed > 30e3 {
+            say(
+                format!(
+                    "pressure waves of `{}` run at {speed:.3e} m/s, faster than in any solid",
+                    m.name
+                ),
+                "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
+            );
+        }
+        if found.deck.units == UnitSystem::Si && speed < 1.0 {
+            say(
+                format!(
+                    "pressure waves of `{}` run at {speed:.3e} m/s, slower than in any solid",
+                    m.name
+                ),
+                "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
+            );
+        }
+        if let Some((s00, _)) = m.fracture.filter(|f| f.0 > 0.05) {
+            say(
+                format!(
+                    "bonds of `{}` break at a stretch of {:.1} %: beyond 5 % strains are not small",
+                    m.name,
+                    100.0 * s00
+                ),
+                "a larger horizon or a smaller fracture energy gives a smaller critical stretch",
+            );
+        }
+    }
+    stiffness(found, &mut say);
+    for (m, spec) in found.materials.iter().zip(&spec.materials) {
+        if matches!(
+            spec.law,
+            LawSpec::EamLike { .. } | LawSpec::LpsAsTyped { .. }
+        ) && m.asked.is_none()
+        {
+            say(
+                format!(
+                    "the law of `{}` has the constants of a 3-D solid, in a {}-D body",
+                    m.name, info.dimension
+                ),
+                "law = { lps = … } has the right constants in every dimension",
+            );
+        }
+    }
+    if let Some(why) = &found.trial.failed {
+        say(
+            format!("trial steps failed: {why}"),
+            "a smaller time step; slower initial velocities; softer contact or indenter",
+        );
+    }
+    all
+}
+
+fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
+    let (spec, info) = (&found.deck.spec, found.sim.info());
+    let d = info.dimension;
+    let small = match spec.horizon {
+        Horizon::Ratio(m) => m < 3,
+        Horizon::Length(_) => info.horizon < 2.5 * info.spacing,
+    };
+    if small {
+        say(
+            format!(
+                "the horizon is {:.2} spacings: below 3, cracks follow the lattice and waves disperse strongly",
+                info.horizon / info.spacing
+            ),
+            "write horizon = { m_ratio = 3 }",
+        );
+    }
+    let lonely = found
+        .families
+        .size
+        .iter()
+        .filter(|n| **n < d as u32)
+        .count();
+    if lonely > 0 {
+        say(
+            format!("{lonely} points have fewer than {d} bonds and are mechanisms"),
+            "a larger horizon, or a region without such corners",
+        );
+    }
+    for a in 0..d {
+        // points stand for cells: the body reaches half a spacing beyond them
+        let thickness = found.high[a] - found.low[a] + info.spacing;
+        if spec.periodic[a].is_none() && thickness < info.horizon * (1.0 - 1e-9) {
+            say(
+                format!(
+                    "along {} the body is thinner ({:.2} spacings) than the horizon ({:.2} spacings)",
+                    ["x", "y", "z"][a],
+                    thickness / info.spacing,
+                    info.horizon / info.spacing
+                ),
+                "a smaller spacing with the same m_ratio, or a 2-D body with a thickness",
+            );
+        }
+    }
+}
+
+fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
+    let spec = &found.deck.spec;
+    let Some(patch) = &found.patch else { return };
+    for (n, m) in found.materials.iter().enumerate() {
+        let Some(class) = patch.best(n) else { continue };
+        if class.place != Place::Bulk {
+            say(
+                format!(
+                    "no point of `{}` has a full family: all of it is surface, and softer than asked for",
+                    m.name
+                ),
+                "a smaller spacing with the same m_ratio",
+            );
+            continue;
+        }
+        let real = class
+            .stiffness
+            .hill()
+            .solid(class.stiffness.dimension, spec.plane);
+        if let Some(asked) = m.asked {
+            let off = real.young / asked.young - 1.0;
+            if off.abs() > 0.05 {
+                let fix = match (spec.calibration, spec.materials[n].law) {
+                    (_, LawSpec::Pmb(peridyne::spec::PmbStiffness::Micromodulus(_))) => {
+                        "give bulk or young instead of micromodulus: the constant is then calibrated to this body"
+                    }
+                    (Calibration::Continuum, _) => {
+                        "write calibration = \"discrete\": the constants then come from this body's own sums"
+                    }
+                    (Calibration::Discrete, _) => "a larger m_ratio comes nearer to the continuum",
+                };
+                say(
+                    format!(
+                        "Young's modulus of `{}` in the bulk is {:+.1} % off what was asked for",
+                        m.name,
+                        100.0 * off
+                    ),
+                    fix,
+                );
+            }
+        }
+        if let Some(a) = class.stiffness.anisotropy()
+            && (a.zener - 1.0).abs() > 0.2
+        {
+            say(
+                format!(
+                    "`{}` is anisotropic in the bulk: Zener ratio {:.2}",
+                    m.name, a.zener
+                ),
+                "a larger m_ratio makes the body more isotropic; influence functions that fade make it less",
+            );
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The findings as JSON.
+
+use super::Findings;
+use super::advice::advice;
+use peridyne_theory::elastic::Class;
+use peridyne_theory::stiffness::components;
+use serde_json::{Value, json};
+
+pub fn write(found: &Findings) -> String {
+    let info = found.sim.info();
+    let materials = found.materials.iter().enumerate().map(|(n, m)| {
+        let classes = found.patch.iter().flat_map(|p| &p.classes);
+        json!({
+            "name": m.name,
+            "density": m.density,
+            "asked": m.asked.map(|a| json!({
+                "young": a.young, "poisson": a.poisson, "bulk": a.bulk(), "shear": a.shear(),
+            })),
+            "places": classes.filter(|c| c.material == n).map(|c| class(found, c)).collect::<Vec<_>>(),
+            "pressure_wave": m.pressure_wave,
+            "shear_wave": m.shear_wave,
+            "critical_stretch": m.fracture.map(|f| f.0),
+            "fracture_energy": m.fracture.and_then(|f| f.1),
+            "micromodulus": info.micromodulus.get(n),
+        })
+    });
+    let report = json!({
+        "title": found.deck.spec.title,
+        "units": found.deck.units.name(),
+        "dimension": info.dimension,
+        "particles": info.points,
+        "spacing": info.spacing,
+        "horizon": info.horizon,
+        "low": found.low[..info.dimension],
+        "high": found.high[..info.dimension],
+        "mass": info.mass,
+        "volume": info.volume,
+        "directed_bonds": info.directed_bonds,
+        "family": {
+            "kind": info.family_kind, "min": info.family.0, "mean": info.family.1, "max": info.family.2,
+            "full_volume": found.patch.as_ref().map(|p| p.full),
+        },
+        "near_horizon": info.near_horizon,
+        "cut_by_precracks": info.cut,
+        "materials": materials.collect::<Vec<_>>(),
+        "steps": found.steps,
+        "time_step": info.time_step,
+        "stable_step": info.stable_step,
+        "memory_bytes": info.bytes,
+        "threads": found.threads,
+        "simd": info.simd,
+        "seconds_per_step": found.trial.seconds_per_step,
+        "seconds": found.trial.seconds_per_step.map(|s| s * found.steps as f64),
+        "warnings": advice(found).iter().map(|a| json!({"what": a.what, "fix": a.fix})).collect::<Vec<_>>(),
+    });
+    serde_json::to_string_pretty(&report).unwrap_or_default()
+}
+
+fn class(found: &Findings, c: &Class) -> Value {
+    let d = c.stiffness.dimension;
+    let solid = c.stiffness.hill().solid(d, found.deck.spec.plane);
+    let n = components(d);
+    json!({
+        "place": c.place.name(d),
+        "points": c.points,
+        "family": c.family,
+        "part_of_full": c.part,
+        "young": solid.young,
+        "poisson": solid.poisson,
+        "bulk": solid.bulk(),
+        "shear": solid.shear(),
+        "zener": c.stiffness.anisotropy().map(|a| a.zener),
+        "universal_anisotropy": c.stiffness.anisotropy().and_then(|a| a.universal),
+        "young_along": c.stiffness.young_along(),
+        "stiffness": c.stiffness.c[..n].iter().map(|r| &r[..n]).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,334 @@
+//! The program as a user runs it: exit codes, what is written, what is not.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn decks(folder: &str) -> Vec<PathBuf> {
+    let mut all: Vec<PathBuf> = std::fs::read_dir(deck(folder))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    all.sort();
+    assert!(!all.is_empty());
+    all
+}
+
+fn deck(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../decks")
+        .join(name)
+}
+
+fn peridyne(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// `peridyne run DECK --out OUT …`
+fn run(deck: &Path, out: &Path, more: &[&str]) -> Output {
+    let mut arguments = vec![
+        "run",
+        deck.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    arguments.extend(more);
+    peridyne(&arguments)
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn good(output: Output) -> Output {
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    output
+}
+
+fn report(out: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(out.join("run.json")).unwrap()).unwrap()
+}
+
+/// A block that flies apart as soon as its step is too long.
+const BLOCK: &str = r#"horizon = { m_ratio = 3 }
+contact = false
+[body]
+lattice = "cubic"
+spacing = "1 mm"
+region = { block = { low = [0, 0, 0], high = ["9 mm", "9 mm", "9 mm"] } }
+[material]
+density = "2200 kg/m^3"
+law = { pmb = { bulk = "14.9 GPa" } }
+[[initial]]
+velocity = { x = "0.1*sin(1e6*y)" }
+[run]
+steps = 1000
+time_step = "2 us"
+force_unstable = true
+[output]
+history = 100000
+picture = false
+"#;
+
+#[test]
+fn wrong_input_exits_with_2_and_writes_nothing() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("out");
+    for name in [
+        "bad/unknown_key.toml",
+        "bad/nan_in_file.toml",
+        "bad/truncated_file.toml",
+        "bad/build/step_above_limit.toml",
+        "bad/build/overlapping_sets.toml",
+        "good/no_such_deck.toml",
+    ] {
+        let output = run(&deck(name), &out, &[]);
+        assert_eq!(output.status.code(), Some(2), "{name}: {}", errors(&output));
+        assert!(!errors(&output).is_empty(), "{name} fails in silence");
+        assert!(!out.exists(), "{name} left files");
+        let output = peridyne(&["check", deck(name).to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2), "check {name}");
+    }
+    let impact = deck("good/ten_lines.toml");
+    for more in [
+        ["--threads", "0"],
+        ["--simd", "sse9"],
+        ["--set", "run.stepz=1"],
+        ["--set", "run.steps"],
+        ["--var", "a=1"],
+    ] {
+        let output = run(&impact, &out, &more);
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        assert!(!out.exists(), "{more:?} left files");
+    }
+}
+
+#[test]
+fn an_error_names_file_and_line_and_shows_them() {
+    let output = peridyne(&[
+        "check",
+        deck("bad/build/step_above_limit.toml").to_str().unwrap(),
+    ]);
+    let text = errors(&output);
+    for part in [
+        "step_above_limit.toml",
+        "time_step = \"1 ms\"",
+        "above the stability limit",
+        "write time_step",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+#[test]
+fn what_cannot_be_written_exits_with_1() {
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("file");
+    std::fs::write(&file, "in the way").unwrap();
+    let crack = deck("good/minimal_crack.toml");
+    let more = ["--set", "run.duration=1 us"];
+    for out in [
+        file.as_path(),
+        &file.join("below"),
+        Path::new("/dev/full/x"),
+    ] {
+        let output = run(&crack, out, &more);
+        assert_eq!(output.status.code(), Some(1), "{}", out.display());
+        assert!(
+            errors(&output).contains("cannot create"),
+            "{}: {}",
+            out.display(),
+            errors(&output)
+        );
+    }
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), "in the way");
+}
+
+#[test]
+fn ten_lines_make_all_results() {
+    let dir = TempDir::new().unwrap();
+    let output = good(run(
+        &deck("good/ten_lines.toml"),
+        dir.path(),
+        &["--set", "run.steps=20"],
+    ));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("done: 20 steps"), "{text}");
+    let report = report(dir.path());
+    for key in [
+        "version",
+        "deck_hash",
+        "particles",
+        "directed_bonds",
+        "steps",
+        "time_step",
+        "seconds_stepping",
+        "ns_per_bond_step",
+        "peak_memory_bytes",
+        "broken_directed_bonds",
+        "fragments",
+        "threads",
+    ] {
+        assert!(!report[key].is_null(), "run.json has no {key}");
+    }
+    assert_eq!(report["status"], "done");
+    assert_eq!(report["particles"], 103_158);
+    assert_eq!(report["steps"], 20);
+    assert_eq!(report["time_step"], 1e-7);
+    assert!(["portable", "avx2", "avx512"].contains(&report["simd"].as_str().unwrap()));
+    for key in [
+        "kinetic",
+        "strain",
+        "contact",
+        "released",
+        "work_conditions",
+        "work_indenter",
+        "residual",
+    ] {
+        assert!(report["energy"][key].is_number(), "no energy.{key}");
+    }
+    let pvd = std::fs::read_to_string(dir.path().join("points.pvd")).unwrap();
+    for frame in ["points_00000000.vtu", "points_00000020.vtu"] {
+        assert!(
+            pvd.contains(frame) && dir.path().join(frame).exists(),
+            "{frame}"
+        );
+    }
+    let history = std::fs::read_to_string(dir.path().join("history.csv")).unwrap();
+    assert!(history.lines().count() > 20, "{history}");
+    let picture = std::fs::read(dir.path().join("damage.png")).unwrap();
+    assert_eq!(&picture[..4], b"\x89PNG");
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let small = "body.spacing=1.25 mm";
+    let frame = |threads: &str| {
+        let dir = TempDir::new().unwrap();
+        let more = [
+            "--threads",
+            threads,
+            "--set",
+            small,
+            "--set",
+            "run.steps=60",
+            "--set",
+            "output.bonds=true",
+        ];
+        good(run(&deck("good/ten_lines.toml"), dir.path(), &more));
+        assert_eq!(report(dir.path())["threads"].to_string(), threads);
+        ["points_00000060.vtu", "bonds_00000060.vtu", "history.csv"]
+            .map(|f| std::fs::read(dir.path().join(f)).unwrap_or_else(|e| panic!("{f}: {e}")))
+    };
+    let (one, two) = (frame("1"), frame("2"));
+    for (a, b) in one.iter().zip(&two) {
+        assert!(a == b);
+    }
+}
+
+#[test]
+fn an_unstable_run_stops_with_1_and_keeps_its_last_good_state() {
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("block.toml");
+    std::fs::write(&file, BLOCK).unwrap();
+    let out = dir.path().join("out");
+    let output = run(&file, &out, &[]);
+    let text = errors(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("step ") && text.contains("point "), "{text}");
+    let report = report(&out);
+    let steps = report["steps"].as_u64().unwrap();
+    assert!(steps > 0 && steps < 1000, "{steps}");
+    assert!(report["status"].as_str().unwrap().starts_with("stopped: "));
+    let last = format!("points_{steps:08}.vtu");
+    let pvd = std::fs::read_to_string(out.join("points.pvd")).unwrap();
+    assert!(pvd.contains(&last), "{pvd}");
+    assert!(out.join(last).exists());
+}
+
+#[test]
+fn every_good_deck_runs() {
+    for path in decks("good") {
+        let dir = TempDir::new().unwrap();
+        let short = if std::fs::read_to_string(&path).unwrap().contains("duration") {
+            "run.duration=0.7 us"
+        } else {
+            "run.steps=5"
+        };
+        good(run(&path, dir.path(), &["--set", short]));
+        assert!(report(dir.path())["steps"].as_u64().unwrap() > 0);
+    }
+}
+
+#[test]
+fn check_finds_the_moduli_that_were_asked_for() {
+    let path = deck("good/periodic_wave.toml");
+    let output = good(peridyne(&["check", path.to_str().unwrap(), "--json"]));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["particles"], 8000);
+    let bulk = &found["materials"][0]["places"][0];
+    assert_eq!(bulk["place"], "bulk");
+    assert_eq!(bulk["points"], 8000);
+    // the dilatation of a linear peridynamic solid is exact, its shear modulus calibrated
+    let off = |key: &str, value: f64| (bulk[key].as_f64().unwrap() / value - 1.0).abs();
+    assert!(off("bulk", 14.9e9) < 1e-5, "{bulk}");
+    assert!(off("shear", 6e9) < 0.01, "{bulk}");
+    let c = &bulk["stiffness"];
+    assert!((c[0][1].as_f64().unwrap() / c[1][2].as_f64().unwrap() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn check_reads_well() {
+    let path = deck("good/kalthoff.toml");
+    let output = good(peridyne(&["check", path.to_str().unwrap()]));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    for part in [
+        "20,301",
+        "3.0000 spacings of 1 mm",
+        "pre-cracks cut",
+        "asked           191.00",
+        "% of the stability limit",
+        "22200 J/m^2 (asked)",
+        "steps/s",
+        "No warnings",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+#[test]
+fn check_warns_with_the_fix() {
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("odd.toml");
+    let odd = BLOCK
+        .replace("m_ratio = 3", "m_ratio = 2")
+        .replace("\"9 mm\", \"9 mm\", \"9 mm\"", "\"9 mm\", \"9 mm\", 0")
+        .replace("14.9 GPa", "14.9e9 GPa")
+        .replace(
+            "[[initial]]",
+            "fracture = { critical_stretch = \"20 %\" }\n[[initial]]",
+        )
+        .replace("2 us", "1e-15 s");
+    std::fs::write(&file, odd).unwrap();
+    let output = good(peridyne(&["check", file.to_str().unwrap(), "--json"]));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let warnings = found["warnings"].to_string();
+    for part in [
+        "2.00 spacings",
+        "thinner",
+        "no point of `material` has a full family",
+        "faster than in any solid",
+        "beyond 5 %",
+        "of the stability limit",
+    ] {
+        assert!(warnings.contains(part), "{part} is not in\n{warnings}");
+    }
+    for warning in found["warnings"].as_array().unwrap() {
+        assert!(warning["fix"].is_string(), "{warning}");
+    }
+}

@@ -1,0 +1,248 @@
+//! Units: what `"14.9 GPa"` is in a unit system.
+
+mod parse;
+mod table;
+mod write;
+
+pub use parse::{split, unit};
+pub use table::Unit;
+pub(in crate::deck) use write::short;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::fmt;
+
+/// Exponents of length, mass and time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dim(pub [i8; 3]);
+
+impl Dim {
+    pub const NUMBER: Dim = Dim([0, 0, 0]);
+    pub const LENGTH: Dim = Dim([1, 0, 0]);
+    pub const AREA: Dim = Dim([2, 0, 0]);
+    pub const VOLUME: Dim = Dim([3, 0, 0]);
+    pub const MASS: Dim = Dim([0, 1, 0]);
+    pub const TIME: Dim = Dim([0, 0, 1]);
+    pub const VELOCITY: Dim = Dim([1, 0, -1]);
+    pub const DENSITY: Dim = Dim([-3, 1, 0]);
+    pub const FORCE: Dim = Dim([1, 1, -2]);
+    pub const ENERGY: Dim = Dim([2, 1, -2]);
+    pub const PRESSURE: Dim = Dim([-1, 1, -2]);
+    pub const FRACTURE_ENERGY: Dim = Dim([0, 1, -2]);
+    pub const FORCE_DENSITY: Dim = Dim([-2, 1, -2]);
+    pub const MICROMODULUS: Dim = Dim([-5, 1, -2]);
+    pub const CONTACT_STIFFNESS: Dim = Dim([-6, 1, -2]);
+    pub const INDENTER_STIFFNESS: Dim = Dim([-4, 1, -2]);
+    pub const DAMPING: Dim = Dim([-3, 1, -1]);
+
+    /// What it is called and how one would write it.
+    const NAMES: &[(Dim, &str, &str)] = &[
+        (Dim::NUMBER, "a plain number", "0.25"),
+        (Dim::LENGTH, "a length", "0.5 mm"),
+        (Dim::AREA, "an area", "2 mm^2"),
+        (Dim::VOLUME, "a volume", "1 mm^3"),
+        (Dim::MASS, "a mass", "2 kg"),
+        (Dim::TIME, "a time", "20 us"),
+        (Dim::VELOCITY, "a velocity", "100 m/s"),
+        (Dim([1, 0, -2]), "an acceleration", "9.81 m/s^2"),
+        (Dim([0, 0, -1]), "a frequency", "1 kHz"),
+        (Dim::DENSITY, "a density", "2200 kg/m^3"),
+        (Dim::FORCE, "a force", "10 N"),
+        (Dim::ENERGY, "an energy", "1 J"),
+        (Dim([2, 1, -3]), "a power", "1 W"),
+        (Dim::PRESSURE, "a pressure", "14.9 GPa"),
+        (Dim::FRACTURE_ENERGY, "an energy per area", "10 J/m^2"),
+        (Dim::FORCE_DENSITY, "a force per volume", "1e6 N/m^3"),
+        (
+            Dim::MICROMODULUS,
+            "a micromodulus (force per volume squared)",
+            "1.6e22 N/m^6",
+        ),
+        (
+            Dim::CONTACT_STIFFNESS,
+            "a contact stiffness (force per volume squared and length)",
+            "1e26 N/m^7",
+        ),
+        (
+            Dim::INDENTER_STIFFNESS,
+            "an indenter stiffness (force per volume and area)",
+            "1e17 N/m^5",
+        ),
+        (
+            Dim::DAMPING,
+            "a damping (mass per volume and time)",
+            "1e6 kg/m^3/s",
+        ),
+    ];
+
+    pub fn example(self) -> Option<&'static str> {
+        Dim::NAMES.iter().find(|n| n.0 == self).map(|n| n.2)
+    }
+
+    fn plus(self, other: Dim, times: i8) -> Option<Dim> {
+        let mut sum = self.0;
+        for (s, o) in sum.iter_mut().zip(other.0) {
+            *s = s.checked_add(o.checked_mul(times)?)?;
+        }
+        Some(Dim(sum))
+    }
+}
+
+impl fmt::Display for Dim {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match Dim::NAMES.iter().find(|n| n.0 == *self) {
+            Some((_, name, _)) => f.write_str(name),
+            None => write!(
+                f,
+                "a quantity in m^{} kg^{} s^{}",
+                self.0[0], self.0[1], self.0[2]
+            ),
+        }
+    }
+}
+
+/// What plain numbers of a deck mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum UnitSystem {
+    /// m, kg, s
+    #[default]
+    Si,
+    /// Å, ps, eV; masses in g/mol, densities in g/cm³, pressures in bar. Computed in Å, ps, eV throughout.
+    Metal,
+    /// Reduced units; numbers carry none.
+    Lj,
+    /// Any consistent units; numbers carry none.
+    None,
+}
+
+const EV: f64 = 1.602176634e-19;
+const AVOGADRO: f64 = 6.02214076e23;
+
+impl UnitSystem {
+    pub fn name(self) -> &'static str {
+        match self {
+            UnitSystem::Si => "si",
+            UnitSystem::Metal => "metal",
+            UnitSystem::Lj => "lj",
+            UnitSystem::None => "none",
+        }
+    }
+
+    /// Whether numbers may carry units.
+    pub fn has_units(self) -> bool {
+        matches!(self, UnitSystem::Si | UnitSystem::Metal)
+    }
+
+    /// SI value of the unit in which quantities of this dimension are computed.
+    fn computed(self, dim: Dim) -> f64 {
+        match self {
+            // powers of one number each, so that an energy is one eV to the last digit
+            UnitSystem::Metal => {
+                let [length, mass, time] = dim.0.map(i32::from);
+                EV.powi(mass) * 1e-10f64.powi(length - 2 * mass) * 1e-12f64.powi(time + 2 * mass)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// SI value of the unit that a plain number of this dimension has.
+    fn plain(self, dim: Dim) -> f64 {
+        match (self, dim) {
+            (UnitSystem::Metal, Dim::MASS) => 1e-3 / AVOGADRO,
+            (UnitSystem::Metal, Dim::DENSITY) => 1e3,
+            (UnitSystem::Metal, Dim::PRESSURE) => 1e5,
+            _ => self.computed(dim),
+        }
+    }
+
+    /// Factor from plain numbers to computed ones.
+    pub fn plain_factor(self, dim: Dim) -> f64 {
+        let (plain, computed) = (self.plain(dim), self.computed(dim));
+        if plain == computed {
+            1.0
+        } else {
+            plain / computed
+        }
+    }
+
+    /// Factor from SI to the unit that a plain number has.
+    pub fn from_si(self, dim: Dim) -> f64 {
+        1.0 / self.plain(dim)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is(text: &str, value: f64, dim: Dim) {
+        let (number, unit_text) = split(text).unwrap_or_else(|| panic!("{text}"));
+        let unit = unit(unit_text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(unit.dim, dim, "{text}");
+        // decimal shifts are exact
+        let bound = if unit.scale == 1.0 {
+            0.0
+        } else {
+            1e-14 * value.abs()
+        };
+        assert!(
+            (unit.si(number) - value).abs() <= bound,
+            "{text}: {}",
+            unit.si(number)
+        );
+    }
+
+    #[test]
+    fn units_are_what_they_say() {
+        is("14.9 GPa", 14.9e9, Dim::PRESSURE);
+        is("0.5mm", 0.5e-3, Dim::LENGTH);
+        is("100 m/s", 100.0, Dim::VELOCITY);
+        is("2200 kg/m^3", 2200.0, Dim::DENSITY);
+        is("2.2 g/cm³", 2200.0, Dim::DENSITY);
+        is("2.2 g/cm3", 2200.0, Dim::DENSITY);
+        is("5 N/m^2", 5.0, Dim::PRESSURE);
+        is("5 N m^-2", 5.0, Dim::PRESSURE);
+        is("10 J/m^2", 10.0, Dim::FRACTURE_ENERGY);
+        is("10 kN/m", 1e4, Dim::FRACTURE_ENERGY);
+        is("100 ns", 1e-7, Dim::TIME);
+        is("-3 µs", -3e-6, Dim::TIME);
+        is("58.69 g/mol", 58.69e-3 / AVOGADRO, Dim::MASS);
+        is("1 eV/Å^3", EV / 1e-30, Dim::PRESSURE);
+        is("5 %", 0.05, Dim::NUMBER);
+        is("1e17 N/m^5", 1e17, Dim::INDENTER_STIFFNESS);
+        is("1e6 kg/m^3/s", 1e6, Dim::DAMPING);
+    }
+
+    #[test]
+    fn what_is_no_unit_says_so() {
+        assert!(unit("gpa").unwrap_err().contains("did you mean `GPa`"));
+        assert!(unit("furlong").unwrap_err().contains("unknown unit"));
+        assert!(unit("m/").unwrap_err().contains("missing"));
+        assert!(unit("m^x").unwrap_err().contains("whole number"));
+        assert!(unit("m^99").unwrap_err().contains("-9 to 9"));
+        assert!(split("2*x").is_none() && split("x").is_none() && split("-t").is_none());
+        assert_eq!(split("1e-3"), Some((1e-3, "")));
+    }
+
+    #[test]
+    fn metal_numbers_become_consistent() {
+        let metal = UnitSystem::Metal;
+        // 1 bar = 6.2415e-7 eV/Å³, 1 g/mol = 1.0364e-4 eV ps²/Å²
+        assert!((metal.plain_factor(Dim::PRESSURE) - 6.241509074e-7).abs() < 1e-15);
+        assert!((metal.plain_factor(Dim::MASS) - 1.036426966e-4).abs() < 1e-12);
+        assert_eq!(metal.plain_factor(Dim::LENGTH), 1.0);
+        assert_eq!(metal.plain_factor(Dim::ENERGY), 1.0);
+        assert!((metal.from_si(Dim::ENERGY) * EV - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn values_are_written_with_their_units() {
+        assert_eq!(UnitSystem::Si.write(14.9e9, Dim::PRESSURE), "14.9 GPa");
+        assert_eq!(UnitSystem::Si.write(0.0005, Dim::LENGTH), "0.5 mm");
+        assert_eq!(UnitSystem::Si.write(1e-7, Dim::TIME), "0.1 µs");
+        assert_eq!(UnitSystem::Si.write(0.0, Dim::LENGTH), "0 m");
+        assert_eq!(UnitSystem::Si.write(2e-9, Dim::VOLUME), "2e-9 m^3");
+        assert_eq!(UnitSystem::None.write(0.25, Dim::LENGTH), "0.25");
+    }
+}
