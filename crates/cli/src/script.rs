@@ -78,7 +78,7 @@ fn finish(
     let sim = model.simulation();
     let series_options = SeriesOptions {
         picture: Some(PictureOptions {
-            title: name.to_string(),
+            title: info_title(name),
             length_unit: "m".into(),
             time_unit: "s".into(),
             ..PictureOptions::default()
