@@ -275,3 +275,29 @@ fn continuum_constants_converge_with_the_family() {
         }
     }
 }
+
+/// A cloud has no lattice to be calibrated to: it says so, unless nothing was to be calibrated.
+#[test]
+fn a_cloud_says_that_its_constants_are_those_of_the_continuum() {
+    let case = Case::of("pmb", bulk(LatticeKind::Square, Plane::Stress, 4));
+    let mut spec = case.spec();
+    let sim = at_rest(&spec);
+    spec.body = BodySpec::Cloud(Cloud {
+        position: sim.reference(),
+        volume: sim.volumes(),
+        spacing: Some(H),
+        ..Cloud::default()
+    });
+    let warned = |spec: &Spec| {
+        let warnings = at_rest(spec).info().warnings.clone();
+        warnings
+            .iter()
+            .any(|w| w.contains("those of the continuum"))
+    };
+    assert!(warned(&spec));
+    spec.calibration = Calibration::Continuum;
+    assert!(!warned(&spec));
+    spec.calibration = Calibration::Discrete;
+    spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
+    assert!(!warned(&spec));
+}
