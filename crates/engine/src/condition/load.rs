@@ -8,8 +8,8 @@ use crate::space::Point;
 pub enum LoadKind<const D: usize> {
     /// Force density (force / volume).
     Body(Program<D>),
-    /// Force density −c v; `c` in mass / volume / time.
-    Damping(Vec<f64>),
+    /// Force density −c v at the end of the step, all other loads added; `c`, component 0, in mass / volume / time.
+    Damping(Program<D>),
     /// The force density becomes this, whatever else acts.
     Replace(Program<D>),
 }
@@ -55,7 +55,12 @@ impl<const D: usize> Load<D> {
             for a in 0..D {
                 let added = match &self.kind {
                     LoadKind::Body(p) => p.at(a, k, &self.points[k], t),
-                    LoadKind::Damping(c) => -c[k] * v[a][i],
+                    // v at the whole step: the middle's and half a kick, of which this force is a part
+                    LoadKind::Damping(c) => {
+                        let half = 0.5 * dt / body.density.at(i);
+                        let c = c.at(0, k, &self.points[k], t);
+                        -c * (v[a][i] + half * f[a][i]) / (1.0 + half * c)
+                    }
                     LoadKind::Replace(p) if p.acts(a) => p.at(a, k, &self.points[k], t) - f[a][i],
                     LoadKind::Replace(_) => 0.0,
                 };

@@ -19,7 +19,7 @@ use crate::space::lattice::{Lattice, LatticeKind};
 use crate::space::{AXES, Point};
 use crate::spec::{
     BodySpec, Calibration, CrackKind, FamilyChoice, Horizon, LawSpec, MaterialSpec, Members,
-    Perturbation, Spec, TimeStep,
+    Perturbation, PmbStiffness, Spec, TimeStep,
 };
 
 /// How to build, as opposed to what.
@@ -63,10 +63,13 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         horizon,
     } = reference::<D>(spec)?;
     let cell = cell(spec, &body);
-    let bond_based = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_));
+    let from_modulus = |m: &MaterialSpec| {
+        use PmbStiffness::{Bulk, Young};
+        matches!(m.law, LawSpec::Pmb(Bulk(_) | Young(_)))
+    };
     if bulk.is_none()
         && spec.calibration == Calibration::Discrete
-        && spec.materials.iter().any(bond_based)
+        && spec.materials.iter().any(from_modulus)
     {
         warnings.push(
             "a cloud of points has no lattice family to calibrate to: the constants are those of the continuum".into(),

@@ -627,9 +627,10 @@ impl<const D: usize> Simulation for Model<D> {
                 ConditionKind::SetForce(e) => {
                     loads.push(load(LoadKind::Replace(Program::new(e, &points))))
                 }
-                ConditionKind::Damping(e) => loads.push(load(LoadKind::Damping(
-                    points.iter().map(|x| e.eval(x, 0.0)).collect(),
-                ))),
+                ConditionKind::Damping(e) => loads.push(load(LoadKind::Damping(Program::new(
+                    &[Some(e.clone()), None, None],
+                    &points,
+                )))),
                 ConditionKind::Traction { value, area } => {
                     let volume: f64 = slots.iter().map(|s| self.body.volume.at(*s as usize)).sum();
                     let face = self
@@ -656,8 +657,12 @@ impl<const D: usize> Simulation for Model<D> {
                 )),
             }
         }
-        // a replaced force is replaced whatever else was added
-        loads.sort_by_key(|l: &Load<D>| matches!(l.kind, LoadKind::Replace(_)));
+        // damping looks at what was added, and a replaced force is replaced whatever else there is
+        loads.sort_by_key(|l: &Load<D>| match l.kind {
+            LoadKind::Body(_) => 0,
+            LoadKind::Damping(_) => 1,
+            LoadKind::Replace(_) => 2,
+        });
         self.finish();
         let now = self.energy_now();
         self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];

@@ -175,26 +175,29 @@ fn bulk(kind: LatticeKind, plane: Plane, ratio: u32) -> Place {
 #[test]
 fn homogeneous_strain_of_periodic_clouds_is_that_of_lattices() {
     for case in cases() {
-        for extra in [1, 4] {
-            let mut case = case.clone();
-            for a in 0..case.d() {
-                let edge = case.place.kind.edges()[a];
-                let reach = (2.0 * case.place.ratio as f64 / edge) as usize;
-                case.place.cells[a] = reach + if a == 0 { extra } else { 1 };
-            }
-            let mut spec = case.periodic();
-            let strain = [
-                [0.01, 0.004, 0.0],
-                [0.004, -0.02, 0.003],
-                [0.0, 0.003, 0.005],
-            ];
-            let lattice = at_rest(&spec).energy_under_strain(strain);
-            spec.family = FamilyChoice::List;
-            let list = at_rest(&spec).energy_under_strain(strain);
-            let top = lattice.iter().fold(0.0f64, |m, w| m.max(*w));
-            for (a, b) in lattice.iter().zip(&list) {
-                assert!((a - b).abs() < 1e-12 * top, "{}: {a} {b}", case.name());
-            }
+        // the shortest period there is along x, longer ones across
+        let mut case = case.clone();
+        case.place.ratio = case.place.ratio.min(2);
+        for a in 0..case.d() {
+            let reach = case.place.ratio as f64 / case.place.kind.edges()[a];
+            case.place.cells[a] = if a == 0 {
+                2.0 * reach + 1.0
+            } else {
+                3.0 * reach + 1.0
+            } as usize;
+        }
+        let mut spec = case.periodic();
+        let strain = [
+            [0.01, 0.004, 0.0],
+            [0.004, -0.02, 0.003],
+            [0.0, 0.003, 0.005],
+        ];
+        let lattice = at_rest(&spec).energy_under_strain(strain);
+        spec.family = FamilyChoice::List;
+        let list = at_rest(&spec).energy_under_strain(strain);
+        let top = lattice.iter().fold(0.0f64, |m, w| m.max(*w));
+        for (a, b) in lattice.iter().zip(&list) {
+            assert!((a - b).abs() < 1e-12 * top, "{}: {a} {b}", case.name());
         }
     }
 }
@@ -257,9 +260,11 @@ fn continuum_constants_converge_with_the_family() {
                 let law = case.material.laws[0];
                 (ratio(&spec, law, isotropic(case.d(), 1e-3)).1 - 1.0).abs()
             };
-            let (coarse, fine) = (off(3), off(large));
+            // one m_ratio may be lucky
+            let coarse = (2..=4).map(off).fold(0.0, f64::max);
+            let fine = off(large);
             println!(
-                "{name} on {kind:?}, continuum: bulk off by {coarse:.1e} at m_ratio 3, {fine:.1e} at {large}"
+                "{name} on {kind:?}, continuum: bulk off by {coarse:.1e} at m_ratio 2 to 4, {fine:.1e} at {large}"
             );
             assert!(fine < 0.06, "{name} on {kind:?}: {fine}");
             // state-based solids are normalised by their own family, whatever the calibration
@@ -269,4 +274,30 @@ fn continuum_constants_converge_with_the_family() {
             );
         }
     }
+}
+
+/// A cloud has no lattice to be calibrated to: it says so, unless nothing was to be calibrated.
+#[test]
+fn a_cloud_says_that_its_constants_are_those_of_the_continuum() {
+    let case = Case::of("pmb", bulk(LatticeKind::Square, Plane::Stress, 4));
+    let mut spec = case.spec();
+    let sim = at_rest(&spec);
+    spec.body = BodySpec::Cloud(Cloud {
+        position: sim.reference(),
+        volume: sim.volumes(),
+        spacing: Some(H),
+        ..Cloud::default()
+    });
+    let warned = |spec: &Spec| {
+        let warnings = at_rest(spec).info().warnings.clone();
+        warnings
+            .iter()
+            .any(|w| w.contains("those of the continuum"))
+    };
+    assert!(warned(&spec));
+    spec.calibration = Calibration::Continuum;
+    assert!(!warned(&spec));
+    spec.calibration = Calibration::Discrete;
+    spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
+    assert!(!warned(&spec));
 }

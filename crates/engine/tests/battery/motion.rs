@@ -158,3 +158,43 @@ fn motion_is_reversible() {
     let back = distance(&sim.displacements(), &u0);
     assert!(away > 0.01 * H && back < 1e-10 * away, "{away:e} {back:e}");
 }
+
+/// Damping of a body that moves as a whole, `ρ v' = −c(t) v`: the closed form, to second order in the step.
+#[test]
+fn damping_is_of_second_order_and_may_change_in_time() {
+    for place in [
+        small(LatticeKind::Chain, [6, 1, 1]),
+        small(LatticeKind::Square, [4, 4, 1]),
+        small(LatticeKind::Cubic, [3, 3, 3]),
+    ] {
+        for (c, integral) in [("0.8", 0.8 * 2.0), ("0.8*t", 0.4 * 4.0)] {
+            let case = Case::of("lps", place);
+            let error = |n: usize| {
+                let mut spec = case.spec();
+                spec.conditions = vec![ConditionSpec {
+                    set: "all".into(),
+                    kind: ConditionKind::Damping(e(c)),
+                }];
+                spec.schedule.time_step = TimeStep::Fixed(2.0 / n as f64);
+                let mut sim = made(&spec);
+                let count = sim.reference().len();
+                sim.set_velocities(&vec![[0.3, 0.0, 0.0]; count]);
+                sim.start(true);
+                steps(sim.as_mut(), n);
+                let l = sim.ledger().unwrap();
+                assert!(l.residual().abs() < 1e-3 * l.dissipated, "{c}: {l:?}");
+                sim.velocities()[0][0] / 0.3 - (-integral / RHO).exp()
+            };
+            let errors: Vec<f64> = [20, 40, 80].into_iter().map(error).collect();
+            let (a, b) = (errors[0] / errors[1], errors[1] / errors[2]);
+            println!(
+                "damping by {c} on {:?}: off by {:.1e}, falls by {a:.2}, {b:.2}",
+                place.kind, errors[2]
+            );
+            assert!(
+                errors[2].abs() < 1e-4 && (3.8..4.2).contains(&b),
+                "{c}: {errors:?}"
+            );
+        }
+    }
+}
