@@ -139,7 +139,7 @@ impl Stiffness {
             for j in 0..=i {
                 let sum = self.c[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
                 if i == j {
-                    if !(sum > 1e-9 * largest) {
+                    if sum.is_nan() || sum <= 1e-9 * largest {
                         return None;
                     }
                     l[i][i] = sum.sqrt();

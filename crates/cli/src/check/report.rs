@@ -271,7 +271,7 @@ fn tensor(out: &mut String, class: &Class, scale: &Scale) {
     let largest = (0..n).map(|i| class.stiffness.c[i][i]).fold(0.0, f64::max);
     let whole = digits(largest / scale.factor);
     let decimals = whole.split_once('.').map_or(0, |(_, d)| d.len());
-    for i in 0..n {
+    for (i, name) in names.iter().enumerate() {
         let cells: String = (0..=i)
             .map(|j| {
                 let c = class.stiffness.c[i][j];
@@ -284,7 +284,7 @@ fn tensor(out: &mut String, class: &Class, scale: &Scale) {
                 }
             })
             .collect();
-        let _ = writeln!(out, "  {:>4}{cells}", names[i]);
+        let _ = writeln!(out, "  {name:>4}{cells}");
     }
 }
 
