@@ -32,6 +32,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     tiles: Vec<u32>,
     /// `[tiles][width]`: bit l of a byte is the bond of point l of the tile.
     alive: Vec<u8>,
+    /// `[tiles][words]`: a bit per offset that any point of the tile has a partner at.
+    reach: Vec<u64>,
     /// Family size per active tile and lane.
     family: Vec<u16>,
     directed: u64,
@@ -121,6 +123,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             .map(|t| t as u32)
             .collect();
         let mut alive = vec![0u8; tiles.len() * width];
+        let words = width.div_ceil(64);
+        let mut reach = vec![0u64; tiles.len() * words];
         let mut family = vec![0u16; tiles.len() * TILE];
         let mut directed = 0;
         for (n, &t) in tiles.iter().enumerate() {
@@ -133,6 +137,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 for (k, b) in bonds[sub].iter().enumerate() {
                     if grid.neighbour(first + l, b.cell, b.to).is_some() {
                         alive[n * width + k] |= 1 << l;
+                        reach[n * words + k / 64] |= 1 << (k % 64);
                         family[n * TILE + l] += 1;
                         directed += 1;
                     }
@@ -154,6 +159,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             width,
             tiles,
             alive,
+            reach,
             family,
             directed,
             fields: [vec![], vec![]],
@@ -183,6 +189,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             width: self.width,
             tiles: &self.tiles,
             alive: &self.alive,
+            reach: &self.reach,
             u: std::array::from_fn(|a| u[a].as_slice()),
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,

@@ -8,22 +8,8 @@ use std::ops::{Add, Mul, Sub};
 #[repr(transparent)]
 pub struct F64x4(__m256d);
 
-/// All-ones lanes for the bits that are 0.
-static DEAD: [[u64; 4]; 16] = {
-    let mut t = [[0u64; 4]; 16];
-    let mut b = 0;
-    while b < 16 {
-        let mut l = 0;
-        while l < 4 {
-            if b >> l & 1 == 0 {
-                t[b][l] = u64::MAX;
-            }
-            l += 1;
-        }
-        b += 1;
-    }
-    t
-};
+/// The bit of each lane, for the two parts of a tile.
+static LANE_BIT: [[u64; 4]; 2] = [[1, 2, 4, 8], [16, 32, 64, 128]];
 
 // SAFETY, for every block in this file: the instructions exist, because `simd` calls these functions only after
 // detecting AVX2 and FMA; pointers are as the trait's callers promise.
@@ -139,8 +125,11 @@ impl Lane for F64x4 {
     }
     #[inline(always)]
     fn dead(bits: u8, part: usize) -> __m256d {
-        // a table load costs no arithmetic port
-        unsafe { _mm256_loadu_pd(DEAD[(bits >> (4 * part) & 15) as usize].as_ptr().cast()) }
+        unsafe {
+            let lane = _mm256_loadu_si256(LANE_BIT[part].as_ptr().cast());
+            let set = _mm256_and_si256(_mm256_set1_epi8(bits as i8), lane);
+            _mm256_castsi256_pd(_mm256_cmpeq_epi64(set, _mm256_setzero_si256()))
+        }
     }
     #[inline(always)]
     fn or(a: __m256d, b: __m256d) -> __m256d {

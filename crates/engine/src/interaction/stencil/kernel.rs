@@ -45,6 +45,8 @@ pub struct View<'a, const D: usize, W> {
     pub width: usize,
     pub tiles: &'a [u32],
     pub alive: &'a [u8],
+    /// `[tiles][words]`: a bit per offset that any point of the tile ever had a partner at.
+    pub reach: &'a [u64],
     pub u: [&'a [f64]; D],
     pub fields: [&'a [f64]; 2],
     /// Pressure factors per slot where materials differ; else empty: the law's own.
@@ -83,6 +85,13 @@ impl<const D: usize, W: Law> View<'_, D, W> {
 
     fn block(&self, block: usize) -> std::ops::Range<usize> {
         block * BLOCK..((block + 1) * BLOCK).min(self.tiles.len())
+    }
+
+    /// Bits of the offsets that lead anywhere from the `n`-th active tile.
+    #[inline(always)]
+    fn reach(&self, n: usize) -> &[u64] {
+        let words = self.width.div_ceil(64);
+        &self.reach[n * words..(n + 1) * words]
     }
 
     /// Stencil of a tile.
@@ -130,6 +139,47 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 }
 
+/// Walks the offsets of a tile in order: all of them, or (`SOME`) those whose bit is set.
+struct Walk<'a, const SOME: bool> {
+    words: &'a [u64],
+    bits: u64,
+    /// Next offset, or first offset of the current word.
+    at: usize,
+    len: usize,
+}
+
+impl<'a, const SOME: bool> Walk<'a, SOME> {
+    #[inline(always)]
+    fn new(words: &'a [u64], len: usize) -> Self {
+        Walk {
+            words,
+            bits: words[0],
+            at: 0,
+            len,
+        }
+    }
+}
+
+impl<const SOME: bool> Iterator for Walk<'_, SOME> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if !SOME {
+            let n = self.at;
+            self.at += 1;
+            return (n < self.len).then_some(n);
+        }
+        while self.bits == 0 {
+            self.at += 64;
+            self.bits = *self.words.get(self.at / 64)?;
+        }
+        let n = self.at + self.bits.trailing_zeros() as usize;
+        self.bits &= self.bits - 1;
+        Some(n)
+    }
+}
+
 /// Force pass; `FULL` with breaking and repulsion.
 pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub view: View<'a, D, W>,
@@ -160,9 +210,9 @@ impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL>
                 for part in 0..TILE / L::N {
                     let i = v.grid.tile_slot(tile) + part * L::N;
                     if whole {
-                        self.points::<L, false>(bonds, row, i, part, &mut rare, &mut tally);
+                        self.points::<L, false>(n, row, i, part, &mut rare, &mut tally);
                     } else {
-                        self.points::<L, true>(bonds, row, i, part, &mut rare, &mut tally);
+                        self.points::<L, true>(n, row, i, part, &mut rare, &mut tally);
                     }
                 }
             }
@@ -180,7 +230,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     #[inline(always)]
     unsafe fn points<L: Lane, const MASKED: bool>(
         &self,
-        bonds: &[Bond<D>],
+        tile: usize,
         row: &mut [u8],
         i: usize,
         part: usize,
@@ -188,6 +238,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         tally: &mut Tally,
     ) {
         let v = &self.view;
+        let bonds = v.stencil(v.tiles[tile] as usize);
         let series = Series::extension_over_length();
         // SAFETY: slots and their neighbours lie inside the arrays
         unsafe {
@@ -202,7 +253,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             let mut lowest = L::splat(f64::INFINITY);
             let mut acc = [zero; D];
             let mut waiting = 0;
-            for (n, (b, bits)) in bonds.iter().zip(row.iter()).enumerate() {
+            for n in Walk::<MASKED>::new(v.reach(tile), bonds.len()) {
+                let (b, bits) = (bonds.get_unchecked(n), row.get_unchecked(n));
                 let j = i.wrapping_add_signed(b.shift);
                 let (y, raw) = v.deform(b, i, &ui);
                 let dead = L::dead(*bits, part);
@@ -381,9 +433,9 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                 // SAFETY: as in the force pass
                 unsafe {
                     let sum = if whole {
-                        self.sum::<L, false>(bonds, row, i, part)
+                        self.sum::<L, false>(n, row, i, part)
                     } else {
-                        self.sum::<L, true>(bonds, row, i, part)
+                        self.sum::<L, true>(n, row, i, part)
                     };
                     (v.pressure_factor::<L>(i) * sum).store(self.out.at(i));
                 }
@@ -396,18 +448,20 @@ impl<const D: usize, W: Law> Share<'_, D, W> {
     #[inline(always)]
     unsafe fn sum<L: Lane, const MASKED: bool>(
         &self,
-        bonds: &[Bond<D>],
+        tile: usize,
         row: &[u8],
         i: usize,
         part: usize,
     ) -> L {
         let v = &self.view;
+        let bonds = v.stencil(v.tiles[tile] as usize);
         let series = Series::stretch();
         // SAFETY: as in the force pass
         unsafe {
             let ui = v.displacement::<L>(i);
             let mut sum = L::splat(0.0);
-            for (b, bits) in bonds.iter().zip(row) {
+            for n in Walk::<MASKED>::new(v.reach(tile), bonds.len()) {
+                let (b, bits) = (bonds.get_unchecked(n), row.get_unchecked(n));
                 let (_, raw) = v.deform(b, i, &ui);
                 let dead = L::dead(*bits, part);
                 let e = if MASKED { raw.nan_if(dead) } else { raw };
