@@ -55,8 +55,10 @@ impl Lane for F64x4 {
     #[inline(always)]
     unsafe fn gather4(base: *const f64, index: *const u32) -> [Self; 4] {
         unsafe {
-            let r = |l: usize| _mm256_loadu_pd(base.add(4 * *index.add(l) as usize));
-            let (a, b, c, d) = (r(0), r(1), r(2), r(3));
+            let a = _mm256_loadu_pd(base.add(4 * *index as usize));
+            let b = _mm256_loadu_pd(base.add(4 * *index.add(1) as usize));
+            let c = _mm256_loadu_pd(base.add(4 * *index.add(2) as usize));
+            let d = _mm256_loadu_pd(base.add(4 * *index.add(3) as usize));
             let (ab0, ab1) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
             let (cd0, cd1) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
             [
@@ -70,9 +72,12 @@ impl Lane for F64x4 {
     #[inline(always)]
     unsafe fn gather2(base: *const f64, index: *const u32) -> [Self; 2] {
         unsafe {
-            let r = |l: usize| _mm_loadu_pd(base.add(2 * *index.add(l) as usize));
-            let ac = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(r(0)), r(2));
-            let bd = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(r(1)), r(3));
+            let a = _mm_loadu_pd(base.add(2 * *index as usize));
+            let b = _mm_loadu_pd(base.add(2 * *index.add(1) as usize));
+            let c = _mm_loadu_pd(base.add(2 * *index.add(2) as usize));
+            let d = _mm_loadu_pd(base.add(2 * *index.add(3) as usize));
+            let ac = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(a), c);
+            let bd = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(b), d);
             [
                 F64x4(_mm256_unpacklo_pd(ac, bd)),
                 F64x4(_mm256_unpackhi_pd(ac, bd)),

@@ -52,16 +52,22 @@ impl Lane for F64x8 {
     unsafe fn gather4(base: *const f64, index: *const u32) -> [Self; 4] {
         unsafe {
             let i = _mm256_slli_epi32::<2>(_mm256_loadu_si256(index.cast()));
-            let g = |c: usize| F64x8(_mm512_i32gather_pd::<8>(i, base.add(c)));
-            [g(0), g(1), g(2), g(3)]
+            [
+                F64x8(_mm512_i32gather_pd::<8>(i, base)),
+                F64x8(_mm512_i32gather_pd::<8>(i, base.add(1))),
+                F64x8(_mm512_i32gather_pd::<8>(i, base.add(2))),
+                F64x8(_mm512_i32gather_pd::<8>(i, base.add(3))),
+            ]
         }
     }
     #[inline(always)]
     unsafe fn gather2(base: *const f64, index: *const u32) -> [Self; 2] {
         unsafe {
             let i = _mm256_slli_epi32::<1>(_mm256_loadu_si256(index.cast()));
-            let g = |c: usize| F64x8(_mm512_i32gather_pd::<8>(i, base.add(c)));
-            [g(0), g(1)]
+            [
+                F64x8(_mm512_i32gather_pd::<8>(i, base)),
+                F64x8(_mm512_i32gather_pd::<8>(i, base.add(1))),
+            ]
         }
     }
     #[inline(always)]

@@ -1,4 +1,5 @@
-//! The sweeps over a horizon list: lanes run over the points of a slice, bonds in a fixed order.
+//! The sweeps over a horizon list: lanes run over the points of a slice, bonds in a fixed order. No closure touches a
+//! lane (see the stencil's kernel).
 
 use crate::body::Field;
 use crate::execute::blocks::Shared;
@@ -91,41 +92,49 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             } else {
                 [zero; 2]
             };
-            End {
-                x: std::array::from_fn(|a| x[a]),
+            let mut end = End {
+                x: [zero; D],
                 volume: x[3],
-                u: std::array::from_fn(|a| u[a]),
+                u: [zero; D],
                 critical: u[3],
                 field,
+            };
+            for a in 0..D {
+                end.x[a] = x[a];
+                end.u[a] = u[a];
             }
+            end
         }
     }
 
     /// `ξ` from i to the nearest image of j.
     #[inline(always)]
     fn reference<L: Lane>(&self, i: &[L; D], j: &[L; D]) -> [L; D] {
-        std::array::from_fn(|a| {
-            let xi = j[a] - i[a];
+        let mut xi = *j;
+        for a in 0..D {
+            xi[a] = j[a] - i[a];
             if self.periodic {
-                let turns = (xi * L::splat(self.inv_period[a])).round();
-                turns.fma(L::splat(-self.period[a]), xi)
-            } else {
-                xi
+                let turns = (xi[a] * L::splat(self.inv_period[a])).round();
+                xi[a] = turns.fma(L::splat(-self.period[a]), xi[a]);
             }
-        })
+        }
+        xi
     }
 
     #[inline(always)]
     fn bond<L: Lane>(&self, i: &End<L, D>, j: &End<L, D>) -> Bond<L, D> {
         let xi = self.reference::<L>(&i.x, &j.x);
         let mut r0_squared = xi[0] * xi[0];
-        for x in &xi[1..] {
-            r0_squared = x.fma(*x, r0_squared);
+        for a in 1..D {
+            r0_squared = xi[a].fma(xi[a], r0_squared);
         }
         let inv_r0 = lane::inv_sqrt(r0_squared);
         let r0 = r0_squared * inv_r0;
         let weight = self.weight.at(r0, inv_r0) * j.volume;
-        let eta = std::array::from_fn(|a| j.u[a] - i.u[a]);
+        let mut eta = j.u;
+        for a in 0..D {
+            eta[a] = j.u[a] - i.u[a];
+        }
         let (y, e) = deform(eta, xi, inv_r0 * inv_r0);
         Bond {
             y,

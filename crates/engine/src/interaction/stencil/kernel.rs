@@ -1,4 +1,7 @@
 //! The sweeps over a lattice stencil: points of a tile in lanes, offsets in a fixed order.
+//!
+//! No closure touches a lane here: a closure is compiled without the instruction set of its caller unless it happens
+//! to be inlined, and then every operation becomes a call.
 
 use crate::body::{Body, Field, Grid};
 use crate::execute::blocks::Shared;
@@ -58,20 +61,22 @@ pub struct View<'a, const D: usize, W> {
 impl<const D: usize, W: Law> View<'_, D, W> {
     #[inline(always)]
     unsafe fn displacement<L: Lane>(&self, slot: usize) -> [L; D] {
-        // SAFETY: slots and their neighbours lie between the guards
-        std::array::from_fn(|a| unsafe { L::load(self.u[a].as_ptr().add(slot)) })
+        let mut u = [L::splat(0.0); D];
+        for a in 0..D {
+            // SAFETY: slots and their neighbours lie between the guards
+            u[a] = unsafe { L::load(self.u[a].as_ptr().add(slot)) };
+        }
+        u
     }
 
     #[inline(always)]
     unsafe fn fields<L: Lane>(&self, slot: usize) -> [L; 2] {
-        std::array::from_fn(|a| {
-            if a < W::FIELDS {
-                // SAFETY: as above
-                unsafe { L::load(self.fields[a].as_ptr().add(slot)) }
-            } else {
-                L::splat(0.0)
-            }
-        })
+        let mut fields = [L::splat(0.0); 2];
+        for a in 0..W::FIELDS {
+            // SAFETY: as above
+            fields[a] = unsafe { L::load(self.fields[a].as_ptr().add(slot)) };
+        }
+        fields
     }
 
     /// `−(ξ+η)` and `e` of bond `b` for the points at `i`.
@@ -79,8 +84,12 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     unsafe fn deform<L: Lane>(&self, b: &Bond<D>, i: usize, ui: &[L; D]) -> ([L; D], L) {
         // SAFETY: offsets stay inside the guards
         let uj = unsafe { self.displacement::<L>(i.wrapping_add_signed(b.shift)) };
-        let eta = std::array::from_fn(|a| ui[a] - uj[a]);
-        deform(eta, b.back.map(L::splat), L::splat(b.inv_r0_squared))
+        let (mut eta, mut back) = (uj, uj);
+        for a in 0..D {
+            eta[a] = ui[a] - uj[a];
+            back[a] = L::splat(b.back[a]);
+        }
+        deform(eta, back, L::splat(b.inv_r0_squared))
     }
 
     fn block(&self, block: usize) -> std::ops::Range<usize> {
