@@ -31,10 +31,10 @@ impl Simd {
         let mut all = vec![Simd::Portable];
         #[cfg(target_arch = "x86_64")]
         {
-            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            if has_avx2() {
                 all.push(Simd::Avx2);
             }
-            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
+            if has_avx512() {
                 all.push(Simd::Avx512);
             }
         }
@@ -51,20 +51,29 @@ impl Simd {
 
     /// Run block `b` of `kernel` with this instruction set.
     ///
-    /// `self` must come from [`Simd::available`]: the tag is the proof that the instructions exist.
+    /// A set that this machine lacks falls back to the portable path, which gives the same bits. Detection is cached,
+    /// and asked once per block.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: &K, b: usize) -> K::Out {
         match self {
-            Simd::Portable => kernel.block::<f64>(b),
-            // SAFETY: the tag was made by detection
+            // SAFETY, both: just detected
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx2 => unsafe { avx2(kernel, b) },
+            Simd::Avx2 if has_avx2() => unsafe { avx2(kernel, b) },
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx512 => unsafe { avx512(kernel, b) },
-            #[cfg(not(target_arch = "x86_64"))]
+            Simd::Avx512 if has_avx512() => unsafe { avx512(kernel, b) },
             _ => kernel.block::<f64>(b),
         }
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_avx512() -> bool {
+    has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -1,5 +1,5 @@
 //! Any law on a horizon list: bonds of an arbitrary cloud. A bond is a partner and a bit; its geometry and constant
-//! are computed anew from two records whenever it is met, which is faster than reading them.
+//! are computed anew from two records whenever it is met, so that nothing else is stored.
 
 mod kernel;
 
