@@ -1,6 +1,6 @@
 //! Contact allocates nothing in a steady state, rebuilding its list or not.
 
-use peridyne::body::{Body, zeros};
+use peridyne::body::{Body, Field, zeros};
 use peridyne::interaction::Repulsion;
 use peridyne::interaction::contact::Contact;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -41,7 +41,7 @@ fn steps_and_rebuilds_allocate_nothing() {
     };
     // the upper block goes up and down
     let mut u = body.at_rest();
-    let place = |u: &mut [Vec<f64>; 3], step: usize| {
+    let place = |u: &mut Field<3>, step: usize| {
         for &s in &body.slots {
             if body.position(s as usize)[2] > 11.0 {
                 u[2][s as usize] = -4.2 + (step as f64 * 0.1).sin();

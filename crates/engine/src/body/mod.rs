@@ -4,21 +4,15 @@
 //! slots away); in a cloud they are the points in an order that keeps neighbours close in memory.
 
 pub mod build;
+pub mod field;
 pub mod grid;
 pub mod values;
 
+pub use field::{Column, Field, zeros};
 pub use grid::Grid;
 pub use values::Values;
 
 use crate::space::Point;
-
-/// `[D][slots]`: a vector per slot.
-pub type Field<const D: usize> = [Vec<f64>; D];
-
-/// A vector field of zeros.
-pub fn zeros<const D: usize>(slots: usize) -> Field<D> {
-    std::array::from_fn(|_| vec![0.0; slots])
-}
 
 /// Displacement of absent sites, in spacings: so far that no test of nearness or breaking can ever hold.
 pub const FAR: f64 = 1e20;
@@ -27,7 +21,7 @@ pub const FAR: f64 = 1e20;
 pub enum Layout<const D: usize> {
     Grid(Grid<D>),
     /// Reference coordinates per slot.
-    Cloud(Field<D>),
+    Cloud([Vec<f64>; D]),
 }
 
 /// Reference configuration of a body in D dimensions.
@@ -81,7 +75,7 @@ impl<const D: usize> Body<D> {
 
     /// A displacement field at rest: 0 on points, far away on absent sites.
     pub fn at_rest(&self) -> Field<D> {
-        let mut u: Field<D> = std::array::from_fn(|_| vec![FAR * self.spacing; self.len]);
+        let mut u: Field<D> = field::filled(self.len, FAR * self.spacing);
         for c in &mut u {
             for &s in &self.slots {
                 c[s as usize] = 0.0;

@@ -133,7 +133,9 @@ impl<const D: usize> Kernel for Advance<'_, D> {
                 let dt = L::splat(self.dt);
                 let mut squared = L::splat(0.0);
                 let mut v = [L::splat(0.0); D];
+                let mut u = v;
                 for a in 0..D {
+                    u[a] = L::load(self.u[a].at(i));
                     let f = L::load(self.f[a].as_ptr().add(i));
                     v[a] = L::load(self.v[a].at(i));
                     if self.pending {
@@ -143,11 +145,12 @@ impl<const D: usize> Kernel for Advance<'_, D> {
                     v[a].store(self.v[a].at(i));
                     let step = dt * v[a];
                     squared = step.fma(step, squared);
+                    // a displacement that is not a number has no step either
+                    squared = u[a].fma(L::splat(0.0), squared);
                 }
                 let fine = squared.lt(L::splat(self.limit));
                 for a in 0..D {
-                    let u = L::load(self.u[a].at(i));
-                    L::select(fine, dt.fma(v[a], u), u).store(self.u[a].at(i));
+                    L::select(fine, dt.fma(v[a], u[a]), u[a]).store(self.u[a].at(i));
                 }
                 // keeps what is not a number: `min` of negatives would not
                 fastest = L::select(squared.lt(fastest), fastest, squared);

@@ -3,18 +3,23 @@
 use crate::execute::lane::Lane;
 use crate::execute::lane::series::stretch;
 
-/// `ξ+η` and `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = η·(ξ + (ξ+η))`.
+/// `ξ+η` and `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = 2 η·(ξ + ½η)`.
 #[inline(always)]
-pub fn deform<L: Lane, const D: usize>(eta: [L; D], xi: [L; D], inv_r0_squared: L) -> ([L; D], L) {
+pub fn deform<L: Lane, const D: usize>(
+    eta: [L; D],
+    xi: [L; D],
+    two_by_r0_squared: L,
+) -> ([L; D], L) {
+    let half = L::splat(0.5);
     let mut y = eta;
     for a in 0..D {
         y[a] = eta[a] + xi[a];
     }
-    let mut q = eta[0] * (y[0] + xi[0]);
+    let mut q = eta[0] * half.fma(eta[0], xi[0]);
     for a in 1..D {
-        q = eta[a].fma(y[a] + xi[a], q);
+        q = eta[a].fma(half.fma(eta[a], xi[a]), q);
     }
-    (y, q * inv_r0_squared)
+    (y, q * two_by_r0_squared)
 }
 
 /// The critical value of `e` for a critical stretch: `e > s0 (2 + s0)` is `s > s0`.

@@ -140,7 +140,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// Write displacements and critical stretches into the records.
     fn pack(&self, u: &Field<D>, moved: &mut [f64], unit: &mut [()]) {
         let kernel = Pack::<D> {
-            u: std::array::from_fn(|a| u[a].as_slice()),
+            u: std::array::from_fn(|a| &*u[a]),
             critical: &self.critical,
             moved: Shared(moved.as_mut_ptr()),
         };
@@ -408,8 +408,8 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.bonds(self.list.row(i)).any(|(_, k)| k == j)
     }
 
-    fn memory(&mut self) -> (&mut [u8], &mut [f64]) {
-        (&mut self.alive, &mut self.critical)
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&self.alive, &self.critical)
     }
 
     fn bytes(&self) -> usize {

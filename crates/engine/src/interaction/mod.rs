@@ -14,18 +14,31 @@ use crate::spec::CrackKind;
 use std::ops::AddAssign;
 
 /// What a sweep reports besides its forces.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tally {
     /// Directed bonds that broke.
     pub broken: u64,
     /// Energy that they held (energy).
     pub released: f64,
+    /// The lowest critical `e` of any point from now on, where that is counted.
+    pub least_critical: f64,
+}
+
+impl Default for Tally {
+    fn default() -> Tally {
+        Tally {
+            broken: 0,
+            released: 0.0,
+            least_critical: f64::INFINITY,
+        }
+    }
 }
 
 impl AddAssign for Tally {
     fn add_assign(&mut self, o: Tally) {
         self.broken += o.broken;
         self.released += o.released;
+        self.least_critical = self.least_critical.min(o.least_critical);
     }
 }
 
@@ -139,8 +152,8 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool;
 
-    /// The mutable memory of bonds, for checkpoints: alive bytes and critical stretches.
-    fn memory(&mut self) -> (&mut [u8], &mut [f64]);
+    /// The memory of bonds, as it is laid out: bits of whole bonds and critical values of `e`.
+    fn memory(&self) -> (&[u8], &[f64]);
 
     /// Bytes held.
     fn bytes(&self) -> usize;

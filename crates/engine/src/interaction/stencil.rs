@@ -1,22 +1,24 @@
 //! Any law on a lattice stencil: tiles of eight points walk the offsets together; one bit per bond is all that is
 //! stored.
 
+mod assemble;
 mod kernel;
 
 use super::bond::critical_stretch;
 use super::{
     BondState, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally, Toughness,
 };
-use crate::body::{Body, Field, Grid, Layout};
+use crate::body::{Body, Column, Field, Layout, field};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::TILE;
+use crate::execute::lane::series::LIMIT;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
-use crate::family::stencil::Stencil;
 use crate::law::Law;
 use crate::spec::CrackKind;
+pub use assemble::StencilParts;
 pub use kernel::MOST;
-use kernel::{BLOCK, Bond, Energies, EnergyFields, Forces, Share, View};
+use kernel::{Bond, Energies, EnergyFields, Forces, Partner, Share, View};
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {
@@ -24,6 +26,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     simd: Simd,
     /// Per sublattice.
     bonds: Vec<Vec<Bond<D>>>,
+    partners: Vec<Vec<Partner<D>>>,
     /// The offsets of `bonds`.
     offsets: OffsetSet<D>,
     /// Bytes per tile in `alive`: the longest stencil.
@@ -32,21 +35,26 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     tiles: Vec<u32>,
     /// `[tiles][width]`: bit l of a byte is the bond of point l of the tile.
     alive: Vec<u8>,
+    /// `[tiles]`: 1 where every bond of `reach` is whole for all eight points.
+    intact: Vec<u8>,
     /// `[tiles][words]`: a bit per offset that any point of the tile has a partner at.
     reach: Vec<u64>,
     /// Family size per active tile and lane.
     family: Vec<u16>,
     directed: u64,
     /// Point fields of the law, per slot (empty where unused).
-    fields: [Vec<f64>; 2],
+    fields: [Column; 2],
     /// Pressure factors per slot where materials differ; else the law's own.
-    pressure: Vec<f64>,
+    pressure: Column,
     point_constants: PointConstants,
     toughness: Vec<Toughness>,
     repulsion: Option<Repulsion>,
     /// Critical `e` per slot, now and next.
-    critical: Vec<f64>,
-    next: Vec<f64>,
+    critical: Column,
+    next: Column,
+    /// The lowest of `critical`, and the highest `e` at which any bond repels.
+    least_critical: f64,
+    most_contact: f64,
     volume: f64,
     guard: usize,
     tallies: Vec<Tally>,
@@ -54,130 +62,21 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     sums: Vec<[f64; 2]>,
 }
 
-/// Everything a stencil interaction is made of.
-pub struct StencilParts<'a, const D: usize, W> {
-    pub body: &'a Body<D>,
-    pub grid: &'a Grid<D>,
-    pub stencil: &'a Stencil,
-    pub law: W,
-    /// `ω ν` of a bond of this length.
-    pub weight: &'a dyn Fn(f64) -> f64,
-    pub point_constants: PointConstants,
-    pub toughness: Vec<Toughness>,
-    pub repulsion: Option<Repulsion>,
-    pub simd: Simd,
-}
-
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
-    pub fn new(parts: StencilParts<D, W>) -> Self {
-        let StencilParts {
-            body,
-            grid,
-            stencil,
-            law,
-            weight,
-            point_constants,
-            toughness,
-            repulsion,
-            simd,
-        } = parts;
-        let volume = body
-            .volume
-            .uniform()
-            .expect("a lattice body has one volume");
-        let h = grid.lattice.spacing;
-        let edges = grid.lattice.kind.edges();
-        let bonds: Vec<Vec<Bond<D>>> = stencil
-            .offsets
-            .iter()
-            .enumerate()
-            .map(|(from, list)| {
-                list.iter()
-                    .map(|o| {
-                        let back: [f64; D] =
-                            std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
-                        let r0_squared = h * h * (o.squared as f64 / 16.0);
-                        let r0 = r0_squared.sqrt();
-                        let d = repulsion.map_or(0.0, |c| c.distance(r0));
-                        let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
-                        Bond {
-                            shift: grid.shift(cell.map(i64::from), o.to as i64 - from as i64)
-                                as isize,
-                            back,
-                            inv_r0_squared: 1.0 / r0_squared,
-                            k: law.constant(r0, 1.0 / r0, weight(r0) * volume),
-                            r0_squared,
-                            contact_e: d * d / r0_squared - 1.0,
-                            contact_distance: d,
-                            cell,
-                            to: o.to,
-                        }
-                    })
-                    .collect()
-            })
-            .collect();
-        let width = stencil.bonds();
-        assert!(width <= MOST, "checked when the horizon was read");
-        let tiles: Vec<u32> = (0..grid.tiles())
-            .filter(|t| grid.owned[*t] != 0)
-            .map(|t| t as u32)
-            .collect();
-        let mut alive = vec![0u8; tiles.len() * width];
-        let words = width.div_ceil(64);
-        let mut reach = vec![0u64; tiles.len() * words];
-        let mut family = vec![0u16; tiles.len() * TILE];
-        let mut directed = 0;
-        for (n, &t) in tiles.iter().enumerate() {
-            let first = grid.tile_slot(t as usize);
-            let sub = grid.tile_sublattice(t as usize);
-            for l in 0..TILE {
-                if !grid.is_owned(first + l) {
-                    continue;
-                }
-                for (k, b) in bonds[sub].iter().enumerate() {
-                    if grid.neighbour(first + l, b.cell, b.to).is_some() {
-                        alive[n * width + k] |= 1 << l;
-                        reach[n * words + k / 64] |= 1 << (k % 64);
-                        family[n * TILE + l] += 1;
-                        directed += 1;
-                    }
-                }
-            }
-        }
-        let remembers = repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite());
-        let critical = if remembers {
-            vec![f64::INFINITY; body.len]
-        } else {
-            vec![]
-        };
-        let blocks = tiles.len().div_ceil(BLOCK);
-        StencilInteraction {
-            law,
-            simd,
-            offsets: OffsetSet::new(grid, &bonds, |b| (b.cell, b.to)),
-            bonds,
-            width,
-            tiles,
-            alive,
-            reach,
-            family,
-            directed,
-            fields: [vec![], vec![]],
-            pressure: vec![],
-            point_constants,
-            toughness,
-            repulsion,
-            next: critical.clone(),
-            critical,
-            volume,
-            guard: grid.guard,
-            tallies: vec![Tally::default(); blocks],
-            unit: vec![(); blocks],
-            sums: vec![[0.0; 2]; blocks],
-        }
+    /// For kernels that only read.
+    fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, W> {
+        let alive = Shared(self.alive.as_ptr().cast_mut());
+        let intact = Shared(self.intact.as_ptr().cast_mut());
+        self.view_of(body, u, alive, intact)
     }
 
-    fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, W> {
+    fn view_of<'a>(
+        &'a self,
+        body: &'a Body<D>,
+        u: &'a Field<D>,
+        alive: Shared<u8>,
+        intact: Shared<u8>,
+    ) -> View<'a, D, W> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
@@ -186,11 +85,13 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             grid,
             body,
             bonds: &self.bonds,
+            partners: &self.partners,
             width: self.width,
             tiles: &self.tiles,
-            alive: &self.alive,
+            alive,
+            intact,
             reach: &self.reach,
-            u: std::array::from_fn(|a| u[a].as_slice()),
+            u: std::array::from_fn(|a| &*u[a]),
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,
             volume: self.volume,
@@ -206,13 +107,17 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         motion: Option<(&Field<D>, f64)>,
     ) {
         let mut tallies = std::mem::take(&mut self.tallies);
+        let alive = Shared(self.alive.as_mut_ptr());
+        let intact = Shared(self.intact.as_mut_ptr());
+        let next = Shared(self.next.as_mut_ptr());
         let kernel = Forces::<D, W, FULL> {
-            view: self.view(body, u),
+            view: self.view_of(body, u, alive, intact),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             critical: &self.critical,
-            next: Shared(self.next.as_ptr().cast_mut()),
-            memory: Shared(self.alive.as_ptr().cast_mut()),
+            next,
             toughness: &self.toughness,
+            lower: self.most_contact.max(-LIMIT),
+            upper: self.least_critical.min(LIMIT),
             motion,
         };
         for_each_block(self.simd, &kernel, &mut tallies);
@@ -258,13 +163,14 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         } else {
             self.sweep::<true>(body, u, f, motion);
         }
-        if motion.is_some() && !self.critical.is_empty() {
-            std::mem::swap(&mut self.critical, &mut self.next);
-            body.fill_images(&mut self.critical);
-        }
         let mut total = Tally::default();
         for t in &self.tallies {
             total += *t;
+        }
+        if motion.is_some() && !self.critical.is_empty() {
+            std::mem::swap(&mut self.critical, &mut self.next);
+            body.fill_images(&mut self.critical);
+            self.least_critical = total.least_critical;
         }
         total
     }
@@ -321,11 +227,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 if !grid.is_owned(first + l) {
                     continue;
                 }
-                for (k, b) in self.bonds[grid.tile_sublattice(t as usize)]
-                    .iter()
-                    .enumerate()
-                {
-                    let Some(j) = grid.neighbour(first + l, b.cell, b.to) else {
+                let sub = grid.tile_sublattice(t as usize);
+                for (k, b) in self.bonds[sub].iter().enumerate() {
+                    let to = &self.partners[sub][k];
+                    let Some(j) = grid.neighbour(first + l, to.cell, to.to) else {
                         continue;
                     };
                     let j = original.get(&(j as u32)).map_or(j, |o| *o as usize);
@@ -414,6 +319,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         if kind == CrackKind::Absent {
             self.directed -= count;
         }
+        self.look();
         count
     }
 
@@ -421,8 +327,9 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
-        let per_slot = |value: &dyn Fn(usize) -> f64| {
-            let mut field = vec![0.0; body.len];
+        let column = |n: usize| Column::new(body.len, 0.0, field::line(4 + n));
+        let per_slot = |n: usize, value: &dyn Fn(usize) -> f64| {
+            let mut field = column(n);
             for &s in &body.slots {
                 field[s as usize] = value(s as usize);
             }
@@ -432,7 +339,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         match &self.point_constants {
             PointConstants::None => {}
             PointConstants::PerMaterial(c) => {
-                self.fields[0] = per_slot(&|s| c[body.material_of(s)])
+                self.fields[0] = per_slot(0, &|s| c[body.material_of(s)])
             }
             PointConstants::Solid(solids) => {
                 let mut m = vec![0.0; body.len];
@@ -442,18 +349,19 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                     for (b, bits) in bonds.iter().zip(self.row(n)) {
                         for l in 0..TILE {
                             if bits >> l & 1 == 1 {
-                                m[first + l] += b.k * b.r0_squared;
+                                m[first + l] += b.share;
                             }
                         }
                     }
                 }
                 let of = |s: usize| solids[body.material_of(s)];
                 let per_m = |s: usize, x: f64| if m[s] > 0.0 { x / m[s] } else { 0.0 };
-                self.fields[0] = vec![0.0; body.len];
-                self.fields[1] = per_slot(&|s| per_m(s, of(s).beta));
+                self.fields[0] = column(0);
+                self.fields[1] = per_slot(1, &|s| per_m(s, of(s).beta));
                 if solids.iter().any(|s| s.ratio() != solids[0].ratio()) {
-                    self.pressure =
-                        per_slot(&|s| of(s).ratio() * self.fields[1][s] * self.fields[1][s]);
+                    self.pressure = per_slot(2, &|s| {
+                        of(s).ratio() * self.fields[1][s] * self.fields[1][s]
+                    });
                 }
             }
         }
@@ -489,8 +397,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             .contains(std::array::from_fn(|a| cj[a] - ci[a]), bi, bj)
     }
 
-    fn memory(&mut self) -> (&mut [u8], &mut [f64]) {
-        (&mut self.alive, &mut self.critical)
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&self.alive, &self.critical)
     }
 
     fn bytes(&self) -> usize {
@@ -500,6 +408,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             + self.critical.len()
             + self.next.len();
         self.alive.len()
+            + self.intact.len()
+            + 8 * self.reach.len()
             + self.offsets.bytes()
             + 2 * self.family.len()
             + 4 * self.tiles.len()

@@ -129,6 +129,10 @@ impl Lane for F64x4 {
         unsafe { _mm256_cmp_pd::<_CMP_GE_OQ>(self.0, other.0) }
     }
     #[inline(always)]
+    fn is_nan(self) -> __m256d {
+        unsafe { _mm256_cmp_pd::<_CMP_UNORD_Q>(self.0, self.0) }
+    }
+    #[inline(always)]
     fn dead(bits: u8, part: usize) -> __m256d {
         unsafe {
             let lane = _mm256_loadu_si256(LANE_BIT[part].as_ptr().cast());

@@ -115,6 +115,10 @@ impl Lane for F64x8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_GE_OQ>(self.0, other.0) }
     }
     #[inline(always)]
+    fn is_nan(self) -> __mmask8 {
+        unsafe { _mm512_cmp_pd_mask::<_CMP_UNORD_Q>(self.0, self.0) }
+    }
+    #[inline(always)]
     fn dead(bits: u8, _part: usize) -> __mmask8 {
         !bits
     }

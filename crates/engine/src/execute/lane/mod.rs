@@ -53,6 +53,7 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// Ordered comparison: false where either is not a number.
     fn lt(self, other: Self) -> Self::Mask;
     fn ge(self, other: Self) -> Self::Mask;
+    fn is_nan(self) -> Self::Mask;
     /// Lanes whose bit in `bits` is 0; vector `part` of the tile reads bits `part·N ..`.
     fn dead(bits: u8, part: usize) -> Self::Mask;
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;

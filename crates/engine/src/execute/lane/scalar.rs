@@ -73,6 +73,10 @@ impl Lane for f64 {
         self >= other
     }
     #[inline(always)]
+    fn is_nan(self) -> bool {
+        f64::is_nan(self)
+    }
+    #[inline(always)]
     fn dead(bits: u8, part: usize) -> bool {
         bits >> part & 1 == 0
     }

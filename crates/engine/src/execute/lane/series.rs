@@ -5,7 +5,7 @@ use super::{Lane, TILE};
 use std::hint::black_box;
 
 /// Below this |e| six terms are exact to rounding.
-const LIMIT: f64 = 1.0 / 256.0;
+pub const LIMIT: f64 = 1.0 / 256.0;
 
 /// Coefficients and the limit, each repeated over a register.
 #[repr(align(64))]

@@ -135,7 +135,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         for a in 0..D {
             eta[a] = j.u[a] - i.u[a];
         }
-        let (y, e) = deform(eta, xi, inv_r0 * inv_r0);
+        let (y, e) = deform(eta, xi, (inv_r0 + inv_r0) * inv_r0);
         Bond {
             y,
             e,

@@ -1,0 +1,154 @@
+//! A stencil interaction from a body, a stencil and a law.
+
+use super::StencilInteraction;
+use super::kernel::{BLOCK, Bond, MOST, Partner};
+use crate::body::{Body, Column, Grid, field};
+use crate::execute::lane::TILE;
+use crate::execute::simd::Simd;
+use crate::family::offsets::OffsetSet;
+use crate::family::stencil::{Offset, Stencil};
+use crate::interaction::{PointConstants, Repulsion, Tally, Toughness};
+use crate::law::Law;
+
+/// Everything a stencil interaction is made of.
+pub struct StencilParts<'a, const D: usize, W> {
+    pub body: &'a Body<D>,
+    pub grid: &'a Grid<D>,
+    pub stencil: &'a Stencil,
+    pub law: W,
+    /// `ω ν` of a bond of this length.
+    pub weight: &'a dyn Fn(f64) -> f64,
+    pub point_constants: PointConstants,
+    pub toughness: Vec<Toughness>,
+    pub repulsion: Option<Repulsion>,
+    pub simd: Simd,
+}
+
+impl<const D: usize, W: Law> StencilInteraction<D, W> {
+    pub fn new(parts: StencilParts<D, W>) -> Self {
+        let StencilParts {
+            body,
+            grid,
+            stencil,
+            law,
+            weight,
+            point_constants,
+            toughness,
+            repulsion,
+            simd,
+        } = parts;
+        let volume = body
+            .volume
+            .uniform()
+            .expect("a lattice body has one volume");
+        let h = grid.lattice.spacing;
+        let edges = grid.lattice.kind.edges();
+        let of = |from: usize, o: &Offset| {
+            let back = std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
+            let r0_squared = h * h * (o.squared as f64 / 16.0);
+            let r0 = r0_squared.sqrt();
+            let d = repulsion.map_or(0.0, |c| c.distance(r0));
+            let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
+            let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
+            let bond = Bond {
+                shift: grid.shift(cell.map(i64::from), o.to as i64 - from as i64) as isize,
+                back,
+                two_by_r0_squared: 2.0 / r0_squared,
+                k,
+                contact_e: d * d / r0_squared - 1.0,
+                share: k * r0_squared,
+            };
+            let partner = Partner {
+                cell,
+                to: o.to,
+                r0_squared,
+                contact_distance: d,
+            };
+            (bond, partner)
+        };
+        let (bonds, partners): (Vec<Vec<Bond<D>>>, Vec<Vec<Partner<D>>>) = stencil
+            .offsets
+            .iter()
+            .enumerate()
+            .map(|(from, list)| list.iter().map(|o| of(from, o)).unzip())
+            .unzip();
+        let contact_e = bonds.iter().flatten().map(|b| b.contact_e);
+        let most_contact = contact_e.fold(-1.0, f64::max);
+        let width = stencil.bonds();
+        assert!(width <= MOST, "checked when the horizon was read");
+        let tiles: Vec<u32> = (0..grid.tiles())
+            .filter(|t| grid.owned[*t] != 0)
+            .map(|t| t as u32)
+            .collect();
+        let mut alive = vec![0u8; tiles.len() * width];
+        let words = width.div_ceil(64);
+        let mut reach = vec![0u64; tiles.len() * words];
+        let mut family = vec![0u16; tiles.len() * TILE];
+        let mut directed = 0;
+        for (n, &t) in tiles.iter().enumerate() {
+            let first = grid.tile_slot(t as usize);
+            let sub = grid.tile_sublattice(t as usize);
+            for l in 0..TILE {
+                if !grid.is_owned(first + l) {
+                    continue;
+                }
+                for (k, b) in partners[sub].iter().enumerate() {
+                    if grid.neighbour(first + l, b.cell, b.to).is_some() {
+                        alive[n * width + k] |= 1 << l;
+                        reach[n * words + k / 64] |= 1 << (k % 64);
+                        family[n * TILE + l] += 1;
+                        directed += 1;
+                    }
+                }
+            }
+        }
+        let remembers = repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite());
+        let critical = if remembers {
+            Column::new(body.len, f64::INFINITY, field::line(3))
+        } else {
+            Column::default()
+        };
+        let blocks = tiles.len().div_ceil(BLOCK);
+        let mut made = StencilInteraction {
+            law,
+            simd,
+            offsets: OffsetSet::new(grid, &partners, |b| (b.cell, b.to)),
+            bonds,
+            partners,
+            width,
+            alive,
+            intact: vec![0; tiles.len()],
+            tiles,
+            reach,
+            family,
+            directed,
+            fields: Default::default(),
+            pressure: Column::default(),
+            point_constants,
+            toughness,
+            repulsion,
+            next: critical.clone(),
+            critical,
+            least_critical: f64::INFINITY,
+            most_contact,
+            volume,
+            guard: grid.guard,
+            tallies: vec![Tally::default(); blocks],
+            unit: vec![(); blocks],
+            sums: vec![[0.0; 2]; blocks],
+        };
+        made.look();
+        made
+    }
+
+    /// Find the tiles whose bonds are all whole.
+    pub(super) fn look(&mut self) {
+        let words = self.width.div_ceil(64);
+        for (n, intact) in self.intact.iter_mut().enumerate() {
+            let row = &self.alive[n * self.width..(n + 1) * self.width];
+            let reach = &self.reach[n * words..(n + 1) * words];
+            let leads = |k: usize| reach[k / 64] >> (k % 64) & 1 == 1;
+            *intact = (0..self.width).all(|k| !leads(k) || row[k] == 0xff) as u8;
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! The force pass: what every bond pulls, which bonds break, and the new critical stretch.
+
+use super::{Bond, Deformed, MOST, Offsets, View};
+use crate::body::Field;
+use crate::execute::blocks::Shared;
+use crate::execute::lane::series::{self, Series};
+use crate::execute::lane::{Lane, TILE};
+use crate::execute::simd::Kernel;
+use crate::interaction::{Tally, Toughness, history};
+use crate::law::Law;
+use std::mem::MaybeUninit;
+
+/// Bonds that a hot loop left for later.
+type Waiting = [MaybeUninit<u16>; MOST];
+
+/// Force pass; `FULL` with breaking and repulsion.
+pub struct Forces<'a, const D: usize, W, const FULL: bool> {
+    pub view: View<'a, D, W>,
+    pub f: [Shared; D],
+    pub critical: &'a [f64],
+    pub next: Shared,
+    pub toughness: &'a [Toughness],
+    /// Between these values of `e` the series is exact, no whole bond is too close and none breaks.
+    pub lower: f64,
+    pub upper: f64,
+    /// Velocity of the step's middle, and the step; none if bonds must not break.
+    pub motion: Option<(&'a Field<D>, f64)>,
+}
+
+impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
+    type Out = Tally;
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> Tally {
+        let v = &self.view;
+        let mut tally = Tally::default();
+        let mut offsets = Offsets::new();
+        let mut rare: Waiting = [const { MaybeUninit::uninit() }; MOST];
+        for n in v.block(block) {
+            offsets.of(v.reach(n));
+            for part in 0..TILE / L::N {
+                // SAFETY: tiles lie inside the arrays, offsets inside the guards; each tile is written by one block
+                unsafe {
+                    if v.is_intact(n) {
+                        self.points::<L, false>(n, part, &offsets, &mut rare, &mut tally);
+                    } else {
+                        self.points::<L, true>(n, part, &offsets, &mut rare, &mut tally);
+                    }
+                }
+            }
+        }
+        tally
+    }
+}
+
+/// `N` points of a tile.
+struct Points<L, const D: usize> {
+    /// Active tile, its part, and the first slot.
+    tile: usize,
+    part: usize,
+    i: usize,
+    u: [L; D],
+    own: [L; 2],
+    /// Lanes with `e` outside of this wait.
+    lower: L,
+    upper: L,
+}
+
+impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
+    /// All bonds of `N` points.
+    ///
+    /// The hot loops take the lanes where the series is exact and nothing can happen, because `e` lies between bounds
+    /// that hold for the whole body; the bonds with any other lane are noted, and those lanes are added afterwards.
+    /// Which lanes wait does not depend on their neighbours in the register, so the order of every point's sum is its
+    /// own.
+    #[inline(always)]
+    unsafe fn points<L: Lane, const MASKED: bool>(
+        &self,
+        tile: usize,
+        part: usize,
+        offsets: &Offsets,
+        rare: &mut Waiting,
+        tally: &mut Tally,
+    ) {
+        let v = &self.view;
+        let i = v.slot(tile) + part * L::N;
+        let bonds = v.stencil(tile);
+        let series = Series::extension_over_length();
+        // SAFETY: slots and their neighbours lie inside the arrays; at most MOST bonds, checked when the stencil was
+        // made
+        unsafe {
+            let zero = L::splat(0.0);
+            let at = Points {
+                tile,
+                part,
+                i,
+                u: v.displacement::<L>(i),
+                own: v.fields::<L>(i),
+                lower: L::splat(self.lower),
+                upper: L::splat(self.upper),
+            };
+            let mut lowest = L::splat(f64::INFINITY);
+            let mut acc = [zero; D];
+            let mut waiting = 0;
+            let mut deformed = Deformed::<L, D>::new();
+            for chunk in offsets.chunks() {
+                let mut any = zero.lt(zero);
+                for (c, n) in chunk.iter().enumerate() {
+                    let n = n.assume_init() as usize;
+                    let b = bonds.get_unchecked(n);
+                    let (y, raw) = v.deform(b, i, &at.u);
+                    let (e, aside, out) = self.judge::<L, MASKED>(&at, n, b, raw);
+                    any = L::or(any, aside);
+                    if FULL {
+                        lowest = e.min(lowest);
+                    }
+                    deformed.put(c, e.nan_if(out), y);
+                }
+                for (c, n) in chunk.iter().enumerate() {
+                    let b = bonds.get_unchecked(n.assume_init() as usize);
+                    let e = deformed.e(c);
+                    let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
+                    let pull = v.law.pull(L::splat(b.k), series.at(e), at.own, other);
+                    let pull = pull.zero_if(e.is_nan());
+                    for a in 0..D {
+                        acc[a] = pull.fma(deformed.y(c, a), acc[a]);
+                    }
+                }
+                if L::any(any) {
+                    for n in chunk {
+                        let b = bonds.get_unchecked(n.assume_init() as usize);
+                        let (_, raw) = v.deform(b, i, &at.u);
+                        let judged = self.judge::<L, MASKED>(&at, n.assume_init() as usize, b, raw);
+                        rare.get_unchecked_mut(waiting).write(n.assume_init());
+                        waiting += L::any(judged.1) as usize;
+                    }
+                }
+            }
+            if waiting > 0 {
+                self.rare::<L>(&at, &rare[..waiting], &mut acc, tally);
+            }
+            for a in 0..D {
+                // what was summed points from j to i
+                (zero - acc[a]).store(self.f[a].at(i));
+            }
+            if FULL {
+                let material = |l: usize| v.body.material_of(i + l);
+                let next = history::next_critical(self.toughness, material, lowest);
+                next.store(self.next.at(i));
+                for x in &next.to_array()[..L::N] {
+                    tally.least_critical = tally.least_critical.min(*x);
+                }
+            }
+        }
+    }
+
+    /// `e` of bond `n` where it is whole, the lanes that wait, and the lanes that the hot loop leaves out.
+    #[inline(always)]
+    unsafe fn judge<L: Lane, const MASKED: bool>(
+        &self,
+        at: &Points<L, D>,
+        n: usize,
+        b: &Bond<D>,
+        raw: L,
+    ) -> (L, L::Mask, L::Mask) {
+        let v = &self.view;
+        let mut e = raw;
+        let mut dead = raw.lt(raw);
+        if MASKED {
+            // SAFETY: n is an offset of this tile
+            dead = L::dead(unsafe { *v.row(at.tile).add(n) }, at.part);
+            e = raw.nan_if(dead);
+        }
+        let mut aside = L::or(e.lt(at.lower), at.upper.lt(e));
+        if FULL && MASKED {
+            // a bond that is broken or absent may still be too close
+            aside = L::or(aside, raw.lt(L::splat(b.contact_e)));
+        }
+        (e, aside, if MASKED { L::or(dead, aside) } else { aside })
+    }
+
+    /// The lanes that the hot loop left out: large stretch, repulsion, breaking.
+    #[inline(always)]
+    unsafe fn rare<L: Lane>(
+        &self,
+        at: &Points<L, D>,
+        rare: &[MaybeUninit<u16>],
+        acc: &mut [L; D],
+        tally: &mut Tally,
+    ) {
+        let v = &self.view;
+        let (i, part, own) = (at.i, at.part, at.own);
+        let bonds = v.stencil(at.tile);
+        let partners = &v.partners[v.sublattice(at.tile)];
+        let zero = L::splat(0.0);
+        // broken bonds: Σ x and Σ k r0² s
+        let mut lost: Option<[L; 2]> = None;
+        // SAFETY: as in the hot loop
+        unsafe {
+            for n in rare {
+                // the hot loop wrote them
+                let n = n.assume_init() as usize;
+                let (b, bits) = (&bonds[n], v.row(at.tile).add(n));
+                let j = i.wrapping_add_signed(b.shift);
+                let (y, raw) = v.deform(b, i, &at.u);
+                let (e, aside, _) = self.judge::<L, true>(at, n, b, raw);
+                let other = v.fields::<L>(j);
+                let k = L::splat(b.k);
+                let g = series::extension_over_length(e);
+                let dead = L::dead(*bits, part);
+                let own_pull = v.law.pull(k, g, own, other).zero_if(dead);
+                let mut pull = L::select(aside, own_pull, zero);
+                let close = raw.lt(L::splat(b.contact_e));
+                if FULL && L::any(close) {
+                    pull = pull + v.repel(&partners[n], i, raw, close).0;
+                }
+                if FULL && self.motion.is_some() {
+                    let own_limit = L::load(self.critical.as_ptr().add(i));
+                    let breaks = L::load(self.critical.as_ptr().add(j)).min(own_limit).lt(e);
+                    let which = L::bits(breaks);
+                    if which != 0 {
+                        *bits &= !((which as u8) << (part * L::N));
+                        *v.intact.at(at.tile) = 0;
+                        tally.broken += which.count_ones() as u64;
+                        let s = series::stretch(e);
+                        let share = L::splat(b.share) * s;
+                        let held = v.law.pair_energy(share * s, own, other)
+                            + self.farewell(own_pull, y, i, j);
+                        let sum = lost.unwrap_or([zero; 2]);
+                        lost = Some([
+                            sum[0] + L::select(breaks, held, zero),
+                            sum[1] + L::select(breaks, share, zero),
+                        ]);
+                    }
+                }
+                for a in 0..D {
+                    acc[a] = pull.fma(y[a], acc[a]);
+                }
+            }
+            if let Some(lost) = lost {
+                let energy = history::released::<L, W>(v.pressure_factor(i), own, lost);
+                // one by one: the order of the sum must not depend on the width
+                for x in &energy.to_array()[..L::N] {
+                    tally.released += x * v.volume;
+                }
+            }
+        }
+    }
+
+    /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
+    /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner. `y` points from j to i.
+    #[inline(always)]
+    unsafe fn farewell<L: Lane>(&self, pull: L, y: [L; D], i: usize, j: usize) -> L {
+        let Some((v, dt)) = self.motion else {
+            return L::splat(0.0);
+        };
+        let mut rate = L::splat(0.0);
+        for a in 0..D {
+            // SAFETY: slots lie inside the arrays
+            let relative = unsafe { L::load(v[a].as_ptr().add(i)) - L::load(v[a].as_ptr().add(j)) };
+            rate = y[a].fma(relative, rate);
+        }
+        L::splat(0.25 * dt) * pull * rate
+    }
+}
