@@ -96,6 +96,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             pressure: &self.pressure,
             volume: self.volume,
             repulsion: self.repulsion,
+            most_contact: self.most_contact,
         }
     }
 

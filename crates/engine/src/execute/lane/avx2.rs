@@ -113,6 +113,10 @@ impl Lane for F64x4 {
         unsafe { F64x4(_mm256_min_pd(self.0, other.0)) }
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        unsafe { F64x4(_mm256_max_pd(self.0, other.0)) }
+    }
+    #[inline(always)]
     fn round(self) -> Self {
         unsafe {
             F64x4(_mm256_round_pd::<

@@ -99,6 +99,10 @@ impl Lane for F64x8 {
         unsafe { F64x8(_mm512_min_pd(self.0, other.0)) }
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        unsafe { F64x8(_mm512_max_pd(self.0, other.0)) }
+    }
+    #[inline(always)]
     fn round(self) -> Self {
         unsafe {
             F64x8(_mm512_roundscale_pd::<

@@ -48,6 +48,8 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn abs(self) -> Self;
     /// The smaller one; `other` where `self` is not a number.
     fn min(self, other: Self) -> Self;
+    /// The larger one; `other` where `self` is not a number.
+    fn max(self, other: Self) -> Self;
     /// To the nearest integer, ties to even.
     fn round(self) -> Self;
     /// Ordered comparison: false where either is not a number.

@@ -61,6 +61,10 @@ impl Lane for f64 {
         if self < other { self } else { other }
     }
     #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
     fn round(self) -> f64 {
         self.round_ties_even()
     }

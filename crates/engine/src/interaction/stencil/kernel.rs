@@ -74,6 +74,8 @@ pub struct View<'a, const D: usize, W> {
     pub pressure: &'a [f64],
     pub volume: f64,
     pub repulsion: Option<Repulsion>,
+    /// The highest `e` at which any bond repels.
+    pub most_contact: f64,
 }
 
 impl<const D: usize, W: Law> View<'_, D, W> {

@@ -1,11 +1,12 @@
 //! The energy pass.
 
-use super::{Offsets, View};
+use super::{CHUNK, Offsets, View};
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, Series};
+use crate::execute::lane::series::{self, LIMIT, Series};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::law::Law;
+use std::mem::MaybeUninit;
 
 /// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds. Sums are returned,
 /// fields are written where wanted.
@@ -41,31 +42,56 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                 // SAFETY: as in the force pass
                 unsafe {
                     let zero = L::splat(0.0);
+                    let limit = L::splat(LIMIT);
+                    let row = v.row(n);
+                    let mut stretched = [MaybeUninit::<L>::uninit(); CHUNK];
                     let ui = v.displacement::<L>(i);
                     let own = v.fields::<L>(i);
                     let (mut strain, mut repulsion, mut share, mut weight) =
                         (zero, zero, zero, zero);
-                    for k in offsets.chunks().flatten() {
-                        // all were written
-                        let k = k.assume_init() as usize;
-                        let b = bonds.get_unchecked(k);
-                        let (_, e) = v.deform(b, i, &ui);
-                        let dead = L::dead(*v.row(n).add(k), part);
-                        let whole = e.zero_if(dead);
-                        let s = if L::any(series.beyond(whole)) {
-                            series::stretch(whole)
-                        } else {
-                            series.at(whole)
-                        };
-                        let kr = L::splat(b.share);
-                        let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
-                        strain = strain + v.law.pair_energy(kr * s * s, own, other).zero_if(dead);
-                        share = kr.fma(s, share);
-                        weight = weight + kr.zero_if(dead);
-                        if v.repulsion.is_some() {
-                            let close = e.lt(L::splat(b.contact_e));
-                            if L::any(close) {
-                                repulsion = repulsion + v.repel(&partners[k], i, e, close).1;
+                    for chunk in offsets.chunks() {
+                        let (mut low, mut high, mut lowest) = (zero, zero, zero);
+                        for (c, n) in chunk.iter().enumerate() {
+                            let n = n.assume_init() as usize;
+                            let (_, raw) = v.deform(bonds.get_unchecked(n), i, &ui);
+                            // a bond that is not there is not stretched
+                            let e = raw.zero_if(L::dead(*row.add(n), part));
+                            low = e.min(low);
+                            high = e.max(high);
+                            lowest = raw.min(lowest);
+                            stretched.get_unchecked_mut(c).write(e);
+                        }
+                        let far = L::any(L::or(limit.lt(high), low.lt(zero - limit)));
+                        for (c, n) in chunk.iter().enumerate() {
+                            let b = bonds.get_unchecked(n.assume_init() as usize);
+                            // the loop above wrote these
+                            let e = stretched.get_unchecked(c).assume_init();
+                            let s = if far {
+                                series::stretch(e)
+                            } else {
+                                series.at(e)
+                            };
+                            let kr = L::splat(b.share);
+                            let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
+                            strain = strain + v.law.pair_energy(kr * s * s, own, other);
+                            share = kr.fma(s, share);
+                        }
+                        if v.repulsion.is_some() && L::any(lowest.lt(L::splat(v.most_contact))) {
+                            for n in chunk {
+                                let n = n.assume_init() as usize;
+                                let b = bonds.get_unchecked(n);
+                                let (_, raw) = v.deform(b, i, &ui);
+                                let close = raw.lt(L::splat(b.contact_e));
+                                if L::any(close) {
+                                    repulsion = repulsion + v.repel(&partners[n], i, raw, close).1;
+                                }
+                            }
+                        }
+                        if self.fields.is_some() {
+                            for n in chunk {
+                                let n = n.assume_init() as usize;
+                                let kr = L::splat(bonds.get_unchecked(n).share);
+                                weight = weight + kr.zero_if(L::dead(*row.add(n), part));
                             }
                         }
                     }

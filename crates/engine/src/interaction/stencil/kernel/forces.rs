@@ -104,36 +104,41 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             let mut waiting = 0;
             let mut deformed = Deformed::<L, D>::new();
             for chunk in offsets.chunks() {
-                let mut any = zero.lt(zero);
+                let mut close = zero.lt(zero);
+                let (mut low, mut high) = (L::splat(f64::INFINITY), zero);
                 for (c, n) in chunk.iter().enumerate() {
                     let n = n.assume_init() as usize;
                     let b = bonds.get_unchecked(n);
                     let (y, raw) = v.deform(b, i, &at.u);
-                    let (e, aside, out) = self.judge::<L, MASKED>(&at, n, b, raw);
-                    any = L::or(any, aside);
-                    if FULL {
-                        lowest = e.min(lowest);
+                    let mut e = raw;
+                    if MASKED {
+                        e = raw.nan_if(L::dead(*v.row(tile).add(n), part));
+                        if FULL {
+                            // a bond that is broken or absent may still be too close
+                            close = L::or(close, raw.lt(L::splat(b.contact_e)));
+                        }
                     }
-                    deformed.put(c, e.nan_if(out), y);
+                    low = e.min(low);
+                    high = e.max(high);
+                    deformed.put(c, e, y);
                 }
-                for (c, n) in chunk.iter().enumerate() {
-                    let b = bonds.get_unchecked(n.assume_init() as usize);
-                    let e = deformed.e(c);
-                    let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
-                    let pull = v.law.pull(L::splat(b.k), series.at(e), at.own, other);
-                    let pull = pull.zero_if(e.is_nan());
-                    for a in 0..D {
-                        acc[a] = pull.fma(deformed.y(c, a), acc[a]);
-                    }
+                if FULL {
+                    lowest = low.min(lowest);
                 }
-                if L::any(any) {
-                    for n in chunk {
-                        let b = bonds.get_unchecked(n.assume_init() as usize);
-                        let (_, raw) = v.deform(b, i, &at.u);
-                        let judged = self.judge::<L, MASKED>(&at, n.assume_init() as usize, b, raw);
-                        rare.get_unchecked_mut(waiting).write(n.assume_init());
-                        waiting += L::any(judged.1) as usize;
+                let outside = L::or(low.lt(at.lower), at.upper.lt(high));
+                if L::any(L::or(close, outside)) {
+                    for (c, n) in chunk.iter().enumerate() {
+                        let n = n.assume_init();
+                        let b = bonds.get_unchecked(n as usize);
+                        let (y, raw) = v.deform(b, i, &at.u);
+                        let (e, aside) = self.judge::<L, MASKED>(&at, n as usize, b, raw);
+                        deformed.put(c, e.nan_if(aside), y);
+                        rare.get_unchecked_mut(waiting).write(n);
+                        waiting += L::any(aside) as usize;
                     }
+                    self.answer::<L, true>(&at, chunk, &deformed, series, &mut acc);
+                } else {
+                    self.answer::<L, MASKED>(&at, chunk, &deformed, series, &mut acc);
                 }
             }
             if waiting > 0 {
@@ -154,7 +159,38 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         }
     }
 
-    /// `e` of bond `n` where it is whole, the lanes that wait, and the lanes that the hot loop leaves out.
+    /// Add what the bonds of a chunk pull; with `MASKED`, not where `e` is not a number.
+    #[inline(always)]
+    unsafe fn answer<L: Lane, const MASKED: bool>(
+        &self,
+        at: &Points<L, D>,
+        chunk: &[MaybeUninit<u16>],
+        deformed: &Deformed<L, D>,
+        series: Series,
+        acc: &mut [L; D],
+    ) {
+        let v = &self.view;
+        let bonds = v.stencil(at.tile);
+        let mut sum = *acc;
+        for (c, n) in chunk.iter().enumerate() {
+            // SAFETY: as in the first loop, which put every bond of the chunk
+            unsafe {
+                let b = bonds.get_unchecked(n.assume_init() as usize);
+                let e = deformed.e(c);
+                let other = v.fields::<L>(at.i.wrapping_add_signed(b.shift));
+                let mut pull = v.law.pull(L::splat(b.k), series.at(e), at.own, other);
+                if MASKED {
+                    pull = pull.zero_if(e.is_nan());
+                }
+                for a in 0..D {
+                    sum[a] = pull.fma(deformed.y(c, a), sum[a]);
+                }
+            }
+        }
+        *acc = sum;
+    }
+
+    /// `e` of bond `n` where it is whole, and the lanes that wait.
     #[inline(always)]
     unsafe fn judge<L: Lane, const MASKED: bool>(
         &self,
@@ -162,21 +198,18 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         n: usize,
         b: &Bond<D>,
         raw: L,
-    ) -> (L, L::Mask, L::Mask) {
+    ) -> (L, L::Mask) {
         let v = &self.view;
         let mut e = raw;
-        let mut dead = raw.lt(raw);
         if MASKED {
             // SAFETY: n is an offset of this tile
-            dead = L::dead(unsafe { *v.row(at.tile).add(n) }, at.part);
-            e = raw.nan_if(dead);
+            e = raw.nan_if(L::dead(unsafe { *v.row(at.tile).add(n) }, at.part));
         }
         let mut aside = L::or(e.lt(at.lower), at.upper.lt(e));
         if FULL && MASKED {
-            // a bond that is broken or absent may still be too close
             aside = L::or(aside, raw.lt(L::splat(b.contact_e)));
         }
-        (e, aside, if MASKED { L::or(dead, aside) } else { aside })
+        (e, aside)
     }
 
     /// The lanes that the hot loop left out: large stretch, repulsion, breaking.
@@ -203,7 +236,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let (b, bits) = (&bonds[n], v.row(at.tile).add(n));
                 let j = i.wrapping_add_signed(b.shift);
                 let (y, raw) = v.deform(b, i, &at.u);
-                let (e, aside, _) = self.judge::<L, true>(at, n, b, raw);
+                let (e, aside) = self.judge::<L, true>(at, n, b, raw);
                 let other = v.fields::<L>(j);
                 let k = L::splat(b.k);
                 let g = series::extension_over_length(e);

@@ -2,7 +2,7 @@
 
 use super::{CHUNK, Offsets, View};
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, Series};
+use crate::execute::lane::series::{self, LIMIT, Series};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::law::Law;
@@ -57,38 +57,33 @@ impl<const D: usize, W: Law> Share<'_, D, W> {
             let row = v.row(tile);
             let ui = v.displacement::<L>(i);
             let zero = L::splat(0.0);
+            let limit = L::splat(LIMIT);
             let mut sum = zero;
             let mut stretched = [MaybeUninit::<L>::uninit(); CHUNK];
             for chunk in offsets.chunks() {
-                for (c, n) in chunk.iter().enumerate() {
-                    let b = bonds.get_unchecked(n.assume_init() as usize);
-                    stretched.get_unchecked_mut(c).write(v.deform(b, i, &ui).1);
-                }
-                let before = sum;
-                let mut far = zero.lt(zero);
+                let (mut low, mut high) = (zero, zero);
                 for (c, n) in chunk.iter().enumerate() {
                     let n = n.assume_init() as usize;
-                    let b = bonds.get_unchecked(n);
-                    // the loop above wrote these
-                    let mut e = stretched.get_unchecked(c).assume_init();
+                    let (_, mut e) = v.deform(bonds.get_unchecked(n), i, &ui);
                     if MASKED {
                         // a bond that is not there is not stretched
                         e = e.zero_if(L::dead(*row.add(n), part));
                     }
-                    far = L::or(far, series.beyond(e));
-                    sum = L::splat(b.share).fma(series.at(e), sum);
+                    low = e.min(low);
+                    high = e.max(high);
+                    stretched.get_unchecked_mut(c).write(e);
                 }
-                if L::any(far) {
-                    sum = before;
-                    for (c, n) in chunk.iter().enumerate() {
-                        let n = n.assume_init() as usize;
-                        let b = bonds.get_unchecked(n);
-                        let mut e = stretched.get_unchecked(c).assume_init();
-                        if MASKED {
-                            e = e.zero_if(L::dead(*row.add(n), part));
-                        }
-                        sum = L::splat(b.share).fma(series::stretch(e), sum);
-                    }
+                let far = L::any(L::or(limit.lt(high), low.lt(zero - limit)));
+                for (c, n) in chunk.iter().enumerate() {
+                    let b = bonds.get_unchecked(n.assume_init() as usize);
+                    // the loop above wrote these
+                    let e = stretched.get_unchecked(c).assume_init();
+                    let s = if far {
+                        series::stretch(e)
+                    } else {
+                        series.at(e)
+                    };
+                    sum = L::splat(b.share).fma(s, sum);
                 }
             }
             sum
