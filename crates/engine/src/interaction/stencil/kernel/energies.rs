@@ -63,7 +63,8 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                         }
                         let far = L::any(L::or(limit.lt(high), low.lt(zero - limit)));
                         for (c, n) in chunk.iter().enumerate() {
-                            let b = bonds.get_unchecked(n.assume_init() as usize);
+                            let n = n.assume_init() as usize;
+                            let b = bonds.get_unchecked(n);
                             // the loop above wrote these
                             let e = stretched.get_unchecked(c).assume_init();
                             let s = if far {
@@ -73,7 +74,9 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                             };
                             let kr = L::splat(b.share);
                             let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
-                            strain = strain + v.law.pair_energy(kr * s * s, own, other);
+                            // fields mean nothing where there is no point
+                            let x = v.law.pair_energy(kr * s * s, own, other);
+                            strain = strain + x.zero_if(L::dead(*row.add(n), part));
                             share = kr.fma(s, share);
                         }
                         if v.repulsion.is_some() && L::any(lowest.lt(L::splat(v.most_contact))) {
