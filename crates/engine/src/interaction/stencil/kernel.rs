@@ -270,6 +270,17 @@ impl<L: Lane, const D: usize> Deformed<L, D> {
     /// # Safety
     /// Number `c` was put.
     #[inline(always)]
+    unsafe fn leave_out(&mut self, c: usize, lanes: L::Mask) {
+        // SAFETY: the caller's promise
+        unsafe {
+            let e = self.e(c).nan_if(lanes);
+            self.e.get_unchecked_mut(c).write(e);
+        }
+    }
+
+    /// # Safety
+    /// Number `c` was put.
+    #[inline(always)]
     unsafe fn e(&self, c: usize) -> L {
         // SAFETY: the caller's promise
         unsafe { self.e.get_unchecked(c).assume_init() }

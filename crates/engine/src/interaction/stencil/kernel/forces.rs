@@ -3,7 +3,7 @@
 use super::{Bond, Deformed, MOST, Offsets, View};
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, Series};
+use crate::execute::lane::series::{self, LIMIT, Series};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::{Tally, Toughness, history};
@@ -61,18 +61,16 @@ struct Points<L, const D: usize> {
     i: usize,
     u: [L; D],
     own: [L; 2],
-    /// Lanes with `e` outside of this wait.
-    lower: L,
-    upper: L,
+    critical: L,
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     /// All bonds of `N` points.
     ///
-    /// The hot loops take the lanes where the series is exact and nothing can happen, because `e` lies between bounds
-    /// that hold for the whole body; the bonds with any other lane are noted, and those lanes are added afterwards.
-    /// Which lanes wait does not depend on their neighbours in the register, so the order of every point's sum is its
-    /// own.
+    /// Where all `e` of a chunk lie between bounds that hold for the whole body, the series is exact and nothing can
+    /// happen. Else lanes are looked at one by one: those that break or are too close wait and are added last, and the
+    /// others take the root where they need it. None of this depends on a lane's neighbours in the register, so the
+    /// order of every point's sum is its own.
     #[inline(always)]
     unsafe fn points<L: Lane, const MASKED: bool>(
         &self,
@@ -96,9 +94,14 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 i,
                 u: v.displacement::<L>(i),
                 own: v.fields::<L>(i),
-                lower: L::splat(self.lower),
-                upper: L::splat(self.upper),
+                critical: if FULL {
+                    L::load(self.critical.as_ptr().add(i))
+                } else {
+                    zero
+                },
             };
+            let (lower, upper) = (L::splat(self.lower), L::splat(self.upper));
+            let limit = L::splat(LIMIT);
             let mut lowest = L::splat(f64::INFINITY);
             let mut acc = [zero; D];
             let mut waiting = 0;
@@ -125,23 +128,37 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 if FULL {
                     lowest = low.min(lowest);
                 }
-                let outside = L::or(low.lt(at.lower), at.upper.lt(high));
-                if L::any(L::or(close, outside)) {
+                let outside = L::or(low.lt(lower), upper.lt(high));
+                if !L::any(L::or(close, outside)) {
+                    self.answer::<L, MASKED, false>(&at, chunk, &deformed, series, &mut acc);
+                    continue;
+                }
+                if FULL {
+                    let close = L::any(close);
+                    let mut wait = 0u32;
                     for (c, n) in chunk.iter().enumerate() {
-                        let n = n.assume_init();
-                        let b = bonds.get_unchecked(n as usize);
-                        let (y, raw) = v.deform(b, i, &at.u);
-                        let (e, aside) = self.judge::<L, MASKED>(&at, n as usize, b, raw);
-                        deformed.put(c, e.nan_if(aside), y);
-                        rare.get_unchecked_mut(waiting).write(n);
-                        waiting += L::any(aside) as usize;
+                        let b = bonds.get_unchecked(n.assume_init() as usize);
+                        let e = deformed.e(c);
+                        let raw = if close { v.deform(b, i, &at.u).1 } else { e };
+                        let aside = self.aside(&at, b, e, raw);
+                        deformed.leave_out(c, aside);
+                        wait |= (L::any(aside) as u32) << c;
                     }
-                    self.answer::<L, true>(&at, chunk, &deformed, series, &mut acc);
+                    while wait != 0 {
+                        let c = wait.trailing_zeros() as usize;
+                        rare.get_unchecked_mut(waiting)
+                            .write(chunk[c].assume_init());
+                        waiting += 1;
+                        wait &= wait - 1;
+                    }
+                }
+                if L::any(L::or(low.lt(zero - limit), limit.lt(high))) {
+                    self.answer::<L, true, true>(&at, chunk, &deformed, series, &mut acc);
                 } else {
-                    self.answer::<L, MASKED>(&at, chunk, &deformed, series, &mut acc);
+                    self.answer::<L, true, false>(&at, chunk, &deformed, series, &mut acc);
                 }
             }
-            if waiting > 0 {
+            if FULL && waiting > 0 {
                 self.rare::<L>(&at, &rare[..waiting], &mut acc, tally);
             }
             for a in 0..D {
@@ -159,9 +176,10 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         }
     }
 
-    /// Add what the bonds of a chunk pull; with `MASKED`, not where `e` is not a number.
+    /// Add what the bonds of a chunk pull; with `MASKED`, not where `e` is not a number; with `FAR`, by the root where
+    /// the series is not exact.
     #[inline(always)]
-    unsafe fn answer<L: Lane, const MASKED: bool>(
+    unsafe fn answer<L: Lane, const MASKED: bool, const FAR: bool>(
         &self,
         at: &Points<L, D>,
         chunk: &[MaybeUninit<u16>],
@@ -178,7 +196,12 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let b = bonds.get_unchecked(n.assume_init() as usize);
                 let e = deformed.e(c);
                 let other = v.fields::<L>(at.i.wrapping_add_signed(b.shift));
-                let mut pull = v.law.pull(L::splat(b.k), series.at(e), at.own, other);
+                let g = if FAR {
+                    series::extension_over_length(e)
+                } else {
+                    series.at(e)
+                };
+                let mut pull = v.law.pull(L::splat(b.k), g, at.own, other);
                 if MASKED {
                     pull = pull.zero_if(e.is_nan());
                 }
@@ -190,29 +213,19 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         *acc = sum;
     }
 
-    /// `e` of bond `n` where it is whole, and the lanes that wait.
+    /// Lanes whose bond breaks, or whose ends are too close, whole or not; `e` where the bond is whole, `raw` always.
     #[inline(always)]
-    unsafe fn judge<L: Lane, const MASKED: bool>(
-        &self,
-        at: &Points<L, D>,
-        n: usize,
-        b: &Bond<D>,
-        raw: L,
-    ) -> (L, L::Mask) {
-        let v = &self.view;
-        let mut e = raw;
-        if MASKED {
-            // SAFETY: n is an offset of this tile
-            e = raw.nan_if(L::dead(unsafe { *v.row(at.tile).add(n) }, at.part));
-        }
-        let mut aside = L::or(e.lt(at.lower), at.upper.lt(e));
-        if FULL && MASKED {
-            aside = L::or(aside, raw.lt(L::splat(b.contact_e)));
-        }
-        (e, aside)
+    unsafe fn aside<L: Lane>(&self, at: &Points<L, D>, b: &Bond<D>, e: L, raw: L) -> L::Mask {
+        // SAFETY: offsets stay inside the guards
+        let other = unsafe {
+            let j = at.i.wrapping_add_signed(b.shift);
+            L::load(self.critical.as_ptr().add(j))
+        };
+        let breaks = other.min(at.critical).lt(e);
+        L::or(breaks, raw.lt(L::splat(b.contact_e)))
     }
 
-    /// The lanes that the hot loop left out: large stretch, repulsion, breaking.
+    /// The lanes that waited: repulsion, breaking.
     #[inline(always)]
     unsafe fn rare<L: Lane>(
         &self,
@@ -236,20 +249,20 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let (b, bits) = (&bonds[n], v.row(at.tile).add(n));
                 let j = i.wrapping_add_signed(b.shift);
                 let (y, raw) = v.deform(b, i, &at.u);
-                let (e, aside) = self.judge::<L, true>(at, n, b, raw);
-                let other = v.fields::<L>(j);
-                let k = L::splat(b.k);
-                let g = series::extension_over_length(e);
                 let dead = L::dead(*bits, part);
-                let own_pull = v.law.pull(k, g, own, other).zero_if(dead);
+                let e = raw.nan_if(dead);
+                let aside = self.aside(at, b, e, raw);
+                let other = v.fields::<L>(j);
+                let g = series::extension_over_length(e);
+                let own_pull = v.law.pull(L::splat(b.k), g, own, other).zero_if(dead);
                 let mut pull = L::select(aside, own_pull, zero);
                 let close = raw.lt(L::splat(b.contact_e));
-                if FULL && L::any(close) {
+                if L::any(close) {
                     pull = pull + v.repel(&partners[n], i, raw, close).0;
                 }
-                if FULL && self.motion.is_some() {
-                    let own_limit = L::load(self.critical.as_ptr().add(i));
-                    let breaks = L::load(self.critical.as_ptr().add(j)).min(own_limit).lt(e);
+                if self.motion.is_some() {
+                    let limit = L::load(self.critical.as_ptr().add(j)).min(at.critical);
+                    let breaks = limit.lt(e);
                     let which = L::bits(breaks);
                     if which != 0 {
                         *bits &= !((which as u8) << (part * L::N));
