@@ -2,7 +2,7 @@
 
 use super::lane::Lane;
 #[cfg(target_arch = "x86_64")]
-use super::lane::{avx2::F64x4, avx512::F64x8};
+use super::lane::{avx2::F64x4, avx512::F64x8, pair::Pair};
 
 /// Instruction sets with a path of their own. All give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,7 +79,7 @@ fn has_avx512() -> bool {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 unsafe fn avx2<K: Kernel>(kernel: &K, b: usize) -> K::Out {
-    kernel.block::<F64x4>(b)
+    kernel.block::<Pair<F64x4>>(b)
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -8,6 +8,7 @@ use std::ops::{Add, Mul, Sub};
 pub mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub mod avx512;
+pub mod pair;
 pub mod scalar;
 pub mod series;
 

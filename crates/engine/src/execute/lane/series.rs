@@ -71,14 +71,15 @@ impl Series {
         e.abs().ge(self.row(6))
     }
 
-    /// The series, by Estrin's scheme; meaningless [beyond](Series::beyond).
+    /// The series, by Horner's scheme (the sweeps are bound by the number of operations, not by their depth);
+    /// meaningless [beyond](Series::beyond).
     #[inline(always)]
     pub fn at<L: Lane>(self, e: L) -> L {
-        let e2 = e * e;
-        let low = e.fma(self.row(1), self.row(0));
-        let middle = e.fma(self.row(3), self.row(2));
-        let high = e.fma(self.row(5), self.row(4));
-        high.fma(e2, middle).fma(e2, low) * e
+        let mut p = self.row::<L>(5);
+        for k in [4, 3, 2, 1, 0] {
+            p = p.fma(e, self.row(k));
+        }
+        p * e
     }
 }
 

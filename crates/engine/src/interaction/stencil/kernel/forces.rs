@@ -135,14 +135,14 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 }
                 if FULL {
                     let close = L::any(close);
-                    let mut wait = 0u32;
+                    let mut wait = 0u64;
                     for (c, n) in chunk.iter().enumerate() {
                         let b = bonds.get_unchecked(n.assume_init() as usize);
                         let e = deformed.e(c);
                         let raw = if close { v.deform(b, i, &at.u).1 } else { e };
                         let aside = self.aside(&at, b, e, raw);
                         deformed.leave_out(c, aside);
-                        wait |= (L::any(aside) as u32) << c;
+                        wait |= (L::any(aside) as u64) << c;
                     }
                     while wait != 0 {
                         let c = wait.trailing_zeros() as usize;
