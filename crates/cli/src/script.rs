@@ -85,15 +85,7 @@ fn finish(
         }),
         ..SeriesOptions::default()
     };
-    let snapshot = sim.snapshot(SnapshotOptions {
-        energies: true,
-        ..SnapshotOptions::default()
-    });
-    let mut series = Series::new(dir, series_options)?;
-    series.write(&snapshot)?;
-    let picture = series.finish(&snapshot)?;
-    drop(snapshot);
-    let report = report(
+    let mut report = report(
         sim,
         outcome.steps,
         outcome.seconds_stepping,
@@ -101,6 +93,16 @@ fn finish(
         text,
         threads,
     );
+    let snapshot = sim.snapshot(SnapshotOptions {
+        energies: true,
+        ..SnapshotOptions::default()
+    });
+    // files and picture are made of the snapshot: room for them
+    outcome.engine = None;
+    let mut series = Series::new(dir, series_options)?;
+    series.write(&snapshot)?;
+    let picture = series.finish(&snapshot)?;
+    report.peak_memory_bytes = run_json::peak_memory_bytes();
     report.write(&dir.join("run.json"))?;
     say(&format!(
         "done: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",

@@ -67,7 +67,7 @@ pub(super) fn invalid(message: String) -> io::Error {
 }
 
 /// Current positions: reference + displacement.
-pub fn positions(s: &Snapshot) -> impl Iterator<Item = [f64; 3]> + '_ {
+pub fn positions(s: &Snapshot) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
     s.reference
         .iter()
         .zip(&s.displacement)

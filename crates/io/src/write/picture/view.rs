@@ -4,11 +4,15 @@
 //! slope of the surface and by darkening what lies deeper than its surroundings ("unsharp masking the depth
 //! buffer", Luft, Colditz and Deussen 2006).
 
+use std::ops::Range;
+
 use super::colormap::color;
 use super::image::{Color, Image};
 
 /// Pixels drawn per final pixel and axis.
 const FINE: usize = 2;
+/// Final rows that are drawn at a time, so that a picture takes little memory.
+const BAND: usize = 64;
 /// Cubes are a little larger than the spacing, so that a stretched but unbroken body shows no gaps.
 const OVERLAP: f64 = 1.08;
 /// Light on the faces of a body seen obliquely: below 1 darkens towards black, above 1 lightens towards white.
@@ -109,10 +113,12 @@ fn lit(channel: f32, light: f32) -> f32 {
     }
 }
 
-/// Depth, damage and light per fine pixel.
+/// Depth, damage and light per fine pixel of some rows of a view.
 struct Buffer {
     width: usize,
     height: usize,
+    /// Row of the view that is row 0 here.
+    first: usize,
     /// Towards the viewer, in edges of a cube; −∞ where there is nothing.
     depth: Vec<f32>,
     damage: Vec<f32>,
@@ -130,30 +136,54 @@ pub fn draw(
     camera: &Camera,
     frame: &Frame,
     spacing: f64,
-    points: impl Iterator<Item = ([f64; 3], f64)>,
+    points: impl Iterator<Item = ([f64; 3], f64)> + Clone,
 ) {
     let fine = scale * FINE as f64;
     let [w, h] = frame.size().map(|s| (s * fine).ceil() as usize + FINE);
-    let mut buffer = Buffer {
-        width: w,
-        height: h,
-        depth: vec![f32::NEG_INFINITY; w * h],
-        damage: vec![0.0; w * h],
-        light: vec![0.0; w * h],
-        edge: (spacing * OVERLAP * fine).max(1.0),
-    };
-    for (x, damage) in points {
-        let p = camera.project(x);
-        let screen = [(p[0] - frame.low[0]) * fine, (frame.high[1] - p[1]) * fine];
-        let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
-        buffer.cube(screen, depth as f32, damage as f32, camera);
+    let edge = (spacing * OVERLAP * fine).max(1.0);
+    // light and shade of a row depend on the rows within the widest blur
+    let margin = hollow_radius(edge)
+        .max(slope_radius(edge) + 1)
+        .div_ceil(FINE)
+        * FINE;
+    for top in (0..h).step_by(BAND * FINE) {
+        let rows = top..(top + BAND * FINE).min(h);
+        let first = top.saturating_sub(margin);
+        let height = (rows.end + margin).min(h) - first;
+        let mut buffer = Buffer {
+            width: w,
+            height,
+            first,
+            depth: vec![f32::NEG_INFINITY; w * height],
+            damage: vec![0.0; w * height],
+            light: vec![0.0; w * height],
+            edge,
+        };
+        for (x, damage) in points.clone() {
+            let p = camera.project(x);
+            let screen = [
+                (p[0] - frame.low[0]) * fine,
+                (frame.high[1] - p[1]) * fine - first as f64,
+            ];
+            let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
+            buffer.cube(screen, depth as f32, damage as f32, camera);
+        }
+        let heights = buffer.heights(camera);
+        if camera.cosine == 0.0 {
+            buffer.light_slopes(&heights);
+        }
+        buffer.darken_hollows(&heights);
+        buffer.average_onto(image, corner, rows);
     }
-    let heights = buffer.heights(camera);
-    if camera.cosine == 0.0 {
-        buffer.light_slopes(&heights);
-    }
-    buffer.darken_hollows(&heights);
-    buffer.average_onto(image, corner);
+}
+
+/// Radii of the blurs (fine pixels) for cubes of this edge.
+fn slope_radius(edge: f64) -> usize {
+    (edge.round() as usize).max(2)
+}
+
+fn hollow_radius(edge: f64) -> usize {
+    ((2.0 * edge).round() as usize).max(3)
 }
 
 impl Buffer {
@@ -192,7 +222,7 @@ impl Buffer {
     fn heights(&self, camera: &Camera) -> Vec<f32> {
         let row_height = camera.cosine / self.edge;
         let height = |(at, depth): (usize, &f32)| {
-            let row = (at / self.width) as f64;
+            let row = (self.first + at / self.width) as f64;
             depth * camera.sine as f32 - (row * row_height) as f32
         };
         self.depth.iter().enumerate().map(height).collect()
@@ -233,7 +263,7 @@ impl Buffer {
 
     /// Light from the upper left on the slopes of the smoothed surface.
     fn light_slopes(&mut self, heights: &[f32]) {
-        let radius = (self.edge.round() as usize).max(2);
+        let radius = slope_radius(self.edge);
         let smooth = self.blurred(heights, radius);
         let solid = |at: usize| self.depth[at].is_finite();
         let mut gain = vec![1f32; smooth.len()];
@@ -259,7 +289,7 @@ impl Buffer {
 
     /// Darkens what lies deeper than its surroundings: cracks, and debris behind.
     fn darken_hollows(&mut self, heights: &[f32]) {
-        let radius = ((2.0 * self.edge).round() as usize).max(3);
+        let radius = hollow_radius(self.edge);
         let smooth = self.blurred(heights, radius);
         for ((light, height), smooth) in self.light.iter_mut().zip(heights).zip(smooth) {
             if height.is_finite() {
@@ -268,15 +298,16 @@ impl Buffer {
         }
     }
 
-    fn average_onto(&self, image: &mut Image, corner: [f64; 2]) {
+    /// Average these fine rows of the view down to the image.
+    fn average_onto(&self, image: &mut Image, corner: [f64; 2], rows: Range<usize>) {
         let table: Vec<Color> = (0..=255).map(|i| color(f64::from(i) / 255.0)).collect();
-        for row in 0..self.height.div_ceil(FINE) {
+        for row in rows.start / FINE..rows.end.div_ceil(FINE) {
             for column in 0..self.width.div_ceil(FINE) {
                 let mut sum = [0f32; 3];
                 let mut covered = 0.0;
                 for at in (0..FINE * FINE).filter_map(|k| {
                     let (x, y) = (column * FINE + k % FINE, row * FINE + k / FINE);
-                    (x < self.width && y < self.height).then_some(y * self.width + x)
+                    (x < self.width && y < rows.end).then(|| (y - self.first) * self.width + x)
                 }) {
                     if self.depth[at].is_finite() {
                         let index = (self.damage[at].clamp(0.0, 1.0) * 255.0).round() as usize;
