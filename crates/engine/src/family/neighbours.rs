@@ -1,14 +1,13 @@
 //! Neighbours: pairs of points that are close now, whatever they were in the reference.
 //!
-//! Pairs within `cutoff + skin` are listed; the list stays valid until a point has moved more than `skin/2`, since two
-//! points can then have come `skin` closer, and is built again by itself. Linked cells make a build O(N).
+//! Pairs within `cutoff + skin` are listed; the list stays valid until a point can have moved more than `skin/2`, since
+//! two points can then have come `skin` closer, and is built again by itself. Whoever moves points says how far the
+//! fastest one went; the sum of that bounds them all and needs no memory per point. Linked cells make a build O(N).
 
 mod cells;
-mod moved;
 
 use crate::body::{Body, Field};
 use cells::Cells;
-use moved::Moved;
 
 /// The half list of near pairs: every point i with its neighbours j > i, both in order of slot.
 #[derive(Debug, Clone)]
@@ -18,7 +17,9 @@ pub struct Neighbours<const D: usize> {
     cells: Cells<D>,
     /// A ball around the displacements of each cell: centre and radius.
     balls: Vec<([f32; D], f32)>,
-    moved: Moved<D>,
+    skin: f64,
+    /// Bound on the path of any point since the build (length); not a number or infinite: build.
+    path: f64,
     /// `i << 32 | j` as found.
     found: Vec<u64>,
     /// Points that have neighbours, and where their neighbours end.
@@ -38,7 +39,8 @@ impl<const D: usize> Neighbours<D> {
             apart: 0.0,
             cells: Cells::new(body, reach),
             balls: vec![],
-            moved: Moved::new(skin),
+            skin,
+            path: f64::INFINITY,
             found: vec![],
             rows: vec![],
             partner: vec![],
@@ -53,6 +55,16 @@ impl<const D: usize> Neighbours<D> {
         self
     }
 
+    /// No point has gone further than `path` (length) since the last call.
+    pub fn moved(&mut self, path: f64) {
+        self.path += path;
+    }
+
+    /// Points may be anywhere now.
+    pub fn look_again(&mut self) {
+        self.path = f64::INFINITY;
+    }
+
     /// Make the list valid at displacement `u`: build it if it is not. Pairs that `keep` refuses are left out; it is
     /// asked once per near pair and build. Returns whether the list was built.
     pub fn update(
@@ -61,10 +73,12 @@ impl<const D: usize> Neighbours<D> {
         u: &Field<D>,
         keep: &dyn Fn(usize, usize) -> bool,
     ) -> bool {
-        if self.reach.is_nan() || self.reach <= 0.0 || !self.moved.exceeds(u) {
+        // a thousandth for round-off
+        let valid = self.path <= (0.5 - 1e-3) * self.skin;
+        if self.reach.is_nan() || self.reach <= 0.0 || valid {
             return false;
         }
-        self.moved.record(body, u);
+        self.path = 0.0;
         self.cells.sort(body, u);
         self.find(body, u, keep);
         self.compress();
@@ -169,7 +183,6 @@ impl<const D: usize> Neighbours<D> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.cells.bytes()
-            + self.moved.bytes()
             + size_of::<([f32; D], f32)>() * self.balls.capacity()
             + 8 * (self.found.capacity() + self.rows.capacity())
             + 4 * self.partner.capacity()

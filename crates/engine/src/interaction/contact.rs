@@ -46,8 +46,18 @@ impl<const D: usize> Contact<D> {
         }
     }
 
+    /// No point has gone further than `path` (length) since the last call.
+    pub fn moved(&mut self, path: f64) {
+        self.neighbours.moved(path);
+    }
+
+    /// Points may be anywhere now.
+    pub fn look_again(&mut self) {
+        self.neighbours.look_again();
+    }
+
     /// Add the force density of all pairs for which `in_family` is false to `f`. Finds the pairs anew when points
-    /// have moved too far. The same bits for any number of threads.
+    /// may have moved too far. The same bits for any number of threads.
     pub fn add_forces(
         &mut self,
         body: &Body<D>,
@@ -71,7 +81,7 @@ impl<const D: usize> Contact<D> {
         });
     }
 
-    /// Find the pairs anew if points have moved too far.
+    /// Find the pairs anew if points may have moved too far.
     pub fn update(
         &mut self,
         body: &Body<D>,

@@ -46,6 +46,12 @@ fn brute<const D: usize>(body: &Body<D>, u: &Field<D>, horizon: f64) -> (Field<D
     (f, energy, count)
 }
 
+/// How far the fastest point went.
+fn longest<const D: usize>(from: &Field<D>, to: &Field<D>) -> f64 {
+    let square = |i: usize| (0..D).map(|a| (to[a][i] - from[a][i]).powi(2)).sum::<f64>();
+    (0..to[0].len()).map(square).fold(0.0, f64::max).sqrt()
+}
+
 /// One `Contact` through several configurations against all pairs.
 fn check<const D: usize>(
     body: &Body<D>,
@@ -56,6 +62,7 @@ fn check<const D: usize>(
     let mut contact = Contact::new(RULE, body, horizon);
     let mut most = 0;
     for (n, u) in configurations.iter().enumerate() {
+        contact.moved(longest(&configurations[n.saturating_sub(1)], u));
         let mut f = zeros::<D>(body.len);
         contact.add_forces(body, u, &mut f, in_family);
         let (expected, energy, count) = brute(body, u, horizon);
@@ -260,7 +267,8 @@ fn threads_do_not_show() {
         pool.install(|| {
             let mut contact = Contact::new(RULE, &body, 2.0);
             let mut f = zeros::<3>(body.len);
-            for u in &steps[30..] {
+            for (before, u) in steps[29..].iter().zip(&steps[30..]) {
+                contact.moved(longest(before, u));
                 contact.add_forces(&body, u, &mut f, &|i, j| law.in_family(&body, i, j));
             }
             (f, contact.builds())

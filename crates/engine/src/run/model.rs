@@ -301,6 +301,9 @@ impl<const D: usize> Simulation for Model<D> {
         for c in &mut self.constraints {
             c.start(&mut self.u, &mut self.v, t, dt);
         }
+        if let Some(contact) = &mut self.contact {
+            contact.look_again();
+        }
         self.indenters.iter_mut().for_each(Indenter::look_again);
         for d in &mut self.driven {
             if let Driven::Indenter(i) = d {
@@ -338,6 +341,9 @@ impl<const D: usize> Simulation for Model<D> {
             return Err(error);
         }
         self.step += 1;
+        if let Some(contact) = &mut self.contact {
+            contact.moved(fastest.sqrt());
+        }
         let t = self.time();
         for c in &self.constraints {
             c.drift(&mut self.u, t, dt);
@@ -701,6 +707,9 @@ impl<const D: usize> Simulation for Model<D> {
             _ => None,
         };
         let Some(component) = component else { return };
+        if let Some(contact) = &mut self.contact {
+            contact.look_again();
+        }
         for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
             component[s as usize] = *value;
         }

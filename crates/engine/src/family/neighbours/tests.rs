@@ -34,6 +34,12 @@ fn brute<const D: usize>(body: &Body<D>, u: &Field<D>, reach: f64) -> Pairs {
     pairs
 }
 
+/// How far the fastest point went.
+fn longest<const D: usize>(from: &Field<D>, to: &Field<D>) -> f64 {
+    let square = |i: usize| (0..D).map(|a| (to[a][i] - from[a][i]).powi(2)).sum::<f64>();
+    (0..to[0].len()).map(square).fold(0.0, f64::max).sqrt()
+}
+
 /// A random walk, now and then with a leap: at every step no near pair is missing; after a build the list is exact.
 fn walk<const D: usize>(body: &Body<D>, h: f64, seed: u64) {
     let (cutoff, skin) = (1.2 * h, 0.4 * h);
@@ -43,12 +49,14 @@ fn walk<const D: usize>(body: &Body<D>, h: f64, seed: u64) {
     let keep = |i: usize, j: usize| !(i + j).is_multiple_of(5);
     let mut kept_old = 0;
     for step in 0..60 {
+        let before = u.clone();
         for &s in &body.slots {
             let leap = step % 20 == 13 && random.next() > 0.95;
             for c in &mut u {
                 c[s as usize] += h * random.next() * if leap { 1e6 } else { 0.05 };
             }
         }
+        list.moved(longest(&before, &u));
         let built = list.update(body, &u, &keep);
         let have = listed(&list);
         assert!(have.is_sorted());
@@ -124,9 +132,11 @@ fn the_skin_is_measured_from_the_build() {
         // many small steps: 0.09 is within skin/2, 0.1 is not
         for k in 1..=9 {
             u[0][s] = far + 0.01 * k as f64;
+            list.moved(0.01);
             assert!(!list.update(&body, &u, &|_, _| true), "{far}: {k}");
         }
         u[0][s] = far + 0.101;
+        list.moved(0.011);
         assert!(list.update(&body, &u, &|_, _| true));
         assert!(!list.update(&body, &u, &|_, _| true));
     }
@@ -172,9 +182,11 @@ fn what_is_not_finite_does_no_harm() {
     let whole = list.len();
     u[0][body.slots[12] as usize] = f64::INFINITY;
     u[1][body.slots[11] as usize] = 1e300;
+    list.moved(f64::INFINITY);
     assert!(list.update(&body, &u, &|_, _| true));
     assert_eq!(list.len(), whole - 7);
     u[0][body.slots[12] as usize] = f64::NAN;
+    list.moved(f64::NAN);
     list.update(&body, &u, &|_, _| true);
     assert_eq!(list.len(), whole - 7);
 }
