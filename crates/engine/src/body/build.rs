@@ -60,10 +60,10 @@ impl<const D: usize> Body<D> {
         };
         let span = grid.shift([reach as i64; D], 0).unsigned_abs() as usize;
         grid.guard = span.div_ceil(TILE) * TILE + TILE;
-        if grid.len() > u32::MAX as usize {
+        if grid.slots() > u32::MAX as usize {
             return Err(BuildError::new(
                 "body",
-                format!("{} lattice slots are more than 2³² − 1", grid.len()),
+                format!("{} lattice slots are more than 2³² − 1", grid.slots()),
             ));
         }
         grid.owned = vec![0; grid.tiles()];
@@ -100,7 +100,7 @@ impl<const D: usize> Body<D> {
             periodic[a].then(|| extent[a] as f64 * edges[a] * lattice.spacing)
         });
         let spacing = lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64);
-        let len = grid.len();
+        let len = grid.slots();
         Ok(Body {
             layout: Layout::Grid(grid),
             slots,

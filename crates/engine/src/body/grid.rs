@@ -35,7 +35,7 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Slots, guards included.
-    pub fn len(&self) -> usize {
+    pub fn slots(&self) -> usize {
         2 * self.guard + self.basis() * self.stride
     }
 

@@ -32,6 +32,7 @@ pub struct Reaction {
 }
 
 #[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant)] // a handful, never moved
 pub(crate) enum Driven<const D: usize> {
     Indenter(Indenter<D>),
     Load(Load<D>),

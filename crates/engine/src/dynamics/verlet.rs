@@ -29,6 +29,7 @@ impl Verlet {
 
     /// Kick (twice if `pending`) and drift. Points whose step is not below `limit` (length) stay where they are.
     /// Returns the largest step of a point, squared; not a number or ≥ `limit²` if the pass refused a point.
+    #[allow(clippy::too_many_arguments)] // the state, and how to step it
     pub fn advance<const D: usize>(
         &mut self,
         body: &Body<D>,
@@ -120,7 +121,7 @@ impl<const D: usize> Kernel for Advance<'_, D> {
         let end = ((block + 1) * BLOCK).min(self.len);
         let mut fastest = L::splat(0.0);
         let mut i = block * BLOCK;
-        debug_assert!(self.len % TILE == 0);
+        debug_assert!(self.len.is_multiple_of(TILE));
         while i < end {
             // SAFETY: i + N ≤ len, a multiple of the tile; blocks are disjoint
             unsafe {

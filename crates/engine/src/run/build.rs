@@ -503,6 +503,9 @@ fn stencil_moments<const D: usize>(
     sum
 }
 
+/// Does a point (index, reference position) belong?
+type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;
+
 /// Point ids of every named set.
 fn sets<const D: usize>(
     spec: &Spec,
@@ -510,7 +513,7 @@ fn sets<const D: usize>(
 ) -> Result<Vec<(String, Vec<u32>)>, BuildError> {
     let mut out = vec![];
     for set in &spec.sets {
-        let member: Box<dyn Fn(usize, &Point) -> bool> = match &set.members {
+        let member: Member = match &set.members {
             Members::All => Box::new(|_, _| true),
             Members::Region(region) => {
                 let slack = 1e-9 * body.spacing;
