@@ -193,37 +193,39 @@ impl<const D: usize> Model<D> {
         energy
     }
 
-    /// Which point the pass refused, and why.
+    /// Which point the pass refused, and why: one that is nowhere, else the one that went furthest.
     fn refused(&self, limit: f64) -> RunError {
         let step = self.step + 1;
-        for (id, &s) in self.body.slots.iter().enumerate() {
-            let i = s as usize;
-            let path = (0..D)
-                .map(|a| (self.dt * self.v[a][i]).powi(2))
-                .sum::<f64>()
-                .sqrt();
-            if path < limit {
-                continue;
-            }
-            let x = self.body.position(i);
-            let position = std::array::from_fn(|a| if a < D { x[a] + self.u[a][i] } else { 0.0 });
-            let id = id as u64 + 1;
-            return if path.is_finite() {
-                RunError::TooFast {
-                    step,
-                    id,
-                    position,
-                    path,
-                    spacing: limit,
-                }
+        let path = |i: usize| {
+            let square = (0..D).map(|a| (self.dt * self.v[a][i]).powi(2));
+            square.sum::<f64>().sqrt()
+        };
+        // what is not a number is furthest
+        let far = |i: usize| {
+            if path(i).is_nan() {
+                f64::INFINITY
             } else {
-                RunError::NotFinite { step, id, position }
-            };
+                path(i)
+            }
+        };
+        let nowhere = |i: usize| (0..D).any(|a| !self.u[a][i].is_finite());
+        let slots = || self.body.slots.iter().map(|s| *s as usize).enumerate();
+        let found = slots()
+            .find(|(_, i)| nowhere(*i))
+            .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
+        let (id, i) = found.expect("a body has points");
+        let x = self.body.position(i);
+        let position = std::array::from_fn(|a| if a < D { x[a] + self.u[a][i] } else { 0.0 });
+        let (id, path) = (id as u64 + 1, path(i));
+        if nowhere(i) || !path.is_finite() {
+            return RunError::NotFinite { step, id, position };
         }
-        RunError::NotFinite {
+        RunError::TooFast {
             step,
-            id: 0,
-            position: [0.0; 3],
+            id,
+            position,
+            path,
+            spacing: limit,
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::sample::*;
 use crate::waves::{chain, chain_omega2};
 use peridyne::error::RunError;
-use peridyne::run::{Options, build};
+use peridyne::run::{Options, PointField, build};
 use peridyne::spec::*;
 
 /// The true limit of the step of a chain of 60 points.
@@ -138,6 +138,20 @@ fn a_run_that_begins_is_not_unstable() {
         for _ in 0..30 {
             sim.step().unwrap();
             sim.ledger().unwrap();
+        }
+    }
+}
+
+/// A point without a place stops the run at once, and the error says which one.
+#[test]
+fn a_displacement_that_is_not_a_number_stops_the_run() {
+    for case in cases() {
+        for place in [f64::NAN, f64::INFINITY] {
+            let mut sim = made(&case.spec());
+            sim.write(PointField::Displacement(0), 3, &[place]);
+            sim.start(true);
+            let error = sim.step().expect_err("a point is nowhere").to_string();
+            assert!(error.contains("point 4"), "{}: {error}", case.name());
         }
     }
 }
