@@ -31,11 +31,12 @@ mod text;
 mod thermo;
 mod units;
 mod variable;
+mod write_data;
 
 pub use self::atoms::{Atoms, Column, Ids, Members, Reference, SiteLattice};
 pub use self::data::{DataFile, read_data};
 pub use self::domain::{Face, SimBox};
-pub use self::error::{Problem, ScriptError};
+pub use self::error::{Place, Problem, ScriptError};
 pub use self::read_dump::{Frame, read_frame};
 pub use self::script::{Options, Outcome, run_file, run_text};
 pub use self::units::Units;
