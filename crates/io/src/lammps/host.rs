@@ -17,6 +17,8 @@ use super::units::Units;
 pub struct HostError {
     pub message: String,
     pub help: Option<String>,
+    /// Atom types (from 1) whose `pair_coeff` is to blame.
+    pub pair: Option<(usize, usize)>,
 }
 
 impl HostError {
@@ -24,7 +26,13 @@ impl HostError {
         HostError {
             message: message.into(),
             help: None,
+            pair: None,
         }
+    }
+    #[must_use]
+    pub fn of_pair(mut self, i: usize, j: usize) -> Self {
+        self.pair = Some((i, j));
+        self
     }
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {

@@ -10,7 +10,7 @@ use super::atoms::{Atoms, Ids, Members};
 use super::compute::Compute;
 use super::domain::{Face, SimBox};
 use super::dump::Dump;
-use super::error::{Problem, Result, suggestion};
+use super::error::{Place, Problem, Result, Span, suggestion};
 use super::fix::Fix;
 use super::host::{
     BLOCK, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
@@ -94,6 +94,10 @@ pub struct Session<'a> {
     pub groups: Vec<(String, Arc<Members>)>,
     pub skin: f64,
     pub pair: Option<PairState>,
+    /// Where each pair of types got its coefficients, `[types²]`.
+    pub pair_places: Vec<Place>,
+    /// File, text and command being executed.
+    pub here: (String, Rc<str>, Span),
     pub fixes: Vec<Fix>,
     pub computes: Vec<Compute>,
     pub dumps: Vec<Dump>,
@@ -128,6 +132,8 @@ impl<'a> Session<'a> {
             groups: vec![("all".into(), Arc::new(Members::All))],
             skin: Units::Lj.skin(),
             pair: None,
+            pair_places: Vec::new(),
+            here: (String::new(), "".into(), (0, 0)),
             fixes: Vec::new(),
             computes: Vec::new(),
             dumps: Vec::new(),

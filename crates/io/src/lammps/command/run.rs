@@ -86,8 +86,11 @@ impl Session<'_> {
             }
         };
         let pair = pair.ok_or_else(|| {
-            Problem::new("some pairs of atom types have no coefficients")
-                .help("write `pair_coeff * * ...` before `run`")
+            let missing = self.pairs_missing();
+            Problem::new(format!(
+                "some pairs of atom types have no coefficients: {missing}"
+            ))
+            .help("nothing is mixed, as in LAMMPS: write `pair_coeff I J ...` for each pair, or `pair_coeff * * ...`, before `run`")
         })?;
         let lattice = self.lattice.as_ref().ok_or_else(|| {
             Problem::new("the pair styles peri/* need the lattice constant")
@@ -108,7 +111,15 @@ impl Session<'_> {
             pair,
         };
         self.store = Store::Atoms(Atoms::default());
-        self.store = Store::Engine(self.host.build(setup)?);
+        let types = self.types;
+        self.store = Store::Engine(self.host.build(setup).map_err(|e| {
+            let place = e
+                .pair
+                .and_then(|(i, j)| self.pair_places.get((i - 1) * types + j - 1).cloned());
+            let mut problem = Box::<Problem>::from(e);
+            problem.place = place.unwrap_or(problem.place);
+            problem
+        })?);
         Ok(())
     }
 

@@ -5,15 +5,19 @@
 
 mod conditions;
 mod spec;
+mod types;
 
 use std::any::Any;
 use std::cell::RefCell;
+use std::collections::HashSet;
 
 use peridyne::condition::driven::Drive;
 use peridyne::error::BuildError;
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, PointField, Simulation, build};
+use peridyne::run::{Options, PointField, Simulation, SnapshotOptions, build};
+use peridyne::spec::InterfaceRule;
 
+use self::types::Types;
 use super::atoms::{Atoms, Column};
 use super::domain::SimBox;
 use super::host::{
@@ -30,13 +34,14 @@ pub struct ModelHost {
 
 impl Host for ModelHost {
     fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
-        let spec = spec::spec(&setup)?;
-        let options = Options {
-            simd: self.simd,
-            ..Options::default()
+        let types = Types::new(&setup.pair, &setup.atoms)?;
+        let mut sim = self.simulation(&setup, &types)?;
+        let guarded = !types.repel_alike();
+        let notes = if guarded {
+            vec!["the atom types differ in stiffness: this run stops if points come so close that they repel, because only one stiffness of repulsion is supported".to_string()]
+        } else {
+            vec![]
         };
-        let mut sim = build(&spec, options).map_err(explain)?;
-        drop(spec);
         let Setup {
             dimension,
             domain,
@@ -58,8 +63,39 @@ impl Host for ModelHost {
             derived: RefCell::default(),
             bonded: false,
             driven: Vec::new(),
-            notes: Vec::new(),
+            guarded,
+            notes,
         }))
+    }
+}
+
+impl ModelHost {
+    fn simulation(&self, setup: &Setup, types: &Types) -> Result<Box<dyn Simulation>, HostError> {
+        let options = Options {
+            simd: self.simd,
+            ..Options::default()
+        };
+        let make = |rule| build(&spec::spec(setup, types, rule)?, options).map_err(explain);
+        let first = match types.rule(|_, _| true) {
+            Ok(rule) => return make(rule),
+            Err(_) => InterfaceRule::Series,
+        };
+        // pairs that no bond joins may have any coefficients
+        let mut sim = make(first)?;
+        let mut bonded = HashSet::new();
+        if sim.families().foreign.contains(&true) {
+            let kind = |i: u32| setup.atoms.types.get(i as usize) as usize;
+            let snapshot = sim.snapshot(SnapshotOptions {
+                bonds: true,
+                ..SnapshotOptions::default()
+            });
+            for (i, j) in snapshot.bonds.iter().flatten() {
+                let (a, b) = (kind(*i), kind(*j));
+                bonded.insert((a.min(b), a.max(b)));
+            }
+        }
+        let rule = types.rule(|i, j| bonded.contains(&(i, j)))?;
+        if rule == first { Ok(sim) } else { make(rule) }
     }
 }
 
@@ -130,6 +166,8 @@ pub struct ModelEngine {
     /// Were the bonds there in a force evaluation?
     bonded: bool,
     driven: Vec<Option<usize>>,
+    /// Must nothing repel?
+    guarded: bool,
     notes: Vec<String>,
 }
 
@@ -148,6 +186,23 @@ impl ModelEngine {
             let kept = self.derived.get_mut();
             (kept.energy, kept.dilatation) = (Some(energy), Some(dilatation));
         }
+    }
+
+    /// Refuses a state in which points repel, if LAMMPS's types repel each in their own way.
+    fn guard(&mut self) -> Result<(), HostError> {
+        if !self.guarded {
+            return Ok(());
+        }
+        let sim = self.sim.get_mut();
+        let ledger = sim.ledger().map_err(|e| HostError::new(e.to_string()))?;
+        if ledger.contact == 0.0 {
+            return Ok(());
+        }
+        Err(HostError::new(format!(
+            "points repel each other since step {}, and the types differ in stiffness: LAMMPS repels each pair of types with its own, only one is supported",
+            sim.step_number()
+        ))
+        .help("give all types the same c (K); points repel below 0.9 of their reference distance or 1.35 lattice constants"))
     }
 
     /// Hands the values of this instant to the model.
@@ -288,7 +343,7 @@ impl Engine for ModelEngine {
         sim.start(self.bonded);
         self.bonded = true;
         self.keep_watched();
-        Ok(())
+        self.guard()
     }
 
     fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
@@ -297,7 +352,7 @@ impl Engine for ModelEngine {
         let sim = self.sim.get_mut();
         sim.step().map_err(|e| HostError::new(e.to_string()))?;
         self.keep_watched();
-        Ok(())
+        self.guard()
     }
 
     fn expect_output(&mut self) {
