@@ -389,6 +389,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             .map_or(f64::INFINITY, |e| critical_stretch(*e))
     }
 
+    fn point_field(&self, field: usize, slot: usize) -> f64 {
+        self.fields[field].get(slot).copied().unwrap_or(0.0)
+    }
+
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")

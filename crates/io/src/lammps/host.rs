@@ -223,8 +223,6 @@ pub struct RunStart {
 pub struct Energies {
     /// Σ W (sum of energy densities, not weighted with volumes).
     pub potential: f64,
-    /// Σ over bonds of r·f with f the force density; `None` if not known (LAMMPS's pressure is then `nan`).
-    pub virial: Option<f64>,
 }
 
 /// Energy and force that a [`Condition::Indent`] had at the last force evaluation.
@@ -261,6 +259,16 @@ pub trait Engine: Particles {
     /// # Errors
     /// They cannot be computed.
     fn energies(&mut self) -> Result<Energies, HostError>;
+
+    /// The virial will be asked for after the next step or [`Engine::setup`].
+    fn expect_virial(&mut self) {}
+
+    /// Σ of distance times force over bonds and contacts, xx yy zz xy xz yz (energy; weighted with volumes, unlike
+    /// [`Energies`]).
+    ///
+    /// # Errors
+    /// It cannot be computed.
+    fn virial(&mut self) -> Result<[f64; 6], HostError>;
 
     /// Of condition number `index`; zero if it is no indenter.
     fn reaction(&self, index: usize) -> Reaction;

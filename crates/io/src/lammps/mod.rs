@@ -5,7 +5,7 @@
 //! regions and formulas is LAMMPS's (observed on LAMMPS 22 Jul 2025), so that the same atoms are made.
 //!
 //! Differences that a user can see: snapshots and thermo lines are in order of atom id; the box of `boundary s`
-//! is current at every output (LAMMPS moves it when it rebuilds neighbour lists); positions on periodic axes are
+//! is current at every output, and with it the volume in `press` (LAMMPS moves it when it rebuilds neighbour lists); positions on periodic axes are
 //! always wrapped; anything unsupported is an error.
 
 mod atoms;

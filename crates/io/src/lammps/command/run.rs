@@ -150,7 +150,11 @@ impl Session<'_> {
                 domain: *self.domain()?,
             };
             let atoms = self.count();
+            let wanted = self.pressure_wanted();
             let engine = self.engine()?;
+            if wanted {
+                engine.expect_virial();
+            }
             engine.setup(&start, &conditions)?;
             let (bonds, bytes) = (engine.directed_bonds(), engine.memory_bytes());
             for note in engine.notes() {
@@ -183,6 +187,7 @@ impl Session<'_> {
     /// The state went bad; a value or a file is not there.
     pub fn steps_until(&mut self, end: u64) -> Result<()> {
         let start = Instant::now();
+        let wanted = self.pressure_wanted();
         while self.progress.step < end {
             // conditions hold at the end of the step
             self.progress.step += 1;
@@ -194,6 +199,9 @@ impl Session<'_> {
                 let engine = self.engine()?;
                 if output {
                     engine.expect_output();
+                    if wanted && thermo {
+                        engine.expect_virial();
+                    }
                 }
                 engine.step(&c).map_err(|e| {
                     let mut problem = Box::<Problem>::from(e);

@@ -365,8 +365,15 @@ impl Engine for ModelEngine {
         let energy = kept.energy.get_or_insert_with(|| sim.energy_density());
         Ok(Energies {
             potential: energy.iter().sum(),
-            virial: None,
         })
+    }
+
+    fn expect_virial(&mut self) {
+        self.sim.get_mut().watch_virial_next();
+    }
+
+    fn virial(&mut self) -> Result<[f64; 6], HostError> {
+        Ok(self.sim.get_mut().virial())
     }
 
     fn reaction(&self, index: usize) -> Reaction {
