@@ -40,11 +40,15 @@ impl<const D: usize> Model<D> {
                 }
             }
         };
+        let at_rest_free = recipe.repulsion.is_none_or(|c| c.bonded <= 1.0);
         let mut virial = [0.0; 6];
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
                 let eta: [f64; D] = std::array::from_fn(|a| self.u[a][j] - self.u[a][i]);
                 let y: [f64; D] = std::array::from_fn(|a| xi[a] + eta[a]);
+                if at_rest_free && eta == [0.0; D] {
+                    return;
+                }
                 let squared: f64 = xi.iter().map(|x| x * x).sum();
                 let r0 = squared.sqrt();
                 let change: f64 = (0..D).map(|a| eta[a] * (xi[a] + 0.5 * eta[a])).sum();

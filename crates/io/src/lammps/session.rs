@@ -13,7 +13,7 @@ use super::dump::Dump;
 use super::error::{Place, Problem, Result, Span, suggestion};
 use super::fix::Fix;
 use super::host::{
-    BLOCK, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
+    BLOCK, Condition, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
 };
 use super::lattice::Lattice;
 use super::particles::{Field, View};
@@ -98,7 +98,9 @@ pub struct Session<'a> {
     pub pair_places: Vec<Place>,
     /// File, text and command being executed.
     pub here: (String, Rc<str>, Span),
-    pub fixes: Vec<Fix>,
+    pub fixes: Vec<Rc<Fix>>,
+    /// Values of the fixes at this step: kept so that a step allocates nothing.
+    pub acting: Vec<Condition>,
     pub computes: Vec<Compute>,
     pub dumps: Vec<Dump>,
     pub variables: Variables,
@@ -135,6 +137,7 @@ impl<'a> Session<'a> {
             pair_places: Vec::new(),
             here: (String::new(), "".into(), (0, 0)),
             fixes: Vec::new(),
+            acting: Vec::new(),
             computes: Vec::new(),
             dumps: Vec::new(),
             variables: Variables::default(),

@@ -141,7 +141,8 @@ impl Session<'_> {
             self.print(&format!("  Current step  : {}", self.progress.step));
             let dt = general(self.progress.time_step, 6, false);
             self.print(&format!("  Time step     : {dt}"));
-            let conditions = self.conditions()?;
+            let mut conditions = std::mem::take(&mut self.acting);
+            self.conditions(&mut conditions)?;
             let start = RunStart {
                 step: self.progress.step,
                 steps: plan.steps,
@@ -156,6 +157,8 @@ impl Session<'_> {
                 engine.expect_virial();
             }
             engine.setup(&start, &conditions)?;
+            self.acting = conditions;
+            let engine = self.engine()?;
             let (bonds, bytes) = (engine.directed_bonds(), engine.memory_bytes());
             for note in engine.notes() {
                 self.console.note(&note);
@@ -195,7 +198,8 @@ impl Session<'_> {
             let last = now == self.progress.end;
             let thermo = last || (self.thermo.every > 0 && now.is_multiple_of(self.thermo.every));
             let output = thermo || self.dumps.iter().any(|d| now.is_multiple_of(d.every));
-            let result = self.conditions().and_then(|c| {
+            let mut conditions = std::mem::take(&mut self.acting);
+            let result = self.conditions(&mut conditions).and_then(|()| {
                 let engine = self.engine()?;
                 if output {
                     engine.expect_output();
@@ -203,12 +207,13 @@ impl Session<'_> {
                         engine.expect_virial();
                     }
                 }
-                engine.step(&c).map_err(|e| {
+                engine.step(&conditions).map_err(|e| {
                     let mut problem = Box::<Problem>::from(e);
                     problem.while_running = true;
                     problem
                 })
             });
+            self.acting = conditions;
             if let Err(p) = result {
                 self.progress.step -= 1;
                 return Err(p);
