@@ -208,6 +208,6 @@ parity! {
     pull_pmb_a0 pull_pmb_a25 pull_lps_a0 pull_lps_a25
     collide_pmb indent_pmb indent_lps
     plate_pmb plate_lps periodic_pmb
-    press_contact_pmb
+    press_contact_pmb moved_pmb
     types_pull_pmb types_pull_lps types_collide_pmb types_apart_lps
 }

@@ -40,7 +40,9 @@ impl<const D: usize> Model<D> {
                 }
             }
         };
-        let at_rest_free = recipe.repulsion.is_none_or(|c| c.bonded <= 1.0);
+        // a state-based bond pulls at rest, too
+        let at_rest_free = matches!(recipe.laws, Laws::Bond(_))
+            && recipe.repulsion.is_none_or(|c| c.bonded <= 1.0);
         let mut virial = [0.0; 6];
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {

@@ -123,6 +123,8 @@ pub struct Setup {
     pub lattice_constant: f64,
     /// Time step as it is at the first `run`.
     pub time_step: f64,
+    /// Number of steps of that `run`.
+    pub steps: u64,
     pub atoms: Atoms,
     pub pair: Pair,
 }

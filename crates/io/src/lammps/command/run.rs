@@ -107,6 +107,7 @@ impl Session<'_> {
             domain,
             lattice_constant,
             time_step: self.progress.time_step,
+            steps: self.progress.end - self.progress.begin,
             atoms,
             pair,
         };

@@ -3,137 +3,24 @@
 //! The reference configuration is that of the first `run`. Lattice sites that were never moved become a stencil, all
 //! else a cloud. The first force evaluation has no bonds yet (contact and conditions only), like LAMMPS's.
 
+mod build;
 mod conditions;
 mod spec;
 mod types;
 
+pub use build::{ModelHost, Prepared};
+
 use std::any::Any;
 use std::cell::RefCell;
-use std::collections::HashSet;
 
 use peridyne::condition::driven::Drive;
-use peridyne::error::BuildError;
-use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, PointField, Simulation, SnapshotOptions, build};
-use peridyne::spec::InterfaceRule;
+use peridyne::run::{PointField, Simulation};
 
-use self::types::Types;
-use super::atoms::{Atoms, Column};
+use super::atoms::Column;
 use super::domain::SimBox;
 use super::host::{
-    BLOCK, Condition, Energies, Engine, Host, HostError, Particles, Quantity, Reaction, RunStart,
-    Setup,
+    BLOCK, Condition, Energies, Engine, HostError, Particles, Quantity, Reaction, RunStart,
 };
-
-/// Makes peridyne models of scripts.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct ModelHost {
-    /// Instruction set; `None` takes the widest there is.
-    pub simd: Option<Simd>,
-}
-
-impl Host for ModelHost {
-    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
-        let types = Types::new(&setup.pair, &setup.atoms)?;
-        let mut sim = self.simulation(&setup, &types)?;
-        let guarded = !types.repel_alike();
-        let notes = if guarded {
-            vec!["the atom types differ in stiffness: this run stops if points come so close that they repel, because only one stiffness of repulsion is supported".to_string()]
-        } else {
-            vec![]
-        };
-        let Setup {
-            dimension,
-            domain,
-            atoms,
-            ..
-        } = setup;
-        write_velocities(sim.as_mut(), dimension, &atoms)?;
-        let height = if dimension == 2 {
-            atoms.position(0)[2]
-        } else {
-            0.0
-        };
-        Ok(Box::new(ModelEngine {
-            sim: RefCell::new(sim),
-            dimension,
-            domain,
-            height,
-            types: atoms.types,
-            derived: RefCell::default(),
-            bonded: false,
-            driven: Vec::new(),
-            guarded,
-            notes,
-        }))
-    }
-}
-
-impl ModelHost {
-    fn simulation(&self, setup: &Setup, types: &Types) -> Result<Box<dyn Simulation>, HostError> {
-        let options = Options {
-            simd: self.simd,
-            ..Options::default()
-        };
-        let make = |rule| build(&spec::spec(setup, types, rule)?, options).map_err(explain);
-        let first = match types.rule(|_, _| true) {
-            Ok(rule) => return make(rule),
-            Err(_) => InterfaceRule::Series,
-        };
-        // pairs that no bond joins may have any coefficients
-        let mut sim = make(first)?;
-        let mut bonded = HashSet::new();
-        if sim.families().foreign.contains(&true) {
-            let kind = |i: u32| setup.atoms.types.get(i as usize) as usize;
-            let snapshot = sim.snapshot(SnapshotOptions {
-                bonds: true,
-                ..SnapshotOptions::default()
-            });
-            for (i, j) in snapshot.bonds.iter().flatten() {
-                let (a, b) = (kind(*i), kind(*j));
-                bonded.insert((a.min(b), a.max(b)));
-            }
-        }
-        let rule = types.rule(|i, j| bonded.contains(&(i, j)))?;
-        if rule == first { Ok(sim) } else { make(rule) }
-    }
-}
-
-fn explain(e: BuildError) -> HostError {
-    let help = match e.path.as_str() {
-        "horizon" => "the horizon is the number before s00 in `pair_coeff`",
-        "periodic" => "use a larger box, or a smaller horizon in `pair_coeff`",
-        path if path.ends_with("fracture") => "s00 and alpha are the last numbers of `pair_coeff`",
-        path if path.ends_with("law") => "check the moduli in `pair_coeff`",
-        path if path.ends_with("density") => "write `set group all density VALUE` before `run`",
-        "run.time_step" => "write `timestep VALUE` with a positive number",
-        _ => return HostError::new(e.message),
-    };
-    HostError::new(e.message).help(help)
-}
-
-fn write_velocities(
-    sim: &mut dyn Simulation,
-    dimension: usize,
-    atoms: &Atoms,
-) -> Result<(), HostError> {
-    if atoms.velocity == Column::Uniform([0.0; 3]) {
-        return Ok(());
-    }
-    let mut block = [0.0; BLOCK];
-    for first in (0..atoms.len()).step_by(BLOCK) {
-        let block = &mut block[..BLOCK.min(atoms.len() - first)];
-        for a in 0..3 {
-            atoms.read(Quantity::Velocity(a), first, block)?;
-            if a < dimension {
-                sim.write(PointField::Velocity(a), first, block);
-            } else {
-                in_plane("velocity", block, 0.0)?;
-            }
-        }
-    }
-    Ok(())
-}
 
 /// In two dimensions nothing leaves the plane.
 fn in_plane(what: &str, values: &[f64], expected: f64) -> Result<(), HostError> {
