@@ -8,10 +8,12 @@ use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::run::with_threads;
+use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Simulation};
-use peridyne::spec::{Criterion, Moduli};
-use peridyne_io::deck::Deck;
+use peridyne::spec::{Criterion, Moduli, Spec};
+use peridyne_io::deck::UnitSystem;
+use peridyne_io::lammps::Units;
 use peridyne_theory::asked::asked;
 use peridyne_theory::elastic::{PatchTest, patch_test};
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
@@ -36,7 +38,10 @@ pub struct CheckArguments {
 
 /// Everything that `check` finds, in the units of the run.
 struct Findings<'a> {
-    deck: &'a Deck,
+    spec: &'a Spec,
+    units: UnitSystem,
+    /// Is it a LAMMPS script? Fixes are then not told: they are keys of decks.
+    script: bool,
     sim: &'a dyn Simulation,
     families: Families,
     /// Smallest and largest coordinate of the points.
@@ -70,28 +75,62 @@ struct Trial {
     failed: Option<String>,
 }
 
+/// What is checked, whatever file it comes from.
+struct Subject {
+    spec: Spec,
+    units: UnitSystem,
+    script: bool,
+    sim: Box<dyn Simulation>,
+    steps: u64,
+}
+
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    if !deck::is_deck(&arguments.input) {
-        return Err(Failure::input(format!(
-            "{}: check reads decks (.toml); `peridyne run` takes a LAMMPS script, and its `run 0` builds without stepping",
-            arguments.input.file.display()
-        )));
+    let input = &arguments.input;
+    if !deck::is_deck(input) {
+        return with_threads(arguments.threads, |threads| {
+            let (prepared, setup) = script::prepare(input)?;
+            let subject = Subject {
+                spec: prepared.spec,
+                units: match setup.units {
+                    Units::Si => UnitSystem::Si,
+                    Units::Lj => UnitSystem::Lj,
+                    _ => UnitSystem::None,
+                },
+                script: true,
+                sim: prepared.simulation,
+                steps: setup.steps,
+            };
+            report(arguments, subject, threads);
+            Ok(())
+        });
     }
-    let deck = deck::read(&arguments.input)?;
+    let deck = deck::read(input)?;
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |threads| {
-        let mut sim = deck::model(&deck, &arguments.input)?;
-        let patch = patience(sim.as_ref()).then(|| patch_test(sim.as_ref()));
-        let families = sim.families();
-        let trial = trial(sim.as_mut());
-        let found = find(&deck, sim.as_ref(), patch, families, trial, threads);
-        say(&if arguments.json {
-            json::write(&found)
-        } else {
-            report::write(&found)
-        });
+        let sim = deck::model(&deck, input)?;
+        let subject = Subject {
+            steps: deck.steps(sim.info().time_step),
+            units: deck.units,
+            spec: deck.spec,
+            script: false,
+            sim,
+        };
+        report(arguments, subject, threads);
         Ok(())
     })
+}
+
+fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) {
+    let sim = subject.sim.as_mut();
+    let patch = patience(sim).then(|| patch_test(sim));
+    let families = sim.families();
+    let trial = trial(sim);
+    let found = find(&subject, patch, families, trial, threads);
+    say(&if arguments.json {
+        json::write(&found)
+    } else {
+        report::write(&found)
+    });
 }
 
 fn patience(sim: &dyn Simulation) -> bool {
@@ -100,13 +139,13 @@ fn patience(sim: &dyn Simulation) -> bool {
 }
 
 fn find<'a>(
-    deck: &'a Deck,
-    sim: &'a dyn Simulation,
+    subject: &'a Subject,
     patch: Option<PatchTest>,
     families: Families,
     trial: Trial,
     threads: usize,
 ) -> Findings<'a> {
+    let sim = subject.sim.as_ref();
     let reference = sim.reference();
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|a| reference.iter().map(|x| x[a]).fold(start, pick))
@@ -114,9 +153,11 @@ fn find<'a>(
     Findings {
         low: bound(f64::min, f64::INFINITY),
         high: bound(f64::max, f64::NEG_INFINITY),
-        materials: materials(deck, sim, patch.as_ref()),
-        steps: deck.steps(sim.info().time_step),
-        deck,
+        materials: materials(&subject.spec, sim, patch.as_ref()),
+        steps: subject.steps,
+        spec: &subject.spec,
+        units: subject.units,
+        script: subject.script,
         sim,
         families,
         patch,
@@ -125,8 +166,8 @@ fn find<'a>(
     }
 }
 
-fn materials(deck: &Deck, sim: &dyn Simulation, patch: Option<&PatchTest>) -> Vec<Material> {
-    let (spec, info) = (&deck.spec, sim.info());
+fn materials(spec: &Spec, sim: &dyn Simulation, patch: Option<&PatchTest>) -> Vec<Material> {
+    let info = sim.info();
     let d = info.dimension;
     let moments = Moments::continuum(d, info.horizon, spec.section, spec.influence);
     let body = Body {

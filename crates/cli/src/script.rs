@@ -6,8 +6,8 @@ use crate::failure::{Failure, say};
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne_io::drive::default_dir;
-use peridyne_io::lammps::host::{Console, StandardConsole};
-use peridyne_io::lammps::model::{ModelEngine, ModelHost};
+use peridyne_io::lammps::host::{Console, Engine, Host, HostError, Setup, StandardConsole};
+use peridyne_io::lammps::model::{ModelEngine, ModelHost, Prepared};
 use peridyne_io::lammps::{Options, Outcome, run_text};
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::run_json::{self, EnergyReport, RunReport, Status};
@@ -15,30 +15,82 @@ use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-/// Run a script. Files that it names go to `out`, or to the current folder as with LAMMPS; the report, the picture
-/// and the last state go to `out`, or to `out/<name of the script>`.
-pub fn run(input: &Input, out: Option<&Path>, threads: usize) -> Result<(), Failure> {
+/// The model of a script as it stands at its first `run`, which does not take place. Files that the script writes before
+/// are lost.
+pub fn prepare(input: &Input) -> Result<(Prepared, Setup), Failure> {
+    let text = deck::text(input)?;
+    let name = input.file.display().to_string();
+    let lost =
+        tempfile::tempdir().map_err(|e| Failure::Run(format!("no temporary folder: {e}")))?;
+    let options = options(input, lost.path())?;
+    let mut host = Inspector {
+        host: ModelHost {
+            simd: deck::simd(input)?,
+        },
+        found: None,
+    };
+    let result = run_text(&name, &text, &options, &mut host, &mut Quiet);
+    match (host.found, result) {
+        (Some(found), _) => {
+            for note in &found.0.notes {
+                Quiet.note(note);
+            }
+            Ok(found)
+        }
+        (None, Err(e)) => Err(Failure::Input((*e).into())),
+        (None, Ok(_)) => Err(Failure::input(format!(
+            "{name}: the script has no `run`: there is nothing to check"
+        ))),
+    }
+}
+
+/// Builds the model and lets nobody run it.
+struct Inspector {
+    host: ModelHost,
+    found: Option<(Prepared, Setup)>,
+}
+
+impl Host for Inspector {
+    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
+        let prepared = self.host.prepare(&setup)?;
+        self.found = Some((prepared, setup));
+        Err(HostError::new("checked"))
+    }
+}
+
+/// Notes only.
+struct Quiet;
+
+impl Console for Quiet {
+    fn print(&mut self, _: &str) {}
+    fn note(&mut self, line: &str) {
+        StandardConsole.note(line);
+    }
+}
+
+fn options(input: &Input, output: &Path) -> Result<Options, Failure> {
     if let Some((key, _)) = input.set.first() {
         return Err(Failure::input(format!(
             "--set {key}: a LAMMPS script has no keys; its index variables are set with --var name=value"
         )));
     }
+    let variable = |(name, value): &(String, String)| {
+        let values = value.split_whitespace().map(str::to_string);
+        (name.clone(), values.collect())
+    };
+    Ok(Options {
+        variables: input.var.iter().map(variable).collect(),
+        output: output.to_path_buf(),
+    })
+}
+
+/// Run a script. Files that it names go to `out`, or to the current folder as with LAMMPS; the report, the picture
+/// and the last state go to `out`, or to `out/<name of the script>`.
+pub fn run(input: &Input, out: Option<&Path>, threads: usize) -> Result<(), Failure> {
     let text = deck::text(input)?;
     let name = input.file.display().to_string();
     let results = out.map_or_else(|| folder(&input.file), Path::to_path_buf);
-    let options = Options {
-        variables: input
-            .var
-            .iter()
-            .map(|(n, v)| {
-                (
-                    n.clone(),
-                    v.split_whitespace().map(str::to_string).collect(),
-                )
-            })
-            .collect(),
-        output: out.map(Path::to_path_buf).unwrap_or_default(),
-    };
+    let options = options(input, out.unwrap_or(Path::new("")))?;
     if let Some(dir) = out {
         std::fs::create_dir_all(dir)
             .map_err(|e| Failure::Run(format!("cannot create {}: {e}", dir.display())))?;

@@ -332,3 +332,27 @@ fn check_warns_with_the_fix() {
         assert!(warning["fix"].is_string(), "{warning}");
     }
 }
+
+#[test]
+fn check_takes_a_script_as_it_stands_at_its_first_run() {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../verify/lammps/cases");
+    let path = cases.join("in.types_pull_pmb");
+    let output = good(peridyne(&["check", path.to_str().unwrap(), "--json"]));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["particles"], 432);
+    assert_eq!(found["steps"], 70);
+    assert_eq!(found["directed_bonds"], 30904);
+    assert_eq!(found["materials"][1]["name"], "3");
+    assert_eq!(found["materials"][1]["critical_stretch"], 0.012);
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("differ in stiffness"), "{notes}");
+    assert!(!Path::new("types_pull_pmb.dump").exists());
+
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("in.nothing");
+    std::fs::write(&file, "units si\natom_style peri\n").unwrap();
+    let output = peridyne(&["check", file.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("the script has no `run`"), "{said}");
+}

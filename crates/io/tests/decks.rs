@@ -102,3 +102,23 @@ fn decks_that_fail_in_the_build_say_what_is_wrong_and_where() {
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
+
+/// Each point has the density of the file, unless the materials have one.
+#[test]
+fn densities_come_from_the_data_file_or_from_the_materials() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/lammps_points.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let densities = |overrides: &[(String, String)]| {
+        let deck = Deck::parse(&text, path.to_str().unwrap(), overrides).unwrap();
+        let sim = build(&deck.spec, Options::default()).unwrap();
+        (sim.densities(), sim.families().material)
+    };
+    let (density, material) = densities(&[]);
+    assert_eq!(density.len(), 128);
+    for (d, m) in density.iter().zip(&material) {
+        assert_eq!(*d, [2700.0, 2200.0][usize::from(*m)]);
+    }
+    let over = |k: &str| (format!("material.{k}.density"), "1000".to_string());
+    let (density, _) = densities(&[over("left"), over("right")]);
+    assert!(density.iter().all(|d| *d == 1000.0));
+}

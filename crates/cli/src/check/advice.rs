@@ -16,10 +16,10 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     let mut say = |what: String, fix: &str| {
         all.push(Advice {
             what,
-            fix: (!fix.is_empty()).then(|| fix.to_string()),
+            fix: (!found.script && !fix.is_empty()).then(|| fix.to_string()),
         });
     };
-    let (spec, info) = (&found.deck.spec, found.sim.info());
+    let (spec, info) = (found.spec, found.sim.info());
     for warning in &info.warnings {
         say(warning.clone(), "");
     }
@@ -36,7 +36,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     for m in &found.materials {
         let speed = m.pressure_wave;
-        if found.deck.units == UnitSystem::Si && speed > 30e3 {
+        if found.units == UnitSystem::Si && speed > 30e3 {
             say(
                 format!(
                     "pressure waves of `{}` run at {speed:.3e} m/s, faster than in any solid",
@@ -45,7 +45,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
                 "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
             );
         }
-        if found.deck.units == UnitSystem::Si && speed < 1.0 {
+        if found.units == UnitSystem::Si && speed < 1.0 {
             say(
                 format!(
                     "pressure waves of `{}` run at {speed:.3e} m/s, slower than in any solid",
@@ -91,7 +91,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
 }
 
 fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
-    let (spec, info) = (&found.deck.spec, found.sim.info());
+    let (spec, info) = (found.spec, found.sim.info());
     let d = info.dimension;
     let small = match spec.horizon {
         Horizon::Ratio(m) => m < 3,
@@ -136,7 +136,7 @@ fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
 }
 
 fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
-    let spec = &found.deck.spec;
+    let spec = found.spec;
     let Some(patch) = &found.patch else { return };
     for (n, m) in found.materials.iter().enumerate() {
         let Some(class) = patch.best(n) else { continue };

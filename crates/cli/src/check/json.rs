@@ -25,8 +25,8 @@ pub fn write(found: &Findings) -> String {
         })
     });
     let report = json!({
-        "title": found.deck.spec.title,
-        "units": found.deck.units.name(),
+        "title": found.spec.title,
+        "units": found.units.name(),
         "dimension": info.dimension,
         "particles": info.points,
         "spacing": info.spacing,
@@ -58,7 +58,7 @@ pub fn write(found: &Findings) -> String {
 
 fn class(found: &Findings, c: &Class) -> Value {
     let d = c.stiffness.dimension;
-    let solid = c.stiffness.hill().solid(d, found.deck.spec.plane);
+    let solid = c.stiffness.hill().solid(d, found.spec.plane);
     let n = components(d);
     json!({
         "place": c.place.name(d),

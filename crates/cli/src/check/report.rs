@@ -3,7 +3,7 @@
 use super::advice::advice;
 use super::{Findings, Material};
 use peridyne::spec::{Criterion, LawSpec, Moduli, PmbStiffness};
-use peridyne_io::deck::{Dim, UnitSystem};
+use peridyne_io::deck::{Dim, UnitSystem, describe};
 use peridyne_theory::elastic::{Class, PatchTest, Place};
 use peridyne_theory::stiffness::components;
 use std::fmt::Write;
@@ -13,7 +13,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const NAME: usize = 18;
 
 pub fn write(found: &Findings) -> String {
-    let mut out = found.deck.describe();
+    let mut out = describe(found.spec, found.units);
     out.push('\n');
     for section in [
         points(found),
@@ -38,7 +38,7 @@ fn row(out: &mut String, name: &str, value: impl std::fmt::Display) {
 }
 
 fn points(found: &Findings) -> String {
-    let (info, units) = (found.sim.info(), found.deck.units);
+    let (info, units) = (found.sim.info(), found.units);
     let d = info.dimension;
     let mut out = String::from("Points and bonds\n");
     row(&mut out, "points", whole(info.points));
@@ -154,7 +154,7 @@ fn stiffness(found: &Findings) -> String {
 
 fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: &Material) {
     let d = found.sim.info().dimension;
-    let units = found.deck.units;
+    let units = found.units;
     let scale = Scale::of(found);
     if found.materials.len() > 1 {
         let _ = writeln!(out, "  {}", m.name);
@@ -207,7 +207,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
         let _ = writeln!(out, "{}", line("asked", asked, None, ""));
     }
     for class in patch.classes.iter().filter(|c| c.material == n) {
-        let real = class.stiffness.hill().solid(d, found.deck.spec.plane);
+        let real = class.stiffness.hill().solid(d, found.spec.plane);
         let more = class.stiffness.anisotropy().map_or(String::new(), |a| {
             let universal = a.universal.map_or("–".into(), |u| format!("{u:.3}"));
             format!("{:>8.3}{universal:>8}", a.zener)
@@ -219,7 +219,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
         tensor(out, class, &scale);
     }
     if matches!(
-        found.deck.spec.materials[n].law,
+        found.spec.materials[n].law,
         LawSpec::Pmb(PmbStiffness::Micromodulus(_))
     ) {
         let _ = writeln!(
@@ -289,7 +289,7 @@ fn tensor(out: &mut String, class: &Class, scale: &Scale) {
 }
 
 fn waves(found: &Findings) -> String {
-    let (info, units) = (found.sim.info(), found.deck.units);
+    let (info, units) = (found.sim.info(), found.units);
     let mut out = String::from("Waves and step\n");
     let long = (0..info.dimension)
         .map(|a| found.high[a] - found.low[a] + info.spacing)
@@ -351,9 +351,9 @@ fn waves(found: &Findings) -> String {
 }
 
 fn fracture(found: &Findings) -> String {
-    let units = found.deck.units;
+    let units = found.units;
     let mut out = String::new();
-    for (m, spec) in found.materials.iter().zip(&found.deck.spec.materials) {
+    for (m, spec) in found.materials.iter().zip(&found.spec.materials) {
         let Some((s00, energy)) = m.fracture else {
             continue;
         };
@@ -459,7 +459,7 @@ impl Scale {
             factor: 1.0,
             unit: "",
         };
-        match found.deck.units {
+        match found.units {
             UnitSystem::Si => {
                 let largest = found
                     .patch

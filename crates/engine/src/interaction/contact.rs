@@ -152,7 +152,11 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Visit the pairs closer than allowed: slots, current vector and distance, allowed distance.
-    fn each_contact(&self, u: &Field<D>, mut visit: impl FnMut(usize, usize, [f64; D], f64, f64)) {
+    pub fn each_contact(
+        &self,
+        u: &Field<D>,
+        mut visit: impl FnMut(usize, usize, [f64; D], f64, f64),
+    ) {
         let mut pairs = self.pairs.iter();
         for (i, row) in self.neighbours.rows() {
             let ui: [f64; D] = std::array::from_fn(|a| u[a][i]);

@@ -404,6 +404,10 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             .map_or(f64::INFINITY, |e| critical_stretch(*e))
     }
 
+    fn point_field(&self, field: usize, slot: usize) -> f64 {
+        self.fields.get(2 * slot + field).copied().unwrap_or(0.0)
+    }
+
     fn in_family(&self, _: &Body<D>, i: usize, j: usize) -> bool {
         self.bonds(self.list.row(i)).any(|(_, k)| k == j)
     }

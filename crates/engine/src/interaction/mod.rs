@@ -149,6 +149,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Critical stretch s0 of a slot (∞ before the first sweep).
     fn critical_stretch(&self, slot: usize) -> f64;
 
+    /// Point field of the law at a slot; 0 where the law has none.
+    fn point_field(&self, field: usize, slot: usize) -> f64;
+
     /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool;
 

@@ -230,6 +230,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 }
                 let sub = grid.tile_sublattice(t as usize);
                 for (k, b) in self.bonds[sub].iter().enumerate() {
+                    // without images the other end's turn
+                    if b.shift < 0 && original.is_empty() {
+                        continue;
+                    }
                     let to = &self.partners[sub][k];
                     let Some(j) = grid.neighbour(first + l, to.cell, to.to) else {
                         continue;
@@ -387,6 +391,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.critical
             .get(slot)
             .map_or(f64::INFINITY, |e| critical_stretch(*e))
+    }
+
+    fn point_field(&self, field: usize, slot: usize) -> f64 {
+        self.fields[field].get(slot).copied().unwrap_or(0.0)
     }
 
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {

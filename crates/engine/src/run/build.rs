@@ -85,7 +85,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
     }
     let ends = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
-    let recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
+    let mut recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
     let mut interaction = recipe.interaction(&body, None)?;
     // a ratio is meant inclusively; only a length leaves the decision to round-off
     let near_horizon = if recipe.ratio {
@@ -184,6 +184,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         .map(|s| interaction.family_size(*s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     let u = body.at_rest();
+    recipe.stencil = None; // the interaction has it
     let mut model = Model {
         info: Info {
             dimension: D,
@@ -223,6 +224,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         u,
         verlet: Verlet::new(simd, &body),
         contact: recipe.repulsion.map(|r| Contact::new(r, &body, horizon)),
+        recipe,
         interaction,
         body,
         loads: vec![],
@@ -231,6 +233,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         still: Still::new(vec![]),
         watch: false,
         watched: None,
+        watch_virial: false,
+        virial: None,
         indenters: vec![],
         sets,
         dt,

@@ -4,6 +4,7 @@ mod build;
 mod model;
 mod probe;
 mod recipe;
+mod virial;
 
 pub use build::{Options, build, build_in};
 pub use model::Model;
@@ -150,6 +151,12 @@ pub trait Simulation: Send {
     fn watch_next(&mut self);
     /// Strain and contact energy density and dilatation of the last force evaluation, if it was watched.
     fn watched(&self) -> Option<(Vec<f64>, Vec<f64>)>;
+
+    /// Keep the virial of the next force evaluation, with the bonds that break in it.
+    fn watch_virial_next(&mut self);
+    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion, positive where pairs
+    /// repel: of the last force evaluation if that was watched, else of the current state with the bonds that are whole.
+    fn virial(&mut self) -> [f64; 6];
 
     /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
     /// order in which they act, after all other forces. Replaces those of the last call.

@@ -1,5 +1,6 @@
 //! The running model: state, forces, motion and accounts.
 
+use super::recipe::Recipe;
 use super::{Families, Info, PointField, Simulation, SnapshotOptions};
 use crate::body::{Body, Field, Layout};
 use crate::condition::Program;
@@ -36,6 +37,11 @@ pub struct Model<const D: usize> {
     /// Shall the next force evaluation be watched, and what the last watched one saw.
     pub(super) watch: bool,
     pub(super) watched: Option<PointEnergies>,
+    /// The same for the virial.
+    pub(super) watch_virial: bool,
+    pub(super) virial: Option<[f64; 6]>,
+    /// Laws and constants, for what is computed pair by pair.
+    pub(super) recipe: Recipe,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
     pub(super) dt: f64,
@@ -60,7 +66,7 @@ impl<const D: usize> Model<D> {
             + 3 * D * 8 * self.body.len
     }
 
-    fn refresh_images(&mut self) {
+    pub(super) fn refresh_images(&mut self) {
         if !self.body.images.is_empty() {
             for c in &mut self.u {
                 self.body.fill_images(c);
@@ -73,6 +79,10 @@ impl<const D: usize> Model<D> {
         self.refresh_images();
         let t = self.time();
         self.watched = std::mem::take(&mut self.watch).then(|| self.energies_of_bonds(bonds));
+        self.virial = std::mem::take(&mut self.watch_virial).then(|| match bonds {
+            true => self.virial_of_bonds(),
+            false => [0.0; 6],
+        });
         if bonds {
             let tally = self.interaction.forces(
                 &self.body,
@@ -96,6 +106,10 @@ impl<const D: usize> Model<D> {
             if let Some(watched) = &mut self.watched {
                 contact.add_energy_density(body, &self.u, &mut watched.repulsion);
             }
+        }
+        if let Some(mut virial) = self.virial {
+            self.add_virial_of_contact(&mut virial);
+            self.virial = Some(virial);
         }
         for indenter in &mut self.indenters {
             indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
@@ -474,6 +488,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn set_displacements(&mut self, u: &[Point]) {
         self.finish();
+        self.virial = None;
         Self::scatter(&self.body, &mut self.u, u);
         self.refresh_images();
     }
@@ -703,6 +718,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn write(&mut self, field: PointField, first: usize, values: &[f64]) {
         self.finish();
+        self.virial = None;
         let component = match field {
             PointField::Displacement(a) => self.u.get_mut(a),
             PointField::Velocity(a) => self.v.get_mut(a),
@@ -726,6 +742,17 @@ impl<const D: usize> Simulation for Model<D> {
             let energy = self.by_id(|i| w.strain[i] + w.repulsion[i]);
             (energy, self.by_id(|i| w.dilatation[i]))
         })
+    }
+
+    fn watch_virial_next(&mut self) {
+        self.watch_virial = true;
+    }
+
+    fn virial(&mut self) -> [f64; 6] {
+        match self.virial {
+            Some(virial) => virial,
+            None => self.virial_now(),
+        }
     }
 
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {

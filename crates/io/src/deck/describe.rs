@@ -124,7 +124,14 @@ fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> String {
                 units.write(*spacing, Dim::LENGTH)
             )
         }
-        BodySpec::Cloud(cloud) => format!("{} points", cloud.position.len()),
+        BodySpec::Cloud(cloud) => {
+            let own = if cloud.density.is_empty() {
+                ""
+            } else {
+                ", each with the density of the file (below: their mean)"
+            };
+            format!("{} points{own}", cloud.position.len())
+        }
     }
 }
 

@@ -72,9 +72,11 @@ pub struct Body {
     /// Position of one lattice site; 0 when left out.
     pub origin: Option<Vector>,
     pub region: Option<At<Shape>>,
-    /// Points (.txt), a mesh (.inp, .msh) or LAMMPS data (.data), relative to the deck.
+    /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), or LAMMPS data of `atom_style peri` (.data, .lmp: volume
+    /// and density of each point, the atom type as mark), relative to the deck.
     pub file: Option<At<String>>,
-    /// What one unit of the file's coordinates is; the deck's unit of length when left out.
+    /// What one unit of the file's coordinates is; the deck's unit of length when left out. Densities of a file are in
+    /// the deck's units.
     pub file_unit: Option<Number>,
     pub perturb: Option<Perturb>,
 }
@@ -141,7 +143,8 @@ pub enum Mark {
 pub struct Material {
     /// Set that is made of it; all when left out.
     pub set: Option<At<String>>,
-    pub density: Number,
+    /// Left out, the densities in the LAMMPS data file are taken; given, it takes their place.
+    pub density: Option<Number>,
     pub law: At<Law>,
     pub fracture: Option<At<Fracture>>,
 }

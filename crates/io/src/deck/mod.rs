@@ -25,14 +25,11 @@ pub use units::{Dim, UnitSystem};
 use document::Document;
 use lower::Files;
 use peridyne::error::BuildError;
-use peridyne::spec::{Cloud, Spec};
+use peridyne::spec::Spec;
 use serde::Deserialize;
 use source::Source;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-/// Reads points of a format that lives elsewhere; the message of an error names file and line.
-pub type ReadCloud<'a> = dyn Fn(&Path) -> Result<Cloud, String> + 'a;
 
 /// A deck that was understood.
 #[derive(Debug, Clone)]
@@ -79,23 +76,13 @@ impl Deck {
         file_name: &str,
         overrides: &[(String, String)],
     ) -> Result<Deck, DeckError> {
-        Deck::parse_with(source, file_name, overrides, None)
-    }
-
-    /// The same, with a reader for LAMMPS data files (`.data`, `.lammps`).
-    pub fn parse_with(
-        source: &str,
-        file_name: &str,
-        overrides: &[(String, String)],
-        lammps: Option<&ReadCloud>,
-    ) -> Result<Deck, DeckError> {
         let source = Source::new(source, file_name, overrides);
         let mut tree = source.tree()?;
         locate::name_material(tree.get_mut());
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
             .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
         let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
-        let lowered = lower::lower(&source, &document, &Files { folder, lammps })?;
+        let lowered = lower::lower(&source, &document, &Files { folder })?;
         Ok(Deck {
             spec: lowered.spec,
             output: lowered.output,

@@ -7,6 +7,7 @@ use super::error::{Problem, Result, suggestion};
 use super::host::{BLOCK, Quantity};
 use super::particles::Field;
 use super::session::Session;
+use super::thermo::BUILT_IN;
 use super::variable::ast::Expr;
 use super::variable::tree::Tree;
 
@@ -182,6 +183,9 @@ impl Session<'_> {
     /// # Errors
     /// It does not exist.
     pub fn compute_tree(&mut self, id: &str, index: &[Expr]) -> Result<Option<Tree>> {
+        if BUILT_IN.contains(&id) {
+            return Ok(None);
+        }
         if !matches!(self.compute(id)?.kind, ComputeKind::Atoms(_)) {
             return Ok(None);
         }
@@ -198,6 +202,9 @@ impl Session<'_> {
     /// # Errors
     /// It does not exist or has a value for each atom.
     pub fn compute_scalar(&mut self, id: &str, index: &[f64]) -> Result<f64> {
+        if let Some(value) = self.built_in(id, index)? {
+            return Ok(value);
+        }
         let compute = self.compute(id)?.clone();
         match (&compute.kind, index) {
             (ComputeKind::Atoms(fields), [atom, rest @ ..])

@@ -40,6 +40,18 @@ pub enum Place {
     },
 }
 
+impl Place {
+    /// The line of `source`, in the file `path`, where `span` begins.
+    pub fn line(path: &str, source: &str, span: Span) -> Place {
+        let line = line_of(source, span.0);
+        Place::File {
+            path: path.to_string(),
+            line,
+            text: source.lines().nth(line - 1).unwrap_or("").to_string(),
+        }
+    }
+}
+
 /// A mistake as a command sees it; the interpreter adds the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {

@@ -46,57 +46,57 @@ impl Session<'_> {
         }
     }
 
-    /// The conditions with the values of this moment.
+    /// The conditions with the values of this moment, in `out`.
     ///
     /// # Errors
     /// A variable cannot be evaluated.
-    pub fn conditions(&mut self) -> Result<Vec<Condition>> {
-        let mut out = Vec::with_capacity(self.fixes.len());
+    pub fn conditions(&mut self, out: &mut Vec<Condition>) -> Result<()> {
+        out.clear();
         for k in 0..self.fixes.len() {
-            let Fix { members, kind, .. } = self.fixes[k].clone();
-            out.push(match kind {
+            let fix = self.fixes[k].clone();
+            let members = fix.members.clone();
+            out.push(match &fix.kind {
                 FixKind::Nve => continue,
                 FixKind::Indent {
                     stiffness,
-                    center,
+                    center: [x, y, z],
                     radius,
                     unit,
                 } => {
-                    let [x, y, z] = &center;
                     let center = [
                         self.input(x)? * unit,
                         self.input(y)? * unit,
                         self.input(z)? * unit,
                     ];
-                    let radius = self.input(&radius)? * unit;
+                    let radius = self.input(radius)? * unit;
                     if radius < 0.0 {
                         return Err(Problem::new(format!(
                             "the indenter of fix `{}` has the radius {radius}",
-                            self.fixes[k].id
+                            fix.id
                         )));
                     }
                     Condition::Indent {
                         members,
-                        stiffness,
+                        stiffness: *stiffness,
                         center,
                         radius,
                     }
                 }
                 FixKind::SetForce(values) => {
                     let mut force = [None; 3];
-                    for (f, v) in force.iter_mut().zip(&values) {
+                    for (f, v) in force.iter_mut().zip(values) {
                         *f = v.as_ref().map(|v| self.input(v)).transpose()?;
                     }
                     Condition::SetForce { members, force }
                 }
                 FixKind::AddForce([x, y, z]) => Condition::AddForce {
                     members,
-                    force: [self.input(&x)?, self.input(&y)?, self.input(&z)?],
+                    force: [self.input(x)?, self.input(y)?, self.input(z)?],
                 },
                 FixKind::Enforce2d => Condition::Enforce2d { members },
             });
         }
-        Ok(out)
+        Ok(())
     }
 
     /// Atoms that `fix nve` moves.

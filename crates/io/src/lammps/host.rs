@@ -17,6 +17,8 @@ use super::units::Units;
 pub struct HostError {
     pub message: String,
     pub help: Option<String>,
+    /// Atom types (from 1) whose `pair_coeff` is to blame.
+    pub pair: Option<(usize, usize)>,
 }
 
 impl HostError {
@@ -24,7 +26,13 @@ impl HostError {
         HostError {
             message: message.into(),
             help: None,
+            pair: None,
         }
+    }
+    #[must_use]
+    pub fn of_pair(mut self, i: usize, j: usize) -> Self {
+        self.pair = Some((i, j));
+        self
     }
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
@@ -115,6 +123,8 @@ pub struct Setup {
     pub lattice_constant: f64,
     /// Time step as it is at the first `run`.
     pub time_step: f64,
+    /// Number of steps of that `run`.
+    pub steps: u64,
     pub atoms: Atoms,
     pub pair: Pair,
 }
@@ -215,8 +225,6 @@ pub struct RunStart {
 pub struct Energies {
     /// Σ W (sum of energy densities, not weighted with volumes).
     pub potential: f64,
-    /// Σ over bonds of r·f with f the force density; `None` if not known (LAMMPS's pressure is then `nan`).
-    pub virial: Option<f64>,
 }
 
 /// Energy and force that a [`Condition::Indent`] had at the last force evaluation.
@@ -253,6 +261,16 @@ pub trait Engine: Particles {
     /// # Errors
     /// They cannot be computed.
     fn energies(&mut self) -> Result<Energies, HostError>;
+
+    /// The virial will be asked for after the next step or [`Engine::setup`].
+    fn expect_virial(&mut self) {}
+
+    /// Σ of distance times force over bonds and contacts, xx yy zz xy xz yz (energy; weighted with volumes, unlike
+    /// [`Energies`]).
+    ///
+    /// # Errors
+    /// It cannot be computed.
+    fn virial(&mut self) -> Result<[f64; 6], HostError>;
 
     /// Of condition number `index`; zero if it is no indenter.
     fn reaction(&self, index: usize) -> Reaction;

@@ -5,7 +5,7 @@
 //! regions and formulas is LAMMPS's (observed on LAMMPS 22 Jul 2025), so that the same atoms are made.
 //!
 //! Differences that a user can see: snapshots and thermo lines are in order of atom id; the box of `boundary s`
-//! is current at every output (LAMMPS moves it when it rebuilds neighbour lists); positions on periodic axes are
+//! is current at every output, and with it the volume in `press` (LAMMPS moves it when it rebuilds neighbour lists); positions on periodic axes are
 //! always wrapped; anything unsupported is an error.
 
 mod atoms;
@@ -31,11 +31,12 @@ mod text;
 mod thermo;
 mod units;
 mod variable;
+mod write_data;
 
 pub use self::atoms::{Atoms, Column, Ids, Members, Reference, SiteLattice};
 pub use self::data::{DataFile, read_data};
 pub use self::domain::{Face, SimBox};
-pub use self::error::{Problem, ScriptError};
+pub use self::error::{Place, Problem, ScriptError};
 pub use self::read_dump::{Frame, read_frame};
 pub use self::script::{Options, Outcome, run_file, run_text};
 pub use self::units::Units;

@@ -277,6 +277,31 @@ pub fn general(x: f64, p: usize, alternate: bool) -> String {
     )
 }
 
+/// The number that its text with 15 digits stands for; nothing is allocated.
+pub fn round_to_fifteen(x: f64) -> f64 {
+    /// Room for `-1.23456789012345e-308`.
+    #[derive(Default)]
+    struct Short {
+        bytes: [u8; 32],
+        len: usize,
+    }
+    impl std::fmt::Write for Short {
+        fn write_str(&mut self, s: &str) -> std::fmt::Result {
+            let end = self.len + s.len();
+            let room = self.bytes.get_mut(self.len..end).ok_or(std::fmt::Error)?;
+            room.copy_from_slice(s.as_bytes());
+            self.len = end;
+            Ok(())
+        }
+    }
+    let mut text = Short::default();
+    if std::fmt::Write::write_fmt(&mut text, format_args!("{x:.14e}")).is_err() {
+        return x;
+    }
+    let text = std::str::from_utf8(&text.bytes[..text.len]).ok();
+    text.and_then(|t| t.parse().ok()).unwrap_or(x)
+}
+
 /// `%.15g`: how LAMMPS turns the value of a variable into text, also inside other formulas.
 pub fn fifteen(x: f64) -> String {
     if x.is_finite() {

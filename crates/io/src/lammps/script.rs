@@ -129,6 +129,7 @@ impl Script<'_> {
                 continue;
             };
             source.next += 1;
+            self.session.here = (path.clone(), text.clone(), line.whole());
             self.line(&line)
                 .map_err(|p| ScriptError::locate(*p, &path, &text, line.whole()))?;
         }

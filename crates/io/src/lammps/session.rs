@@ -10,10 +10,10 @@ use super::atoms::{Atoms, Ids, Members};
 use super::compute::Compute;
 use super::domain::{Face, SimBox};
 use super::dump::Dump;
-use super::error::{Problem, Result, suggestion};
+use super::error::{Place, Problem, Result, Span, suggestion};
 use super::fix::Fix;
 use super::host::{
-    BLOCK, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
+    BLOCK, Condition, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
 };
 use super::lattice::Lattice;
 use super::particles::{Field, View};
@@ -94,7 +94,13 @@ pub struct Session<'a> {
     pub groups: Vec<(String, Arc<Members>)>,
     pub skin: f64,
     pub pair: Option<PairState>,
-    pub fixes: Vec<Fix>,
+    /// Where each pair of types got its coefficients, `[types²]`.
+    pub pair_places: Vec<Place>,
+    /// File, text and command being executed.
+    pub here: (String, Rc<str>, Span),
+    pub fixes: Vec<Rc<Fix>>,
+    /// Values of the fixes at this step: kept so that a step allocates nothing.
+    pub acting: Vec<Condition>,
     pub computes: Vec<Compute>,
     pub dumps: Vec<Dump>,
     pub variables: Variables,
@@ -128,7 +134,10 @@ impl<'a> Session<'a> {
             groups: vec![("all".into(), Arc::new(Members::All))],
             skin: Units::Lj.skin(),
             pair: None,
+            pair_places: Vec::new(),
+            here: (String::new(), "".into(), (0, 0)),
             fixes: Vec::new(),
+            acting: Vec::new(),
             computes: Vec::new(),
             dumps: Vec::new(),
             variables: Variables::default(),

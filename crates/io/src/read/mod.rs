@@ -1,4 +1,4 @@
-//! Point clouds from files: plain text, Abaqus `.inp`, gmsh `.msh`.
+//! Point clouds from files: plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`.
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count;
 //! second-order cells are taken by their corners.
@@ -6,6 +6,7 @@
 mod abaqus;
 mod cell;
 mod gmsh;
+mod lammps;
 mod lines;
 mod text;
 
@@ -32,7 +33,10 @@ pub struct ReadError {
     pub message: String,
 }
 
-/// Reads a file by its extension: `.inp`, `.msh`, and plain text (`.txt`, `.xyz`, `.csv` with blanks, `.dat`).
+const EXTENSIONS: [&str; 8] = ["inp", "msh", "data", "lmp", "txt", "dat", "xyz", "csv"];
+
+/// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS), and plain text (`.txt`, `.xyz`, `.csv`
+/// with blanks, `.dat`).
 ///
 /// # Errors
 /// The file cannot be read, is of another kind, truncated, has NaN, cells without volume, or points that coincide.
@@ -48,7 +52,7 @@ pub fn points(path: &Path) -> Result<Points, ReadError> {
         line: None,
         message,
     };
-    if !["inp", "msh", "txt", "dat", "xyz", "csv"].contains(&extension.as_str()) {
+    if !EXTENSIONS.contains(&extension.as_str()) {
         return Err(error(format!(
             "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh or .data"
         )));
@@ -64,6 +68,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
     let points = match extension {
         "inp" => abaqus::parse(text, name)?,
         "msh" => gmsh::parse(text, name)?,
+        "data" | "lmp" => lammps::parse(text, name)?,
         _ => text::parse(text, name)?,
     };
     let mut seen = HashMap::with_capacity(points.cloud.position.len());
@@ -90,7 +95,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
     })
 }
 
-/// Points and the line that each came from.
+/// Points and the line that each came from, where that is known.
 struct Sourced {
     cloud: Cloud,
     dimension: Option<usize>,

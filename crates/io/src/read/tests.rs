@@ -216,3 +216,22 @@ proptest! {
         }
     }
 }
+
+const DATA: &str = "points\n\n3 atoms\n2 atom types\n0 4 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nAtoms # peri\n\n\
+    7 2 0.5 3 2 0 0 0 0 0\n2 1 1 2.5 1 0 0 0 0 0\n1 1 1 2 0 0 0 0 0 0\n\nVelocities\n\n1 0 0 0\n2 0 0 0\n7 0 0 0\n";
+
+#[test]
+fn lammps_atoms_become_points_in_order_of_their_ids() {
+    for extension in ["data", "lmp"] {
+        let points = read(DATA, extension);
+        assert_eq!(points.dimension, None);
+        let cloud = points.cloud;
+        assert_eq!(
+            cloud.position,
+            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]
+        );
+        assert_eq!(cloud.volume, [1.0, 1.0, 0.5]);
+        assert_eq!(cloud.density, [2.0, 2.5, 3.0]);
+        assert_eq!(cloud.mark, [1, 1, 2]);
+    }
+}

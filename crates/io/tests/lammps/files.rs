@@ -45,7 +45,12 @@ fn data_files_are_read_in_order_of_id() {
 #[test]
 fn broken_data_files_are_errors_with_their_line() {
     for (from, to, message, line) in [
-        ("3 atoms", "4 atoms", "an atom has 7 numbers", 16),
+        (
+            "3 atoms",
+            "4 atoms",
+            "the section `Atoms` ends after 3 lines",
+            16,
+        ),
         ("3 atoms\n", "", "no line `N atoms`", 9),
         (
             "2200 0 0 0.5",

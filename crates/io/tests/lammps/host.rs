@@ -121,10 +121,11 @@ impl Engine for Flight {
         Ok(())
     }
     fn energies(&mut self) -> Result<Energies, HostError> {
-        Ok(Energies {
-            potential: 0.0,
-            virial: Some(0.0),
-        })
+        Ok(Energies { potential: 0.0 })
+    }
+
+    fn virial(&mut self) -> Result<[f64; 6], HostError> {
+        Ok([0.0; 6])
     }
     fn reaction(&self, index: usize) -> Reaction {
         self.reactions.get(index).copied().unwrap_or_default()

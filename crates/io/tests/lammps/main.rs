@@ -6,4 +6,5 @@ mod fuzz;
 mod host;
 mod output;
 mod real;
+mod types;
 mod values;

@@ -83,6 +83,8 @@ pub(super) fn body(
             if let Some(spacing) = &written.spacing {
                 cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
             }
+            let density = context.units.plain_factor(Dim::DENSITY);
+            cloud.density.iter_mut().for_each(|d| *d *= density);
             if let Some(unit) = &written.file_unit {
                 let unit = context.positive(unit, Dim::LENGTH, "the unit of the file")?;
                 // areas of a 2-D mesh, volumes otherwise

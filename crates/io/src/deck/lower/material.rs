@@ -5,7 +5,8 @@ use crate::deck::document::{Elastic, Fracture, Law, Material};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number};
 use peridyne::spec::{
-    Criterion, FractureSpec, LawSpec, MaterialSpec, Moduli, PmbStiffness, SetSpec,
+    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, PmbStiffness,
+    SetSpec,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,8 +15,10 @@ pub(super) fn materials(
     context: &Context,
     written: &BTreeMap<String, At<Material>>,
     sets: &[SetSpec],
+    body: &mut BodySpec,
 ) -> Result<Vec<MaterialSpec>> {
     let several = written.len() > 1;
+    let of_file = densities(context, written, body)?;
     let mut materials: Vec<MaterialSpec> = Vec::new();
     for (name, material) in written {
         let given = &material.value;
@@ -47,10 +50,22 @@ pub(super) fn materials(
                 "all materials of a body use the same kind of law",
             ));
         }
+        let density = match (&given.density, &of_file) {
+            (Some(density), _) => context.positive(density, Dim::DENSITY, "the density")?,
+            (None, Some(cloud)) => mean_density(cloud, &set, sets),
+            (None, None) => {
+                let message = "the key `density` is missing";
+                return Err(context.error_with(
+                    &material.span,
+                    message,
+                    "write for example density = \"2200 kg/m^3\"",
+                ));
+            }
+        };
         materials.push(MaterialSpec {
             name: name.clone(),
             set,
-            density: context.positive(&given.density, Dim::DENSITY, "the density")?,
+            density,
             law,
             fracture: given
                 .fracture
@@ -60,6 +75,49 @@ pub(super) fn materials(
         });
     }
     Ok(materials)
+}
+
+/// The cloud whose densities are taken; those of the deck take their place in `body`.
+fn densities<'b>(
+    context: &Context,
+    written: &BTreeMap<String, At<Material>>,
+    body: &'b mut BodySpec,
+) -> Result<Option<&'b Cloud>> {
+    let BodySpec::Cloud(cloud) = body else {
+        return Ok(None);
+    };
+    if cloud.density.is_empty() {
+        return Ok(None);
+    }
+    let given = |m: &&At<Material>| m.value.density.is_some();
+    match written.values().find(|m| !given(m)) {
+        None => {
+            cloud.density.clear();
+            Ok(None)
+        }
+        Some(without) if written.values().any(|m| given(&m)) => Err(context.error_with(
+            &without.span,
+            "this material has no `density`, another has",
+            "give every material a density, or none: then each point has that of the file",
+        )),
+        Some(_) => Ok(Some(cloud)),
+    }
+}
+
+/// Of the points of a set given by a mark, else of all.
+fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
+    let only = sets.iter().find(|s| s.name == set).map(|s| &s.members);
+    let points = (0..cloud.density.len()).filter(|i| match only {
+        Some(Members::Mark(mark)) => cloud.mark.get(*i) == Some(mark),
+        _ => true,
+    });
+    let (sum, count) = points.fold((0.0, 0), |(s, n), i| (s + cloud.density[i], n + 1));
+    // a mark that no point has is an error of its own, later
+    if count == 0 {
+        cloud.density[0]
+    } else {
+        sum / f64::from(count)
+    }
 }
 
 fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {

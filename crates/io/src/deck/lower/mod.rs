@@ -8,6 +8,7 @@ mod schedule;
 
 pub(super) use schedule::steps;
 
+use super::OutputSpec;
 use super::document::{
     Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InterfaceName,
     PlaneName,
@@ -16,7 +17,6 @@ use super::error::DeckError;
 use super::source::Source;
 use super::units::{Dim, short};
 use super::value::{At, Or, Written};
-use super::{OutputSpec, ReadCloud};
 use crate::read::Points;
 use context::{Context, Result};
 use peridyne::spec::{
@@ -29,7 +29,6 @@ use std::path::Path;
 pub(super) struct Files<'a> {
     /// Folder of the deck.
     pub folder: &'a Path,
-    pub lammps: Option<&'a ReadCloud<'a>>,
 }
 
 impl Files<'_> {
@@ -42,24 +41,7 @@ impl Files<'_> {
             });
         };
         let path = self.folder.join(&file.value);
-        let extension = path
-            .extension()
-            .and_then(|e| e.to_str())
-            .unwrap_or("")
-            .to_lowercase();
-        let failed = |message: String| context.error(&file.span, message);
-        match (extension.as_str(), self.lammps) {
-            ("data" | "lammps", Some(read)) => read(&path)
-                .map(|cloud| Points {
-                    cloud,
-                    dimension: None,
-                })
-                .map_err(failed),
-            ("data" | "lammps", None) => {
-                Err(failed("LAMMPS data files cannot be read here".into()))
-            }
-            _ => crate::read::points(&path).map_err(|e| failed(e.to_string())),
-        }
+        crate::read::points(&path).map_err(|e| context.error(&file.span, e.to_string()))
     }
 }
 
@@ -85,7 +67,7 @@ pub(super) fn lower(
     )?;
     let periodic = body::periods(&context, document.periodic.as_ref(), &mut body)?;
     let mut sets = body::sets(&context, &document.sets, &body)?;
-    let materials = material::materials(&context, &document.material, &sets)?;
+    let materials = material::materials(&context, &document.material, &sets, &mut body)?;
     let mut initial = Vec::new();
     for (index, at) in document.initial.iter().enumerate() {
         initial.push(motion::initial(&context, index, at, &mut sets)?);

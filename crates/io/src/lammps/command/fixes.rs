@@ -1,5 +1,7 @@
 //! `fix`, `unfix`.
 
+use std::rc::Rc;
+
 use super::Args;
 use crate::lammps::error::{Problem, Result, suggestion};
 use crate::lammps::fix::{Fix, FixKind, Input, STYLES};
@@ -44,7 +46,7 @@ impl Session<'_> {
         let fix = Fix { id, members, kind };
         match self.fixes.iter_mut().find(|f| f.id == fix.id) {
             Some(old) if std::mem::discriminant(&old.kind) == std::mem::discriminant(&fix.kind) => {
-                *old = fix
+                *old = Rc::new(fix)
             }
             Some(_) => {
                 return Err(
@@ -52,7 +54,7 @@ impl Session<'_> {
                         .help("use another ID, or `unfix` it before"),
                 );
             }
-            None => self.fixes.push(fix),
+            None => self.fixes.push(Rc::new(fix)),
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! `pair_style`, `pair_coeff`.
 
 use super::Args;
-use crate::lammps::error::{Problem, Result};
+use crate::lammps::error::{Place, Problem, Result};
 use crate::lammps::host::{LpsCoefficients, PmbCoefficients};
 use crate::lammps::session::{PairState, Session, Store};
 
@@ -28,6 +28,27 @@ impl Session<'_> {
         self.pairs_may_change()?;
         self.pair = Some(pair);
         Ok(())
+    }
+
+    /// The first pairs without coefficients, for messages.
+    pub(super) fn pairs_missing(&self) -> String {
+        let types = self.types;
+        let given = |place: usize| match &self.pair {
+            Some(PairState::Pmb(table)) => table.get(place).is_some_and(Option::is_some),
+            Some(PairState::Lps(table)) => table.get(place).is_some_and(Option::is_some),
+            None => false,
+        };
+        let pairs = (0..types).flat_map(|i| (i..types).map(move |j| (i, j)));
+        let mut missing = pairs.filter(|(i, j)| !given(i * types + j));
+        let first: Vec<String> = missing
+            .by_ref()
+            .take(3)
+            .map(|(i, j)| format!("{} {}", i + 1, j + 1))
+            .collect();
+        match missing.count() {
+            0 => first.join(", "),
+            more => format!("{} and {more} more", first.join(", ")),
+        }
     }
 
     pub(super) fn pair_coeff(&mut self, args: &mut Args) -> Result<()> {
@@ -91,9 +112,13 @@ impl Session<'_> {
         args.finish()?;
         // a pair may be given either way round; LAMMPS takes I <= J
         let both = |i: usize, j: usize| [i * types + j, j * types + i];
+        let (path, text, span) = &self.here;
+        let here = Place::line(path, text, *span);
+        self.pair_places.resize(types * types, Place::Command);
         for i in ranges[0].clone() {
             for j in ranges[1].clone().filter(|j| *j >= i) {
                 for place in both(i, j) {
+                    self.pair_places[place] = here.clone();
                     match &mut self.pair {
                         Some(PairState::Pmb(table)) => {
                             grow(table, types);

@@ -86,8 +86,11 @@ impl Session<'_> {
             }
         };
         let pair = pair.ok_or_else(|| {
-            Problem::new("some pairs of atom types have no coefficients")
-                .help("write `pair_coeff * * ...` before `run`")
+            let missing = self.pairs_missing();
+            Problem::new(format!(
+                "some pairs of atom types have no coefficients: {missing}"
+            ))
+            .help("nothing is mixed, as in LAMMPS: write `pair_coeff I J ...` for each pair, or `pair_coeff * * ...`, before `run`")
         })?;
         let lattice = self.lattice.as_ref().ok_or_else(|| {
             Problem::new("the pair styles peri/* need the lattice constant")
@@ -104,11 +107,20 @@ impl Session<'_> {
             domain,
             lattice_constant,
             time_step: self.progress.time_step,
+            steps: self.progress.end - self.progress.begin,
             atoms,
             pair,
         };
         self.store = Store::Atoms(Atoms::default());
-        self.store = Store::Engine(self.host.build(setup)?);
+        let types = self.types;
+        self.store = Store::Engine(self.host.build(setup).map_err(|e| {
+            let place = e
+                .pair
+                .and_then(|(i, j)| self.pair_places.get((i - 1) * types + j - 1).cloned());
+            let mut problem = Box::<Problem>::from(e);
+            problem.place = place.unwrap_or(problem.place);
+            problem
+        })?);
         Ok(())
     }
 
@@ -130,7 +142,8 @@ impl Session<'_> {
             self.print(&format!("  Current step  : {}", self.progress.step));
             let dt = general(self.progress.time_step, 6, false);
             self.print(&format!("  Time step     : {dt}"));
-            let conditions = self.conditions()?;
+            let mut conditions = std::mem::take(&mut self.acting);
+            self.conditions(&mut conditions)?;
             let start = RunStart {
                 step: self.progress.step,
                 steps: plan.steps,
@@ -139,8 +152,14 @@ impl Session<'_> {
                 domain: *self.domain()?,
             };
             let atoms = self.count();
+            let wanted = self.pressure_wanted();
             let engine = self.engine()?;
+            if wanted {
+                engine.expect_virial();
+            }
             engine.setup(&start, &conditions)?;
+            self.acting = conditions;
+            let engine = self.engine()?;
             let (bonds, bytes) = (engine.directed_bonds(), engine.memory_bytes());
             for note in engine.notes() {
                 self.console.note(&note);
@@ -172,6 +191,7 @@ impl Session<'_> {
     /// The state went bad; a value or a file is not there.
     pub fn steps_until(&mut self, end: u64) -> Result<()> {
         let start = Instant::now();
+        let wanted = self.pressure_wanted();
         while self.progress.step < end {
             // conditions hold at the end of the step
             self.progress.step += 1;
@@ -179,17 +199,22 @@ impl Session<'_> {
             let last = now == self.progress.end;
             let thermo = last || (self.thermo.every > 0 && now.is_multiple_of(self.thermo.every));
             let output = thermo || self.dumps.iter().any(|d| now.is_multiple_of(d.every));
-            let result = self.conditions().and_then(|c| {
+            let mut conditions = std::mem::take(&mut self.acting);
+            let result = self.conditions(&mut conditions).and_then(|()| {
                 let engine = self.engine()?;
                 if output {
                     engine.expect_output();
+                    if wanted && thermo {
+                        engine.expect_virial();
+                    }
                 }
-                engine.step(&c).map_err(|e| {
+                engine.step(&conditions).map_err(|e| {
                     let mut problem = Box::<Problem>::from(e);
                     problem.while_running = true;
                     problem
                 })
             });
+            self.acting = conditions;
             if let Err(p) = result {
                 self.progress.step -= 1;
                 return Err(p);

@@ -3,101 +3,24 @@
 //! The reference configuration is that of the first `run`. Lattice sites that were never moved become a stencil, all
 //! else a cloud. The first force evaluation has no bonds yet (contact and conditions only), like LAMMPS's.
 
+mod build;
 mod conditions;
 mod spec;
+mod types;
+
+pub use build::{ModelHost, Prepared};
 
 use std::any::Any;
 use std::cell::RefCell;
 
 use peridyne::condition::driven::Drive;
-use peridyne::error::BuildError;
-use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, PointField, Simulation, build};
+use peridyne::run::{PointField, Simulation};
 
-use super::atoms::{Atoms, Column};
+use super::atoms::Column;
 use super::domain::SimBox;
 use super::host::{
-    BLOCK, Condition, Energies, Engine, Host, HostError, Particles, Quantity, Reaction, RunStart,
-    Setup,
+    BLOCK, Condition, Energies, Engine, HostError, Particles, Quantity, Reaction, RunStart,
 };
-
-/// Makes peridyne models of scripts.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct ModelHost {
-    /// Instruction set; `None` takes the widest there is.
-    pub simd: Option<Simd>,
-}
-
-impl Host for ModelHost {
-    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
-        let spec = spec::spec(&setup)?;
-        let options = Options {
-            simd: self.simd,
-            ..Options::default()
-        };
-        let mut sim = build(&spec, options).map_err(explain)?;
-        drop(spec);
-        let Setup {
-            dimension,
-            domain,
-            atoms,
-            ..
-        } = setup;
-        write_velocities(sim.as_mut(), dimension, &atoms)?;
-        let height = if dimension == 2 {
-            atoms.position(0)[2]
-        } else {
-            0.0
-        };
-        Ok(Box::new(ModelEngine {
-            sim: RefCell::new(sim),
-            dimension,
-            domain,
-            height,
-            types: atoms.types,
-            derived: RefCell::default(),
-            bonded: false,
-            driven: Vec::new(),
-            notes: Vec::new(),
-        }))
-    }
-}
-
-fn explain(e: BuildError) -> HostError {
-    let help = match e.path.as_str() {
-        "horizon" => "the horizon is the number before s00 in `pair_coeff`",
-        "periodic" => "use a larger box, or a smaller horizon in `pair_coeff`",
-        path if path.ends_with("fracture") => "s00 and alpha are the last numbers of `pair_coeff`",
-        path if path.ends_with("law") => "check the moduli in `pair_coeff`",
-        path if path.ends_with("density") => "write `set group all density VALUE` before `run`",
-        "run.time_step" => "write `timestep VALUE` with a positive number",
-        _ => return HostError::new(e.message),
-    };
-    HostError::new(e.message).help(help)
-}
-
-fn write_velocities(
-    sim: &mut dyn Simulation,
-    dimension: usize,
-    atoms: &Atoms,
-) -> Result<(), HostError> {
-    if atoms.velocity == Column::Uniform([0.0; 3]) {
-        return Ok(());
-    }
-    let mut block = [0.0; BLOCK];
-    for first in (0..atoms.len()).step_by(BLOCK) {
-        let block = &mut block[..BLOCK.min(atoms.len() - first)];
-        for a in 0..3 {
-            atoms.read(Quantity::Velocity(a), first, block)?;
-            if a < dimension {
-                sim.write(PointField::Velocity(a), first, block);
-            } else {
-                in_plane("velocity", block, 0.0)?;
-            }
-        }
-    }
-    Ok(())
-}
 
 /// In two dimensions nothing leaves the plane.
 fn in_plane(what: &str, values: &[f64], expected: f64) -> Result<(), HostError> {
@@ -130,6 +53,8 @@ pub struct ModelEngine {
     /// Were the bonds there in a force evaluation?
     bonded: bool,
     driven: Vec<Option<usize>>,
+    /// Must nothing repel?
+    guarded: bool,
     notes: Vec<String>,
 }
 
@@ -148,6 +73,23 @@ impl ModelEngine {
             let kept = self.derived.get_mut();
             (kept.energy, kept.dilatation) = (Some(energy), Some(dilatation));
         }
+    }
+
+    /// Refuses a state in which points repel, if LAMMPS's types repel each in their own way.
+    fn guard(&mut self) -> Result<(), HostError> {
+        if !self.guarded {
+            return Ok(());
+        }
+        let sim = self.sim.get_mut();
+        let ledger = sim.ledger().map_err(|e| HostError::new(e.to_string()))?;
+        if ledger.contact == 0.0 {
+            return Ok(());
+        }
+        Err(HostError::new(format!(
+            "points repel each other since step {}, and the types differ in stiffness: LAMMPS repels each pair of types with its own, only one is supported",
+            sim.step_number()
+        ))
+        .help("give all types the same c (K); points repel below 0.9 of their reference distance or 1.35 lattice constants"))
     }
 
     /// Hands the values of this instant to the model.
@@ -288,7 +230,7 @@ impl Engine for ModelEngine {
         sim.start(self.bonded);
         self.bonded = true;
         self.keep_watched();
-        Ok(())
+        self.guard()
     }
 
     fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
@@ -297,7 +239,7 @@ impl Engine for ModelEngine {
         let sim = self.sim.get_mut();
         sim.step().map_err(|e| HostError::new(e.to_string()))?;
         self.keep_watched();
-        Ok(())
+        self.guard()
     }
 
     fn expect_output(&mut self) {
@@ -310,8 +252,15 @@ impl Engine for ModelEngine {
         let energy = kept.energy.get_or_insert_with(|| sim.energy_density());
         Ok(Energies {
             potential: energy.iter().sum(),
-            virial: None,
         })
+    }
+
+    fn expect_virial(&mut self) {
+        self.sim.get_mut().watch_virial_next();
+    }
+
+    fn virial(&mut self) -> Result<[f64; 6], HostError> {
+        Ok(self.sim.get_mut().virial())
     }
 
     fn reaction(&self, index: usize) -> Reaction {

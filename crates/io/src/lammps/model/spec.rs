@@ -3,12 +3,13 @@
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, Criterion, FamilyChoice, FractureSpec, Horizon,
-    Influence, InterfaceRule, LawSpec, MaterialSpec, Plane, PmbStiffness, Schedule, Spec, TimeStep,
+    Influence, InterfaceRule, MaterialSpec, Members, Plane, Schedule, SetSpec, Spec, TimeStep,
 };
 
 use super::in_plane;
+use super::types::Types;
 use crate::lammps::atoms::{Atoms, Column, Reference};
-use crate::lammps::host::{HostError, Pair, PairTable, Setup};
+use crate::lammps::host::{HostError, Pair, Setup};
 
 /// Distances below which LAMMPS's points repel: fraction of the reference distance, and lattice constants.
 const CONTACT: ContactSpec = ContactSpec {
@@ -17,44 +18,46 @@ const CONTACT: ContactSpec = ContactSpec {
     stiffness: None,
 };
 
-/// The specification of a script's model, without motion and conditions.
+/// The specification of a script's model, without motion and conditions; `rule` says what bonds between unlike types
+/// have.
 ///
 /// # Errors
 /// Something that the engine has not.
-pub fn spec(setup: &Setup) -> Result<Spec, HostError> {
-    let (law, influence, horizon, critical, alpha) = match &setup.pair {
-        Pair::Pmb(table) => {
-            let c = uniform(table)?;
-            let law = LawSpec::Pmb(PmbStiffness::Micromodulus(c.micromodulus));
-            (
-                law,
-                Influence::Constant,
-                c.horizon,
-                c.critical_stretch,
-                c.alpha,
-            )
-        }
-        Pair::Lps(table) => {
-            let c = uniform(table)?;
-            let law = LawSpec::LpsAsTyped {
-                bulk: c.bulk,
-                shear: c.shear,
-            };
-            (
-                law,
-                Influence::Inverse,
-                c.horizon,
-                c.critical_stretch,
-                c.alpha,
-            )
-        }
+pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, HostError> {
+    let influence = match &setup.pair {
+        Pair::Pmb(_) => Influence::Constant,
+        Pair::Lps(_) => Influence::Inverse,
     };
     let domain = &setup.domain;
     let periodic =
         [0, 1, 2].map(|a| (a < setup.dimension && domain.periodic(a)).then(|| domain.edge(a)));
+    let several = types.materials().len() > 1;
     let body = match sites(setup, periodic) {
-        Some(body) => body,
-        None => cloud(setup)?,
+        // sites have no marks
+        Some(body) if !several => body,
+        _ => cloud(setup, several)?,
+    };
+    let density = setup.atoms.density.get(0);
+    let material = |kind: &usize| {
+        let own = types.get(*kind, *kind);
+        MaterialSpec {
+            name: kind.to_string(),
+            set: if several {
+                kind.to_string()
+            } else {
+                "all".into()
+            },
+            density,
+            law: own.law,
+            fracture: Some(FractureSpec {
+                criterion: Criterion::Stretch(own.critical_stretch),
+                alpha: own.alpha,
+            }),
+        }
+    };
+    let set = |kind: &usize| SetSpec {
+        name: kind.to_string(),
+        members: Members::Mark(*kind as i32),
     };
     Ok(Spec {
         title: setup.title.clone(),
@@ -62,19 +65,14 @@ pub fn spec(setup: &Setup) -> Result<Spec, HostError> {
         plane: Plane::Stress,
         section: 1.0,
         body,
-        sets: vec![],
-        materials: vec![MaterialSpec {
-            name: "1".into(),
-            set: "all".into(),
-            density: setup.atoms.density.get(0),
-            law,
-            fracture: Some(FractureSpec {
-                criterion: Criterion::Stretch(critical),
-                alpha,
-            }),
-        }],
-        interface: InterfaceRule::Series,
-        horizon: Horizon::Length(horizon),
+        sets: if several {
+            types.materials().iter().map(set).collect()
+        } else {
+            vec![]
+        },
+        materials: types.materials().iter().map(material).collect(),
+        interface: rule,
+        horizon: Horizon::Length(types.horizon()),
         volume_scaling: true,
         calibration: Calibration::Continuum,
         influence,
@@ -92,22 +90,6 @@ pub fn spec(setup: &Setup) -> Result<Spec, HostError> {
             force_unstable: true,
         },
     })
-}
-
-/// The coefficients that all pairs of types have.
-fn uniform<T: Copy + PartialEq>(table: &PairTable<T>) -> Result<T, HostError> {
-    let first = table.get(1, 1);
-    for i in 1..=table.types() {
-        for j in i..=table.types() {
-            if table.get(i, j) != first {
-                return Err(HostError::new(format!(
-                    "`pair_coeff {i} {j}` differs from `pair_coeff 1 1`: all pairs of types need the same coefficients"
-                ))
-                .help("several materials run from a deck (TOML), with `interface` saying how bonds between them get their stiffness"));
-            }
-        }
-    }
-    Ok(first)
 }
 
 /// The value all atoms have.
@@ -162,7 +144,7 @@ fn sites(setup: &Setup, periodic: [Option<f64>; 3]) -> Option<BodySpec> {
     })
 }
 
-fn cloud(setup: &Setup) -> Result<BodySpec, HostError> {
+fn cloud(setup: &Setup, marked: bool) -> Result<BodySpec, HostError> {
     let atoms: &Atoms = &setup.atoms;
     let n = atoms.len();
     let position: Vec<[f64; 3]> = (0..n).map(|i| atoms.position(i)).collect();
@@ -178,7 +160,11 @@ fn cloud(setup: &Setup) -> Result<BodySpec, HostError> {
             Some(_) => vec![],
             None => (0..n).map(|i| atoms.density.get(i)).collect(),
         },
-        mark: vec![],
+        mark: if marked {
+            (0..n).map(|i| atoms.types.get(i) as i32).collect()
+        } else {
+            vec![]
+        },
         names: vec![],
         spacing: Some(setup.lattice_constant),
     }))

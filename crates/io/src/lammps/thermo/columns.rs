@@ -85,6 +85,10 @@ impl Session<'_> {
     /// It does not.
     pub fn check_column(&mut self, column: &Column) -> Result<()> {
         match column {
+            Column::Compute(_, id, index) if super::BUILT_IN.contains(&id.as_str()) => {
+                let index: Vec<f64> = index.iter().map(|i| *i as f64).collect();
+                self.check_built_in(id, &index)?;
+            }
             Column::Compute(_, id, _) => {
                 if let ComputeKind::Atoms(_) = self.compute(id)?.kind {
                     return Err(

@@ -1,7 +1,7 @@
 //! Keywords of `thermo_style custom`, which formulas know too.
 
 /// `(keyword, heading, is an integer)`
-const KEYWORDS: [(&str, &str, bool); 38] = [
+const KEYWORDS: [(&str, &str, bool); 44] = [
     ("step", "Step", true),
     ("elapsed", "Elapsed", true),
     ("elaplong", "Elaplong", true),
@@ -14,6 +14,12 @@ const KEYWORDS: [(&str, &str, bool); 38] = [
     ("atoms", "Atoms", true),
     ("temp", "Temp", false),
     ("press", "Press", false),
+    ("pxx", "Pxx", false),
+    ("pyy", "Pyy", false),
+    ("pzz", "Pzz", false),
+    ("pxy", "Pxy", false),
+    ("pxz", "Pxz", false),
+    ("pyz", "Pyz", false),
     ("pe", "PotEng", false),
     ("ke", "KinEng", false),
     ("etotal", "TotEng", false),

@@ -2,13 +2,16 @@
 
 pub mod columns;
 pub mod keyword;
+mod pressure;
+
+pub use self::pressure::BUILT_IN;
 
 use self::columns::Column;
 use super::error::{Problem, Result};
 use super::host::Quantity;
 use super::particles::Field;
 use super::printf::{Format, Value};
-use super::session::{Session, Store};
+use super::session::Session;
 
 /// What to do about atoms that leave through a fixed face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -257,6 +260,9 @@ impl Session<'_> {
             "xhi" | "yhi" | "zhi" => self.domain()?.high[axis(bytes[0])],
             "temp" => self.temperature()?,
             "press" => self.pressure()?,
+            "pxx" | "pyy" | "pzz" | "pxy" | "pxz" | "pyz" => {
+                self.pressure_component(axis(bytes[1]), axis(bytes[2]))?
+            }
             "ke" => self.kinetic()?,
             "pe" | "epair" | "evdwl" => self.engine()?.energies()?.potential,
             "etotal" => self.kinetic()? + self.engine()?.energies()?.potential,
@@ -270,33 +276,11 @@ impl Session<'_> {
         })
     }
 
-    fn kinetic(&self) -> Result<f64> {
+    pub(super) fn kinetic(&self) -> Result<f64> {
         self.reduce(
             super::compute::Mode::Sum,
             &super::atoms::Members::All,
             &super::variable::tree::Tree::Field(Field::Kinetic),
-        )
-    }
-
-    fn temperature(&self) -> Result<f64> {
-        let degrees = (self.dimension * self.count()) as f64 - self.dimension as f64;
-        let kinetic = self.kinetic()?;
-        Ok(if degrees > 0.0 {
-            2.0 * kinetic / (degrees * self.units.boltzmann())
-        } else {
-            0.0
-        })
-    }
-
-    fn pressure(&mut self) -> Result<f64> {
-        let virial = match &mut self.store {
-            Store::Engine(e) => e.energies()?.virial.unwrap_or(f64::NAN),
-            Store::Atoms(_) => f64::NAN,
-        };
-        let volume = self.thermo_value("vol")?;
-        Ok(
-            (2.0 * self.kinetic()? + virial) / (self.dimension as f64 * volume)
-                * self.units.pressure(),
         )
     }
 

@@ -10,7 +10,7 @@ use super::{Formula, Kind, functions};
 use crate::lammps::error::{Problem, Result, suggestion};
 use crate::lammps::host::Quantity;
 use crate::lammps::particles::Field;
-use crate::lammps::printf::{Value, fifteen};
+use crate::lammps::printf::{Value, fifteen, round_to_fifteen};
 use crate::lammps::random::Ranmar;
 use crate::lammps::session::Session;
 
@@ -49,8 +49,16 @@ impl Session<'_> {
     /// # Errors
     /// No such variable, or no number.
     pub fn variable_number(&mut self, name: &str) -> Result<f64> {
-        if let Kind::Equal(formula) = self.variable(name)?.clone() {
-            return self.guarded(name, |s| s.formula(&formula));
+        match self.variable(name)? {
+            Kind::Equal(formula) => {
+                let formula = formula.clone();
+                return self.guarded(name, |s| s.formula(&formula));
+            }
+            kind => {
+                if let Some(x) = kind.number().filter(|x| x.is_finite()) {
+                    return Ok(x);
+                }
+            }
         }
         let text = self.variable_text(name)?;
         match text.trim().parse::<f64>() {
@@ -75,7 +83,8 @@ impl Session<'_> {
 
     /// Runs `with` unless variable `name` is being evaluated already.
     fn guarded<T>(&mut self, name: &str, with: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
-        if self.variables.evaluating.iter().any(|n| n == name) {
+        let place = self.variables.find(name).unwrap_or(usize::MAX);
+        if self.variables.evaluating.contains(&place) {
             return Err(Problem::new(format!(
                 "variable `{name}` needs its own value"
             )));
@@ -85,7 +94,7 @@ impl Session<'_> {
                 "variables refer to each other in more than 50 levels",
             ));
         }
-        self.variables.evaluating.push(name.to_string());
+        self.variables.evaluating.push(place);
         let result = with(self);
         self.variables.evaluating.pop();
         result
@@ -135,11 +144,12 @@ impl Session<'_> {
                 op.apply(a, b).map_err(Problem::new)?
             }
             Expr::Call(name, arguments) => {
-                let values = arguments
-                    .iter()
-                    .map(|a| self.scalar(a))
-                    .collect::<Result<Vec<_>>>()?;
-                functions::apply(name, &values, &self.clock()).map_err(Problem::new)?
+                let mut values = [0.0; functions::MOST_ARGUMENTS];
+                for (value, a) in values.iter_mut().zip(arguments) {
+                    *value = self.scalar(a)?;
+                }
+                let given = &values[..arguments.len().min(values.len())];
+                functions::apply(name, given, &self.clock()).map_err(Problem::new)?
             }
             Expr::Random { normal, arguments } => {
                 let [a, b, seed] = [&arguments[0], &arguments[1], &arguments[2]];
@@ -156,6 +166,18 @@ impl Session<'_> {
             Expr::IsDefined(category, id) => f64::from(u8::from(self.is_defined(category, id)?)),
             Expr::Keyword(name) => self.thermo_value(name)?,
             Expr::Variable(name, None) => {
+                match self.variable(name)? {
+                    Kind::Equal(formula) => {
+                        let formula = formula.clone();
+                        let x = self.guarded(name, |s| s.formula(&formula))?;
+                        return Ok(round_to_fifteen(x));
+                    }
+                    kind => {
+                        if let Some(x) = kind.number() {
+                            return Ok(x);
+                        }
+                    }
+                }
                 // LAMMPS passes numbers between formulas as text with 15 digits
                 let text = self.variable_text(name)?;
                 match text.trim().parse::<f64>() {
@@ -181,20 +203,23 @@ impl Session<'_> {
                 )));
             }
             Expr::Compute(id, index) => {
-                let index = index
-                    .iter()
-                    .map(|i| self.scalar(i))
-                    .collect::<Result<Vec<_>>>()?;
-                self.compute_scalar(id, &index)?
+                let values = self.indices(index)?;
+                self.compute_scalar(id, &values[..index.len().min(values.len())])?
             }
             Expr::Fix(id, index) => {
-                let index = index
-                    .iter()
-                    .map(|i| self.scalar(i))
-                    .collect::<Result<Vec<_>>>()?;
-                self.fix_value(id, &index)?
+                let values = self.indices(index)?;
+                self.fix_value(id, &values[..index.len().min(values.len())])?
             }
         })
+    }
+
+    /// Values of up to three indices; nothing has more than two.
+    fn indices(&mut self, index: &[Expr]) -> Result<[f64; 3]> {
+        let mut values = [0.0; 3];
+        for (value, i) in values.iter_mut().zip(index) {
+            *value = self.scalar(i)?;
+        }
+        Ok(values)
     }
 
     /// Value of a tree at the atom whose id is `id`.

@@ -48,6 +48,8 @@ pub const NAMES: [(&str, usize); 27] = [
     ("cwiggle", 3),
 ];
 
+pub const MOST_ARGUMENTS: usize = 6;
+
 /// Functions of a group of atoms.
 pub const GROUP: [&str; 6] = ["count", "mass", "xcm", "vcm", "bound", "ke"];
 

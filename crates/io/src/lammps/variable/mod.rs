@@ -9,7 +9,7 @@ pub mod tree;
 use std::rc::Rc;
 
 use self::ast::Expr;
-use super::printf::{Format, fifteen};
+use super::printf::{Format, fifteen, round_to_fifteen};
 
 /// A formula and its text.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +66,18 @@ impl Kind {
         })
     }
 
+    /// Number that the text of a kind without formula stands for; nothing is allocated.
+    pub fn number(&self) -> Option<f64> {
+        let read = |text: &str| text.trim().parse().ok();
+        match self {
+            Kind::Index { values, at } => read(values.get(*at)?),
+            Kind::Loop { at, .. } => Some(*at as f64),
+            Kind::Text(text) => read(text),
+            Kind::Internal(x) => Some(round_to_fifteen(*x)),
+            Kind::Equal(_) | Kind::Atom(_) | Kind::Format { .. } => None,
+        }
+    }
+
     /// One value on; false when there is none left.
     pub fn advance(&mut self) -> bool {
         match self {
@@ -86,11 +98,15 @@ impl Kind {
 #[derive(Debug, Default)]
 pub struct Variables {
     list: Vec<(String, Kind)>,
-    /// Names of the formulas being evaluated: a variable must not need itself.
-    pub evaluating: Vec<String>,
+    /// Places in the list of the formulas being evaluated: a variable must not need itself.
+    pub evaluating: Vec<usize>,
 }
 
 impl Variables {
+    /// Place in the list.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.list.iter().position(|(n, _)| n == name)
+    }
     pub fn get(&self, name: &str) -> Option<&Kind> {
         self.list.iter().find(|(n, _)| n == name).map(|(_, k)| k)
     }

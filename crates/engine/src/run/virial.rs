@@ -1,0 +1,113 @@
+//! The virial, pair by pair: what a pressure is made of. Slow and plain; no sweep knows of it.
+
+use super::model::Model;
+use super::recipe::Laws;
+use crate::interaction::{BondState, PointEnergies};
+use crate::law::Law;
+use crate::law::solid::bond_based::BondBasedMixed;
+use crate::law::solid::eam_like::EamLike;
+
+/// Axes of the components of a virial.
+const AXES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// Adds a pair whose force density on either end is `pull` times the partner's volume along `y`.
+fn add<const D: usize>(virial: &mut [f64; 6], y: &[f64; D], pull: f64, volumes: [f64; 2]) {
+    for (sum, (m, n)) in virial.iter_mut().zip(AXES) {
+        if n < D {
+            *sum -= y[m] * y[n] * pull * volumes[0] * volumes[1];
+        }
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// Of bonds and of repulsion inside families; images of `u` must be fresh.
+    pub(super) fn virial_of_bonds(&self) -> [f64; 6] {
+        let recipe = &self.recipe;
+        let mut dilatation = vec![];
+        if let Laws::Solid(_) = recipe.laws {
+            let mut seen = PointEnergies::default();
+            self.interaction.observe(&self.body, &self.u, &mut seen);
+            dilatation = seen.dilatation;
+        }
+        let fields = |i: usize| -> [f64; 2] {
+            let material = self.body.material_of(i);
+            match &recipe.laws {
+                Laws::Bond(c) => [c[material], 0.0],
+                Laws::Solid(s) => {
+                    let (s, b) = (&s[material], self.interaction.point_field(1, i));
+                    // P = n κ θ / m
+                    [s.n * s.kappa / s.beta * b * dilatation[i], b]
+                }
+            }
+        };
+        // a state-based bond pulls at rest, too
+        let at_rest_free = matches!(recipe.laws, Laws::Bond(_))
+            && recipe.repulsion.is_none_or(|c| c.bonded <= 1.0);
+        let mut virial = [0.0; 6];
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, xi, state| {
+                let eta: [f64; D] = std::array::from_fn(|a| self.u[a][j] - self.u[a][i]);
+                let y: [f64; D] = std::array::from_fn(|a| xi[a] + eta[a]);
+                if at_rest_free && eta == [0.0; D] {
+                    return;
+                }
+                let squared: f64 = xi.iter().map(|x| x * x).sum();
+                let r0 = squared.sqrt();
+                let change: f64 = (0..D).map(|a| eta[a] * (xi[a] + 0.5 * eta[a])).sum();
+                let e = 2.0 * change / squared;
+                // (r − r0)/r without cancellation
+                let w = (1.0 + e).sqrt();
+                let mut pull = 0.0;
+                if state == BondState::Whole {
+                    let (g, weight) = (e / (w * (1.0 + w)), recipe.weight(r0));
+                    let (fi, fj) = (fields(i), fields(j));
+                    pull = match &recipe.laws {
+                        Laws::Bond(_) => {
+                            let law = BondBasedMixed { rule: recipe.rule };
+                            law.pull(law.constant(r0, r0.recip(), weight), g, fi, fj)
+                        }
+                        Laws::Solid(_) => EamLike { ratio: 0.0 }.pull(weight, g, fi, fj),
+                    };
+                }
+                if let Some(repulsion) = recipe.repulsion {
+                    let (r, d) = (r0 * w, repulsion.distance(r0));
+                    if r < d {
+                        pull += repulsion.stiffness * (r - d) / r;
+                    }
+                }
+                add(
+                    &mut virial,
+                    &y,
+                    pull,
+                    [i, j].map(|s| self.body.volume.at(s)),
+                );
+            });
+        virial
+    }
+
+    /// Adds repulsion between points that are in no common family, at the `u` of the contact's last update.
+    pub(super) fn add_virial_of_contact(&self, virial: &mut [f64; 6]) {
+        let (Some(contact), Some(repulsion)) = (&self.contact, self.recipe.repulsion) else {
+            return;
+        };
+        contact.each_contact(&self.u, |i, j, y, r, d| {
+            // two points on one spot have no direction
+            if r > 0.0 {
+                let pull = repulsion.stiffness * (r - d) / r;
+                add(virial, &y, pull, [i, j].map(|s| self.body.volume.at(s)));
+            }
+        });
+    }
+
+    /// At the current state, with the bonds that are whole now.
+    pub(super) fn virial_now(&mut self) -> [f64; 6] {
+        self.refresh_images();
+        if let Some(pairs) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+        }
+        let mut virial = self.virial_of_bonds();
+        self.add_virial_of_contact(&mut virial);
+        virial
+    }
+}
