@@ -21,7 +21,9 @@ impl Console for Nothing {
 fuzz_target!(|text: &str| {
     // nothing outside is read or written, and a jump back would loop for ever, as written
     let forbidden = ["jump", "include", "file", "append", "read_", "write_", "dump", "log", "shell"];
-    if !forbidden.iter().any(|word| text.contains(word)) {
+    // two lattices of very different constants ask for 10^8 atoms in a few words: slow, as written
+    let small = text.matches("lattice").count() <= 1;
+    if small && !forbidden.iter().any(|word| text.contains(word)) {
         let _ = run_text("fuzz", text, &Options::default(), &mut Nothing, &mut Nothing);
     }
 });

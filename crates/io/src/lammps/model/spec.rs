@@ -84,7 +84,7 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
         indenters: vec![],
         family: FamilyChoice::Auto,
         schedule: Schedule {
-            steps: 0,
+            steps: setup.steps,
             time_step: TimeStep::Fixed(setup.time_step),
             // LAMMPS runs any step; a warning is given at the start of the run
             force_unstable: true,
