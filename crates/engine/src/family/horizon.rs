@@ -152,6 +152,15 @@ impl HorizonList {
         self.start[row / TILE]..self.start[row / TILE + 1]
     }
 
+    /// `(line, slot)` of every partner of a row, in the row's order.
+    pub fn partners(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
+        let slot = self.rows[row];
+        self.lines(row)
+            .map(move |line| (line, self.partner[line * TILE + row % TILE]))
+            .take_while(move |(_, j)| *j != slot)
+            .map(|(line, j)| (line, j as usize))
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         4 * self.rows.len() + 8 * self.start.len() + 4 * self.partner.len() + self.present.len()

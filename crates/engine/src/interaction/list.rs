@@ -195,20 +195,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 
     /// Σ over the bonds of a row whose bit is set in `bits`, in the row's order.
     fn sum(&self, row: usize, bits: &[u8], of: impl Fn(usize) -> f64) -> f64 {
-        self.bonds(row)
+        self.list
+            .partners(row)
             .filter(|(line, _)| bits[*line] >> (row % TILE) & 1 == 1)
             .map(|(_, j)| of(j))
             .sum()
-    }
-
-    /// All pairs of a row, absent ones included: line and partner.
-    fn bonds(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
-        let slot = self.list.rows[row];
-        self.list
-            .lines(row)
-            .map(move |line| (line, self.list.partner[line * TILE + row % TILE]))
-            .take_while(move |(_, j)| *j != slot)
-            .map(|(line, j)| (line, j as usize))
     }
 }
 
@@ -292,7 +283,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         let view = self.view(&self.moved);
         for (row, &i) in self.list.rows.iter().enumerate() {
-            for (line, j) in self.bonds(row).filter(|(_, j)| i as usize <= *j) {
+            for (line, j) in self.list.partners(row).filter(|(_, j)| i as usize <= *j) {
                 let state = if self.alive[line] >> (row % TILE) & 1 == 1 {
                     BondState::Whole
                 } else {
@@ -327,7 +318,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         for (row, &i) in self.list.rows.iter().enumerate() {
             let x = body.position(i as usize);
             let from: [f64; D] = std::array::from_fn(|a| x[a]);
-            for (line, j) in self.bonds(row) {
+            for (line, j) in self.list.partners(row) {
                 if self.alive[line] >> (row % TILE) & 1 == 0 {
                     continue;
                 }
@@ -409,7 +400,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     }
 
     fn in_family(&self, _: &Body<D>, i: usize, j: usize) -> bool {
-        self.bonds(self.list.row(i)).any(|(_, k)| k == j)
+        self.list.partners(self.list.row(i)).any(|(_, k)| k == j)
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {

@@ -1,9 +1,14 @@
 //! From a specification to a running model.
 
+mod accounts;
 mod build;
+mod calibration;
+mod conditions;
 mod model;
 mod probe;
 mod recipe;
+mod reference;
+mod sets;
 mod virial;
 
 pub use build::{Options, build, build_in};

@@ -301,3 +301,66 @@ fn a_cloud_says_that_its_constants_are_those_of_the_continuum() {
     spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
     assert!(!warned(&spec));
 }
+
+/// A disordered cloud has the bulk modulus asked for on average over its bulk; with continuum constants it has not.
+#[test]
+fn a_cloud_is_calibrated_to_the_families_it_has() {
+    let law = LawSpec::Pmb(PmbStiffness::Bulk(2.0));
+    for d in [2, 3] {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
+        };
+        let side = if d == 2 { 20 } else { 11 };
+        let depth = if d == 2 { 1 } else { side };
+        let mut position = vec![];
+        for k in 0..depth {
+            for j in 0..side {
+                for i in 0..side {
+                    let site = [i, j, k].map(f64::from);
+                    position.push(std::array::from_fn(|a| {
+                        site[a] + if a < d { 0.2 * random() } else { 0.0 }
+                    }));
+                }
+            }
+        }
+        let case = cases()
+            .into_iter()
+            .find(|c| c.d() == d && c.material.name == "pmb");
+        let mut spec = case.expect("a bond-based case").spec();
+        spec.horizon = Horizon::Length(2.2);
+        spec.influence = Influence::Constant;
+        spec.sets.clear();
+        spec.materials.truncate(1);
+        spec.materials[0].set = "all".into();
+        spec.materials[0].law = law;
+        spec.body = BodySpec::Cloud(Cloud {
+            volume: vec![spec.section; position.len()],
+            position: position.clone(),
+            spacing: Some(1.0),
+            ..Cloud::default()
+        });
+        let inside = |x: &[f64; 3]| (0..d).all(|a| (3.0..=side as f64 - 4.0).contains(&x[a]));
+        let mean = |calibration: Calibration| {
+            let mut spec = spec.clone();
+            spec.calibration = calibration;
+            let sim = at_rest(&spec);
+            assert!(sim.info().warnings.iter().all(|w| !w.contains("continuum")));
+            let strain = isotropic(d, SMALL);
+            let w = sim.energy_under_strain(strain);
+            let expected = density(lame(law, d, spec.plane), &strain);
+            let bulk = w.iter().zip(&position).filter(|(_, x)| inside(x));
+            let (sum, count) = bulk.fold((0.0, 0), |(s, n), (w, _)| (s + w / expected, n + 1));
+            sum / count as f64
+        };
+        let (discrete, continuum) = (mean(Calibration::Discrete), mean(Calibration::Continuum));
+        println!(
+            "{d}-D: {discrete:.4} of the modulus asked for, {continuum:.4} with continuum constants"
+        );
+        assert!((discrete - 1.0).abs() < 5e-3, "{d}-D: {discrete}");
+        assert!((continuum - 1.0).abs() > 2e-2, "{d}-D: {continuum}");
+    }
+}

@@ -44,6 +44,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     let zero = L::splat(0.0);
                     let limit = L::splat(LIMIT);
                     let row = v.row(n);
+                    let intact = v.is_intact(n);
                     let mut stretched = [MaybeUninit::<L>::uninit(); CHUNK];
                     let ui = v.displacement::<L>(i);
                     let own = v.fields::<L>(i);
@@ -54,8 +55,11 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                         for (c, n) in chunk.iter().enumerate() {
                             let n = n.assume_init() as usize;
                             let (_, raw) = v.deform(bonds.get_unchecked(n), i, &ui);
-                            // a bond that is not there is not stretched
-                            let e = raw.zero_if(L::dead(*row.add(n), part));
+                            let mut e = raw;
+                            if !intact {
+                                // a bond that is not there is not stretched
+                                e = raw.zero_if(L::dead(*row.add(n), part));
+                            }
                             low = e.min(low);
                             high = e.max(high);
                             lowest = raw.min(lowest);
@@ -74,9 +78,12 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                             };
                             let kr = L::splat(b.share);
                             let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
-                            // fields mean nothing where there is no point
-                            let x = v.law.pair_energy(kr * s * s, own, other);
-                            strain = strain + x.zero_if(L::dead(*row.add(n), part));
+                            let mut x = v.law.pair_energy(kr * s * s, own, other);
+                            if !intact {
+                                // fields mean nothing where there is no point
+                                x = x.zero_if(L::dead(*row.add(n), part));
+                            }
+                            strain = strain + x;
                             share = kr.fma(s, share);
                         }
                         if v.repulsion.is_some() && L::any(lowest.lt(L::splat(v.most_contact))) {
@@ -90,11 +97,14 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                                 }
                             }
                         }
-                        if self.fields.is_some() {
+                        if self.fields.is_some() && !W::SHARES {
                             for n in chunk {
                                 let n = n.assume_init() as usize;
-                                let kr = L::splat(bonds.get_unchecked(n).share);
-                                weight = weight + kr.zero_if(L::dead(*row.add(n), part));
+                                let mut kr = L::splat(bonds.get_unchecked(n).share);
+                                if !intact {
+                                    kr = kr.zero_if(L::dead(*row.add(n), part));
+                                }
+                                weight = weight + kr;
                             }
                         }
                     }

@@ -1,0 +1,177 @@
+//! The accounts of a model: energies now, and whether they still add up.
+
+use super::model::Model;
+use crate::condition::driven::Driven;
+use crate::error::RunError;
+use crate::interaction::{BondState, PointEnergies};
+use crate::observe::Ledger;
+
+impl<const D: usize> Model<D> {
+    pub(super) fn energies_of_bonds(&self, bonds: bool) -> PointEnergies {
+        let mut out = PointEnergies::default();
+        if bonds {
+            self.interaction.observe(&self.body, &self.u, &mut out);
+        } else {
+            let zeros = || vec![0.0; self.body.len];
+            (out.strain, out.repulsion, out.dilatation) = (zeros(), zeros(), zeros());
+        }
+        out
+    }
+
+    pub(super) fn energy_now(&mut self) -> Ledger {
+        self.finish();
+        self.refresh_images();
+        let [strain, mut contact] = self.interaction.energy(&self.body, &self.u);
+        if let Some(pairs) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            contact += pairs.energy(body, &self.u);
+        }
+        let mut ledger = Ledger {
+            strain,
+            contact,
+            released: self.released,
+            dissipated: self.past_work[0],
+            work_conditions: self.past_work[1],
+            work_indenter: self.past_work[2],
+            ..Ledger::default()
+        };
+        for &s in &self.body.slots {
+            let i = s as usize;
+            let volume = self.body.volume.at(i);
+            let v2: f64 = (0..D).map(|a| self.v[a][i] * self.v[a][i]).sum();
+            ledger.kinetic += 0.5 * self.body.density.at(i) * volume * v2;
+        }
+        for load in &self.loads {
+            if load.is_damping() {
+                ledger.dissipated -= load.work
+            } else {
+                ledger.work_conditions += load.work
+            }
+        }
+        ledger.work_conditions += self.constraints.iter().map(|c| c.work).sum::<f64>();
+        ledger.work_indenter += self.indenters.iter().map(|i| i.work).sum::<f64>();
+        for d in &self.driven {
+            match d {
+                Driven::Indenter(i) => ledger.work_indenter += i.work,
+                Driven::Load(l) => ledger.work_conditions += l.work,
+            }
+        }
+        ledger.initial = self.initial_energy.unwrap_or(0.0);
+        ledger
+    }
+
+    /// The balance now, or why the run cannot be trusted.
+    pub(super) fn balance(&mut self) -> Result<Ledger, RunError> {
+        let ledger = self.energy_now();
+        if let Some((i, j)) = self.crossed_chain() {
+            return Err(RunError::Crossing {
+                step: self.step,
+                i,
+                j,
+            });
+        }
+        let before =
+            ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let after = ledger.kinetic - self.last_kick()
+            + ledger.strain
+            + ledger.contact
+            + ledger.released
+            + ledger.dissipated;
+        if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
+            return Err(RunError::Unstable {
+                step: self.step,
+                before,
+                after,
+                time_step: self.dt,
+            });
+        }
+        Ok(ledger)
+    }
+
+    /// Kinetic energy that the last half kick gave, point by point and never less than 0. A force that acts for the
+    /// first time has done no work yet: what it gave is no sign of instability.
+    fn last_kick(&self) -> f64 {
+        let mut energy = 0.0;
+        for &s in &self.body.slots {
+            let i = s as usize;
+            let (rho, volume) = (self.body.density.at(i), self.body.volume.at(i));
+            let (mut now, mut before) = (0.0, 0.0);
+            for a in 0..D {
+                let v = self.v[a][i];
+                now += v * v;
+                before += (v - 0.5 * self.dt / rho * self.f[a][i]).powi(2);
+            }
+            energy += 0.5 * rho * volume * f64::max(now - before, 0.0);
+        }
+        energy
+    }
+
+    /// Which point the pass refused, and why: one that is nowhere, else the one that went furthest.
+    pub(super) fn refused(&self, limit: f64) -> RunError {
+        let step = self.step + 1;
+        let path = |i: usize| {
+            let square = (0..D).map(|a| (self.dt * self.v[a][i]).powi(2));
+            square.sum::<f64>().sqrt()
+        };
+        // what is not a number is furthest
+        let far = |i: usize| {
+            if path(i).is_nan() {
+                f64::INFINITY
+            } else {
+                path(i)
+            }
+        };
+        let nowhere = |i: usize| (0..D).any(|a| !self.u[a][i].is_finite());
+        let slots = || self.body.slots.iter().map(|s| *s as usize).enumerate();
+        let found = slots()
+            .find(|(_, i)| nowhere(*i))
+            .or_else(|| slots().max_by(|a, b| far(a.1).total_cmp(&far(b.1))));
+        let (id, i) = found.expect("a body has points");
+        let x = self.body.position(i);
+        let position = std::array::from_fn(|a| if a < D { x[a] + self.u[a][i] } else { 0.0 });
+        let (id, path) = (id as u64 + 1, path(i));
+        if nowhere(i) || !path.is_finite() {
+            return RunError::NotFinite { step, id, position };
+        }
+        RunError::TooFast {
+            step,
+            id,
+            position,
+            path,
+            spacing: limit,
+        }
+    }
+
+    fn crossed_chain(&self) -> Option<(u64, u64)> {
+        if D != 1 {
+            return None;
+        }
+        let mut crossed = None;
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, xi, state| {
+                if crossed.is_none()
+                    && state == BondState::Whole
+                    && xi[0].abs() < 1.5 * self.body.spacing
+                    && (xi[0] + self.u[0][j] - self.u[0][i]) * xi[0] <= 0.0
+                {
+                    crossed = Some((i, j));
+                }
+            });
+        let id = |slot: usize| {
+            self.body
+                .slots
+                .iter()
+                .position(|s| *s as usize == slot)
+                .map_or(0, |i| i as u64 + 1)
+        };
+        crossed.map(|(i, j)| (id(i), id(j)))
+    }
+}
+
+/// The part of the balance that must stay as it is from now on.
+pub(super) fn ledger_base(l: &Ledger) -> f64 {
+    l.kinetic + l.strain + l.contact + l.released + l.dissipated
+        - l.work_conditions
+        - l.work_indenter
+}

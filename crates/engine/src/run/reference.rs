@@ -1,0 +1,264 @@
+//! Where the points of a spec are, and what their family is.
+
+use crate::body::{Body, Layout};
+use crate::error::BuildError;
+use crate::family::stencil::Stencil;
+use crate::law::influence::influence;
+use crate::law::micromodulus::Moments;
+use crate::space::fill::fill;
+use crate::space::lattice::{Lattice, LatticeKind};
+use crate::space::{AXES, Point};
+use crate::spec::{BodySpec, FamilyChoice, Horizon, Perturbation, Spec};
+
+/// Where the points are, and what their family is.
+pub(super) struct Reference<const D: usize> {
+    pub body: Body<D>,
+    /// The family, if it is a stencil.
+    pub stencil: Option<Stencil>,
+    /// Sums over a full family of the lattice that the points come from, whatever the family is.
+    pub bulk: Option<Moments>,
+    /// Length.
+    pub horizon: f64,
+}
+
+/// Distance over which the horizon cuts cells.
+pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
+    match &spec.body {
+        BodySpec::Lattice {
+            kind: LatticeKind::Cubic | LatticeKind::Square | LatticeKind::Chain,
+            spacing,
+            ..
+        } => *spacing,
+        _ => body.spacing,
+    }
+}
+
+fn horizon_length(spec: &Spec, spacing: f64) -> f64 {
+    match spec.horizon {
+        Horizon::Ratio(m) => m as f64 * spacing,
+        Horizon::Length(d) => d,
+    }
+}
+
+/// Sums over a full family of the lattice, averaged over the sublattices.
+fn stencil_moments<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    stencil: &Stencil,
+    horizon: f64,
+    cell: f64,
+) -> Moments {
+    let Layout::Grid(grid) = &body.layout else {
+        unreachable!("stencils live on grids")
+    };
+    let volume = body.volume.uniform().unwrap_or(0.0);
+    let mut sum = Moments {
+        first: 0.0,
+        second: 0.0,
+    };
+    for o in stencil.offsets.iter().flatten() {
+        let r0 = grid.lattice.spacing * (o.squared as f64).sqrt() / 4.0;
+        let nu = if spec.volume_scaling {
+            crate::family::volume_fraction(r0, horizon, cell)
+        } else {
+            1.0
+        };
+        let w = nu * influence(spec.influence, r0, horizon) * volume / stencil.offsets.len() as f64;
+        sum.first += w * r0;
+        sum.second += w * r0 * r0;
+    }
+    sum
+}
+
+pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
+    let on_lattice = |kind: LatticeKind,
+                      spacing: f64,
+                      origin: [f64; 3],
+                      quarters: &[[i32; 3]],
+                      volume: Option<f64>| {
+        if kind.dimension() != D {
+            return Err(BuildError::new(
+                "body.lattice",
+                format!(
+                    "a {} lattice has {} dimensions, the run has {D}",
+                    kind.name(),
+                    kind.dimension()
+                ),
+            ));
+        }
+        let stencil = Stencil::new(kind, spacing, spec.horizon);
+        let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
+        let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
+        let horizon = horizon_length(spec, spacing);
+        if horizon < spacing * kind.nearest() {
+            return Err(BuildError::new(
+                "horizon",
+                format!(
+                    "the horizon {horizon:e} is below the distance {:e} of nearest points",
+                    spacing * kind.nearest()
+                ),
+            )
+            .help("three spacings are usual: horizon = { m_ratio = 3 }"));
+        }
+        if stencil.bonds() > crate::interaction::stencil::MOST {
+            return Err(BuildError::new(
+                "horizon",
+                format!(
+                    "{} bonds per point; at most {}",
+                    stencil.bonds(),
+                    crate::interaction::stencil::MOST
+                ),
+            )
+            .help("choose a shorter horizon: three to six spacings are usual"));
+        }
+        let body = Body::<D>::on_lattice(
+            Lattice {
+                kind,
+                spacing,
+                origin,
+            },
+            quarters,
+            stencil.reach,
+            periodic,
+            volume,
+        )?;
+        for a in 0..D {
+            if let (Some(given), Some(p)) = (spec.periodic[a], body.period[a])
+                && given > 0.0
+                && (given - p).abs() > 1e-9 * p
+            {
+                return Err(BuildError::new(
+                    "periodic",
+                    format!(
+                        "the period along {} is {given:e}, the lattice body repeats after {p:e}",
+                        AXES[a]
+                    ),
+                ));
+            }
+        }
+        let bulk = stencil_moments::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
+        Ok(Reference {
+            body,
+            stencil: Some(stencil),
+            bulk: Some(bulk),
+            horizon,
+        })
+    };
+    let list_if_asked = |r: Reference<D>| {
+        if spec.family == FamilyChoice::List {
+            Ok(Reference {
+                body: r.body.to_cloud()?,
+                stencil: None,
+                ..r
+            })
+        } else {
+            Ok(r)
+        }
+    };
+    match &spec.body {
+        BodySpec::Lattice {
+            kind,
+            spacing,
+            origin,
+            region,
+            perturb,
+        } => {
+            if !(*spacing > 0.0 && spacing.is_finite()) {
+                return Err(BuildError::new(
+                    "body.spacing",
+                    format!("the spacing is {spacing}, expected a positive length"),
+                ));
+            }
+            let lattice = Lattice {
+                kind: *kind,
+                spacing: *spacing,
+                origin: *origin,
+            };
+            let sites = fill(&lattice, region)?;
+            match perturb {
+                Some(p) => {
+                    let r = on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?;
+                    Ok(Reference {
+                        body: perturbed(&r.body, p)?,
+                        stencil: None,
+                        ..r
+                    })
+                }
+                None => list_if_asked(on_lattice(*kind, *spacing, *origin, &sites.quarters, None)?),
+            }
+        }
+        BodySpec::Sites {
+            kind,
+            spacing,
+            origin,
+            quarters,
+            volume,
+        } => list_if_asked(on_lattice(*kind, *spacing, *origin, quarters, *volume)?),
+        BodySpec::Cloud(cloud) => {
+            if spec.family == FamilyChoice::Stencil {
+                return Err(BuildError::new(
+                    "family",
+                    "a stencil needs a lattice body, this is a cloud of points",
+                ));
+            }
+            let mean =
+                cloud.volume.iter().sum::<f64>() / cloud.volume.len().max(1) as f64 / spec.section;
+            let spacing = cloud.spacing.unwrap_or(mean.powf(1.0 / D as f64));
+            let period = std::array::from_fn(|a| spec.periodic[a]);
+            let body = Body::<D>::from_cloud(
+                &cloud.position,
+                &cloud.volume,
+                &cloud.mark,
+                spacing,
+                period,
+            )?;
+            Ok(Reference {
+                body,
+                stencil: None,
+                bulk: None,
+                horizon: horizon_length(spec, spacing),
+            })
+        }
+    }
+}
+
+/// Every site moved by a uniform random vector in ±amplitude per axis.
+fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>, BuildError> {
+    if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * body.spacing) {
+        return Err(BuildError::new(
+            "body.perturb",
+            format!(
+                "the amplitude {} must be below half the spacing {}",
+                p.amplitude, body.spacing
+            ),
+        ));
+    }
+    let mut random = SplitMix(p.seed);
+    let position: Vec<Point> = body
+        .slots
+        .iter()
+        .map(|s| {
+            let mut x = body.position(*s as usize);
+            for c in x.iter_mut().take(D) {
+                *c += p.amplitude * (2.0 * random.unit() - 1.0);
+            }
+            x
+        })
+        .collect();
+    let volume = vec![body.volume.uniform().unwrap_or(1.0); position.len()];
+    Body::from_cloud(&position, &volume, &body.mark, body.spacing, body.period)
+}
+
+/// SplitMix64 (Steele, Lea & Flood 2014): a seed gives the same body on every machine.
+struct SplitMix(u64);
+
+impl SplitMix {
+    /// Uniform in [0, 1).
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

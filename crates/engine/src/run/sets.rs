@@ -1,0 +1,162 @@
+//! Named sets, the materials and the initial state of the points in them.
+
+use super::model::Model;
+use crate::body::{Body, Values};
+use crate::error::BuildError;
+use crate::space::Point;
+use crate::spec::{Members, Spec};
+
+/// Does a point (index, reference position) belong?
+type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;
+
+/// Point ids of every named set.
+pub(super) fn sets<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+) -> Result<Vec<(String, Vec<u32>)>, BuildError> {
+    let mut out = vec![];
+    for set in &spec.sets {
+        let member: Member = match &set.members {
+            Members::All => Box::new(|_, _| true),
+            Members::Region(region) => {
+                let slack = 1e-9 * body.spacing;
+                Box::new(move |_, x| region.contains(x) || near(region, x, slack))
+            }
+            Members::Mark(mark) => {
+                Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark)
+            }
+        };
+        let ids: Vec<u32> = body
+            .slots
+            .iter()
+            .enumerate()
+            .filter(|(id, s)| member(*id, &body.position(**s as usize)))
+            .map(|(id, _)| id as u32)
+            .collect();
+        if ids.is_empty() {
+            return Err(BuildError::new(
+                format!("sets.{}", set.name),
+                format!("set `{}` has no points", set.name),
+            )
+            .help("check its region against the body's extent: `peridyne check` prints it"));
+        }
+        out.push((set.name.clone(), ids));
+    }
+    Ok(out)
+}
+
+/// Points within round-off of a region's boundary belong to it.
+fn near(region: &crate::space::region::Region, x: &Point, slack: f64) -> bool {
+    (0..3).any(|a| {
+        [-slack, slack].into_iter().any(|d| {
+            let mut y = *x;
+            y[a] += d;
+            region.contains(&y)
+        })
+    })
+}
+
+pub(super) fn assign_materials<const D: usize>(
+    spec: &Spec,
+    body: &mut Body<D>,
+    sets: &[(String, Vec<u32>)],
+) -> Result<(), BuildError> {
+    let materials = &spec.materials;
+    if let [only] = materials.as_slice()
+        && only.set == "all"
+    {
+        body.density = Values::Uniform(only.density);
+        return Ok(());
+    }
+    if materials.len() > u8::MAX as usize {
+        return Err(BuildError::new(
+            "materials",
+            format!("{} materials; at most 255", materials.len()),
+        ));
+    }
+    let mut of: Vec<Option<u8>> = vec![None; body.points()];
+    for (n, m) in materials.iter().enumerate() {
+        let all: Vec<u32>;
+        let ids = if m.set == "all" {
+            all = (0..body.points() as u32).collect();
+            &all
+        } else {
+            let Some((_, ids)) = sets.iter().find(|(name, _)| *name == m.set) else {
+                return Err(BuildError::new(
+                    format!("materials[{n}].set"),
+                    format!(
+                        "material `{}` is on set `{}`, which does not exist",
+                        m.name, m.set
+                    ),
+                ));
+            };
+            ids
+        };
+        for &id in ids {
+            if let Some(other) = of[id as usize].replace(n as u8) {
+                let x = body.position(body.slots[id as usize] as usize);
+                return Err(BuildError::new(
+                    format!("materials[{n}].set"),
+                    format!(
+                        "point {} at {x:?} belongs to material `{}` and to material `{}`",
+                        id + 1,
+                        materials[other as usize].name,
+                        m.name
+                    ),
+                )
+                .help("make the materials' sets disjoint"));
+            }
+        }
+    }
+    if let Some(id) = of.iter().position(Option::is_none) {
+        let x = body.position(body.slots[id] as usize);
+        return Err(BuildError::new(
+            "materials",
+            format!("point {} at {x:?} belongs to no material", id + 1),
+        )
+        .help("make the materials' sets cover the body"));
+    }
+    body.material = vec![0; body.len];
+    let mut density = vec![];
+    for (m, s) in of.iter().zip(&body.slots) {
+        let m = m.unwrap_or(0);
+        body.material[*s as usize] = m;
+        density.push(materials[m as usize].density);
+    }
+    body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
+    if body.mark.is_empty() {
+        body.mark = of.iter().map(|m| i32::from(m.unwrap_or(0))).collect();
+    }
+    Ok(())
+}
+
+pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Result<(), BuildError> {
+    for (n, init) in spec.initial.iter().enumerate() {
+        let sets = std::mem::take(&mut model.sets);
+        let members = model.members(&init.set, &sets).map_err(|e| BuildError {
+            path: format!("initial[{n}].set"),
+            ..e
+        });
+        model.sets = sets;
+        let (slots, points) = members?;
+        for a in 0..D {
+            for (field, e) in [
+                (&mut model.u[a], &init.displacement[a]),
+                (&mut model.v[a], &init.velocity[a]),
+            ] {
+                let Some(e) = e else { continue };
+                for (s, x) in slots.iter().zip(&points) {
+                    let value = e.eval(x, 0.0);
+                    if !value.is_finite() {
+                        return Err(BuildError::new(
+                            format!("initial[{n}]"),
+                            format!("`{}` is {value} at {x:?}", e.source()),
+                        ));
+                    }
+                    field[*s as usize] = value;
+                }
+            }
+        }
+    }
+    Ok(())
+}
