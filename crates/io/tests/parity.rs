@@ -88,8 +88,7 @@ fn compare(name: &str) {
         let column = |n: &str| names.iter().position(|m| m == n);
         let of = |k: usize| rows.iter().filter_map(move |r| r.get(k).copied());
         let dilatation = of(5).fold(0.0, |m: f64, t| m.max(t.abs()));
-        for k in 0..rows[0].len() {
-            let what = COLUMNS[k];
+        for (k, what) in COLUMNS.iter().copied().enumerate().take(rows[0].len()) {
             let at = column(what).unwrap_or_else(|| panic!("{name}: no {what} in {names:?}"));
             let off = || {
                 of(k)

@@ -74,5 +74,5 @@ fn family<const D: usize>(
         }
     }
     let seen = &support[..directions.len()];
-    seen.iter().all(|s| *s >= reach).then_some(sum)
+    (sum.first > 0.0 && seen.iter().all(|s| *s >= reach)).then_some(sum)
 }
