@@ -6,7 +6,8 @@ mod kernel;
 use super::bond::critical_stretch;
 use super::weight::BondWeight;
 use super::{
-    BondState, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally, Toughness,
+    BondState, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
+    Toughness,
 };
 use crate::body::{Body, Field};
 use crate::execute::blocks::{Shared, for_each_block};
@@ -15,7 +16,7 @@ use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::law::Law;
 use crate::spec::CrackKind;
-use kernel::{BLOCK, Energies, EnergyFields, Forces, Pack, Share, View};
+use kernel::{BLOCK, Energies, Forces, Pack, Share, View};
 
 /// A law on a horizon list.
 pub struct ListInteraction<const D: usize, W: Law> {

@@ -9,6 +9,7 @@ pub mod stencil;
 pub mod weight;
 
 use crate::body::{Body, Field};
+use crate::execute::blocks::Shared;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::CrackKind;
 use std::ops::AddAssign;
@@ -104,6 +105,15 @@ pub struct PointEnergies {
     pub repulsion: Vec<f64>,
     /// Dilatation θ (–).
     pub dilatation: Vec<f64>,
+}
+
+/// Where an energy pass writes, per slot.
+#[derive(Clone, Copy)]
+struct EnergyFields {
+    strain: Shared,
+    repulsion: Shared,
+    share: Shared,
+    weight: Shared,
 }
 
 /// A law on a family.

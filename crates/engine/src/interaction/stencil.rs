@@ -6,7 +6,8 @@ mod kernel;
 
 use super::bond::critical_stretch;
 use super::{
-    BondState, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally, Toughness,
+    BondState, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
+    Toughness,
 };
 use crate::body::{Body, Column, Field, Layout, field};
 use crate::execute::blocks::{Shared, for_each_block};
@@ -18,7 +19,7 @@ use crate::law::Law;
 use crate::spec::CrackKind;
 pub use assemble::StencilParts;
 pub use kernel::MOST;
-use kernel::{Bond, Energies, EnergyFields, Forces, Partner, Share, View};
+use kernel::{Bond, Energies, Forces, Partner, Share, View};
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {

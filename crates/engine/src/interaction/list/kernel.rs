@@ -9,7 +9,7 @@ use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
 use crate::interaction::bond::deform;
 use crate::interaction::weight::BondWeight;
-use crate::interaction::{Repulsion, Tally, Toughness, history};
+use crate::interaction::{EnergyFields, Repulsion, Tally, Toughness, history};
 use crate::law::Law;
 
 /// Slices per block of work.
@@ -442,15 +442,6 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
 pub struct Energies<'a, const D: usize, W> {
     pub view: View<'a, D, W>,
     pub fields: Option<EnergyFields>,
-}
-
-/// Where the energy pass writes, per slot.
-#[derive(Clone, Copy)]
-pub struct EnergyFields {
-    pub strain: Shared,
-    pub repulsion: Shared,
-    pub share: Shared,
-    pub weight: Shared,
 }
 
 impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {

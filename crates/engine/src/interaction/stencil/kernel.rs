@@ -13,7 +13,7 @@ use crate::execute::lane::Lane;
 use crate::interaction::Repulsion;
 use crate::interaction::bond::deform;
 use crate::law::Law;
-pub use energies::{Energies, EnergyFields};
+pub use energies::Energies;
 pub use forces::Forces;
 pub use share::Share;
 use std::mem::MaybeUninit;

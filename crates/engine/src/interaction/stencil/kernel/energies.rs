@@ -1,10 +1,10 @@
 //! The energy pass.
 
 use super::{CHUNK, Offsets, View};
-use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{self, LIMIT, Series};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
+use crate::interaction::EnergyFields;
 use crate::law::Law;
 use std::mem::MaybeUninit;
 
@@ -13,14 +13,6 @@ use std::mem::MaybeUninit;
 pub struct Energies<'a, const D: usize, W> {
     pub view: View<'a, D, W>,
     pub fields: Option<EnergyFields>,
-}
-
-#[derive(Clone, Copy)]
-pub struct EnergyFields {
-    pub strain: Shared,
-    pub repulsion: Shared,
-    pub share: Shared,
-    pub weight: Shared,
 }
 
 impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
