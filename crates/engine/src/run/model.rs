@@ -122,6 +122,19 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// Points may be anywhere now: whoever keeps track of what is near forgets it.
+    fn look_again(&mut self) {
+        if let Some(contact) = &mut self.contact {
+            contact.look_again();
+        }
+        self.indenters.iter_mut().for_each(Indenter::look_again);
+        for d in &mut self.driven {
+            if let Driven::Indenter(i) = d {
+                i.look_again();
+            }
+        }
+    }
+
     /// Bring velocities to the whole step.
     pub(super) fn finish(&mut self) {
         if self.pending {
@@ -184,15 +197,7 @@ impl<const D: usize> Simulation for Model<D> {
         for c in &mut self.constraints {
             c.start(&mut self.u, &mut self.v, t, dt);
         }
-        if let Some(contact) = &mut self.contact {
-            contact.look_again();
-        }
-        self.indenters.iter_mut().for_each(Indenter::look_again);
-        for d in &mut self.driven {
-            if let Driven::Indenter(i) = d {
-                i.look_again();
-            }
-        }
+        self.look_again();
         self.forces(bonds, 0.0);
         // energy that came in from outside counts as initial
         let now = self.energy_now();
@@ -335,6 +340,7 @@ impl<const D: usize> Simulation for Model<D> {
         self.virial = None;
         Self::scatter(&self.body, &mut self.u, u);
         self.refresh_images();
+        self.look_again();
     }
 
     fn velocities(&mut self) -> Vec<Point> {
@@ -513,6 +519,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn write(&mut self, field: PointField, first: usize, values: &[f64]) {
         self.finish();
+        self.look_again();
         self.virial = None;
         let component = match field {
             PointField::Displacement(a) => self.u.get_mut(a),
@@ -520,9 +527,6 @@ impl<const D: usize> Simulation for Model<D> {
             _ => None,
         };
         let Some(component) = component else { return };
-        if let Some(contact) = &mut self.contact {
-            contact.look_again();
-        }
         for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
             component[s as usize] = *value;
         }
