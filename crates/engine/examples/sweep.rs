@@ -168,7 +168,7 @@ impl Case {
         let mut best = f64::MAX;
         for _ in 0..if self.simd == Simd::Portable { 2 } else { 20 } {
             let start = Instant::now();
-            it.forces(body, &u, &mut f, Sweep::Evolve { v: &v, dt: 0.0 });
+            it.forces(body, &u, &mut f, Sweep::Evolve { v: &v, dt: 0.0 }, None);
             best = best.min(start.elapsed().as_secs_f64());
         }
         println!(

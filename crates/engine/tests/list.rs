@@ -284,6 +284,7 @@ fn same_as_stencil<const D: usize, W: Law>(
                 v: &zeros(body.len),
                 dt: 0.0,
             },
+            None,
         );
         let b = list.forces(
             &cloud,
@@ -293,6 +294,7 @@ fn same_as_stencil<const D: usize, W: Law>(
                 v: &zeros(cloud.len),
                 dt: 0.0,
             },
+            None,
         );
         for axis in 0..D {
             let (a, b) = (by_id(&body, &f.0[axis]), by_id(&cloud, &f.1[axis]));
@@ -571,6 +573,7 @@ fn textbook<const D: usize>() {
                 v: &zeros(body.len),
                 dt: 0.0,
             },
+            None,
         );
         for a in 0..D {
             let plain: Vec<f64> = expected.iter().map(|f| f[a]).collect();
@@ -649,6 +652,7 @@ fn trace<W: Law>(law: W, constants: PointConstants, simd: Simd, threads: usize) 
                     v: &zeros(body.len),
                     dt: 0.0,
                 },
+                None,
             );
             assert_eq!(tally.broken > 0, step > 0);
             bits.extend([tally.broken, tally.released.to_bits()]);
@@ -711,9 +715,9 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         let u = displace(&body, case.amplitude, 3);
         let still = zeros(body.len);
         let evolve = Sweep::Evolve { v: &still, dt: 0.0 };
-        it.forces(&body, &u, &mut f, evolve);
+        it.forces(&body, &u, &mut f, evolve, None);
         let before = ALLOCATIONS.with(Cell::get);
-        it.forces(&body, &u, &mut f, evolve);
+        it.forces(&body, &u, &mut f, evolve, None);
         assert_eq!(ALLOCATIONS.with(Cell::get), before);
     });
 }
@@ -744,6 +748,7 @@ fn a_body_at_rest_has_exactly_no_force() {
                 v: &zeros(body.len),
                 dt: 0.0,
             },
+            None,
         );
         assert!(f.iter().flatten().all(|f| *f == 0.0));
     }

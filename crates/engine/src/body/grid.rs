@@ -119,6 +119,21 @@ impl<const D: usize> Grid<D> {
         })
     }
 
+    /// Reference coordinate `a` of slots: [position](Self::position), looked up once per tile.
+    pub fn coordinates(&self, slots: &[u32], a: usize, out: &mut [f64]) {
+        let (mut tile, mut first) = (usize::MAX, [0; 3]);
+        for (out, &slot) in out.iter_mut().zip(slots) {
+            let place = slot as usize - self.guard;
+            if place / TILE != tile {
+                tile = place / TILE;
+                first = self.quarter(self.tile_slot(tile));
+            }
+            let mut quarter = first;
+            quarter[0] += 4 * (place % TILE) as i32;
+            *out = self.lattice.position(quarter)[a];
+        }
+    }
+
     /// Reference position of a slot.
     pub fn position(&self, slot: usize) -> Point {
         self.lattice.position(self.quarter(slot))

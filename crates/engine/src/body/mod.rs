@@ -62,6 +62,19 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// Reference coordinate `a` of points from id `first` on.
+    pub fn coordinates(&self, first: usize, a: usize, out: &mut [f64]) {
+        let slots = &self.slots[first..];
+        match &self.layout {
+            Layout::Grid(g) => g.coordinates(slots, a, out),
+            Layout::Cloud(x) => {
+                for (out, &slot) in out.iter_mut().zip(slots) {
+                    *out = if a < D { x[a][slot as usize] } else { 0.0 };
+                }
+            }
+        }
+    }
+
     pub fn material_of(&self, slot: usize) -> usize {
         self.material.get(slot).map_or(0, |&m| m as usize)
     }

@@ -85,7 +85,7 @@ fn product<const D: usize>(
     for c in u.iter_mut() {
         body.fill_images(c);
     }
-    interaction.forces(body, u, f, Sweep::Hold);
+    interaction.forces(body, u, f, Sweep::Hold, None);
     body.slots
         .iter()
         .map(|&s| {

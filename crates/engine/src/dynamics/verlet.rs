@@ -123,7 +123,7 @@ impl<const D: usize> Kernel for Advance<'_, D> {
         let mut i = block * BLOCK;
         debug_assert!(self.len.is_multiple_of(TILE));
         while i < end {
-            // SAFETY: i + N ≤ len, a multiple of the tile; blocks are disjoint
+            // SAFETY: i + 8 ≤ len, a multiple of the tile; blocks are disjoint
             unsafe {
                 let h = match self.density {
                     Values::Uniform(rho) => L::splat(0.5 * self.dt / rho),
@@ -155,15 +155,12 @@ impl<const D: usize> Kernel for Advance<'_, D> {
                 }
                 // keeps what is not a number: `min` of negatives would not
                 fastest = L::select(squared.lt(fastest), fastest, squared);
-                if L::bits(fine) != (1u32 << L::N) - 1 {
+                if L::bits(fine) != (1u32 << TILE) - 1 {
                     return f64::NAN;
                 }
             }
-            i += L::N;
+            i += TILE;
         }
-        fastest.to_array()[..L::N]
-            .iter()
-            .copied()
-            .fold(0.0, f64::max)
+        fastest.to_array().iter().copied().fold(0.0, f64::max)
     }
 }

@@ -1,8 +1,8 @@
 //! The one place where an instruction set is chosen: detected at start, or asked for.
 
-use super::lane::Lane;
+use super::lane::{Lane, pair::Pair};
 #[cfg(target_arch = "x86_64")]
-use super::lane::{avx2::F64x4, avx512::F64x8, pair::Pair};
+use super::lane::{avx2::F64x4, avx512::F64x8};
 
 /// Instruction sets with a path of their own. All give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub enum Simd {
     Avx512,
 }
 
-/// A loop over blocks of work, written once over any [`Lane`]; implement `block` with `#[inline(always)]`.
+/// A loop over blocks of work, written once over any [`Lane`] of eight numbers; implement `block` with `#[inline(always)]`.
 pub trait Kernel: Sync {
     type Out: Send;
     /// Do block `b`.
@@ -61,7 +61,7 @@ impl Simd {
             Simd::Avx2 if has_avx2() => unsafe { avx2(kernel, b) },
             #[cfg(target_arch = "x86_64")]
             Simd::Avx512 if has_avx512() => unsafe { avx512(kernel, b) },
-            _ => kernel.block::<f64>(b),
+            _ => kernel.block::<Pair<Pair<Pair<f64>>>>(b),
         }
     }
 }

@@ -3,23 +3,19 @@
 use crate::execute::lane::Lane;
 use crate::execute::lane::series::stretch;
 
-/// `ξ+η` and `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = 2 η·(ξ + ½η)`.
+/// `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = 2 η·(ξ + ½η)`. Both vectors may point either way.
 #[inline(always)]
-pub fn deform<L: Lane, const D: usize>(
+pub fn relative_square_stretch<L: Lane, const D: usize>(
     eta: [L; D],
     xi: [L; D],
     two_by_r0_squared: L,
-) -> ([L; D], L) {
+) -> L {
     let half = L::splat(0.5);
-    let mut y = eta;
-    for a in 0..D {
-        y[a] = eta[a] + xi[a];
-    }
     let mut q = eta[0] * half.fma(eta[0], xi[0]);
     for a in 1..D {
         q = eta[a].fma(half.fma(eta[a], xi[a]), q);
     }
-    (y, q * two_by_r0_squared)
+    q * two_by_r0_squared
 }
 
 /// The critical value of `e` for a critical stretch: `e > s0 (2 + s0)` is `s > s0`.

@@ -4,7 +4,7 @@ use super::Toughness;
 use crate::execute::lane::{Lane, TILE};
 use crate::law::Law;
 
-/// The critical `e` of `s0 = s00 − α s_min` for `N` points of `material(lane)`, from the lowest `e` of their whole
+/// The critical `e` of `s0 = s00 − α s_min` for the points of `material(lane)`, from the lowest `e` of their whole
 /// bonds (∞ where there are none: such a point has no say).
 #[inline(always)]
 pub fn next_critical<L: Lane>(
@@ -18,14 +18,8 @@ pub fn next_critical<L: Lane>(
         [t] => (L::splat(t.s00), L::splat(t.alpha)),
         many => {
             let pick = |field: fn(&Toughness) -> f64| {
-                let t: [f64; TILE] = std::array::from_fn(|l| {
-                    if l < L::N {
-                        field(&many[material(l)])
-                    } else {
-                        0.0
-                    }
-                });
-                // SAFETY: N ≤ TILE
+                let t: [f64; TILE] = std::array::from_fn(|l| field(&many[material(l)]));
+                // SAFETY: a number per lane
                 unsafe { L::load(t.as_ptr()) }
             };
             (pick(|t| t.s00), pick(|t| t.alpha))

@@ -202,15 +202,72 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             .map(|(_, j)| of(j))
             .sum()
     }
+
+    /// Energies of all points, and `Σ k r0² s` in place of the dilatation. Returns `Σ k r0²` of laws that do not share.
+    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) -> Vec<f64> {
+        let mut moved = vec![0.0; 4 * body.len];
+        let mut unit = vec![(); self.unit.len()];
+        self.pack(u, &mut moved, &mut unit);
+        let mut weight = vec![0.0; if W::SHARES { 0 } else { body.len }];
+        out.zeros(body.len);
+        let kernel = Energies {
+            view: self.view(&moved),
+            fields: Some(EnergyFields {
+                strain: Shared(out.strain.as_mut_ptr()),
+                repulsion: Shared(out.repulsion.as_mut_ptr()),
+                share: Shared(out.dilatation.as_mut_ptr()),
+                weight: Shared(weight.as_mut_ptr()),
+            }),
+        };
+        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; self.sums.len()]);
+        weight
+    }
+
+    /// Make dilatations of [sums](Self::sums).
+    fn dilate(&self, body: &Body<D>, weight: &[f64], out: &mut PointEnergies) {
+        for &slot in &body.slots {
+            let i = slot as usize;
+            let share = out.dilatation[i];
+            if W::SHARES {
+                out.dilatation[i] = self.dilatation_factor(body, i) * share;
+            } else if weight[i] > 0.0 {
+                out.dilatation[i] = D as f64 * share / weight[i];
+            }
+        }
+    }
+
+    /// `P / Σ k r0² s` at a slot.
+    fn pressure_factor(&self, i: usize) -> f64 {
+        match self.pressure.get(i) {
+            Some(q) => *q,
+            None => self.law.pressure_factor(self.fields[2 * i + 1]),
+        }
+    }
 }
 
 impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
-    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally {
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
         let mut moved = std::mem::take(&mut self.moved);
         let mut unit = std::mem::take(&mut self.unit);
         self.pack(u, &mut moved, &mut unit);
         self.moved = moved;
-        if W::SHARES {
+        if let Some(seen) = seen {
+            let weight = self.sums(body, u, seen);
+            if W::SHARES {
+                for &slot in &body.slots {
+                    let i = slot as usize;
+                    self.fields[2 * i] = self.pressure_factor(i) * seen.dilatation[i];
+                }
+            }
+            self.dilate(body, &weight, seen);
+        } else if W::SHARES {
             self.share(&mut unit);
         }
         self.unit = unit;
@@ -252,33 +309,8 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
-        let mut moved = vec![0.0; 4 * body.len];
-        let mut unit = vec![(); self.unit.len()];
-        self.pack(u, &mut moved, &mut unit);
-        let mut share = vec![0.0; body.len];
-        let mut weight = vec![0.0; body.len];
-        for field in [&mut out.strain, &mut out.repulsion, &mut out.dilatation] {
-            field.clear();
-            field.resize(body.len, 0.0);
-        }
-        let kernel = Energies {
-            view: self.view(&moved),
-            fields: Some(EnergyFields {
-                strain: Shared(out.strain.as_mut_ptr()),
-                repulsion: Shared(out.repulsion.as_mut_ptr()),
-                share: Shared(share.as_mut_ptr()),
-                weight: Shared(weight.as_mut_ptr()),
-            }),
-        };
-        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; unit.len()]);
-        for &slot in &body.slots {
-            let i = slot as usize;
-            if W::SHARES {
-                out.dilatation[i] = self.dilatation_factor(body, i) * share[i];
-            } else if weight[i] > 0.0 {
-                out.dilatation[i] = D as f64 * share[i] / weight[i];
-            }
-        }
+        let weight = self.sums(body, u, out);
+        self.dilate(body, &weight, out);
     }
 
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

@@ -107,20 +107,39 @@ pub struct PointEnergies {
     pub dilatation: Vec<f64>,
 }
 
+impl PointEnergies {
+    /// All zero, for so many slots.
+    pub fn zeros(&mut self, len: usize) {
+        for field in [&mut self.strain, &mut self.repulsion, &mut self.dilatation] {
+            field.clear();
+            field.resize(len, 0.0);
+        }
+    }
+}
+
 /// Where an energy pass writes, per slot.
 #[derive(Clone, Copy)]
 struct EnergyFields {
     strain: Shared,
     repulsion: Shared,
     share: Shared,
+    /// Not of laws that share.
     weight: Shared,
 }
 
 /// A law on a family.
 pub trait Interaction<const D: usize>: Send + Sync {
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
-    /// bonds' memory if asked to. Images of `u` must be fresh.
-    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally;
+    /// bonds' memory if asked to. Images of `u` must be fresh. What is `seen` are the energies of the bonds that are
+    /// whole before any breaks, as [observe](Interaction::observe) gives them, at less cost.
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally;
 
     /// Strain energy of bonds and energy of repulsion inside the family at `u` (energy), without allocating.
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2];

@@ -12,7 +12,6 @@ use super::{
 use crate::body::{Body, Column, Field, Layout, field};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::TILE;
-use crate::execute::lane::series::LIMIT;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
 use crate::law::Law;
@@ -37,7 +36,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     /// `[tiles][width]`: bit l of a byte is the bond of point l of the tile.
     alive: Vec<u8>,
     /// `[tiles]`: 1 where every bond of `reach` is whole for all eight points.
-    intact: Vec<u8>,
+    state: Vec<u8>,
     /// `[tiles][words]`: a bit per offset that any point of the tile has a partner at.
     reach: Vec<u64>,
     /// Family size per active tile and lane.
@@ -55,6 +54,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     next: Column,
     /// The lowest of `critical`, and the highest `e` at which any bond repels.
     least_critical: f64,
+    /// No critical stretch changes any more: none depends on the strain, and the first are known.
+    settled: bool,
     most_contact: f64,
     volume: f64,
     guard: usize,
@@ -67,8 +68,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// For kernels that only read.
     fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, W> {
         let alive = Shared(self.alive.as_ptr().cast_mut());
-        let intact = Shared(self.intact.as_ptr().cast_mut());
-        self.view_of(body, u, alive, intact)
+        let state = Shared(self.state.as_ptr().cast_mut());
+        self.view_of(body, u, alive, state)
     }
 
     fn view_of<'a>(
@@ -76,7 +77,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         body: &'a Body<D>,
         u: &'a Field<D>,
         alive: Shared<u8>,
-        intact: Shared<u8>,
+        state: Shared<u8>,
     ) -> View<'a, D, W> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
@@ -90,7 +91,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             width: self.width,
             tiles: &self.tiles,
             alive,
-            intact,
+            state,
             reach: &self.reach,
             u: std::array::from_fn(|a| &*u[a]),
             fields: [&self.fields[0], &self.fields[1]],
@@ -110,16 +111,17 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     ) {
         let mut tallies = std::mem::take(&mut self.tallies);
         let alive = Shared(self.alive.as_mut_ptr());
-        let intact = Shared(self.intact.as_mut_ptr());
+        let state = Shared(self.state.as_mut_ptr());
         let next = Shared(self.next.as_mut_ptr());
+        let next = (!self.settled).then_some(next);
         let kernel = Forces::<D, W, FULL> {
-            view: self.view_of(body, u, alive, intact),
+            view: self.view_of(body, u, alive, state),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             critical: &self.critical,
             next,
             toughness: &self.toughness,
-            lower: self.most_contact.max(-LIMIT),
-            upper: self.least_critical.min(LIMIT),
+            lower: self.most_contact,
+            upper: self.least_critical,
             motion,
         };
         for_each_block(self.simd, &kernel, &mut tallies);
@@ -140,11 +142,65 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     fn row(&self, n: usize) -> &[u8] {
         &self.alive[n * self.width..(n + 1) * self.width]
     }
+
+    /// Energies of all points, and `Σ k r0² s` in place of the dilatation. Returns `Σ k r0²` of laws that do not share.
+    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) -> Vec<f64> {
+        let mut weight = vec![0.0; if W::SHARES { 0 } else { body.len }];
+        out.zeros(body.len);
+        let kernel = Energies {
+            view: self.view(body, u),
+            fields: Some(EnergyFields {
+                strain: Shared(out.strain.as_mut_ptr()),
+                repulsion: Shared(out.repulsion.as_mut_ptr()),
+                share: Shared(out.dilatation.as_mut_ptr()),
+                weight: Shared(weight.as_mut_ptr()),
+            }),
+        };
+        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; self.sums.len()]);
+        weight
+    }
+
+    /// Make dilatations of [sums](Self::sums).
+    fn dilate(&self, body: &Body<D>, weight: &[f64], out: &mut PointEnergies) {
+        for &slot in &body.slots {
+            let i = slot as usize;
+            let share = out.dilatation[i];
+            if W::SHARES {
+                out.dilatation[i] = self.dilatation_factor(body, i) * share;
+            } else if weight[i] > 0.0 {
+                out.dilatation[i] = D as f64 * share / weight[i];
+            }
+        }
+    }
+
+    /// `P / Σ k r0² s` at a slot.
+    fn pressure_factor(&self, i: usize) -> f64 {
+        match self.pressure.get(i) {
+            Some(q) => *q,
+            None => self.law.pressure_factor(self.fields[1][i]),
+        }
+    }
 }
 
 impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
-    fn forces(&mut self, body: &Body<D>, u: &Field<D>, f: &mut Field<D>, sweep: Sweep<D>) -> Tally {
-        if W::SHARES {
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        if let Some(seen) = seen {
+            let weight = self.sums(body, u, seen);
+            if W::SHARES {
+                for &slot in &body.slots {
+                    let i = slot as usize;
+                    self.fields[0][i] = self.pressure_factor(i) * seen.dilatation[i];
+                }
+            }
+            self.dilate(body, &weight, seen);
+        } else if W::SHARES {
             let mut unit = std::mem::take(&mut self.unit);
             let mut pressure = std::mem::take(&mut self.fields[0]);
             let kernel = Share {
@@ -152,9 +208,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 out: Shared(pressure.as_mut_ptr()),
             };
             for_each_block(self.simd, &kernel, &mut unit);
-            body.fill_images(&mut pressure);
             self.fields[0] = pressure;
             self.unit = unit;
+        }
+        if W::SHARES {
+            body.fill_images(&mut self.fields[0]);
         }
         let motion = match sweep {
             Sweep::Evolve { v, dt } => Some((v, dt)),
@@ -169,10 +227,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         for t in &self.tallies {
             total += *t;
         }
-        if motion.is_some() && !self.critical.is_empty() {
+        if motion.is_some() && !self.critical.is_empty() && !self.settled {
             std::mem::swap(&mut self.critical, &mut self.next);
             body.fill_images(&mut self.critical);
             self.least_critical = total.least_critical;
+            self.settled = self.toughness.iter().all(|t| t.alpha == 0.0);
         }
         total
     }
@@ -191,30 +250,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
-        let mut share = vec![0.0; body.len];
-        let mut weight = vec![0.0; body.len];
-        for field in [&mut out.strain, &mut out.repulsion, &mut out.dilatation] {
-            field.clear();
-            field.resize(body.len, 0.0);
-        }
-        let kernel = Energies {
-            view: self.view(body, u),
-            fields: Some(EnergyFields {
-                strain: Shared(out.strain.as_mut_ptr()),
-                repulsion: Shared(out.repulsion.as_mut_ptr()),
-                share: Shared(share.as_mut_ptr()),
-                weight: Shared(weight.as_mut_ptr()),
-            }),
-        };
-        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; self.tallies.len()]);
-        for &slot in &body.slots {
-            let i = slot as usize;
-            if W::SHARES {
-                out.dilatation[i] = self.dilatation_factor(body, i) * share[i];
-            } else if weight[i] > 0.0 {
-                out.dilatation[i] = D as f64 * share[i] / weight[i];
-            }
-        }
+        let weight = self.sums(body, u, out);
+        self.dilate(body, &weight, out);
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
@@ -259,6 +296,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             unreachable!("stencils live on grids")
         };
         for (n, &t) in self.tiles.iter().enumerate() {
+            let slot = grid.tile_slot(t as usize);
+            if self.state[n] != 0 {
+                out[slot..slot + TILE].fill(0.0);
+                continue;
+            }
             let mut whole = [0u32; TILE];
             for b in self.row(n) {
                 for (l, w) in whole.iter_mut().enumerate() {
@@ -304,7 +346,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                         continue;
                     }
                     // a bond through a periodic face is in two places; either end must see the same
-                    let partner = slot.wrapping_add_signed(b.shift) as u32;
+                    let partner = slot.wrapping_add_signed(b.shift as isize) as u32;
                     let elsewhere = || {
                         original.get(&partner).is_some_and(|o| {
                             let x = grid.position(*o as usize);
@@ -325,7 +367,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         if kind == CrackKind::Absent {
             self.directed -= count;
         }
-        self.look();
+        self.look(grid);
         count
     }
 
@@ -371,6 +413,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 }
             }
         }
+        self.look(grid);
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -418,7 +461,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             + self.critical.len()
             + self.next.len();
         self.alive.len()
-            + self.intact.len()
+            + self.state.len()
             + 8 * self.reach.len()
             + self.offsets.bytes()
             + 2 * self.family.len()

@@ -3,21 +3,10 @@
 use super::model::Model;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
-use crate::interaction::{BondState, PointEnergies};
+use crate::interaction::BondState;
 use crate::observe::Ledger;
 
 impl<const D: usize> Model<D> {
-    pub(super) fn energies_of_bonds(&self, bonds: bool) -> PointEnergies {
-        let mut out = PointEnergies::default();
-        if bonds {
-            self.interaction.observe(&self.body, &self.u, &mut out);
-        } else {
-            let zeros = || vec![0.0; self.body.len];
-            (out.strain, out.repulsion, out.dilatation) = (zeros(), zeros(), zeros());
-        }
-        out
-    }
-
     pub(super) fn energy_now(&mut self) -> Ledger {
         self.finish();
         self.refresh_images();

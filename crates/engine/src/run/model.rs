@@ -78,7 +78,8 @@ impl<const D: usize> Model<D> {
     fn forces(&mut self, bonds: bool, dt: f64) {
         self.refresh_images();
         let t = self.time();
-        self.watched = std::mem::take(&mut self.watch).then(|| self.energies_of_bonds(bonds));
+        let mut watched = self.watched.take();
+        watched = std::mem::take(&mut self.watch).then(|| watched.unwrap_or_default());
         self.virial = std::mem::take(&mut self.watch_virial).then(|| match bonds {
             true => self.virial_of_bonds(),
             false => [0.0; 6],
@@ -92,12 +93,17 @@ impl<const D: usize> Model<D> {
                     v: &self.v,
                     dt: self.dt,
                 },
+                watched.as_mut(),
             );
             self.broken += tally.broken;
             self.released += tally.released;
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
+            if let Some(w) = &mut watched {
+                w.zeros(self.body.len);
+            }
         }
+        self.watched = watched;
         if let Some(contact) = &mut self.contact {
             let (body, interaction) = (&self.body, &self.interaction);
             contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
@@ -476,7 +482,8 @@ impl<const D: usize> Simulation for Model<D> {
             self.body.fill_images(c);
         }
         let mut f = crate::body::zeros(self.body.len);
-        self.interaction.forces(&self.body, &u, &mut f, Sweep::Hold);
+        self.interaction
+            .forces(&self.body, &u, &mut f, Sweep::Hold, None);
         self.vectors(&f)
     }
 
@@ -503,10 +510,13 @@ impl<const D: usize> Simulation for Model<D> {
         }
         let component = |x: &Field<D>, a: usize, i: usize| x.get(a).map_or(0.0, |c| c[i]);
         let body = &self.body;
+        if let PointField::Reference(a) = field {
+            return body.coordinates(first, a, out);
+        }
         for (value, &s) in out.iter_mut().zip(&body.slots[first..]) {
             let i = s as usize;
             *value = match field {
-                PointField::Reference(a) => body.position(i)[a],
+                PointField::Reference(_) => unreachable!("read as a whole"),
                 PointField::Displacement(a) => component(&self.u, a, i),
                 PointField::Velocity(a) => component(&self.v, a, i),
                 PointField::Force(a) => component(&self.f, a, i),

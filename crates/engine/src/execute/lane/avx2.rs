@@ -137,7 +137,7 @@ impl Lane for F64x4 {
         unsafe { _mm256_cmp_pd::<_CMP_UNORD_Q>(self.0, self.0) }
     }
     #[inline(always)]
-    fn dead(bits: u8, part: usize) -> __m256d {
+    fn dead_in_part(bits: u8, part: usize) -> __m256d {
         unsafe {
             let lane = _mm256_loadu_si256(LANE_BIT[part].as_ptr().cast());
             let set = _mm256_and_si256(_mm256_set1_epi8(bits as i8), lane);

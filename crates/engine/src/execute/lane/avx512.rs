@@ -123,7 +123,7 @@ impl Lane for F64x8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_UNORD_Q>(self.0, self.0) }
     }
     #[inline(always)]
-    fn dead(bits: u8, _part: usize) -> __mmask8 {
+    fn dead_in_part(bits: u8, _part: usize) -> __mmask8 {
         !bits
     }
     #[inline(always)]

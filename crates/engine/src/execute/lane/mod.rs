@@ -57,8 +57,8 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn lt(self, other: Self) -> Self::Mask;
     fn ge(self, other: Self) -> Self::Mask;
     fn is_nan(self) -> Self::Mask;
-    /// Lanes whose bit in `bits` is 0; vector `part` of the tile reads bits `part·N ..`.
-    fn dead(bits: u8, part: usize) -> Self::Mask;
+    /// Lanes whose bit in `bits` is 0; vector `part` of a tile reads bits `part·N ..`.
+    fn dead_in_part(bits: u8, part: usize) -> Self::Mask;
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// One bit per lane.
     fn bits(m: Self::Mask) -> u32;
@@ -69,6 +69,11 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// `a` where `m`, else `b`.
     fn select(m: Self::Mask, a: Self, b: Self) -> Self;
 
+    /// Lanes whose bit in `bits` is 0.
+    #[inline(always)]
+    fn dead(bits: u8) -> Self::Mask {
+        Self::dead_in_part(bits, 0)
+    }
     #[inline(always)]
     fn any(m: Self::Mask) -> bool {
         Self::bits(m) != 0

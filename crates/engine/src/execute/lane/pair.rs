@@ -110,8 +110,11 @@ impl<L: Lane> Lane for Pair<L> {
         (self.0.is_nan(), self.1.is_nan())
     }
     #[inline(always)]
-    fn dead(bits: u8, part: usize) -> Self::Mask {
-        (L::dead(bits, 2 * part), L::dead(bits, 2 * part + 1))
+    fn dead_in_part(bits: u8, part: usize) -> Self::Mask {
+        (
+            L::dead_in_part(bits, 2 * part),
+            L::dead_in_part(bits, 2 * part + 1),
+        )
     }
     #[inline(always)]
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask {

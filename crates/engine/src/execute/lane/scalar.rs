@@ -81,7 +81,7 @@ impl Lane for f64 {
         f64::is_nan(self)
     }
     #[inline(always)]
-    fn dead(bits: u8, part: usize) -> bool {
+    fn dead_in_part(bits: u8, part: usize) -> bool {
         bits >> part & 1 == 0
     }
     #[inline(always)]

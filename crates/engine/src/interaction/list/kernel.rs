@@ -3,11 +3,11 @@
 
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, Series};
+use crate::execute::lane::series::{self, Extension, Function, Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
-use crate::interaction::bond::deform;
+use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{EnergyFields, Repulsion, Tally, Toughness, history};
 use crate::law::Law;
@@ -65,18 +65,18 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         block * BLOCK..((block + 1) * BLOCK).min(self.list.slices())
     }
 
-    /// Rows of part `part` of a slice.
+    /// Rows of a slice.
     #[inline(always)]
-    unsafe fn rows<L: Lane>(&self, slice: usize, part: usize) -> *const u32 {
+    unsafe fn rows(&self, slice: usize) -> *const u32 {
         // SAFETY: there are eight rows per slice
-        unsafe { self.list.rows.as_ptr().add(slice * TILE + part * L::N) }
+        unsafe { self.list.rows.as_ptr().add(slice * TILE) }
     }
 
-    /// Partners of part `part` in a line.
+    /// Partners in a line.
     #[inline(always)]
-    unsafe fn partners<L: Lane>(&self, line: usize, part: usize) -> *const u32 {
+    unsafe fn partners(&self, line: usize) -> *const u32 {
         // SAFETY: there are eight partners per line
-        unsafe { self.list.partner.as_ptr().add(line * TILE + part * L::N) }
+        unsafe { self.list.partner.as_ptr().add(line * TILE) }
     }
 
     /// `FIELDS`: with the point fields, if the law has any.
@@ -135,7 +135,11 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         for a in 0..D {
             eta[a] = j.u[a] - i.u[a];
         }
-        let (y, e) = deform(eta, xi, (inv_r0 + inv_r0) * inv_r0);
+        let e = relative_square_stretch(eta, xi, (inv_r0 + inv_r0) * inv_r0);
+        let mut y = eta;
+        for a in 0..D {
+            y[a] = eta[a] + xi[a];
+        }
         Bond {
             y,
             e,
@@ -192,31 +196,34 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         self.repulsion.map_or(-1.0, |c| c.bonded * c.bonded - 1.0)
     }
 
-    /// Pressure factors of `N` rows from their own fields.
+    /// Pressure factors of eight rows from their own fields.
     #[inline(always)]
     unsafe fn pressure_factor<L: Lane>(&self, rows: *const u32, own: L) -> L {
         if self.pressure.is_empty() {
             self.law.pressure_factor(own)
         } else {
-            let q: [f64; TILE] = std::array::from_fn(|l| {
-                if l < L::N {
-                    // SAFETY: rows are slots, N of them
-                    unsafe { self.pressure[*rows.add(l) as usize] }
-                } else {
-                    0.0
-                }
-            });
-            // SAFETY: N ≤ TILE
+            // SAFETY: rows are slots, one per lane
+            let q: [f64; TILE] =
+                std::array::from_fn(|l| unsafe { self.pressure[*rows.add(l) as usize] });
+            // SAFETY: a number per lane
             unsafe { L::load(q.as_ptr()) }
         }
     }
 }
 
-/// Write one number of each of `N` rows, `step` apart.
+/// A function of `e`, one bond per lane.
+#[inline(always)]
+fn at<L: Lane, F: Function>(series: Series<F>, e: L) -> L {
+    let mut one = [e];
+    series.apply(&mut one, e, e);
+    one[0]
+}
+
+/// Write one number of each of eight rows, `step` apart.
 #[inline(always)]
 unsafe fn scatter<L: Lane>(value: L, out: Shared, rows: *const u32, step: usize) {
     let all = value.to_array();
-    for (l, x) in all.iter().enumerate().take(L::N) {
+    for (l, x) in all.iter().enumerate() {
         // SAFETY: rows are slots of the caller's field, and every slot is the row of one slice
         unsafe { *out.at(*rows.add(l) as usize * step) = *x };
     }
@@ -270,64 +277,53 @@ impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL>
         let mut tally = Tally::default();
         for slice in self.view.block(block) {
             let lines = self.view.list.start[slice]..self.view.list.start[slice + 1];
-            for part in 0..TILE / L::N {
-                // SAFETY: the list was made for these records; each slice is written by one block
-                unsafe { self.points::<L>(slice, lines.clone(), part, &mut tally) };
-            }
+            // SAFETY: the list was made for these records; each slice is written by one block
+            unsafe { self.points::<L>(slice, lines, &mut tally) };
         }
         tally
     }
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// All bonds of `N` points.
+    /// All bonds of a slice.
     #[inline(always)]
     unsafe fn points<L: Lane>(
         &self,
         slice: usize,
         lines: std::ops::Range<usize>,
-        part: usize,
         tally: &mut Tally,
     ) {
         let v = &self.view;
         let zero = L::splat(0.0);
         let contact_e = L::splat(v.contact_e());
-        let series = Series::extension_over_length();
+        let series = Series::<Extension>::new();
         unsafe {
-            let rows = v.rows::<L>(slice, part);
+            let rows = v.rows(slice);
             let i = v.end::<L, true>(rows);
             let mut lowest = L::splat(f64::INFINITY);
             let mut acc = [zero; D];
             // broken bonds: Σ x and Σ k r0² s, rare
             let mut lost: Option<[L; 2]> = None;
             for line in lines {
-                let partners = v.partners::<L>(line, part);
+                let partners = v.partners(line);
                 let j = v.end::<L, true>(partners);
                 let b = v.bond::<L>(&i, &j);
-                let dead = L::dead(*v.alive.at(line), part);
+                let dead = L::dead(*v.alive.at(line));
                 let e = b.e.nan_if(dead);
-                let mut rare = series.beyond(e);
-                let mut limit = zero;
+                let g = at(series, e);
+                let mut pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
                 if FULL {
-                    limit = j.critical.min(i.critical);
-                    rare = L::or(rare, limit.lt(e));
+                    let breaks = j.critical.min(i.critical).lt(e);
                     lowest = e.min(lowest);
-                }
-                if FULL {
-                    rare = L::or(rare, b.e.lt(contact_e));
-                }
-                let mut pull;
-                if L::any(rare) {
-                    let g = series::extension_over_length(e);
-                    pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
-                    if FULL {
+                    if L::any(L::or(breaks, b.e.lt(contact_e))) {
                         pull = pull + v.repel(&b, j.volume).0;
-                    }
-                    if FULL && self.motion.is_some() {
-                        let breaks = limit.lt(e);
-                        let which = L::bits(breaks);
+                        let which = if self.motion.is_some() {
+                            L::bits(breaks)
+                        } else {
+                            0
+                        };
                         if which != 0 {
-                            *v.alive.at(line) &= !((which as u8) << (part * L::N));
+                            *v.alive.at(line) &= !(which as u8);
                             tally.broken += which.count_ones() as u64;
                             let s = series::stretch(e);
                             let share = b.k * b.r0_squared * s;
@@ -340,9 +336,6 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                             ]);
                         }
                     }
-                } else {
-                    let g = series.at(e);
-                    pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
                 }
                 for a in 0..D {
                     acc[a] = pull.fma(b.y[a], acc[a]);
@@ -361,8 +354,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 if let Some(lost) = lost {
                     let q = v.pressure_factor(rows, i.field[1]);
                     let energy = history::released::<L, W>(q, i.field, lost) * i.volume;
-                    // one by one: the order of the sum must not depend on the width
-                    for x in &energy.to_array()[..L::N] {
+                    for x in &energy.to_array() {
                         tally.released += x;
                     }
                 }
@@ -382,29 +374,23 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
         let v = &self.view;
-        let series = Series::stretch();
+        let series = Series::<Stretch>::new();
         for slice in v.block(block) {
-            for part in 0..TILE / L::N {
-                // SAFETY: as in the force pass; pressures are written, stiffnesses read
-                unsafe {
-                    let rows = v.rows::<L>(slice, part);
-                    let i = v.end::<L, false>(rows);
-                    let mut sum = L::splat(0.0);
-                    for line in v.list.start[slice]..v.list.start[slice + 1] {
-                        let j = v.end::<L, false>(v.partners::<L>(line, part));
-                        let b = v.bond::<L>(&i, &j);
-                        let dead = L::dead(*v.alive.at(line), part);
-                        let e = b.e.nan_if(dead);
-                        let s = if L::any(series.beyond(e)) {
-                            series::stretch(e)
-                        } else {
-                            series.at(e)
-                        };
-                        sum = (b.k * b.r0_squared * s).zero_if(dead) + sum;
-                    }
-                    let q = v.pressure_factor(rows, L::gather2(v.fields.0, rows)[1]);
-                    scatter(q * sum, v.fields, rows, 2);
+            // SAFETY: as in the force pass; pressures are written, stiffnesses read
+            unsafe {
+                let rows = v.rows(slice);
+                let i = v.end::<L, false>(rows);
+                let mut sum = L::splat(0.0);
+                for line in v.list.start[slice]..v.list.start[slice + 1] {
+                    let j = v.end::<L, false>(v.partners(line));
+                    let b = v.bond::<L>(&i, &j);
+                    let dead = L::dead(*v.alive.at(line));
+                    let e = b.e.nan_if(dead);
+                    let s = at(series, e);
+                    sum = (b.k * b.r0_squared * s).zero_if(dead) + sum;
                 }
+                let q = v.pressure_factor(rows, L::gather2(v.fields.0, rows)[1]);
+                scatter(q * sum, v.fields, rows, 2);
             }
         }
     }
@@ -427,11 +413,11 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         let mut rate = L::splat(0.0);
         for a in 0..D {
             let mut relative = [0.0; TILE];
-            for (l, r) in relative[..L::N].iter_mut().enumerate() {
+            for (l, r) in relative.iter_mut().enumerate() {
                 // SAFETY: rows and partners are slots
                 unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
             }
-            // SAFETY: N ≤ TILE
+            // SAFETY: a number per lane
             rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
         }
         L::splat(0.25 * dt) * pull * rate
@@ -454,41 +440,39 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
         let mut sums = [0.0; 2];
         let contact_e = L::splat(v.contact_e());
         for slice in v.block(block) {
-            for part in 0..TILE / L::N {
-                // SAFETY: as in the force pass
-                unsafe {
-                    let zero = L::splat(0.0);
-                    let rows = v.rows::<L>(slice, part);
-                    let i = v.end::<L, true>(rows);
-                    let (mut strain, mut repulsion, mut share, mut weight) =
-                        (zero, zero, zero, zero);
-                    for line in v.list.start[slice]..v.list.start[slice + 1] {
-                        let j = v.end::<L, true>(v.partners::<L>(line, part));
-                        let b = v.bond::<L>(&i, &j);
-                        let dead = L::dead(*v.alive.at(line), part);
-                        let s = series::stretch(b.e.nan_if(dead)).zero_if(dead);
-                        let kr = (b.k * b.r0_squared).zero_if(dead);
-                        let x = v.law.pair_energy(kr * s * s, i.field, j.field);
-                        strain = strain + x.zero_if(dead);
-                        share = kr.fma(s, share);
-                        weight = weight + kr;
-                        if v.repulsion.is_some() && L::any(b.e.lt(contact_e)) {
-                            repulsion = repulsion + v.repel(&b, j.volume).1;
-                        }
+            // SAFETY: as in the force pass
+            unsafe {
+                let zero = L::splat(0.0);
+                let rows = v.rows(slice);
+                let i = v.end::<L, true>(rows);
+                let (mut strain, mut repulsion, mut share, mut weight) = (zero, zero, zero, zero);
+                for line in v.list.start[slice]..v.list.start[slice + 1] {
+                    let j = v.end::<L, true>(v.partners(line));
+                    let b = v.bond::<L>(&i, &j);
+                    let dead = L::dead(*v.alive.at(line));
+                    let s = series::stretch(b.e.nan_if(dead)).zero_if(dead);
+                    let kr = (b.k * b.r0_squared).zero_if(dead);
+                    let x = v.law.pair_energy(kr * s * s, i.field, j.field);
+                    strain = strain + x.zero_if(dead);
+                    share = kr.fma(s, share);
+                    weight = weight + kr;
+                    if v.repulsion.is_some() && L::any(b.e.lt(contact_e)) {
+                        repulsion = repulsion + v.repel(&b, j.volume).1;
                     }
-                    if W::SHARES {
-                        let q = v.pressure_factor(rows, i.field[1]);
-                        strain = strain + L::splat(0.5) * q * share * share;
-                    }
-                    // one by one: the order of the sum must not depend on the width
-                    for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
-                        let energy = x * i.volume;
-                        energy.to_array()[..L::N].iter().for_each(|x| *sum += x);
-                    }
-                    if let Some(out) = self.fields {
-                        scatter(strain, out.strain, rows, 1);
-                        scatter(repulsion, out.repulsion, rows, 1);
-                        scatter(share, out.share, rows, 1);
+                }
+                if W::SHARES {
+                    let q = v.pressure_factor(rows, i.field[1]);
+                    strain = strain + L::splat(0.5) * q * share * share;
+                }
+                for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
+                    let energy = x * i.volume;
+                    energy.to_array().iter().for_each(|x| *sum += x);
+                }
+                if let Some(out) = self.fields {
+                    scatter(strain, out.strain, rows, 1);
+                    scatter(repulsion, out.repulsion, rows, 1);
+                    scatter(share, out.share, rows, 1);
+                    if !W::SHARES {
                         scatter(weight, out.weight, rows, 1);
                     }
                 }

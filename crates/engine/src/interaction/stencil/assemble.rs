@@ -1,7 +1,7 @@
 //! A stencil interaction from a body, a stencil and a law.
 
 use super::StencilInteraction;
-use super::kernel::{BLOCK, Bond, MOST, Partner};
+use super::kernel::{ALIKE, BLOCK, Bond, MOST, Partner, WHOLE};
 use crate::body::{Body, Column, Grid, field};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -43,7 +43,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             .expect("a lattice body has one volume");
         let h = grid.lattice.spacing;
         let edges = grid.lattice.kind.edges();
-        let of = |from: usize, o: &Offset| {
+        let of = |from: usize, number: usize, o: &Offset| {
             let back = std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
             let r0_squared = h * h * (o.squared as f64 / 16.0);
             let r0 = r0_squared.sqrt();
@@ -51,7 +51,9 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
             let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
             let bond = Bond {
-                shift: grid.shift(cell.map(i64::from), o.to as i64 - from as i64) as isize,
+                shift: i32::try_from(grid.shift(cell.map(i64::from), o.to as i64 - from as i64))
+                    .expect("bonds span fewer than 2^31 slots"),
+                number: number as u32,
                 back,
                 two_by_r0_squared: 2.0 / r0_squared,
                 k,
@@ -70,7 +72,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             .offsets
             .iter()
             .enumerate()
-            .map(|(from, list)| list.iter().map(|o| of(from, o)).unzip())
+            .map(|(from, list)| list.iter().enumerate().map(|(k, o)| of(from, k, o)).unzip())
             .unzip();
         let contact_e = bonds.iter().flatten().map(|b| b.contact_e);
         let most_contact = contact_e.fold(-1.0, f64::max);
@@ -117,7 +119,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             partners,
             width,
             alive,
-            intact: vec![0; tiles.len()],
+            state: vec![0; tiles.len()],
             tiles,
             reach,
             family,
@@ -130,6 +132,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             next: critical.clone(),
             critical,
             least_critical: f64::INFINITY,
+            settled: false,
             most_contact,
             volume,
             guard: grid.guard,
@@ -137,18 +140,32 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             unit: vec![(); blocks],
             sums: vec![[0.0; 2]; blocks],
         };
-        made.look();
+        made.look(grid);
         made
     }
 
-    /// Find the tiles whose bonds are all whole.
-    pub(super) fn look(&mut self) {
+    /// Find the tiles whose bonds are all whole, and those of them whose ends are alike.
+    pub(super) fn look(&mut self, grid: &Grid<D>) {
         let words = self.width.div_ceil(64);
-        for (n, intact) in self.intact.iter_mut().enumerate() {
-            let row = &self.alive[n * self.width..(n + 1) * self.width];
+        let mut state = std::mem::take(&mut self.state);
+        for (n, state) in state.iter_mut().enumerate() {
+            let row = self.row(n);
             let reach = &self.reach[n * words..(n + 1) * words];
-            let leads = |k: usize| reach[k / 64] >> (k % 64) & 1 == 1;
-            *intact = (0..self.width).all(|k| !leads(k) || row[k] == 0xff) as u8;
+            let leads = |k: &usize| reach[k / 64] >> (k % 64) & 1 == 1;
+            let whole = (0..self.width).filter(leads).all(|k| row[k] == 0xff);
+            let first = grid.tile_slot(self.tiles[n] as usize);
+            let bonds = &self.bonds[grid.tile_sublattice(self.tiles[n] as usize)];
+            let field = &self.fields[1];
+            let alike = whole && !field.is_empty() && {
+                let same =
+                    |slot: usize| field[slot..slot + TILE].iter().all(|x| *x == field[first]);
+                same(first)
+                    && (0..self.width)
+                        .filter(leads)
+                        .all(|k| same(bonds[k].to(first)))
+            };
+            *state = if whole { WHOLE } else { 0 } | if alike { ALIKE } else { 0 };
         }
+        self.state = state;
     }
 }

@@ -3,37 +3,40 @@
 //! No closure touches a lane here: a closure is compiled without the instruction set of its caller unless it happens
 //! to be inlined, and then every operation becomes a call.
 
+mod chunk;
 mod energies;
 mod forces;
+mod offsets;
 mod share;
 
 use crate::body::{Body, Grid};
 use crate::execute::blocks::Shared;
-use crate::execute::lane::Lane;
+use crate::execute::lane::{Lane, TILE};
 use crate::interaction::Repulsion;
-use crate::interaction::bond::deform;
+use crate::interaction::bond::relative_square_stretch;
 use crate::law::Law;
 pub use energies::Energies;
 pub use forces::Forces;
 pub use share::Share;
-use std::mem::MaybeUninit;
 
 /// Tiles per block of work.
 pub const BLOCK: usize = 32;
 /// Longest stencil that a sweep can keep account of.
 pub const MOST: usize = 32768;
 
-/// Offsets that a hot loop takes in one go: first their deformation, then what they answer. Two short loops keep more
-/// bonds in flight than one long one, whose chain of dependent operations fills the processor's window; and nothing
-/// that depends on a bond decides where something is stored (docs/decisions/0001-hot-loop.md).
-const CHUNK: usize = 32;
+/// State of a tile: every bond of `reach` is whole for all eight points.
+pub const WHOLE: u8 = 1;
+/// And field 1 is the same at all ends.
+pub const ALIKE: u8 = 2;
 
 /// A bond of the stencil with the constants that hot loops read: one cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub struct Bond<const D: usize> {
     /// Slots from i to j.
-    pub shift: isize,
+    pub shift: i32,
+    /// Its place in the stencil.
+    pub number: u32,
     /// `−ξ`: from j back to i.
     pub back: [f64; D],
     pub two_by_r0_squared: f64,
@@ -64,8 +67,8 @@ pub struct View<'a, const D: usize, W> {
     pub tiles: &'a [u32],
     /// `[tiles][width]`
     pub alive: Shared<u8>,
-    /// `[tiles]`: 1 where every bond of `reach` is whole for all eight points.
-    pub intact: Shared<u8>,
+    /// `[tiles]`: [`WHOLE`], perhaps with [`ALIKE`], or 0.
+    pub state: Shared<u8>,
     /// `[tiles][words]`: a bit per offset that any point of the tile ever had a partner at.
     pub reach: &'a [u64],
     pub u: [&'a [f64]; D],
@@ -76,6 +79,14 @@ pub struct View<'a, const D: usize, W> {
     pub repulsion: Option<Repulsion>,
     /// The highest `e` at which any bond repels.
     pub most_contact: f64,
+}
+
+impl<const D: usize> Bond<D> {
+    /// Slot of j for the point at slot i.
+    #[inline(always)]
+    pub fn to(&self, i: usize) -> usize {
+        i.wrapping_add_signed(self.shift as isize)
+    }
 }
 
 impl<const D: usize, W: Law> View<'_, D, W> {
@@ -99,17 +110,37 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         fields
     }
 
-    /// `−(ξ+η)` and `e` of bond `b` for the points at `i`.
+    /// `−η` and `−ξ` of bond `b` for the points at `i`.
     #[inline(always)]
-    unsafe fn deform<L: Lane>(&self, b: &Bond<D>, i: usize, ui: &[L; D]) -> ([L; D], L) {
+    unsafe fn vectors<L: Lane>(&self, b: &Bond<D>, i: usize, ui: &[L; D]) -> ([L; D], [L; D]) {
         // SAFETY: offsets stay inside the guards
-        let uj = unsafe { self.displacement::<L>(i.wrapping_add_signed(b.shift)) };
+        let uj = unsafe { self.displacement::<L>(b.to(i)) };
         let (mut eta, mut back) = (uj, uj);
         for a in 0..D {
             eta[a] = ui[a] - uj[a];
             back[a] = L::splat(b.back[a]);
         }
-        deform(eta, back, L::splat(b.two_by_r0_squared))
+        (eta, back)
+    }
+
+    /// `e` of bond `b` for the points at `i`.
+    #[inline(always)]
+    unsafe fn deform<L: Lane>(&self, b: &Bond<D>, i: usize, ui: &[L; D]) -> L {
+        // SAFETY: offsets stay inside the guards
+        let (eta, back) = unsafe { self.vectors(b, i, ui) };
+        relative_square_stretch(eta, back, L::splat(b.two_by_r0_squared))
+    }
+
+    /// `−(ξ+η)` of bond `b` for the points at `i`.
+    #[inline(always)]
+    unsafe fn direction<L: Lane>(&self, b: &Bond<D>, i: usize, ui: &[L; D]) -> [L; D] {
+        // SAFETY: offsets stay inside the guards
+        let (eta, back) = unsafe { self.vectors(b, i, ui) };
+        let mut y = eta;
+        for a in 0..D {
+            y[a] = eta[a] + back[a];
+        }
+        y
     }
 
     fn block(&self, block: usize) -> std::ops::Range<usize> {
@@ -145,7 +176,14 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     #[inline(always)]
     unsafe fn is_intact(&self, n: usize) -> bool {
         // SAFETY: one byte per active tile
-        unsafe { *self.intact.at(n) != 0 }
+        unsafe { *self.state.at(n) != 0 }
+    }
+
+    /// Of an intact tile: is field 1 the same at all ends of its bonds?
+    #[inline(always)]
+    unsafe fn is_alike(&self, n: usize) -> bool {
+        // SAFETY: one byte per active tile
+        unsafe { *self.state.at(n) & ALIKE != 0 }
     }
 
     /// Bond bits of the `n`-th active tile.
@@ -155,9 +193,12 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         unsafe { self.alive.at(n * self.width) }
     }
 
-    /// `P / Σ k r0² s` of the points at slot `i`.
+    /// `P / Σ k r0² s` of the points at slot `i`; 0 for laws that do not share.
     #[inline(always)]
     unsafe fn pressure_factor<L: Lane>(&self, i: usize) -> L {
+        if !W::SHARES {
+            return L::splat(0.0);
+        }
         // SAFETY: slots lie inside the arrays
         unsafe {
             if self.pressure.is_empty() {
@@ -177,7 +218,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             return (L::splat(0.0), L::splat(0.0));
         };
         let mut there = 0u8;
-        for l in 0..L::N {
+        for l in 0..TILE {
             if L::bits(close) >> l & 1 == 1
                 && self.grid.is_owned(i + l)
                 && self.grid.neighbour(i + l, to.cell, to.to).is_some()
@@ -185,112 +226,11 @@ impl<const D: usize, W: Law> View<'_, D, W> {
                 there |= 1 << l;
             }
         }
-        let absent = L::dead(there, 0);
+        let absent = L::dead(there);
         let r = (L::splat(to.r0_squared) * (L::splat(1.0) + e)).sqrt();
         let d = L::splat(to.contact_distance);
         let pull = (L::splat(c.stiffness * self.volume) * (r - d)).div(r);
         let energy = L::splat(0.25 * c.stiffness * self.volume) * (r - d) * (r - d);
         (pull.zero_if(absent), energy.zero_if(absent))
-    }
-}
-
-/// The offsets that lead anywhere from a tile, in order. Neighbouring tiles mostly share them.
-struct Offsets {
-    /// The bits they were made from.
-    reach: [u64; MOST / 64],
-    list: [MaybeUninit<u16>; MOST],
-    len: usize,
-}
-
-impl Offsets {
-    #[inline(always)]
-    fn new() -> Self {
-        Offsets {
-            reach: [0; MOST / 64],
-            list: [const { MaybeUninit::uninit() }; MOST],
-            len: 0,
-        }
-    }
-
-    /// Become the offsets of these bits.
-    #[inline(always)]
-    fn of(&mut self, reach: &[u64]) {
-        if self.reach[..reach.len()] == *reach {
-            return;
-        }
-        self.len = 0;
-        for (w, &word) in reach.iter().enumerate() {
-            self.reach[w] = word;
-            let mut bits = word;
-            while bits != 0 {
-                self.list[self.len].write((64 * w) as u16 + bits.trailing_zeros() as u16);
-                self.len += 1;
-                bits &= bits - 1;
-            }
-        }
-    }
-
-    /// All of them were written.
-    #[inline(always)]
-    fn chunks(&self) -> std::slice::Chunks<'_, MaybeUninit<u16>> {
-        self.list[..self.len].chunks(CHUNK)
-    }
-}
-
-/// The first half of a hot loop's work for the second, bond by bond.
-struct Deformed<L, const D: usize> {
-    /// Not a number in lanes that the second half leaves out.
-    e: [MaybeUninit<L>; CHUNK],
-    /// `−(ξ+η)`
-    y: [[MaybeUninit<L>; D]; CHUNK],
-}
-
-impl<L: Lane, const D: usize> Deformed<L, D> {
-    #[inline(always)]
-    fn new() -> Self {
-        Deformed {
-            e: [MaybeUninit::uninit(); CHUNK],
-            y: [[MaybeUninit::uninit(); D]; CHUNK],
-        }
-    }
-
-    /// # Safety
-    /// `c` is less than [`CHUNK`].
-    #[inline(always)]
-    unsafe fn put(&mut self, c: usize, e: L, y: [L; D]) {
-        // SAFETY: the caller's promise
-        unsafe {
-            self.e.get_unchecked_mut(c).write(e);
-            for a in 0..D {
-                self.y.get_unchecked_mut(c)[a].write(y[a]);
-            }
-        }
-    }
-
-    /// # Safety
-    /// Number `c` was put.
-    #[inline(always)]
-    unsafe fn leave_out(&mut self, c: usize, lanes: L::Mask) {
-        // SAFETY: the caller's promise
-        unsafe {
-            let e = self.e(c).nan_if(lanes);
-            self.e.get_unchecked_mut(c).write(e);
-        }
-    }
-
-    /// # Safety
-    /// Number `c` was put.
-    #[inline(always)]
-    unsafe fn e(&self, c: usize) -> L {
-        // SAFETY: the caller's promise
-        unsafe { self.e.get_unchecked(c).assume_init() }
-    }
-
-    /// # Safety
-    /// Number `c` was put.
-    #[inline(always)]
-    unsafe fn y(&self, c: usize, a: usize) -> L {
-        // SAFETY: the caller's promise
-        unsafe { self.y.get_unchecked(c)[a].assume_init() }
     }
 }

@@ -1,18 +1,29 @@
 //! The energy pass.
 
-use super::{CHUNK, Offsets, View};
-use crate::execute::lane::series::{self, LIMIT, Series};
-use crate::execute::lane::{Lane, TILE};
+use super::View;
+use super::chunk::{CHUNK, Chunk};
+use super::offsets::Offsets;
+use crate::execute::lane::Lane;
+use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::simd::Kernel;
 use crate::interaction::EnergyFields;
 use crate::law::Law;
-use std::mem::MaybeUninit;
 
 /// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds. Sums are returned,
 /// fields are written where wanted.
 pub struct Energies<'a, const D: usize, W> {
     pub view: View<'a, D, W>,
     pub fields: Option<EnergyFields>,
+}
+
+/// Sums over the bonds of a tile.
+struct Sums<L> {
+    strain: L,
+    repulsion: L,
+    /// `Σ k r0² s`
+    share: L,
+    /// `Σ k r0²`
+    weight: L,
 }
 
 impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
@@ -22,103 +33,105 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
         let v = &self.view;
-        let series = Series::stretch();
         let mut sums = [0.0; 2];
         let mut offsets = Offsets::new();
         for n in v.block(block) {
-            offsets.of(v.reach(n));
-            let bonds = v.stencil(n);
-            let partners = &v.partners[v.sublattice(n)];
-            for part in 0..TILE / L::N {
-                let i = v.slot(n) + part * L::N;
-                // SAFETY: as in the force pass
-                unsafe {
-                    let zero = L::splat(0.0);
-                    let limit = L::splat(LIMIT);
-                    let row = v.row(n);
-                    let intact = v.is_intact(n);
-                    let mut stretched = [MaybeUninit::<L>::uninit(); CHUNK];
-                    let ui = v.displacement::<L>(i);
-                    let own = v.fields::<L>(i);
-                    let (mut strain, mut repulsion, mut share, mut weight) =
-                        (zero, zero, zero, zero);
-                    for chunk in offsets.chunks() {
-                        let (mut low, mut high, mut lowest) = (zero, zero, zero);
-                        for (c, n) in chunk.iter().enumerate() {
-                            let n = n.assume_init() as usize;
-                            let (_, raw) = v.deform(bonds.get_unchecked(n), i, &ui);
-                            let mut e = raw;
-                            if !intact {
-                                // a bond that is not there is not stretched
-                                e = raw.zero_if(L::dead(*row.add(n), part));
-                            }
-                            low = e.min(low);
-                            high = e.max(high);
-                            lowest = raw.min(lowest);
-                            stretched.get_unchecked_mut(c).write(e);
-                        }
-                        let far = L::any(L::or(limit.lt(high), low.lt(zero - limit)));
-                        for (c, n) in chunk.iter().enumerate() {
-                            let n = n.assume_init() as usize;
-                            let b = bonds.get_unchecked(n);
-                            // the loop above wrote these
-                            let e = stretched.get_unchecked(c).assume_init();
-                            let s = if far {
-                                series::stretch(e)
-                            } else {
-                                series.at(e)
-                            };
-                            let kr = L::splat(b.share);
-                            let other = v.fields::<L>(i.wrapping_add_signed(b.shift));
-                            let mut x = v.law.pair_energy(kr * s * s, own, other);
-                            if !intact {
-                                // fields mean nothing where there is no point
-                                x = x.zero_if(L::dead(*row.add(n), part));
-                            }
-                            strain = strain + x;
-                            share = kr.fma(s, share);
-                        }
-                        if v.repulsion.is_some() && L::any(lowest.lt(L::splat(v.most_contact))) {
-                            for n in chunk {
-                                let n = n.assume_init() as usize;
-                                let b = bonds.get_unchecked(n);
-                                let (_, raw) = v.deform(b, i, &ui);
-                                let close = raw.lt(L::splat(b.contact_e));
-                                if L::any(close) {
-                                    repulsion = repulsion + v.repel(&partners[n], i, raw, close).1;
-                                }
-                            }
-                        }
-                        if self.fields.is_some() && !W::SHARES {
-                            for n in chunk {
-                                let n = n.assume_init() as usize;
-                                let mut kr = L::splat(bonds.get_unchecked(n).share);
-                                if !intact {
-                                    kr = kr.zero_if(L::dead(*row.add(n), part));
-                                }
-                                weight = weight + kr;
-                            }
-                        }
-                    }
-                    if W::SHARES {
-                        let q = v.pressure_factor(i);
-                        strain = strain + L::splat(0.5) * q * share * share;
-                    }
-                    // lane by lane, so that the width does not show in the sum
-                    for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
-                        x.to_array()[..L::N]
-                            .iter()
-                            .for_each(|x| *sum += x * v.volume);
-                    }
-                    if let Some(out) = self.fields {
-                        strain.store(out.strain.at(i));
-                        repulsion.store(out.repulsion.at(i));
-                        share.store(out.share.at(i));
-                        weight.store(out.weight.at(i));
+            let i = v.slot(n);
+            // SAFETY: as in the force pass
+            unsafe {
+                let mut tile = if v.is_intact(n) {
+                    self.tile::<L, false>(n, i, &mut offsets)
+                } else {
+                    self.tile::<L, true>(n, i, &mut offsets)
+                };
+                if W::SHARES {
+                    let q = v.pressure_factor::<L>(i);
+                    tile.strain = tile.strain + L::splat(0.5) * q * tile.share * tile.share;
+                }
+                for (sum, x) in sums.iter_mut().zip([tile.strain, tile.repulsion]) {
+                    x.to_array().iter().for_each(|x| *sum += x * v.volume);
+                }
+                if let Some(out) = self.fields {
+                    tile.strain.store(out.strain.at(i));
+                    tile.repulsion.store(out.repulsion.at(i));
+                    tile.share.store(out.share.at(i));
+                    if !W::SHARES {
+                        tile.weight.store(out.weight.at(i));
                     }
                 }
             }
         }
         sums
+    }
+}
+
+impl<const D: usize, W: Law> Energies<'_, D, W> {
+    #[inline(always)]
+    unsafe fn tile<L: Lane, const MASKED: bool>(
+        &self,
+        n: usize,
+        i: usize,
+        offsets: &mut Offsets<D>,
+    ) -> Sums<L> {
+        let v = &self.view;
+        let series = Series::<Stretch>::new();
+        let zero = L::splat(0.0);
+        let (mut strain, mut repulsion, mut share, mut weight) = (zero, zero, zero, zero);
+        let mut chunk = Chunk::<L>::new();
+        // SAFETY: as in the force pass
+        unsafe {
+            let ui = v.displacement::<L>(i);
+            let own = v.fields::<L>(i);
+            let mut word = 0;
+            while word < v.reach(n).len() {
+                let (bonds, next) = offsets.stretch(v.stencil(n), v.reach(n), word);
+                word = next;
+                for bonds in bonds.chunks(CHUNK) {
+                    let x = chunk.deform::<D, W, MASKED, true>(v, bonds, v.row(n), i, &ui);
+                    let near = L::or(x.close, x.low.lt(L::splat(v.most_contact)));
+                    chunk.apply(bonds.len(), series, &x);
+                    for (c, b) in bonds.iter().enumerate() {
+                        let mut s = chunk.get(c);
+                        let gone = s.is_nan();
+                        let kr = L::splat(b.share);
+                        let mut x = s * s;
+                        if MASKED {
+                            s = s.zero_if(gone);
+                        }
+                        x = v.law.pair_energy(kr * x, own, v.fields::<L>(b.to(i)));
+                        if MASKED {
+                            x = x.zero_if(gone);
+                        }
+                        strain = strain + x;
+                        share = kr.fma(s, share);
+                    }
+                    if v.repulsion.is_some() && L::any(near) {
+                        for b in bonds {
+                            let e = v.deform(b, i, &ui);
+                            let close = e.lt(L::splat(b.contact_e));
+                            if L::any(close) {
+                                let to = &v.partners[v.sublattice(n)][b.number as usize];
+                                repulsion = repulsion + v.repel(to, i, e, close).1;
+                            }
+                        }
+                    }
+                    if self.fields.is_some() && !W::SHARES {
+                        for b in bonds {
+                            let mut kr = L::splat(b.share);
+                            if MASKED {
+                                kr = kr.zero_if(L::dead(*v.row(n).add(b.number as usize)));
+                            }
+                            weight = weight + kr;
+                        }
+                    }
+                }
+            }
+        }
+        Sums {
+            strain,
+            repulsion,
+            share,
+            weight,
+        }
     }
 }

@@ -1,10 +1,12 @@
 //! The force pass: what every bond pulls, which bonds break, and the new critical stretch.
 
-use super::{Bond, Deformed, MOST, Offsets, View};
+use super::chunk::{CHUNK, Chunk};
+use super::offsets::Offsets;
+use super::{Bond, MOST, View};
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, LIMIT, Series};
-use crate::execute::lane::{Lane, TILE};
+use crate::execute::lane::Lane;
+use crate::execute::lane::series::{self, Extension, Series};
 use crate::execute::simd::Kernel;
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::Law;
@@ -18,9 +20,10 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub view: View<'a, D, W>,
     pub f: [Shared; D],
     pub critical: &'a [f64],
-    pub next: Shared,
+    /// Of the next critical stretch; none once it cannot change any more.
+    pub next: Option<Shared>,
     pub toughness: &'a [Toughness],
-    /// Between these values of `e` the series is exact, no whole bond is too close and none breaks.
+    /// Between these values of `e` no whole bond is too close and none breaks.
     pub lower: f64,
     pub upper: f64,
     /// Velocity of the step's middle, and the step; none if bonds must not break.
@@ -37,15 +40,14 @@ impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL>
         let mut offsets = Offsets::new();
         let mut rare: Waiting = [const { MaybeUninit::uninit() }; MOST];
         for n in v.block(block) {
-            offsets.of(v.reach(n));
-            for part in 0..TILE / L::N {
-                // SAFETY: tiles lie inside the arrays, offsets inside the guards; each tile is written by one block
-                unsafe {
-                    if v.is_intact(n) {
-                        self.points::<L, false>(n, part, &offsets, &mut rare, &mut tally);
-                    } else {
-                        self.points::<L, true>(n, part, &offsets, &mut rare, &mut tally);
-                    }
+            // SAFETY: tiles lie inside the arrays, offsets inside the guards; each tile is written by one block
+            unsafe {
+                if !v.is_intact(n) {
+                    self.tile::<L, true, false>(n, &mut offsets, &mut rare, &mut tally);
+                } else if W::SHARES && v.is_alike(n) {
+                    self.tile::<L, false, true>(n, &mut offsets, &mut rare, &mut tally);
+                } else {
+                    self.tile::<L, false, false>(n, &mut offsets, &mut rare, &mut tally);
                 }
             }
         }
@@ -53,11 +55,10 @@ impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL>
     }
 }
 
-/// `N` points of a tile.
+/// The points of a tile.
 struct Points<L, const D: usize> {
-    /// Active tile, its part, and the first slot.
+    /// Number among the active tiles, and the first slot.
     tile: usize,
-    part: usize,
     i: usize,
     u: [L; D],
     own: [L; 2],
@@ -65,32 +66,27 @@ struct Points<L, const D: usize> {
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// All bonds of `N` points.
+    /// All bonds of a tile. With `ALIKE` all ends of its bonds have the same constant field.
     ///
-    /// Where all `e` of a chunk lie between bounds that hold for the whole body, the series is exact and nothing can
-    /// happen. Else lanes are looked at one by one: those that break or are too close wait and are added last, and the
-    /// others take the root where they need it. None of this depends on a lane's neighbours in the register, so the
-    /// order of every point's sum is its own.
+    /// Where all `e` of a chunk lie between bounds that hold for the whole body, nothing can happen. Else lanes are
+    /// looked at one by one: those that break or are too close wait and are added last.
     #[inline(always)]
-    unsafe fn points<L: Lane, const MASKED: bool>(
+    unsafe fn tile<L: Lane, const MASKED: bool, const ALIKE: bool>(
         &self,
         tile: usize,
-        part: usize,
-        offsets: &Offsets,
+        offsets: &mut Offsets<D>,
         rare: &mut Waiting,
         tally: &mut Tally,
     ) {
         let v = &self.view;
-        let i = v.slot(tile) + part * L::N;
-        let bonds = v.stencil(tile);
-        let series = Series::extension_over_length();
+        let i = v.slot(tile);
+        let series = Series::<Extension>::new();
         // SAFETY: slots and their neighbours lie inside the arrays; at most MOST bonds, checked when the stencil was
         // made
         unsafe {
             let zero = L::splat(0.0);
             let at = Points {
                 tile,
-                part,
                 i,
                 u: v.displacement::<L>(i),
                 own: v.fields::<L>(i),
@@ -101,62 +97,42 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 },
             };
             let (lower, upper) = (L::splat(self.lower), L::splat(self.upper));
-            let limit = L::splat(LIMIT);
             let mut lowest = L::splat(f64::INFINITY);
-            let mut acc = [zero; D];
+            let (mut acc, mut total) = ([zero; D], zero);
             let mut waiting = 0;
-            let mut deformed = Deformed::<L, D>::new();
-            for chunk in offsets.chunks() {
-                let mut close = zero.lt(zero);
-                let (mut low, mut high) = (L::splat(f64::INFINITY), zero);
-                for (c, n) in chunk.iter().enumerate() {
-                    let n = n.assume_init() as usize;
-                    let b = bonds.get_unchecked(n);
-                    let (y, raw) = v.deform(b, i, &at.u);
-                    let mut e = raw;
-                    if MASKED {
-                        e = raw.nan_if(L::dead(*v.row(tile).add(n), part));
-                        if FULL {
-                            // a bond that is broken or absent may still be too close
-                            close = L::or(close, raw.lt(L::splat(b.contact_e)));
+            let mut chunk = Chunk::<L>::new();
+            let mut word = 0;
+            while word < v.reach(tile).len() {
+                let (bonds, next) = offsets.stretch(v.stencil(tile), v.reach(tile), word);
+                word = next;
+                for bonds in bonds.chunks(CHUNK) {
+                    let x = chunk.deform::<D, W, MASKED, FULL>(v, bonds, v.row(tile), i, &at.u);
+                    if FULL {
+                        lowest = x.low.min(lowest);
+                        let outside = L::or(x.low.lt(lower), upper.lt(x.high));
+                        if L::any(L::or(x.close, outside)) {
+                            let close = L::any(x.close);
+                            for (c, b) in bonds.iter().enumerate() {
+                                let e = chunk.get(c);
+                                let raw = if close { v.deform(b, i, &at.u) } else { e };
+                                let aside = self.aside(&at, b, e, raw);
+                                if L::any(aside) {
+                                    chunk.leave_out(c, aside);
+                                    rare.get_unchecked_mut(waiting).write(b.number as u16);
+                                    waiting += 1;
+                                }
+                            }
+                            chunk.apply(bonds.len(), series, &x);
+                            self.gather::<L, true, ALIKE>(&at, bonds, &chunk, &mut acc, &mut total);
+                            continue;
                         }
                     }
-                    low = e.min(low);
-                    high = e.max(high);
-                    deformed.put(c, e, y);
+                    chunk.apply(bonds.len(), series, &x);
+                    self.gather::<L, MASKED, ALIKE>(&at, bonds, &chunk, &mut acc, &mut total);
                 }
-                if FULL {
-                    lowest = low.min(lowest);
-                }
-                let outside = L::or(low.lt(lower), upper.lt(high));
-                if !L::any(L::or(close, outside)) {
-                    self.answer::<L, MASKED, false>(&at, chunk, &deformed, series, &mut acc);
-                    continue;
-                }
-                if FULL {
-                    let close = L::any(close);
-                    let mut wait = 0u64;
-                    for (c, n) in chunk.iter().enumerate() {
-                        let b = bonds.get_unchecked(n.assume_init() as usize);
-                        let e = deformed.e(c);
-                        let raw = if close { v.deform(b, i, &at.u).1 } else { e };
-                        let aside = self.aside(&at, b, e, raw);
-                        deformed.leave_out(c, aside);
-                        wait |= (L::any(aside) as u64) << c;
-                    }
-                    while wait != 0 {
-                        let c = wait.trailing_zeros() as usize;
-                        rare.get_unchecked_mut(waiting)
-                            .write(chunk[c].assume_init());
-                        waiting += 1;
-                        wait &= wait - 1;
-                    }
-                }
-                if L::any(L::or(low.lt(zero - limit), limit.lt(high))) {
-                    self.answer::<L, true, true>(&at, chunk, &deformed, series, &mut acc);
-                } else {
-                    self.answer::<L, true, false>(&at, chunk, &deformed, series, &mut acc);
-                }
+            }
+            for a in 0..D {
+                acc[a] = total.fma(at.u[a], acc[a]);
             }
             if FULL && waiting > 0 {
                 self.rare::<L>(&at, &rare[..waiting], &mut acc, tally);
@@ -165,62 +141,58 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 // what was summed points from j to i
                 (zero - acc[a]).store(self.f[a].at(i));
             }
-            if FULL {
+            if let (true, Some(out)) = (FULL, self.next) {
                 let material = |l: usize| v.body.material_of(i + l);
                 let next = history::next_critical(self.toughness, material, lowest);
-                next.store(self.next.at(i));
-                for x in &next.to_array()[..L::N] {
+                next.store(out.at(i));
+                for x in &next.to_array() {
                     tally.least_critical = tally.least_critical.min(*x);
                 }
             }
         }
     }
 
-    /// Add what the bonds of a chunk pull; with `MASKED`, not where `e` is not a number; with `FAR`, by the root where
-    /// the series is not exact.
+    /// Add what the bonds of a chunk pull, as `−Σ p (ξ + u_j)` and `Σ p`: less to keep in registers than `u_i` and the
+    /// sum (rounding of `e` costs more digits than this difference). With `MASKED`, not in lanes that were left out.
     #[inline(always)]
-    unsafe fn answer<L: Lane, const MASKED: bool, const FAR: bool>(
+    unsafe fn gather<L: Lane, const MASKED: bool, const ALIKE: bool>(
         &self,
         at: &Points<L, D>,
-        chunk: &[MaybeUninit<u16>],
-        deformed: &Deformed<L, D>,
-        series: Series,
+        bonds: &[Bond<D>],
+        chunk: &Chunk<L>,
         acc: &mut [L; D],
+        total: &mut L,
     ) {
         let v = &self.view;
-        let bonds = v.stencil(at.tile);
-        let mut sum = *acc;
-        for (c, n) in chunk.iter().enumerate() {
-            // SAFETY: as in the first loop, which put every bond of the chunk
+        let (mut sum, mut all) = (*acc, *total);
+        for (c, b) in bonds.iter().enumerate() {
+            // SAFETY: as in the first loop, which wrote every bond of the chunk
             unsafe {
-                let b = bonds.get_unchecked(n.assume_init() as usize);
-                let e = deformed.e(c);
-                let other = v.fields::<L>(at.i.wrapping_add_signed(b.shift));
-                let g = if FAR {
-                    series::extension_over_length(e)
+                let g = chunk.get(c);
+                let other = if ALIKE {
+                    [L::load(v.fields[0].as_ptr().add(b.to(at.i))), at.own[1]]
                 } else {
-                    series.at(e)
+                    v.fields::<L>(b.to(at.i))
                 };
                 let mut pull = v.law.pull(L::splat(b.k), g, at.own, other);
                 if MASKED {
-                    pull = pull.zero_if(e.is_nan());
+                    pull = pull.zero_if(g.is_nan());
                 }
+                let u = v.displacement::<L>(b.to(at.i));
                 for a in 0..D {
-                    sum[a] = pull.fma(deformed.y(c, a), sum[a]);
+                    sum[a] = pull.fma(L::splat(b.back[a]) - u[a], sum[a]);
                 }
+                all = pull + all;
             }
         }
-        *acc = sum;
+        (*acc, *total) = (sum, all);
     }
 
     /// Lanes whose bond breaks, or whose ends are too close, whole or not; `e` where the bond is whole, `raw` always.
     #[inline(always)]
     unsafe fn aside<L: Lane>(&self, at: &Points<L, D>, b: &Bond<D>, e: L, raw: L) -> L::Mask {
         // SAFETY: offsets stay inside the guards
-        let other = unsafe {
-            let j = at.i.wrapping_add_signed(b.shift);
-            L::load(self.critical.as_ptr().add(j))
-        };
+        let other = unsafe { L::load(self.critical.as_ptr().add(b.to(at.i))) };
         let breaks = other.min(at.critical).lt(e);
         L::or(breaks, raw.lt(L::splat(b.contact_e)))
     }
@@ -235,7 +207,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         tally: &mut Tally,
     ) {
         let v = &self.view;
-        let (i, part, own) = (at.i, at.part, at.own);
+        let (i, own) = (at.i, at.own);
         let bonds = v.stencil(at.tile);
         let partners = &v.partners[v.sublattice(at.tile)];
         let zero = L::splat(0.0);
@@ -247,9 +219,10 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 // the hot loop wrote them
                 let n = n.assume_init() as usize;
                 let (b, bits) = (&bonds[n], v.row(at.tile).add(n));
-                let j = i.wrapping_add_signed(b.shift);
-                let (y, raw) = v.deform(b, i, &at.u);
-                let dead = L::dead(*bits, part);
+                let j = b.to(i);
+                let y = v.direction(b, i, &at.u);
+                let raw = v.deform(b, i, &at.u);
+                let dead = L::dead(*bits);
                 let e = raw.nan_if(dead);
                 let aside = self.aside(at, b, e, raw);
                 let other = v.fields::<L>(j);
@@ -265,8 +238,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     let breaks = limit.lt(e);
                     let which = L::bits(breaks);
                     if which != 0 {
-                        *bits &= !((which as u8) << (part * L::N));
-                        *v.intact.at(at.tile) = 0;
+                        *bits &= !(which as u8);
+                        *v.state.at(at.tile) = 0;
                         tally.broken += which.count_ones() as u64;
                         let s = series::stretch(e);
                         let share = L::splat(b.share) * s;
@@ -285,8 +258,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             }
             if let Some(lost) = lost {
                 let energy = history::released::<L, W>(v.pressure_factor(i), own, lost);
-                // one by one: the order of the sum must not depend on the width
-                for x in &energy.to_array()[..L::N] {
+                for x in &energy.to_array() {
                     tally.released += x * v.volume;
                 }
             }

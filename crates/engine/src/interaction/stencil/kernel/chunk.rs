@@ -1,0 +1,100 @@
+//! A few bonds of a tile on their way through a sweep.
+
+use super::{Bond, View};
+use crate::execute::lane::Lane;
+use crate::execute::lane::series::{Function, Series};
+use crate::law::Law;
+use std::mem::MaybeUninit;
+
+/// Bonds that go from loop to loop together. Short loops keep more bonds in flight than one long one, whose chain of
+/// dependent operations fills the processor's window; and nothing that depends on a bond decides where something is
+/// stored (docs/decisions/0001-hot-loop.md).
+pub const CHUNK: usize = 32;
+
+/// First `e` of each bond, then a function of it; not a number where the bond is not whole.
+pub struct Chunk<L>([MaybeUninit<L>; CHUNK]);
+
+/// What the bonds of a chunk have in common.
+pub struct Extremes<L: Lane> {
+    /// The lowest `e` of a whole bond; infinite if there is none.
+    pub low: L,
+    /// The highest, at least 0.
+    pub high: L,
+    /// Lanes with a bond that is closer than allowed, whole or not; not known of tiles whose bonds are all whole.
+    pub close: L::Mask,
+}
+
+impl<L: Lane> Chunk<L> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Chunk([MaybeUninit::uninit(); CHUNK])
+    }
+
+    /// `e` of `bonds` for the points at `i`. With `MASKED` some bonds are not whole, as `row` says; with `CONTACT` they
+    /// may be too close.
+    ///
+    /// # Safety
+    /// At most [`CHUNK`] bonds, with a byte for each in `row`; all points inside the arrays.
+    #[inline(always)]
+    pub unsafe fn deform<const D: usize, W: Law, const MASKED: bool, const CONTACT: bool>(
+        &mut self,
+        view: &View<D, W>,
+        bonds: &[Bond<D>],
+        row: *const u8,
+        i: usize,
+        ui: &[L; D],
+    ) -> Extremes<L> {
+        let zero = L::splat(0.0);
+        let (mut low, mut high) = (L::splat(f64::INFINITY), zero);
+        let mut close = zero.lt(zero);
+        for (c, b) in bonds.iter().enumerate() {
+            // SAFETY: the caller's promise
+            unsafe {
+                let raw = view.deform(b, i, ui);
+                let mut e = raw;
+                if MASKED {
+                    e = raw.nan_if(L::dead(*row.add(b.number as usize)));
+                    if CONTACT {
+                        close = L::or(close, raw.lt(L::splat(b.contact_e)));
+                    }
+                }
+                low = e.min(low);
+                high = e.max(high);
+                self.0.get_unchecked_mut(c).write(e);
+            }
+        }
+        Extremes { low, high, close }
+    }
+
+    /// A function of `e` in place of the first `n`.
+    ///
+    /// # Safety
+    /// They were written, and none lies outside the extremes.
+    #[inline(always)]
+    pub unsafe fn apply<F: Function>(&mut self, n: usize, series: Series<F>, x: &Extremes<L>) {
+        // SAFETY: the caller's promise
+        let all = unsafe { std::slice::from_raw_parts_mut(self.0.as_mut_ptr().cast(), n) };
+        series.apply(all, x.low, x.high);
+    }
+
+    /// # Safety
+    /// Number `c` was written.
+    #[inline(always)]
+    pub unsafe fn get(&self, c: usize) -> L {
+        // SAFETY: the caller's promise
+        unsafe { self.0.get_unchecked(c).assume_init() }
+    }
+
+    /// Leave lanes out of what follows.
+    ///
+    /// # Safety
+    /// Number `c` was written.
+    #[inline(always)]
+    pub unsafe fn leave_out(&mut self, c: usize, lanes: L::Mask) {
+        // SAFETY: the caller's promise
+        unsafe {
+            let e = self.get(c).nan_if(lanes);
+            self.0.get_unchecked_mut(c).write(e);
+        }
+    }
+}
