@@ -119,17 +119,18 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// Reference coordinate `a` of slots: [position](Self::position), looked up once per tile.
+    /// Reference coordinate `a` of slots: [position](Self::position), looked up once per row of cells.
     pub fn coordinates(&self, slots: &[u32], a: usize, out: &mut [f64]) {
-        let (mut tile, mut first) = (usize::MAX, [0; 3]);
+        let (mut row, mut first) = (0..0, [0; 3]);
         for (out, &slot) in out.iter_mut().zip(slots) {
-            let place = slot as usize - self.guard;
-            if place / TILE != tile {
-                tile = place / TILE;
-                first = self.quarter(self.tile_slot(tile));
+            let slot = slot as usize;
+            if !row.contains(&slot) {
+                let (c, _) = self.cell(slot);
+                row = slot..slot + self.cells[0] - c[0] as usize;
+                first = self.quarter(slot);
             }
             let mut quarter = first;
-            quarter[0] += 4 * (place % TILE) as i32;
+            quarter[0] += 4 * (slot - row.start) as i32;
             *out = self.lattice.position(quarter)[a];
         }
     }
@@ -137,5 +138,52 @@ impl<const D: usize> Grid<D> {
     /// Reference position of a slot.
     pub fn position(&self, slot: usize) -> Point {
         self.lattice.position(self.quarter(slot))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::body::Body;
+    use crate::space::lattice::{Lattice, LatticeKind};
+
+    fn check<const D: usize>(kind: LatticeKind, sites: Vec<[i32; 3]>, periodic: [bool; D]) {
+        let lattice = Lattice {
+            kind,
+            spacing: 0.3,
+            origin: [0.1, -2.0, 7.0],
+        };
+        let body = Body::<D>::on_lattice(lattice, &sites, 2, periodic, 1.0).unwrap();
+        for first in [0, 5] {
+            for a in 0..3 {
+                let mut x = vec![f64::NAN; body.points() - first];
+                body.coordinates(first, a, &mut x);
+                for (x, &s) in x.iter().zip(&body.slots[first..]) {
+                    assert_eq!(*x, body.position(s as usize)[a], "{kind:?} {D}-D, axis {a}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn coordinates_are_positions() {
+        let ball = |n: i32, d: usize, step: i32| {
+            let along = |a: usize| if a < d { -n..=n } else { 0..=0 };
+            let mut sites = vec![];
+            for z in along(2) {
+                for y in along(1) {
+                    for x in along(0) {
+                        let even = (x + y) % 2 == 0 && (x + z) % 2 == 0;
+                        if x * x + y * y + z * z <= n * n && (step == 4 || even) {
+                            sites.push([x * step, y * step, z * step]);
+                        }
+                    }
+                }
+            }
+            sites
+        };
+        check::<1>(LatticeKind::Chain, ball(9, 1, 4), [true]);
+        check::<2>(LatticeKind::Square, ball(7, 2, 4), [false; 2]);
+        check::<3>(LatticeKind::Cubic, ball(5, 3, 4), [false; 3]);
+        check::<3>(LatticeKind::Bcc, ball(5, 3, 2), [false; 3]);
     }
 }
