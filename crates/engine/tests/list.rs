@@ -225,6 +225,26 @@ fn bonds<const D: usize>(
     all
 }
 
+/// Energies seen along with the forces are those of `observe`, and the forces are the same bits.
+fn watching_changes_nothing<const D: usize>(
+    it: &mut impl Interaction<D>,
+    body: &Body<D>,
+    u: &Field<D>,
+) {
+    let (mut f, mut g) = (zeros(body.len), zeros(body.len));
+    let (mut seen, mut observed) = (PointEnergies::default(), PointEnergies::default());
+    it.forces(body, u, &mut f, Sweep::Hold, None);
+    it.observe(body, u, &mut observed);
+    it.forces(body, u, &mut g, Sweep::Hold, Some(&mut seen));
+    for a in 0..D {
+        assert!(by_id(body, &f[a]) == by_id(body, &g[a]), "axis {a}");
+    }
+    assert!(seen.strain.iter().any(|e| *e > 0.0));
+    assert!(seen.strain == observed.strain, "strain");
+    assert!(seen.repulsion == observed.repulsion, "repulsion");
+    assert!(seen.dilatation == observed.dilatation, "dilatation");
+}
+
 fn same_as_stencil<const D: usize, W: Law>(
     case: &Case<D>,
     law: W,
@@ -276,6 +296,8 @@ fn same_as_stencil<const D: usize, W: Law>(
             displace(&body, amplitude, step),
             displace(&cloud, amplitude, step),
         );
+        watching_changes_nothing(&mut stencil, &body, &u.0);
+        watching_changes_nothing(&mut list, &cloud, &u.1);
         let a = stencil.forces(
             &body,
             &u.0,

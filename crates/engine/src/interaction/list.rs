@@ -206,7 +206,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// Energies of all points, and `Σ k r0² s` in place of the dilatation. Returns `Σ k r0²` of laws that do not share.
     fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) -> Vec<f64> {
         let mut moved = vec![0.0; 4 * body.len];
-        let mut unit = vec![(); self.unit.len()];
+        let mut unit = vec![(); self.sums.len()];
         self.pack(u, &mut moved, &mut unit);
         let mut weight = vec![0.0; if W::SHARES { 0 } else { body.len }];
         out.zeros(body.len);

@@ -387,7 +387,8 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                     let dead = L::dead(*v.alive.at(line));
                     let e = b.e.nan_if(dead);
                     let s = at(series, e);
-                    sum = (b.k * b.r0_squared * s).zero_if(dead) + sum;
+                    let kr = (b.k * b.r0_squared).zero_if(dead);
+                    sum = kr.fma(s.zero_if(dead), sum);
                 }
                 let q = v.pressure_factor(rows, L::gather2(v.fields.0, rows)[1]);
                 scatter(q * sum, v.fields, rows, 2);
@@ -437,6 +438,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
         let v = &self.view;
+        let series = Series::<Stretch>::new();
         let mut sums = [0.0; 2];
         let contact_e = L::splat(v.contact_e());
         for slice in v.block(block) {
@@ -450,7 +452,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     let j = v.end::<L, true>(v.partners(line));
                     let b = v.bond::<L>(&i, &j);
                     let dead = L::dead(*v.alive.at(line));
-                    let s = series::stretch(b.e.nan_if(dead)).zero_if(dead);
+                    let s = at(series, b.e.nan_if(dead)).zero_if(dead);
                     let kr = (b.k * b.r0_squared).zero_if(dead);
                     let x = v.law.pair_energy(kr * s * s, i.field, j.field);
                     strain = strain + x.zero_if(dead);
