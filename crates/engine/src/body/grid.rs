@@ -122,16 +122,20 @@ impl<const D: usize> Grid<D> {
     /// Reference coordinate `a` of slots: [position](Self::position), looked up once per row of cells.
     pub fn coordinates(&self, slots: &[u32], a: usize, out: &mut [f64]) {
         let (mut row, mut first) = (0..0, [0; 3]);
+        let mut x = 0.0;
         for (out, &slot) in out.iter_mut().zip(slots) {
             let slot = slot as usize;
             if !row.contains(&slot) {
                 let (c, _) = self.cell(slot);
                 row = slot..slot + self.cells[0] - c[0] as usize;
                 first = self.quarter(slot);
+                x = self.lattice.position(first)[a];
             }
-            let mut quarter = first;
-            quarter[0] += 4 * (slot - row.start) as i32;
-            *out = self.lattice.position(quarter)[a];
+            if a == 0 {
+                let along = first[0] + 4 * (slot - row.start) as i32;
+                x = self.lattice.position([along, first[1], first[2]])[0];
+            }
+            *out = x;
         }
     }
 

@@ -508,21 +508,25 @@ impl<const D: usize> Simulation for Model<D> {
         if matches!(field, PointField::Velocity(_)) {
             self.finish();
         }
-        let component = |x: &Field<D>, a: usize, i: usize| x.get(a).map_or(0.0, |c| c[i]);
         let body = &self.body;
-        if let PointField::Reference(a) = field {
-            return body.coordinates(first, a, out);
+        let vector = match field {
+            PointField::Reference(a) => return body.coordinates(first, a, out),
+            PointField::Displacement(a) => self.u.get(a),
+            PointField::Velocity(a) => self.v.get(a),
+            PointField::Force(a) => self.f.get(a),
+            PointField::Volume | PointField::Density | PointField::CriticalStretch => None,
+        };
+        let points = out.iter_mut().zip(&body.slots[first..]);
+        if let Some(component) = vector {
+            return points.for_each(|(x, &s)| *x = component[s as usize]);
         }
-        for (value, &s) in out.iter_mut().zip(&body.slots[first..]) {
-            let i = s as usize;
-            *value = match field {
-                PointField::Reference(_) => unreachable!("read as a whole"),
-                PointField::Displacement(a) => component(&self.u, a, i),
-                PointField::Velocity(a) => component(&self.v, a, i),
-                PointField::Force(a) => component(&self.f, a, i),
-                PointField::Volume => body.volume.at(i),
-                PointField::Density => body.density.at(i),
-                PointField::CriticalStretch => self.interaction.critical_stretch(i),
+        for (x, &s) in points {
+            *x = match field {
+                PointField::Volume => body.volume.at(s as usize),
+                PointField::Density => body.density.at(s as usize),
+                PointField::CriticalStretch => self.interaction.critical_stretch(s as usize),
+                // of an axis that the body does not have
+                _ => 0.0,
             };
         }
     }
