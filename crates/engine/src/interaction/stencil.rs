@@ -18,7 +18,7 @@ use crate::law::Law;
 use crate::spec::CrackKind;
 pub use assemble::StencilParts;
 pub use kernel::MOST;
-use kernel::{Bond, Energies, Forces, Partner, Share, View};
+use kernel::{Bond, Energies, Forces, Partner, Remember, Share, View};
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {
@@ -38,7 +38,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     /// `[tiles]`: 1 where every bond of `reach` is whole for all eight points.
     state: Vec<u8>,
     /// `[tiles][words]`: a bit per offset that any point of the tile has a partner at.
-    reach: Vec<u64>,
+    reach: Vec<u32>,
+    reaches: Vec<u64>,
     /// Family size per active tile and lane.
     family: Vec<u16>,
     directed: u64,
@@ -51,7 +52,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     repulsion: Option<Repulsion>,
     /// Critical `e` per slot, now and next.
     critical: Column,
-    next: Column,
+    next: Vec<f64>,
     /// The lowest of `critical`, and the highest `e` at which any bond repels.
     least_critical: f64,
     /// No critical stretch changes any more: none depends on the strain, and the first are known.
@@ -93,6 +94,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             alive,
             state,
             reach: &self.reach,
+            reaches: &self.reaches,
             u: std::array::from_fn(|a| &*u[a]),
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,
@@ -228,7 +230,15 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             total += *t;
         }
         if motion.is_some() && !self.critical.is_empty() && !self.settled {
-            std::mem::swap(&mut self.critical, &mut self.next);
+            let mut unit = std::mem::take(&mut self.unit);
+            let mut critical = std::mem::take(&mut self.critical);
+            let kernel = Remember {
+                view: self.view(body, u),
+                next: &self.next,
+                critical: Shared(critical.as_mut_ptr()),
+            };
+            for_each_block(self.simd, &kernel, &mut unit);
+            (self.critical, self.unit) = (critical, unit);
             body.fill_images(&mut self.critical);
             self.least_critical = total.least_critical;
             self.settled = self.toughness.iter().all(|t| t.alpha == 0.0);
@@ -462,7 +472,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             + self.next.len();
         self.alive.len()
             + self.state.len()
-            + 8 * self.reach.len()
+            + 4 * self.reach.len()
+            + 8 * self.reaches.len()
             + self.offsets.bytes()
             + 2 * self.family.len()
             + 4 * self.tiles.len()

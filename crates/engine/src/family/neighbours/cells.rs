@@ -2,13 +2,13 @@
 //!
 //! A periodic axis is wound up on its period. An open axis is wound up on the extent of the reference body, so that
 //! the number of cells is fixed however far debris flies; far points share cells with near ones, and the true
-//! distance tells them apart. A coordinate on a ring is a fraction of its length, of 32 bits while points are sorted and
-//! of 16 where it is kept, so that the difference of two wraps around to the shorter way by itself.
+//! distance tells them apart. A coordinate on a ring is a fraction of its length, of 32 bits while points are sorted, so
+//! that the difference of two wraps around to the shorter way by itself. What is kept are its last 8 bits in units of
+//! about 1/64 of a cell: enough to tell two points of adjacent cells apart, and it wraps around in the same way.
 
 use crate::body::{Body, Field, Layout};
 
 const FULL: f64 = (1u64 << 32) as f64;
-const KEPT: f64 = (1u32 << 16) as f64;
 
 /// Pairs that are tested at a time.
 const LANES: usize = 8;
@@ -24,7 +24,7 @@ pub(super) struct Cells<const D: usize> {
     start: Vec<u32>,
     /// Slots, and their coordinates on the rings (with room to read whole lanes at the end), in order of cells.
     order: Vec<u32>,
-    place: [Vec<u16>; D],
+    place: [Vec<u8>; D],
 }
 
 impl<const D: usize> Cells<D> {
@@ -62,6 +62,11 @@ impl<const D: usize> Cells<D> {
         }
     }
 
+    /// Units on each ring: whole turns of 8 bits, of at most four cells each.
+    fn units(&self) -> [u64; D] {
+        self.count.map(|n| 256 * (n as u64 / 4).max(1))
+    }
+
     /// Number of cells.
     pub fn len(&self) -> usize {
         self.start.len() - 1
@@ -78,7 +83,7 @@ impl<const D: usize> Cells<D> {
         let place = |slot: usize, x: [f64; D]| -> [u32; D] {
             std::array::from_fn(|a| wind((x[a] + u[a][slot]) * inverse[a]))
         };
-        let count = self.count;
+        let (count, units) = (self.count, self.units());
         let cell = |p: &[u32; D]| {
             let mut c = 0;
             for a in (0..D).rev() {
@@ -97,7 +102,7 @@ impl<const D: usize> Cells<D> {
             let next = &mut self.start[cell(&p)];
             self.order[*next as usize] = slot as u32;
             for a in 0..D {
-                self.place[a][*next as usize] = (p[a] >> 16) as u16;
+                self.place[a][*next as usize] = ((p[a] as u64 * units[a]) >> 32) as u8;
             }
             *next += 1;
         });
@@ -109,9 +114,12 @@ impl<const D: usize> Cells<D> {
 
     /// Every pair of points that are closer than the reach on the rings, once, except between cells that `skip`.
     pub fn each_near(&self, skip: impl Fn(usize, usize) -> bool, mut visit: impl FnMut(u32, u32)) {
-        let unit = self.length.map(|l| l / KEPT);
-        // each coordinate is cut off to its unit; squares are relative to the reach, in single precision
-        let limit = 1.0 + 2.0 * unit.iter().sum::<f64>() / self.reach;
+        let units = self.units();
+        let unit: [f64; D] = std::array::from_fn(|a| self.length[a] / units[a] as f64);
+        // each coordinate is cut off to its unit, so that differences are less than one unit off; squares are relative to
+        // the reach, in single precision
+        let off = unit.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let limit = 1.0 + off / self.reach;
         let limit = (limit * limit * (1.0 + 1e-6)) as f32;
         let unit = unit.map(|l| (l / self.reach) as f32);
         let mut at = [0usize; D];
@@ -124,7 +132,7 @@ impl<const D: usize> Cells<D> {
                         return;
                     }
                     for p in own.clone() {
-                        let x: [u16; D] = std::array::from_fn(|a| self.place[a][p]);
+                        let x: [u8; D] = std::array::from_fn(|a| self.place[a][p]);
                         let from = if other == cell { p + 1 } else { theirs.start };
                         for q in (from..theirs.end).step_by(LANES) {
                             let mut near = self.near(x, q, unit, limit);
@@ -154,11 +162,11 @@ impl<const D: usize> Cells<D> {
 
     /// Which of the points from the `q`th on are near to a place: one bit each.
     #[inline(always)]
-    fn near(&self, x: [u16; D], q: usize, unit: [f32; D], limit: f32) -> u32 {
+    fn near(&self, x: [u8; D], q: usize, unit: [f32; D], limit: f32) -> u32 {
         let mut square = [0f32; LANES];
         for a in 0..D {
             for (s, y) in square.iter_mut().zip(&self.place[a][q..q + LANES]) {
-                let d = y.wrapping_sub(x[a]) as i16 as f32 * unit[a];
+                let d = y.wrapping_sub(x[a]) as i8 as f32 * unit[a];
                 *s += d * d;
             }
         }
@@ -195,7 +203,7 @@ impl<const D: usize> Cells<D> {
     }
 
     pub fn bytes(&self) -> usize {
-        4 * (self.start.len() + self.order.len()) + 2 * D * self.place[0].len()
+        4 * (self.start.len() + self.order.len()) + D * self.place[0].len()
     }
 }
 

@@ -9,6 +9,7 @@ use crate::family::offsets::OffsetSet;
 use crate::family::stencil::{Offset, Stencil};
 use crate::interaction::{PointConstants, Repulsion, Tally, Toughness};
 use crate::law::Law;
+use std::collections::HashMap;
 
 /// Everything a stencil interaction is made of.
 pub struct StencilParts<'a, const D: usize, W> {
@@ -84,12 +85,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             .collect();
         let mut alive = vec![0u8; tiles.len() * width];
         let words = width.div_ceil(64);
-        let mut reach = vec![0u64; tiles.len() * words];
+        let (mut reach, mut reaches) = (vec![0u32; tiles.len()], vec![]);
+        let mut known: HashMap<Vec<u64>, u32> = HashMap::new();
         let mut family = vec![0u16; tiles.len() * TILE];
         let mut directed = 0;
         for (n, &t) in tiles.iter().enumerate() {
             let first = grid.tile_slot(t as usize);
             let sub = grid.tile_sublattice(t as usize);
+            let mut leads = vec![0u64; words];
             for l in 0..TILE {
                 if !grid.is_owned(first + l) {
                     continue;
@@ -97,12 +100,17 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 for (k, b) in partners[sub].iter().enumerate() {
                     if grid.neighbour(first + l, b.cell, b.to).is_some() {
                         alive[n * width + k] |= 1 << l;
-                        reach[n * words + k / 64] |= 1 << (k % 64);
+                        leads[k / 64] |= 1 << (k % 64);
                         family[n * TILE + l] += 1;
                         directed += 1;
                     }
                 }
             }
+            let new = known.len() as u32;
+            reach[n] = *known.entry(leads).or_insert_with_key(|leads| {
+                reaches.extend_from_slice(leads);
+                new
+            });
         }
         let remembers = repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite());
         let critical = if remembers {
@@ -110,6 +118,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         } else {
             Column::default()
         };
+        let next = vec![0.0; if remembers { tiles.len() * TILE } else { 0 }];
         let blocks = tiles.len().div_ceil(BLOCK);
         let mut made = StencilInteraction {
             law,
@@ -122,6 +131,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             state: vec![0; tiles.len()],
             tiles,
             reach,
+            reaches,
             family,
             directed,
             fields: Default::default(),
@@ -129,7 +139,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             point_constants,
             toughness,
             repulsion,
-            next: critical.clone(),
+            next,
             critical,
             least_critical: f64::INFINITY,
             settled: false,
@@ -150,7 +160,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let mut state = std::mem::take(&mut self.state);
         for (n, state) in state.iter_mut().enumerate() {
             let row = self.row(n);
-            let reach = &self.reach[n * words..(n + 1) * words];
+            let reach = &self.reaches[self.reach[n] as usize * words..][..words];
             let leads = |k: &usize| reach[k / 64] >> (k % 64) & 1 == 1;
             let whole = (0..self.width).filter(leads).all(|k| row[k] == 0xff);
             let first = grid.tile_slot(self.tiles[n] as usize);

@@ -16,7 +16,7 @@ use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
 use crate::law::Law;
 pub use energies::Energies;
-pub use forces::Forces;
+pub use forces::{Forces, Remember};
 pub use share::Share;
 
 /// Tiles per block of work.
@@ -69,8 +69,10 @@ pub struct View<'a, const D: usize, W> {
     pub alive: Shared<u8>,
     /// `[tiles]`: [`WHOLE`], perhaps with [`ALIKE`], or 0.
     pub state: Shared<u8>,
-    /// `[tiles][words]`: a bit per offset that any point of the tile ever had a partner at.
-    pub reach: &'a [u64],
+    /// `[tiles]`: which row of `reaches`.
+    pub reach: &'a [u32],
+    /// `[different][words]`: a bit per offset that any point of a tile ever had a partner at.
+    pub reaches: &'a [u64],
     pub u: [&'a [f64]; D],
     pub fields: [&'a [f64]; 2],
     /// Pressure factors per slot where materials differ; else empty: the law's own.
@@ -151,7 +153,8 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     #[inline(always)]
     fn reach(&self, n: usize) -> &[u64] {
         let words = self.width.div_ceil(64);
-        &self.reach[n * words..(n + 1) * words]
+        let which = self.reach[n] as usize;
+        &self.reaches[which * words..(which + 1) * words]
     }
 
     /// Sublattice of the `n`-th active tile.

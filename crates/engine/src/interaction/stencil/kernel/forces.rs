@@ -5,8 +5,8 @@ use super::offsets::Offsets;
 use super::{Bond, MOST, View};
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::Lane;
 use crate::execute::lane::series::{self, Extension, Series};
+use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::Law;
@@ -20,7 +20,7 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub view: View<'a, D, W>,
     pub f: [Shared; D],
     pub critical: &'a [f64],
-    /// Of the next critical stretch; none once it cannot change any more.
+    /// `[tiles][8]`, the next critical stretch; none once it cannot change any more.
     pub next: Option<Shared>,
     pub toughness: &'a [Toughness],
     /// Between these values of `e` no whole bond is too close and none breaks.
@@ -144,7 +144,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             if let (true, Some(out)) = (FULL, self.next) {
                 let material = |l: usize| v.body.material_of(i + l);
                 let next = history::next_critical(self.toughness, material, lowest);
-                next.store(out.at(i));
+                next.store(out.at(tile * TILE));
                 for x in &next.to_array() {
                     tally.least_critical = tally.least_critical.min(*x);
                 }
@@ -279,5 +279,27 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             rate = y[a].fma(relative, rate);
         }
         L::splat(0.25 * dt) * pull * rate
+    }
+}
+
+/// After a force pass: the next critical stretches take the place of the old.
+pub struct Remember<'a, const D: usize, W> {
+    pub view: View<'a, D, W>,
+    pub next: &'a [f64],
+    pub critical: Shared,
+}
+
+impl<const D: usize, W: Law> Kernel for Remember<'_, D, W> {
+    type Out = ();
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        for n in self.view.block(block) {
+            // SAFETY: there are eight numbers per active tile, and tiles lie inside the arrays
+            unsafe {
+                L::load(self.next.as_ptr().add(n * TILE))
+                    .store(self.critical.at(self.view.slot(n)));
+            }
+        }
     }
 }
