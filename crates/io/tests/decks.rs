@@ -122,3 +122,19 @@ fn densities_come_from_the_data_file_or_from_the_materials() {
     let (density, _) = densities(&[over("left"), over("right")]);
     assert!(density.iter().all(|d| *d == 1000.0));
 }
+
+/// The disk of the impact, with fracture and contact: state, bonds and lists.
+#[test]
+fn a_lattice_takes_at_most_150_bytes_per_point() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/impact.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let deck = Deck::parse(&text, path.to_str().unwrap(), &[]).unwrap();
+    let mut sim = build(&deck.spec, Options::default()).unwrap();
+    sim.start(true);
+    for _ in 0..3 {
+        sim.step().unwrap();
+    }
+    let info = sim.info();
+    let bytes = info.bytes as f64 / info.points as f64;
+    assert!((72.0..=150.0).contains(&bytes), "{bytes} bytes per point");
+}

@@ -11,6 +11,20 @@ const MIDDLE: (usize, f64) = (5, 1.0 / 1024.0);
 const WIDE: (usize, f64) = (9, 1.0 / 32.0);
 const ROWS: usize = NEAR.0 + MIDDLE.0 + WIDE.0;
 
+/// Where values go: a trait and not a closure, so that it is compiled with its caller's instruction set.
+/// Implement `put` with `#[inline(always)]`.
+pub trait Sink<L> {
+    /// Value number `k`.
+    fn put(&mut self, k: usize, value: L);
+}
+
+impl<L, const N: usize> Sink<L> for [L; N] {
+    #[inline(always)]
+    fn put(&mut self, k: usize, value: L) {
+        self[k] = value;
+    }
+}
+
 /// A function of `e` by three series and a root.
 pub trait Function: Copy {
     /// Coefficients of `f(e)/e`, lowest first, interpolated at the Chebyshev nodes of each interval.
@@ -95,33 +109,32 @@ impl<F: Function> Series<F> {
         Series(black_box(F::TABLE.0.as_ptr().cast()), PhantomData)
     }
 
-    /// `f(e)` in place of each `e`, none of which lies outside `least..most`; not a number where `e` is not.
+    /// `f(e)` of each `e`, none of which lies outside `least..most`, to `sink` in order; not a number where `e` is not.
     ///
     /// All take the same series, the shortest that is exact for the largest: the result of one depends, within
     /// rounding, on what it is evaluated with.
     #[inline(always)]
-    pub fn apply<L: Lane>(self, e: &mut [L], least: L, most: L) {
+    pub fn each<L: Lane>(self, e: &[L], least: L, most: L, sink: &mut impl Sink<L>) {
         let largest = (L::splat(0.0) - least).max(most);
-        let within = |limit: f64| L::splat(limit);
-        if !L::any(within(NEAR.1).lt(largest)) {
-            self.terms::<L, { NEAR.0 }>(0, e);
-        } else if !L::any(within(MIDDLE.1).lt(largest)) {
-            self.terms::<L, { MIDDLE.0 }>(NEAR.0, e);
-        } else if !L::any(within(WIDE.1).lt(largest)) {
-            self.terms::<L, { WIDE.0 }>(NEAR.0 + MIDDLE.0, e);
+        if !L::any(L::splat(NEAR.1).lt(largest)) {
+            self.terms::<L, { NEAR.0 }>(0, e, sink);
+        } else if !L::any(L::splat(MIDDLE.1).lt(largest)) {
+            self.terms::<L, { MIDDLE.0 }>(NEAR.0, e, sink);
+        } else if !L::any(L::splat(WIDE.1).lt(largest)) {
+            self.terms::<L, { WIDE.0 }>(NEAR.0 + MIDDLE.0, e, sink);
         } else {
-            for x in e {
-                *x = F::exact(*x);
+            for (k, x) in e.iter().enumerate() {
+                sink.put(k, F::exact(*x));
             }
         }
     }
 
     /// Horner's scheme: the sweeps are bound by the number of operations, not by their depth.
     #[inline(always)]
-    fn terms<L: Lane, const T: usize>(self, first: usize, e: &mut [L]) {
+    fn terms<L: Lane, const T: usize>(self, first: usize, e: &[L], sink: &mut impl Sink<L>) {
         // SAFETY: rows of a static table, each as wide as the widest lane
         let row = |k: usize| unsafe { self.0.add((first + k) * TILE) };
-        for x in e {
+        for (n, x) in e.iter().enumerate() {
             // SAFETY: as above
             unsafe {
                 let mut p = L::load(row(T - 1));
@@ -130,7 +143,7 @@ impl<F: Function> Series<F> {
                     k -= 1;
                     p = p.fma(*x, L::load(row(k)));
                 }
-                *x = p * *x;
+                sink.put(n, p * *x);
             }
         }
     }
@@ -160,15 +173,15 @@ mod tests {
                 if e <= -1.0 {
                     continue;
                 }
-                let mut all = [e];
-                series.apply(&mut all, e.min(0.0), e.max(0.0));
+                let mut all = [0.0];
+                series.each(&[e], e.min(0.0), e.max(0.0), &mut all);
                 let exact = F::exact(e);
                 assert!((all[0] - exact).abs() <= 5e-16 * exact.abs(), "at {e}");
             }
             e *= 1.037;
         }
-        let mut none = [0.0, f64::NAN];
-        series.apply(&mut none, 0.0, 0.0);
+        let mut none = [1.0; 2];
+        series.each(&[0.0, f64::NAN], 0.0, 0.0, &mut none);
         assert_eq!(none[0], 0.0);
         assert!(none[1].is_nan());
     }

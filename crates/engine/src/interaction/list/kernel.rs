@@ -215,7 +215,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
 #[inline(always)]
 fn at<L: Lane, F: Function>(series: Series<F>, e: L) -> L {
     let mut one = [e];
-    series.apply(&mut one, e, e);
+    series.each(&[e], e, e, &mut one);
     one[0]
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Bond, View};
 use crate::execute::lane::Lane;
-use crate::execute::lane::series::{Function, Series};
+use crate::execute::lane::series::{Function, Series, Sink};
 use crate::law::Law;
 use std::mem::MaybeUninit;
 
@@ -11,7 +11,7 @@ use std::mem::MaybeUninit;
 /// stored (docs/decisions/0001-hot-loop.md).
 pub const CHUNK: usize = 32;
 
-/// First `e` of each bond, then a function of it; not a number where the bond is not whole.
+/// A number for each bond: `e`, or a function of it; not a number where the bond is not whole.
 pub struct Chunk<L>([MaybeUninit<L>; CHUNK]);
 
 /// What the bonds of a chunk have in common.
@@ -22,6 +22,17 @@ pub struct Extremes<L: Lane> {
     pub high: L,
     /// Lanes with a bond that is closer than allowed, whole or not; not known of tiles whose bonds are all whole.
     pub close: L::Mask,
+}
+
+impl<L: Lane> Sink<L> for Chunk<L> {
+    #[inline(always)]
+    fn put(&mut self, k: usize, value: L) {
+        debug_assert!(k < CHUNK);
+        // SAFETY: `each` takes no more numbers than a chunk has
+        unsafe {
+            self.0.get_unchecked_mut(k).write(value);
+        }
+    }
 }
 
 impl<L: Lane> Chunk<L> {
@@ -66,15 +77,21 @@ impl<L: Lane> Chunk<L> {
         Extremes { low, high, close }
     }
 
-    /// A function of `e` in place of the first `n`.
+    /// A function of the first `n` into `to`.
     ///
     /// # Safety
     /// They were written, and none lies outside the extremes.
     #[inline(always)]
-    pub unsafe fn apply<F: Function>(&mut self, n: usize, series: Series<F>, x: &Extremes<L>) {
+    pub unsafe fn each<F: Function>(
+        &self,
+        n: usize,
+        series: Series<F>,
+        x: &Extremes<L>,
+        to: &mut impl Sink<L>,
+    ) {
         // SAFETY: the caller's promise
-        let all = unsafe { std::slice::from_raw_parts_mut(self.0.as_mut_ptr().cast(), n) };
-        series.apply(all, x.low, x.high);
+        let all = unsafe { std::slice::from_raw_parts(self.0.as_ptr().cast(), n) };
+        series.each(all, x.low, x.high, to);
     }
 
     /// # Safety

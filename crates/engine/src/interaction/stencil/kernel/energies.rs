@@ -77,7 +77,7 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
         let series = Series::<Stretch>::new();
         let zero = L::splat(0.0);
         let (mut strain, mut repulsion, mut share, mut weight) = (zero, zero, zero, zero);
-        let mut chunk = Chunk::<L>::new();
+        let (mut chunk, mut stretch) = (Chunk::<L>::new(), Chunk::<L>::new());
         // SAFETY: as in the force pass
         unsafe {
             let ui = v.displacement::<L>(i);
@@ -89,9 +89,9 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                 for bonds in bonds.chunks(CHUNK) {
                     let x = chunk.deform::<D, W, MASKED, true>(v, bonds, v.row(n), i, &ui);
                     let near = L::or(x.close, x.low.lt(L::splat(v.most_contact)));
-                    chunk.apply(bonds.len(), series, &x);
+                    chunk.each(bonds.len(), series, &x, &mut stretch);
                     for (c, b) in bonds.iter().enumerate() {
-                        let mut s = chunk.get(c);
+                        let mut s = stretch.get(c);
                         let gone = s.is_nan();
                         let kr = L::splat(b.share);
                         let mut x = s * s;

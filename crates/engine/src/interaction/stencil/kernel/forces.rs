@@ -100,7 +100,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             let mut lowest = L::splat(f64::INFINITY);
             let (mut acc, mut total) = ([zero; D], zero);
             let mut waiting = 0;
-            let mut chunk = Chunk::<L>::new();
+            let (mut chunk, mut answer) = (Chunk::<L>::new(), Chunk::<L>::new());
             let mut word = 0;
             while word < v.reach(tile).len() {
                 let (bonds, next) = offsets.stretch(v.stencil(tile), v.reach(tile), word);
@@ -122,13 +122,15 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                                     waiting += 1;
                                 }
                             }
-                            chunk.apply(bonds.len(), series, &x);
-                            self.gather::<L, true, ALIKE>(&at, bonds, &chunk, &mut acc, &mut total);
+                            chunk.each(bonds.len(), series, &x, &mut answer);
+                            self.gather::<L, true, ALIKE>(
+                                &at, bonds, &answer, &mut acc, &mut total,
+                            );
                             continue;
                         }
                     }
-                    chunk.apply(bonds.len(), series, &x);
-                    self.gather::<L, MASKED, ALIKE>(&at, bonds, &chunk, &mut acc, &mut total);
+                    chunk.each(bonds.len(), series, &x, &mut answer);
+                    self.gather::<L, MASKED, ALIKE>(&at, bonds, &answer, &mut acc, &mut total);
                 }
             }
             for a in 0..D {
@@ -159,7 +161,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         &self,
         at: &Points<L, D>,
         bonds: &[Bond<D>],
-        chunk: &Chunk<L>,
+        answer: &Chunk<L>,
         acc: &mut [L; D],
         total: &mut L,
     ) {
@@ -168,7 +170,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         for (c, b) in bonds.iter().enumerate() {
             // SAFETY: as in the first loop, which wrote every bond of the chunk
             unsafe {
-                let g = chunk.get(c);
+                let g = answer.get(c);
                 let other = if ALIKE {
                     [L::load(v.fields[0].as_ptr().add(b.to(at.i))), at.own[1]]
                 } else {

@@ -1,11 +1,11 @@
 //! The share pass: the point scalar of laws that have one.
 
-use super::View;
 use super::chunk::{CHUNK, Chunk};
 use super::offsets::Offsets;
+use super::{Bond, View};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::Lane;
-use crate::execute::lane::series::{Series, Stretch};
+use crate::execute::lane::series::{Series, Sink, Stretch};
 use crate::execute::simd::Kernel;
 use crate::law::Law;
 
@@ -37,6 +37,24 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
     }
 }
 
+/// `Σ k r0² s` of whole bonds.
+struct Weighted<'a, L, const D: usize, const MASKED: bool> {
+    bonds: &'a [Bond<D>],
+    sum: L,
+}
+
+impl<L: Lane, const D: usize, const MASKED: bool> Sink<L> for Weighted<'_, L, D, MASKED> {
+    #[inline(always)]
+    fn put(&mut self, k: usize, mut s: L) {
+        if MASKED {
+            s = s.zero_if(s.is_nan());
+        }
+        // SAFETY: one value per bond
+        let share = unsafe { self.bonds.get_unchecked(k).share };
+        self.sum = L::splat(share).fma(s, self.sum);
+    }
+}
+
 impl<const D: usize, W: Law> Share<'_, D, W> {
     /// `Σ k r0² s` of the points of a tile.
     #[inline(always)]
@@ -59,14 +77,9 @@ impl<const D: usize, W: Law> Share<'_, D, W> {
                 word = next;
                 for bonds in bonds.chunks(CHUNK) {
                     let x = chunk.deform::<D, W, MASKED, false>(v, bonds, v.row(tile), i, &ui);
-                    chunk.apply(bonds.len(), series, &x);
-                    for (c, b) in bonds.iter().enumerate() {
-                        let mut s = chunk.get(c);
-                        if MASKED {
-                            s = s.zero_if(s.is_nan());
-                        }
-                        sum = L::splat(b.share).fma(s, sum);
-                    }
+                    let mut weighted = Weighted::<L, D, MASKED> { bonds, sum };
+                    chunk.each(bonds.len(), series, &x, &mut weighted);
+                    sum = weighted.sum;
                 }
             }
         }
