@@ -223,19 +223,6 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         weight
     }
 
-    /// Make dilatations of [sums](Self::sums).
-    fn dilate(&self, body: &Body<D>, weight: &[f64], out: &mut PointEnergies) {
-        for &slot in &body.slots {
-            let i = slot as usize;
-            let share = out.dilatation[i];
-            if W::SHARES {
-                out.dilatation[i] = self.dilatation_factor(body, i) * share;
-            } else if weight[i] > 0.0 {
-                out.dilatation[i] = D as f64 * share / weight[i];
-            }
-        }
-    }
-
     /// `P / Σ k r0² s` at a slot.
     fn pressure_factor(&self, i: usize) -> f64 {
         match self.pressure.get(i) {
@@ -266,7 +253,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     self.fields[2 * i] = self.pressure_factor(i) * seen.dilatation[i];
                 }
             }
-            self.dilate(body, &weight, seen);
+            seen.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
         } else if W::SHARES {
             self.share(&mut unit);
         }
@@ -310,7 +297,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let weight = self.sums(body, u, out);
-        self.dilate(body, &weight, out);
+        out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
     }
 
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

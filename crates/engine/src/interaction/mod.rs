@@ -10,6 +10,7 @@ pub mod weight;
 
 use crate::body::{Body, Field};
 use crate::execute::blocks::Shared;
+use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::CrackKind;
 use std::ops::AddAssign;
@@ -108,6 +109,24 @@ pub struct PointEnergies {
 }
 
 impl PointEnergies {
+    /// Make dilatations of `Σ k r0² s`: times a factor per slot for laws that share, else `D Σ k r0² s / Σ k r0²`.
+    fn dilate<W: Law, const D: usize>(
+        &mut self,
+        body: &Body<D>,
+        weight: &[f64],
+        factor: impl Fn(usize) -> f64,
+    ) {
+        for &slot in &body.slots {
+            let i = slot as usize;
+            let share = self.dilatation[i];
+            if W::SHARES {
+                self.dilatation[i] = factor(i) * share;
+            } else if weight[i] > 0.0 {
+                self.dilatation[i] = D as f64 * share / weight[i];
+            }
+        }
+    }
+
     /// All zero, for so many slots.
     pub fn zeros(&mut self, len: usize) {
         for field in [&mut self.strain, &mut self.repulsion, &mut self.dilatation] {

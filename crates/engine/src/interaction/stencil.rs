@@ -35,10 +35,11 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     tiles: Vec<u32>,
     /// `[tiles][width]`: bit l of a byte is the bond of point l of the tile.
     alive: Vec<u8>,
-    /// `[tiles]`: 1 where every bond of `reach` is whole for all eight points.
+    /// `[tiles]`: are all bonds whole, and their ends alike? See the kernel's `WHOLE` and `ALIKE`.
     state: Vec<u8>,
-    /// `[tiles][words]`: a bit per offset that any point of the tile has a partner at.
+    /// `[tiles]`: which row of `reaches`.
     reach: Vec<u32>,
+    /// `[different][words]`: a bit per offset that any point of a tile has a partner at.
     reaches: Vec<u64>,
     /// Family size per active tile and lane.
     family: Vec<u16>,
@@ -50,13 +51,15 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     point_constants: PointConstants,
     toughness: Vec<Toughness>,
     repulsion: Option<Repulsion>,
-    /// Critical `e` per slot, now and next.
+    /// Critical `e` per slot.
     critical: Column,
+    /// `[tiles][8]`: the next ones.
     next: Vec<f64>,
-    /// The lowest of `critical`, and the highest `e` at which any bond repels.
+    /// The lowest of `critical`.
     least_critical: f64,
     /// No critical stretch changes any more: none depends on the strain, and the first are known.
     settled: bool,
+    /// The highest `e` at which any bond repels.
     most_contact: f64,
     volume: f64,
     guard: usize,
@@ -162,19 +165,6 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         weight
     }
 
-    /// Make dilatations of [sums](Self::sums).
-    fn dilate(&self, body: &Body<D>, weight: &[f64], out: &mut PointEnergies) {
-        for &slot in &body.slots {
-            let i = slot as usize;
-            let share = out.dilatation[i];
-            if W::SHARES {
-                out.dilatation[i] = self.dilatation_factor(body, i) * share;
-            } else if weight[i] > 0.0 {
-                out.dilatation[i] = D as f64 * share / weight[i];
-            }
-        }
-    }
-
     /// `P / Σ k r0² s` at a slot.
     fn pressure_factor(&self, i: usize) -> f64 {
         match self.pressure.get(i) {
@@ -201,7 +191,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                     self.fields[0][i] = self.pressure_factor(i) * seen.dilatation[i];
                 }
             }
-            self.dilate(body, &weight, seen);
+            seen.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
         } else if W::SHARES {
             let mut unit = std::mem::take(&mut self.unit);
             let mut pressure = std::mem::take(&mut self.fields[0]);
@@ -261,7 +251,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let weight = self.sums(body, u, out);
-        self.dilate(body, &weight, out);
+        out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
