@@ -1,7 +1,7 @@
 //! The arithmetic of one bond, shared by all families.
 
 use crate::execute::lane::Lane;
-use crate::execute::lane::series::stretch;
+use crate::execute::lane::series::{Function, Stretch};
 
 /// `e = |ξ+η|²/|ξ|² − 1` without cancellation: `|ξ+η|² − |ξ|² = 2 η·(ξ + ½η)`. Both vectors may point either way.
 #[inline(always)]
@@ -25,5 +25,9 @@ pub fn critical_e(s0: f64) -> f64 {
 
 /// The stretch that a critical `e` stands for.
 pub fn critical_stretch(e0: f64) -> f64 {
-    if e0.is_infinite() { e0 } else { stretch(e0) }
+    if e0.is_infinite() {
+        e0
+    } else {
+        Stretch::exact(e0)
+    }
 }

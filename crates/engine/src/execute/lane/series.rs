@@ -149,18 +149,6 @@ impl<F: Function> Series<F> {
     }
 }
 
-/// `1 − (1+e)^(−½)` for any e > −1.
-#[inline(always)]
-pub fn extension_over_length<L: Lane>(e: L) -> L {
-    Extension::exact(e)
-}
-
-/// `(1+e)^½ − 1` for any e ≥ −1.
-#[inline(always)]
-pub fn stretch<L: Lane>(e: L) -> L {
-    Stretch::exact(e)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, Extension, Function, Series, Stretch};
+use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
@@ -325,7 +325,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                         if which != 0 {
                             *v.alive.at(line) &= !(which as u8);
                             tally.broken += which.count_ones() as u64;
-                            let s = series::stretch(e);
+                            let s = Stretch::exact(e);
                             let share = b.k * b.r0_squared * s;
                             let x = v.law.pair_energy(share * s, i.field, j.field)
                                 + self.farewell(pull, b.y, rows, partners);

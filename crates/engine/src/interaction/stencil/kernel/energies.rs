@@ -94,12 +94,13 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                         let mut s = stretch.get(c);
                         let gone = s.is_nan();
                         let kr = L::splat(b.share);
-                        let mut x = s * s;
                         if MASKED {
                             s = s.zero_if(gone);
                         }
-                        x = v.law.pair_energy(kr * x, own, v.fields::<L>(b.to(i)));
+                        let other = v.fields::<L>(b.to(i));
+                        let mut x = v.law.pair_energy(kr * s * s, own, other);
                         if MASKED {
+                            // fields mean nothing where there is no point
                             x = x.zero_if(gone);
                         }
                         strain = strain + x;

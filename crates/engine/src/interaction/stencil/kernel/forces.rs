@@ -5,7 +5,7 @@ use super::offsets::Offsets;
 use super::{Bond, MOST, View};
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{self, Extension, Series};
+use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::{Tally, Toughness, history};
@@ -228,7 +228,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let e = raw.nan_if(dead);
                 let aside = self.aside(at, b, e, raw);
                 let other = v.fields::<L>(j);
-                let g = series::extension_over_length(e);
+                let g = Extension::exact(e);
                 let own_pull = v.law.pull(L::splat(b.k), g, own, other).zero_if(dead);
                 let mut pull = L::select(aside, own_pull, zero);
                 let close = raw.lt(L::splat(b.contact_e));
@@ -243,7 +243,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                         *bits &= !(which as u8);
                         *v.state.at(at.tile) = 0;
                         tally.broken += which.count_ones() as u64;
-                        let s = series::stretch(e);
+                        let s = Stretch::exact(e);
                         let share = L::splat(b.share) * s;
                         let held = v.law.pair_energy(share * s, own, other)
                             + self.farewell(own_pull, y, i, j);
