@@ -6,7 +6,10 @@
 
 pub mod influence;
 pub mod micromodulus;
+pub mod number;
+pub mod potential;
 pub mod solid;
+pub mod spline;
 
 use crate::execute::lane::Lane;
 

@@ -1,0 +1,193 @@
+//! Numbers that potentials are written over: a plain number, a number with its slope (forces), or a Taylor series
+//! (elastic constants, gradient coefficients). So every potential is written once, and its derivatives are exact.
+
+use super::spline::Spline;
+use crate::execute::lane::Lane;
+use std::ops::{Add, Mul, Sub};
+
+/// What a potential may do with its argument.
+pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    fn constant(x: f64) -> Self;
+    /// Times a constant.
+    fn times(self, x: f64) -> Self {
+        self * Self::constant(x)
+    }
+    /// Plus a constant.
+    fn plus(self, x: f64) -> Self {
+        self + Self::constant(x)
+    }
+    fn recip(self) -> Self;
+    fn sqrt(self) -> Self;
+    fn exp(self) -> Self;
+    fn ln(self) -> Self;
+    /// The value of a table.
+    fn table(self, table: &Spline) -> Self;
+    /// `a` where this is below `limit`, else `b`.
+    fn below(self, limit: f64, a: Self, b: Self) -> Self;
+
+    /// Whole powers, by squaring.
+    fn power(self, n: u32) -> Self {
+        match n {
+            0 => Self::constant(1.0),
+            1 => self,
+            n if n % 2 == 0 => (self * self).power(n / 2),
+            n => self * (self * self).power(n / 2),
+        }
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn constant(x: f64) -> f64 {
+        x
+    }
+    #[inline(always)]
+    fn recip(self) -> f64 {
+        1.0 / self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> f64 {
+        f64::exp(self)
+    }
+    #[inline(always)]
+    fn ln(self) -> f64 {
+        f64::ln(self)
+    }
+    #[inline(always)]
+    fn table(self, table: &Spline) -> f64 {
+        table.at(self)[0]
+    }
+    #[inline(always)]
+    fn below(self, limit: f64, a: f64, b: f64) -> f64 {
+        if self < limit { a } else { b }
+    }
+}
+
+/// Values and slopes of a whole lane: `f + f′ε`, ε² = 0.
+#[derive(Clone, Copy)]
+pub struct Dual<L> {
+    pub value: L,
+    pub slope: L,
+}
+
+impl<L: Lane> Dual<L> {
+    /// The variable itself.
+    #[inline(always)]
+    pub fn variable(value: L) -> Self {
+        Dual {
+            value,
+            slope: L::splat(1.0),
+        }
+    }
+    /// A function's value and derivative at the value, by the chain rule.
+    #[inline(always)]
+    fn chain(self, value: L, derivative: L) -> Self {
+        Dual {
+            value,
+            slope: derivative * self.slope,
+        }
+    }
+}
+
+impl<L: Lane> Add for Dual<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Dual {
+            value: self.value + o.value,
+            slope: self.slope + o.slope,
+        }
+    }
+}
+impl<L: Lane> Sub for Dual<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Dual {
+            value: self.value - o.value,
+            slope: self.slope - o.slope,
+        }
+    }
+}
+impl<L: Lane> Mul for Dual<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Dual {
+            value: self.value * o.value,
+            slope: self.value.fma(o.slope, self.slope * o.value),
+        }
+    }
+}
+
+/// A function of a plain number in every lane. No closure, so that this compiles for the lane's instruction set.
+#[inline(always)]
+fn each<L: Lane>(x: L, f: fn(f64) -> f64) -> L {
+    let mut a = x.to_array();
+    for v in &mut a[..L::N] {
+        *v = f(*v);
+    }
+    // SAFETY: N ≤ TILE
+    unsafe { L::load(a.as_ptr()) }
+}
+
+impl<L: Lane> Number for Dual<L> {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Dual {
+            value: L::splat(x),
+            slope: L::splat(0.0),
+        }
+    }
+    #[inline(always)]
+    fn times(self, x: f64) -> Self {
+        let x = L::splat(x);
+        Dual {
+            value: self.value * x,
+            slope: self.slope * x,
+        }
+    }
+    #[inline(always)]
+    fn plus(self, x: f64) -> Self {
+        Dual {
+            value: self.value + L::splat(x),
+            slope: self.slope,
+        }
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        let r = L::splat(1.0).div(self.value);
+        self.chain(r, L::splat(0.0) - r * r)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let r = self.value.sqrt();
+        self.chain(r, L::splat(0.5).div(r))
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let e = each(self.value, f64::exp);
+        self.chain(e, e)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.chain(each(self.value, f64::ln), L::splat(1.0).div(self.value))
+    }
+    #[inline(always)]
+    fn table(self, table: &Spline) -> Self {
+        let [value, derivative] = table.lanes(self.value);
+        self.chain(value, derivative)
+    }
+    #[inline(always)]
+    fn below(self, limit: f64, a: Self, b: Self) -> Self {
+        let m = self.value.lt(L::splat(limit));
+        Dual {
+            value: L::select(m, a.value, b.value),
+            slope: L::select(m, a.slope, b.slope),
+        }
+    }
+}
