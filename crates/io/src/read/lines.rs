@@ -30,11 +30,11 @@ impl<'a> Lines<'a> {
         None
     }
 
-    /// Passes over one line, blank or not.
-    pub fn next_raw(&mut self) {
-        if let Some((index, _)) = self.rest.next() {
-            self.number = index + 1;
-        }
+    /// The line after this one, blank or not, untouched.
+    pub fn next_raw(&mut self) -> Option<&'a str> {
+        let (index, line) = self.rest.next()?;
+        self.number = index + 1;
+        Some(line)
     }
 
     /// The next line, which must exist.

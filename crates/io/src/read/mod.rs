@@ -1,10 +1,11 @@
-//! Point clouds from files: plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`.
+//! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), and tables of potentials ([`eam`]).
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count;
 //! second-order cells are taken by their corners.
 
 mod abaqus;
 mod cell;
+pub mod eam;
 mod gmsh;
 mod lammps;
 mod lines;

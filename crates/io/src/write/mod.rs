@@ -8,6 +8,7 @@ pub mod picture;
 pub mod pvd;
 pub mod run_json;
 pub mod series;
+pub mod setfl;
 pub mod vtu;
 
 pub use atomic::WriteError;

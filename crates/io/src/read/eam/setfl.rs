@@ -1,0 +1,144 @@
+//! `eam/alloy` files: three comment lines; `N name…`; `Nrho drho Nr dr cutoff`; per element a line
+//! `number mass lattice_constant lattice` with its tables F and ρ; then r φ of every pair, lower triangle.
+
+use super::super::ReadError;
+use super::values::Values;
+use super::{EamElement, EamFile, failure, text_of};
+use std::path::Path;
+
+/// Reads an `eam/alloy` file.
+///
+/// # Errors
+/// File and line: it is truncated, has something else than a finite number in a table, counts that do not fit,
+/// steps that are not positive, or a cutoff beyond its tables.
+pub fn setfl(path: &Path) -> Result<EamFile, ReadError> {
+    let (text, name) = text_of(path)?;
+    parse_setfl(&text, &name)
+}
+
+/// The same from a text; `name` is for messages.
+pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
+    let mut values = Values::new(text, name);
+    let mut comments = Vec::new();
+    for _ in 0..3 {
+        let line = values.lines.next_raw();
+        let line = line.ok_or_else(|| {
+            failure(
+                name,
+                None,
+                "the file ends within its three comment lines: this is not an eam/alloy file",
+            )
+        })?;
+        comments.push(line.trim_end().to_string());
+    }
+    let names = names(&mut values)?;
+    let grid = Grid::read(&mut values, "Nrho drho Nr dr cutoff")?;
+    let mut file = EamFile {
+        source: name.to_string(),
+        comments,
+        elements: Vec::new(),
+        drho: grid.drho,
+        dr: grid.dr,
+        cutoff: grid.cutoff,
+        embedding: Vec::new(),
+        density: Vec::new(),
+        pair: Vec::new(),
+    };
+    for element in &names {
+        let what = format!("`number mass lattice_constant lattice` of {element}");
+        let words = values.header(&what)?;
+        file.elements.push(described(&values, &words, element)?);
+        let what = format!("the embedding energy F of {element}");
+        file.embedding.push(values.table(&what, grid.nrho)?);
+        let what = format!("the electron density of {element}");
+        file.density.push(values.table(&what, grid.nr)?);
+    }
+    for (i, first) in names.iter().enumerate() {
+        for second in &names[..=i] {
+            let what = format!("r φ of the pair {first}-{second}");
+            file.pair.push(values.table(&what, grid.nr)?);
+        }
+    }
+    values.end("; this reads eam/alloy, not eam/fs, which has a density for every pair")?;
+    Ok(file)
+}
+
+fn names(values: &mut Values) -> Result<Vec<String>, ReadError> {
+    let words = values.header("`N` and the names of N elements")?;
+    let count = values.count(words.first(), "the number of elements", 1)?;
+    let names: Vec<String> = words[1..].iter().map(|w| w.to_string()).collect();
+    if names.len() != count {
+        return Err(values.lines.error(format!(
+            "{count} elements are announced and {} named: write `{} {}`",
+            names.len(),
+            names.len(),
+            names.join(" ")
+        )));
+    }
+    if let Some(i) = (1..count).find(|i| names[..*i].contains(&names[*i])) {
+        return Err(values
+            .lines
+            .error(format!("the element {} is named twice", names[i])));
+    }
+    Ok(names)
+}
+
+/// `number mass lattice_constant lattice`.
+pub(super) fn described(
+    values: &Values,
+    words: &[&str],
+    name: &str,
+) -> Result<EamElement, ReadError> {
+    Ok(EamElement {
+        name: name.to_string(),
+        number: values
+            .lines
+            .parse(words.first().copied(), "an atomic number")?,
+        mass: values.positive(words.get(1), "the mass")?,
+        lattice_constant: match words.get(2) {
+            Some(word) => values.number(word, || "the lattice constant".into())?,
+            None => 0.0,
+        },
+        lattice: words.get(3).unwrap_or(&"").to_string(),
+    })
+}
+
+/// The line of counts and steps.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grid {
+    pub nrho: usize,
+    pub drho: f64,
+    pub nr: usize,
+    pub dr: f64,
+    pub cutoff: f64,
+}
+
+impl Grid {
+    pub fn read(values: &mut Values, what: &str) -> Result<Grid, ReadError> {
+        let words = values.header(&format!("`{what}`"))?;
+        if words.len() != 5 {
+            return Err(values.lines.error(format!(
+                "expected the five numbers `{what}`, found {}",
+                words.len()
+            )));
+        }
+        // slopes at the knots take five values
+        let grid = Grid {
+            nrho: values.count(words.first(), "Nrho", 5)?,
+            drho: values.positive(words.get(1), "drho")?,
+            nr: values.count(words.get(2), "Nr", 5)?,
+            dr: values.positive(words.get(3), "dr")?,
+            cutoff: values.positive(words.get(4), "the cutoff")?,
+        };
+        // many files put the cutoff one step beyond the last knot, where the last value stays
+        let end = grid.nr as f64 * grid.dr;
+        if grid.cutoff > end * (1.0 + 1e-6) {
+            return Err(values.lines.error(format!(
+                "the cutoff {} lies beyond the tables, which end at (Nr - 1) dr = {}: write a smaller cutoff or longer tables",
+                grid.cutoff,
+                end - grid.dr
+            )));
+        }
+        Ok(grid)
+    }
+}
