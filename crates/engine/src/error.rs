@@ -46,6 +46,16 @@ pub enum RunError {
         path: f64,
         spacing: f64,
     },
+    #[error(
+        "step {step}: the electron density at atom {id} at ({:.6e}, {:.6e}, {:.6e}) is {density:.4e}: the embedding energy has no meaning there (its logarithm needs a positive density); atoms are too close or too far from each other for this potential, or its length scales do not fit the lattice",
+        position[0], position[1], position[2]
+    )]
+    Density {
+        step: u64,
+        id: u64,
+        position: [f64; 3],
+        density: f64,
+    },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
     #[error(

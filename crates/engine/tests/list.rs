@@ -345,7 +345,7 @@ fn same_as_stencil<const D: usize, W: Law>(
         close("damage", &a, &b, 1e-14);
         for (g, c) in body.slots.iter().zip(&cloud.slots) {
             let (g, c) = (*g as usize, *c as usize);
-            assert_eq!(stencil.family_size(g), list.family_size(c));
+            assert_eq!(stencil.family_size(&body, g), list.family_size(&cloud, c));
             let (a, b) = (stencil.critical_stretch(g), list.critical_stretch(c));
             assert!(a == b || (a - b).abs() <= 1e-14, "{a} {b}");
         }

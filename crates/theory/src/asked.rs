@@ -21,7 +21,12 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
         young,
         poisson: f64::NAN,
     };
-    match (*law, dimension, plane) {
+    // springs are the bond-based solid at small strains
+    let law = match *law {
+        LawSpec::Springs(s) => LawSpec::Pmb(s),
+        other => other,
+    };
+    match (law, dimension, plane) {
         (LawSpec::Pmb(PmbStiffness::Young(e)), ..) => Some(bond_based(e)),
         (LawSpec::Pmb(PmbStiffness::Bulk(k)), 1, _) => Some(bar(k)),
         (LawSpec::Pmb(PmbStiffness::Bulk(k)), 2, Plane::Stress) => Some(bond_based(k)),
@@ -42,7 +47,13 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
             let bulk = volume / 3.0 + 5.0 / 3.0 * shear;
             Some(Moduli::from_bulk_shear(bulk, shear))
         }
-        (LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. }, ..) => None,
+        (
+            LawSpec::LpsAsTyped { .. }
+            | LawSpec::EamLike { .. }
+            | LawSpec::Springs(_)
+            | LawSpec::Atoms,
+            ..,
+        ) => None,
     }
 }
 

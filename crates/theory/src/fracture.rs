@@ -50,7 +50,10 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
             };
             Some(stiffness * horizon)
         }
-        LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. } => None,
+        LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Springs(_)
+        | LawSpec::Atoms => None,
     }
 }
 

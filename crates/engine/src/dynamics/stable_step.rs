@@ -39,9 +39,12 @@ pub fn largest_eigenvalue<const D: usize>(
     let mut previous = vec![[0.0; D]; body.points()];
     let mut u = body.at_rest();
     let mut f = zeros::<D>(body.len);
+    // what acts at rest: 0 for solids, not for atoms under pressure
+    let mut rest = zeros::<D>(body.len);
+    interaction.forces(body, &u, &mut rest, Sweep::Hold, None);
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for _ in 0..STEPS.min(D * body.points()) {
-        let mut next = product(body, interaction, &w, &mut u, &mut f);
+        let mut next = product(body, interaction, &w, &mut u, &mut f, &rest);
         let alpha: f64 = next
             .iter()
             .zip(&w)
@@ -74,6 +77,7 @@ fn product<const D: usize>(
     w: &[[f64; D]],
     u: &mut Field<D>,
     f: &mut Field<D>,
+    rest: &Field<D>,
 ) -> Vec<[f64; D]> {
     let peak = w.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
     let small = 1e-7 * body.spacing / peak.max(f64::MIN_POSITIVE);
@@ -89,7 +93,8 @@ fn product<const D: usize>(
     body.slots
         .iter()
         .map(|&s| {
-            std::array::from_fn(|a| -f[a][s as usize] / (small * body.density.at(s as usize)))
+            let s = s as usize;
+            std::array::from_fn(|a| (rest[a][s] - f[a][s]) / (small * body.density.at(s)))
         })
         .collect()
 }

@@ -2,6 +2,7 @@
 
 mod cells;
 pub mod horizon;
+pub mod links;
 pub mod neighbours;
 pub mod offsets;
 pub mod stencil;

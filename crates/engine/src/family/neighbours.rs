@@ -5,6 +5,7 @@
 //! fastest one went; the sum of that bounds them all and needs no memory per point. Linked cells make a build O(N).
 
 mod cells;
+pub mod near;
 
 use crate::body::{Body, Field};
 use cells::Cells;

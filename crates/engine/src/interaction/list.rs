@@ -233,6 +233,10 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 }
 
 impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
+    fn family(&self) -> &'static str {
+        "list"
+    }
+
     fn forces(
         &mut self,
         body: &Body<D>,
@@ -400,7 +404,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.list.directed
     }
 
-    fn family_size(&self, slot: usize) -> usize {
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
         let row = self.list.row(slot);
         self.sum(row, &self.list.present, |_| 1.0) as usize
     }

@@ -1,9 +1,11 @@
 //! A law bound to a family: forces, energies and bonds of a body. Compiled once per law and family, called once
 //! per sweep.
 
+pub mod atoms;
 pub mod bond;
 pub mod contact;
 mod history;
+pub mod linear;
 pub mod list;
 pub mod stencil;
 pub mod weight;
@@ -24,6 +26,17 @@ pub struct Tally {
     pub released: f64,
     /// The lowest critical `e` of any point from now on, where that is counted.
     pub least_critical: f64,
+    /// Why these forces mean nothing.
+    pub fault: Option<Fault>,
+}
+
+/// A state that a law has no answer to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fault {
+    /// The embedding energy has no meaning at this density of this slot.
+    Density { slot: usize, density: f64 },
+    /// Neighbours of a chain went through each other (slots).
+    Crossing { i: usize, j: usize },
 }
 
 impl Default for Tally {
@@ -32,6 +45,7 @@ impl Default for Tally {
             broken: 0,
             released: 0.0,
             least_critical: f64::INFINITY,
+            fault: None,
         }
     }
 }
@@ -41,6 +55,7 @@ impl AddAssign for Tally {
         self.broken += o.broken;
         self.released += o.released;
         self.least_critical = self.least_critical.min(o.least_critical);
+        self.fault = self.fault.or(o.fault);
     }
 }
 
@@ -146,6 +161,18 @@ struct EnergyFields {
     weight: Shared,
 }
 
+/// Axes of the components of a virial.
+const VIRIAL: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// Add `factor · y ⊗ pull` to a virial.
+fn add_virial<const D: usize>(sum: &mut [f64; 6], pull: &[f64; D], y: &[f64; D], factor: f64) {
+    for (sum, (m, n)) in sum.iter_mut().zip(VIRIAL) {
+        if n < D {
+            *sum += factor * y[m] * pull[n];
+        }
+    }
+}
+
 /// A law on a family.
 pub trait Interaction<const D: usize>: Send + Sync {
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
@@ -169,25 +196,38 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
 
+    /// What enumerates the bonds: `"stencil"`, `"list"` or `"neighbours"`.
+    fn family(&self) -> &'static str;
+
+    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the model
+    /// knows better.
+    fn virial(&mut self, _body: &Body<D>, _u: &Field<D>) -> Option<[f64; 6]> {
+        None
+    }
+
     /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot; 0 for points without a family.
-    fn damage(&self, body: &Body<D>, out: &mut [f64]);
+    fn damage(&self, _body: &Body<D>, out: &mut [f64]) {
+        out.fill(0.0);
+    }
 
     /// Cut bonds whose end points satisfy `crosses`. Returns directed bonds cut. Call before the first sweep.
     fn cut(
         &mut self,
-        body: &Body<D>,
-        kind: CrackKind,
-        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
-    ) -> u64;
+        _body: &Body<D>,
+        _kind: CrackKind,
+        _crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        0
+    }
 
     /// Compute what depends on the family (weighted volumes); after all `Absent` cuts, before the first sweep.
-    fn prepare(&mut self, body: &Body<D>);
+    fn prepare(&mut self, _body: &Body<D>) {}
 
     /// Directed bonds of the reference family.
     fn directed_bonds(&self) -> u64;
 
     /// Size of the family of every slot.
-    fn family_size(&self, slot: usize) -> usize;
+    fn family_size(&self, body: &Body<D>, slot: usize) -> usize;
 
     /// Directed pairs whose distance is within round-off of the horizon, in or out, where that was counted.
     fn near_horizon(&self) -> u64 {
@@ -195,16 +235,24 @@ pub trait Interaction<const D: usize>: Send + Sync {
     }
 
     /// Critical stretch s0 of a slot (∞ before the first sweep).
-    fn critical_stretch(&self, slot: usize) -> f64;
+    fn critical_stretch(&self, _slot: usize) -> f64 {
+        f64::INFINITY
+    }
 
     /// Point field of the law at a slot; 0 where the law has none.
-    fn point_field(&self, field: usize, slot: usize) -> f64;
+    fn point_field(&self, _field: usize, _slot: usize) -> f64 {
+        0.0
+    }
 
     /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
-    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool;
+    fn in_family(&self, _body: &Body<D>, _i: usize, _j: usize) -> bool {
+        false
+    }
 
     /// The memory of bonds, as it is laid out: bits of whole bonds and critical values of `e`.
-    fn memory(&self) -> (&[u8], &[f64]);
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&[], &[])
+    }
 
     /// Bytes held.
     fn bytes(&self) -> usize;

@@ -175,6 +175,10 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
 }
 
 impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
+    fn family(&self) -> &'static str {
+        "stencil"
+    }
+
     fn forces(
         &mut self,
         body: &Body<D>,
@@ -420,7 +424,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.directed
     }
 
-    fn family_size(&self, slot: usize) -> usize {
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
         // tiles are sorted; find the one that holds the slot
         let first = |t: u32| t as usize * TILE;
         let n = self

@@ -9,10 +9,12 @@ use std::ops::{Add, Mul, Sub};
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     fn constant(x: f64) -> Self;
     /// Times a constant.
+    #[inline(always)]
     fn times(self, x: f64) -> Self {
         self * Self::constant(x)
     }
     /// Plus a constant.
+    #[inline(always)]
     fn plus(self, x: f64) -> Self {
         self + Self::constant(x)
     }
@@ -26,12 +28,24 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     fn below(self, limit: f64, a: Self, b: Self) -> Self;
 
     /// Whole powers, by squaring.
-    fn power(self, n: u32) -> Self {
-        match n {
-            0 => Self::constant(1.0),
-            1 => self,
-            n if n % 2 == 0 => (self * self).power(n / 2),
-            n => self * (self * self).power(n / 2),
+    #[inline(always)]
+    fn power(self, mut n: u32) -> Self {
+        let (mut base, mut out) = (self, None);
+        while n > 0 {
+            if n % 2 == 1 {
+                out = Some(match out {
+                    None => base,
+                    Some(o) => o * base,
+                });
+            }
+            n /= 2;
+            if n > 0 {
+                base = base * base;
+            }
+        }
+        match out {
+            Some(o) => o,
+            None => Self::constant(1.0),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! The accounts of a model: energies now, and whether they still add up.
 
 use super::model::Model;
+use super::recipe::Laws;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
-use crate::interaction::BondState;
+use crate::interaction::{BondState, Fault};
 use crate::observe::Ledger;
 
 impl<const D: usize> Model<D> {
@@ -52,6 +53,9 @@ impl<const D: usize> Model<D> {
 
     /// The balance now, or why the run cannot be trusted.
     pub(super) fn balance(&mut self) -> Result<Ledger, RunError> {
+        if let Some(fault) = self.fault {
+            return Err(self.explained(fault));
+        }
         let ledger = self.energy_now();
         if let Some((i, j)) = self.crossed_chain() {
             return Err(RunError::Crossing {
@@ -132,8 +136,38 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// A fault of the last forces, with point ids.
+    pub(super) fn explained(&self, fault: Fault) -> RunError {
+        let step = self.step;
+        match fault {
+            Fault::Crossing { i, j } => RunError::Crossing {
+                step,
+                i: self.id(i),
+                j: self.id(j),
+            },
+            Fault::Density { slot, density } => {
+                let x = self.body.position(slot);
+                RunError::Density {
+                    step,
+                    id: self.id(slot),
+                    position: std::array::from_fn(|a| {
+                        x[a] + if a < D { self.u[a][slot] } else { 0.0 }
+                    }),
+                    density,
+                }
+            }
+        }
+    }
+
+    /// Number of the point in a slot, from 1 on.
+    fn id(&self, slot: usize) -> u64 {
+        let place = self.body.slots.iter().position(|s| *s as usize == slot);
+        place.map_or(0, |i| i as u64 + 1)
+    }
+
     fn crossed_chain(&self) -> Option<(u64, u64)> {
-        if D != 1 {
+        // linear springs may go through each other, atoms are looked at in every step
+        if D != 1 || !matches!(self.recipe.laws, Laws::Bond(_) | Laws::Solid(_)) {
             return None;
         }
         let mut crossed = None;
@@ -147,14 +181,7 @@ impl<const D: usize> Model<D> {
                     crossed = Some((i, j));
                 }
             });
-        let id = |slot: usize| {
-            self.body
-                .slots
-                .iter()
-                .position(|s| *s as usize == slot)
-                .map_or(0, |i| i as u64 + 1)
-        };
-        crossed.map(|(i, j)| (id(i), id(j)))
+        crossed.map(|(i, j)| (self.id(i), self.id(j)))
     }
 }
 

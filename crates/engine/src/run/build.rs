@@ -1,13 +1,14 @@
 //! From a specification to a model: the only place that matches on dimension, law and family.
 
+use super::atoms;
 use super::calibration::cloud_moments;
 use super::model::Model;
 use super::probe;
 use super::recipe::{Laws, Recipe};
-use super::reference::{Reference, cell, reference};
+use super::reference::{Reference, cell, current_neighbours, reference};
 use super::sets::{assign_materials, initial, sets};
 use super::{Info, Simulation};
-use crate::body::{Layout, Values, zeros};
+use crate::body::{Values, zeros};
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
@@ -57,8 +58,14 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         mut body,
         stencil,
         bulk,
-        horizon,
+        mut horizon,
     } = reference::<D>(spec)?;
+    if let Some(potential) = &spec.potential
+        && current_neighbours(spec)
+    {
+        atoms::check_box(potential, &body.period)?;
+        horizon = atoms::cutoff(potential);
+    }
     let cell = cell(spec, &body);
     let from_modulus = |m: &MaterialSpec| {
         use PmbStiffness::{Bulk, Young};
@@ -86,6 +93,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
     }
     let ends = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
+    if let (Some(potential), BodySpec::Lattice { kind, spacing, .. }) =
+        (&spec.potential, &spec.body)
+    {
+        warnings.extend(atoms::crystal(spec, potential, *kind, *spacing)?);
+    }
     let mut recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
     let mut interaction = recipe.interaction(&body, None)?;
     // a ratio is meant inclusively; only a length leaves the decision to round-off
@@ -182,7 +194,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let sizes = body
         .slots
         .iter()
-        .map(|s| interaction.family_size(*s as usize));
+        .map(|s| interaction.family_size(&body, *s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     let u = body.at_rest();
     recipe.stencil = None; // the interaction has it
@@ -196,11 +208,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
                 directed_bonds as f64 / body.points() as f64,
                 largest,
             ),
-            family_kind: if matches!(body.layout, Layout::Grid(_)) {
-                "stencil"
-            } else {
-                "list"
-            },
+            family_kind: interaction.family(),
             near_horizon,
             horizon,
             spacing: body.spacing,
@@ -246,8 +254,12 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         released: 0.0,
         past_work: [0.0; 3],
         initial_energy: None,
+        fault: None,
     };
     model.info.bytes = model.bytes();
+    if let Some(thermal) = spec.thermal {
+        model.heat(thermal);
+    }
     initial(spec, &mut model)?;
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;

@@ -1,6 +1,7 @@
 //! From a specification to a running model.
 
 mod accounts;
+mod atoms;
 mod build;
 mod calibration;
 mod conditions;
@@ -27,7 +28,7 @@ pub struct Info {
     pub directed_bonds: u64,
     /// Smallest, mean and largest family.
     pub family: (usize, f64, usize),
-    /// `"stencil"` or `"list"`.
+    /// `"stencil"`, `"list"` or `"neighbours"`.
     pub family_kind: &'static str,
     /// Directed bonds whose length is within round-off of the horizon.
     pub near_horizon: u64,

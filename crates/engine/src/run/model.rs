@@ -13,7 +13,7 @@ use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
-use crate::interaction::{BondState, Interaction, PointEnergies, Sweep};
+use crate::interaction::{BondState, Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
 use crate::spec::{ConditionSpec, IndenterSpec};
@@ -55,6 +55,8 @@ pub struct Model<const D: usize> {
     /// Work of conditions that were replaced since.
     pub(super) past_work: [f64; 3],
     pub(super) initial_energy: Option<f64>,
+    /// The last forces mean nothing.
+    pub(super) fault: Option<Fault>,
 }
 
 impl<const D: usize> Model<D> {
@@ -95,6 +97,7 @@ impl<const D: usize> Model<D> {
                 },
                 watched.as_mut(),
             );
+            self.fault = tally.fault;
             self.broken += tally.broken;
             self.released += tally.released;
         } else {
@@ -252,6 +255,21 @@ impl<const D: usize> Simulation for Model<D> {
             d.begin(&self.body, &self.v, t, dt, fastest.sqrt());
         }
         self.forces(true, dt);
+        if let Some(fault) = self.fault {
+            let error = self.explained(fault);
+            // back to the step before: where it was, and with the forces that were
+            for &s in &self.body.slots {
+                for a in 0..D {
+                    self.u[a][s as usize] -= self.dt * self.v[a][s as usize];
+                }
+            }
+            self.step -= 1;
+            self.forces(true, 0.0);
+            self.verlet
+                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, 0.0);
+            self.pending = false;
+            return Err(error);
+        }
         for c in &mut self.constraints {
             c.end(&self.body, &self.u, &self.f, t, dt);
         }
@@ -418,7 +436,7 @@ impl<const D: usize> Simulation for Model<D> {
                 }
             });
         Families {
-            size: self.by_id(|i| self.interaction.family_size(i) as u32),
+            size: self.by_id(|i| self.interaction.family_size(&self.body, i) as u32),
             volume: self.by_id(|i| volume[i]),
             material: self.by_id(of),
             foreign: self.by_id(|i| foreign[i]),

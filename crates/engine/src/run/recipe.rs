@@ -4,14 +4,19 @@ use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
+use crate::family::links::Links;
 use crate::family::stencil::Stencil;
 use crate::family::volume_fraction;
+use crate::interaction::atoms::current::CurrentAtoms;
+use crate::interaction::atoms::fixed::FixedAtoms;
+use crate::interaction::linear::LinearInteraction;
 use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
 use crate::law::influence::influence;
 use crate::law::micromodulus::{self, Moments, micromodulus};
+use crate::law::potential::{Potential, PotentialSpec, Visitor};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
 use crate::law::solid::eam_like::{EamLike, Solid};
 use crate::spec::{Calibration, Criterion, Influence, LawSpec, MaterialSpec, PmbStiffness, Spec};
@@ -21,6 +26,9 @@ use crate::spec::{Calibration, Criterion, Influence, LawSpec, MaterialSpec, PmbS
 pub(super) enum Laws {
     Bond(Vec<f64>),
     Solid(Vec<Solid>),
+    /// Micromodulus of linear springs.
+    Springs(f64),
+    Atoms(PotentialSpec),
 }
 
 pub(super) struct Recipe {
@@ -57,6 +65,8 @@ impl Recipe {
         let at = |n: usize, key: &str| format!("materials[{n}].{key}");
         let mut bond = vec![];
         let mut solid = vec![];
+        let mut springs = vec![];
+        let mut atoms = vec![];
         let mut repulsive: f64 = 0.0;
         for (n, m) in spec.materials.iter().enumerate() {
             if !(m.density > 0.0 && m.density.is_finite()) {
@@ -66,6 +76,16 @@ impl Recipe {
                 ));
             }
             let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
+            let plain = matches!(m.law, LawSpec::Springs(_) | LawSpec::Atoms);
+            if plain
+                && (m.fracture.is_some() || spec.contact.is_some() || !spec.precracks.is_empty())
+            {
+                return Err(BuildError::new(
+                    at(n, "law"),
+                    "springs and potentials have no bonds that break and no contact of their own",
+                )
+                .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
+            }
             let hard = |stiffness| micromodulus(D, spec.plane, stiffness, continuum);
             let (value, contact) = match m.law {
                 LawSpec::Pmb(stiffness) => {
@@ -94,6 +114,17 @@ impl Recipe {
                         18.0 * bulk / (std::f64::consts::PI * horizon.powi(4)),
                     )
                 }
+                LawSpec::Springs(stiffness) => {
+                    springs.push(c(stiffness));
+                    (c(stiffness), 0.0)
+                }
+                LawSpec::Atoms => {
+                    let Some(potential) = &spec.potential else {
+                        return Err(BuildError::new(at(n, "law"), "the spec has no potential"));
+                    };
+                    atoms.push(potential.clone());
+                    (1.0, 0.0)
+                }
                 LawSpec::EamLike { pair, volume } => {
                     solid.push(Solid {
                         n: 3.0,
@@ -114,17 +145,37 @@ impl Recipe {
             }
             repulsive = repulsive.max(contact);
         }
-        let laws = match (bond.is_empty(), solid.is_empty()) {
-            (false, true) => Laws::Bond(bond),
-            (true, false) => Laws::Solid(solid),
-            (true, true) => return Err(BuildError::new("materials", "the body has no material")),
-            (false, false) => {
+        let kinds = [
+            &bond.is_empty(),
+            &solid.is_empty(),
+            &springs.is_empty(),
+            &atoms.is_empty(),
+        ];
+        match kinds.iter().filter(|none| !**none).count() {
+            0 => return Err(BuildError::new("materials", "the body has no material")),
+            1 => {}
+            _ => {
                 return Err(BuildError::new(
                     "materials",
-                    "bond-based and state-based materials in one body",
+                    "different kinds of law in one body, such as bond-based and state-based",
                 )
                 .help("give all materials the same kind of law: bonds across need one"));
             }
+        }
+        if springs.iter().any(|c| *c != springs[0]) {
+            return Err(
+                BuildError::new("materials", "springs of unlike stiffness in one body")
+                    .help("give all materials the same springs"),
+            );
+        }
+        let laws = if let Some(potential) = atoms.pop() {
+            Laws::Atoms(potential)
+        } else if let Some(c) = springs.pop() {
+            Laws::Springs(c)
+        } else if solid.is_empty() {
+            Laws::Bond(bond)
+        } else {
+            Laws::Solid(solid)
         };
         let toughness = spec
             .materials
@@ -177,6 +228,30 @@ impl Recipe {
             .map(|(_, t)| *t)
             .collect();
         match &self.laws {
+            Laws::Springs(c) => {
+                let links = self.links(body)?;
+                let volume = body.volume.uniform().unwrap_or(1.0);
+                let modulus = |xi: [f64; D]| {
+                    let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    let k = c * self.weight(r0) * volume / (r0 * r0 * r0);
+                    std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
+                };
+                Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
+            }
+            Laws::Atoms(potential) => match (&body.layout, &self.stencil) {
+                (Layout::Grid(_), Some(_)) => {
+                    let links = self.links(body)?;
+                    Ok(potential.apply(Fixed {
+                        body,
+                        links,
+                        simd: self.simd,
+                    }))
+                }
+                _ => Ok(potential.apply(Current {
+                    body,
+                    simd: self.simd,
+                })),
+            },
             Laws::Bond(c) => {
                 let c: Vec<f64> = c
                     .iter()
@@ -211,6 +286,17 @@ impl Recipe {
                     toughness,
                 )
             }
+        }
+    }
+
+    fn links<const D: usize>(&self, body: &Body<D>) -> Result<Links<D>, BuildError> {
+        match (&body.layout, &self.stencil) {
+            (Layout::Grid(grid), Some(stencil)) => Ok(Links::new(body, grid, stencil)),
+            _ => Err(BuildError::new(
+                "family",
+                "springs live on a lattice, this is a cloud of points",
+            )
+            .help("take a lattice body, or the law pmb")),
         }
     }
 
@@ -255,6 +341,33 @@ impl Recipe {
                 })))
             }
         }
+    }
+}
+
+/// Makes a potential an interaction on fixed lattice neighbours.
+struct Fixed<'a, const D: usize> {
+    body: &'a Body<D>,
+    links: Links<D>,
+    simd: Simd,
+}
+
+impl<const D: usize> Visitor for Fixed<'_, D> {
+    type Out = Box<dyn Interaction<D>>;
+    fn visit<P: Potential>(self, potential: P) -> Self::Out {
+        Box::new(FixedAtoms::new(self.body, self.links, potential, self.simd))
+    }
+}
+
+/// Makes a potential an interaction on current neighbours.
+struct Current<'a, const D: usize> {
+    body: &'a Body<D>,
+    simd: Simd,
+}
+
+impl<const D: usize> Visitor for Current<'_, D> {
+    type Out = Box<dyn Interaction<D>>;
+    fn visit<P: Potential>(self, potential: P) -> Self::Out {
+        Box::new(CurrentAtoms::new(self.body, potential, self.simd))
     }
 }
 

@@ -33,6 +33,11 @@ pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
     }
 }
 
+/// Do the points talk to those that are near now?
+pub(super) fn current_neighbours(spec: &Spec) -> bool {
+    spec.potential.is_some() && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
+}
+
 fn horizon_length(spec: &Spec, spacing: f64) -> f64 {
     match spec.horizon {
         Horizon::Ratio(m) => m as f64 * spacing,
@@ -86,10 +91,18 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 ),
             ));
         }
-        let stencil = Stencil::new(kind, spacing, spec.horizon);
+        let horizon = match current_neighbours(spec) {
+            // only the lattice is wanted
+            true => Horizon::Length(spacing * kind.nearest()),
+            false => spec.horizon,
+        };
+        let stencil = Stencil::new(kind, spacing, horizon);
         let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
         let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
-        let horizon = horizon_length(spec, spacing);
+        let horizon = match horizon {
+            Horizon::Ratio(m) => m as f64 * spacing,
+            Horizon::Length(d) => d,
+        };
         if horizon < spacing * kind.nearest() {
             return Err(BuildError::new(
                 "horizon",
@@ -145,7 +158,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         })
     };
     let list_if_asked = |r: Reference<D>| {
-        if spec.family == FamilyChoice::List {
+        if spec.family == FamilyChoice::List || current_neighbours(spec) {
             Ok(Reference {
                 body: r.body.to_cloud()?,
                 stencil: None,
@@ -250,11 +263,11 @@ fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): a seed gives the same body on every machine.
-struct SplitMix(u64);
+pub(super) struct SplitMix(pub u64);
 
 impl SplitMix {
     /// Uniform in [0, 1).
-    fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

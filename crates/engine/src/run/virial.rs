@@ -21,7 +21,10 @@ fn add<const D: usize>(virial: &mut [f64; 6], y: &[f64; D], pull: f64, volumes: 
 
 impl<const D: usize> Model<D> {
     /// Of bonds and of repulsion inside families; images of `u` must be fresh.
-    pub(super) fn virial_of_bonds(&self) -> [f64; 6] {
+    pub(super) fn virial_of_bonds(&mut self) -> [f64; 6] {
+        if let Some(virial) = self.interaction.virial(&self.body, &self.u) {
+            return virial;
+        }
         let recipe = &self.recipe;
         let mut dilatation = vec![];
         if let Laws::Solid(_) = recipe.laws {
@@ -33,6 +36,7 @@ impl<const D: usize> Model<D> {
             let material = self.body.material_of(i);
             match &recipe.laws {
                 Laws::Bond(c) => [c[material], 0.0],
+                Laws::Springs(_) | Laws::Atoms(_) => [0.0; 2],
                 Laws::Solid(s) => {
                     let (s, b) = (&s[material], self.interaction.point_field(1, i));
                     // P = n κ θ / m
@@ -66,6 +70,7 @@ impl<const D: usize> Model<D> {
                             let law = BondBasedMixed { rule: recipe.rule };
                             law.pull(law.constant(r0, r0.recip(), weight), g, fi, fj)
                         }
+                        Laws::Springs(_) | Laws::Atoms(_) => 0.0,
                         Laws::Solid(_) => EamLike { ratio: 0.0 }.pull(weight, g, fi, fj),
                     };
                 }

@@ -3,6 +3,7 @@
 //! A front end (deck, LAMMPS script, another program) fills a [`Spec`]; `run::build` makes a model of it.
 
 use crate::expression::Expression;
+pub use crate::law::potential::PotentialSpec;
 use crate::space::lattice::LatticeKind;
 use crate::space::region::Region;
 
@@ -22,6 +23,8 @@ pub struct Spec {
     pub sets: Vec<SetSpec>,
     /// Materials; point sets that name them must cover the body without overlap.
     pub materials: Vec<MaterialSpec>,
+    /// Interatomic potential of materials whose law is [`LawSpec::Atoms`].
+    pub potential: Option<PotentialSpec>,
     /// How bonds between unlike materials get their stiffness.
     pub interface: InterfaceRule,
     pub horizon: Horizon,
@@ -36,11 +39,54 @@ pub struct Spec {
     pub precracks: Vec<PrecrackSpec>,
     pub contact: Option<ContactSpec>,
     pub initial: Vec<InitialSpec>,
+    /// Maxwellian velocities, given before those of `initial`.
+    pub thermal: Option<ThermalSpec>,
     pub conditions: Vec<ConditionSpec>,
     pub indenters: Vec<IndenterSpec>,
     /// Which family enumerates the bonds; `Auto` takes the stencil for lattice bodies, the list otherwise.
     pub family: FamilyChoice,
     pub schedule: Schedule,
+}
+
+impl Spec {
+    /// One material on a body, everything else as plain as it can be: no influence function or volume scaling, free
+    /// surfaces, a horizon of one spacing, 0.8 of the stable step. Change what you need.
+    pub fn new(dimension: usize, body: BodySpec, density: f64, law: LawSpec) -> Spec {
+        Spec {
+            title: String::new(),
+            dimension,
+            plane: Plane::Stress,
+            section: 1.0,
+            body,
+            sets: vec![],
+            materials: vec![MaterialSpec {
+                name: "all".into(),
+                set: "all".into(),
+                density,
+                law,
+                fracture: None,
+            }],
+            potential: None,
+            interface: InterfaceRule::Series,
+            horizon: Horizon::Ratio(1),
+            volume_scaling: false,
+            calibration: Calibration::Discrete,
+            influence: Influence::Constant,
+            periodic: [None; 3],
+            precracks: vec![],
+            contact: None,
+            initial: vec![],
+            thermal: None,
+            conditions: vec![],
+            indenters: vec![],
+            family: FamilyChoice::Auto,
+            schedule: Schedule {
+                steps: 0,
+                time_step: TimeStep::Fraction(0.8),
+                force_unstable: false,
+            },
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -151,6 +197,11 @@ pub enum LawSpec {
     /// `W = E(ϑ) + ½Σ κ-bonds` with the quadratic `E` of seleson2014 (A.16) and `κ` of (A.14): `κ = k ω e / m`,
     /// `P = −(p/m) θ` with the two stiffnesses given directly (seleson2014 (A.24): `k = k̄`, `p = c̄/3`).
     EamLike { pair: f64, volume: f64 },
+    /// Linear springs: the bond-based solid linearised about the reference (lattice bodies).
+    Springs(PmbStiffness),
+    /// The potential of [`Spec::potential`]: on the lattice's fixed neighbours (family `Stencil`), or between atoms that
+    /// are near now (`Neighbours`, or `Auto`).
+    Atoms,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -297,6 +348,14 @@ pub struct InitialSpec {
     pub velocity: [Option<Expression>; 3],
 }
 
+/// Velocities of a given temperature: normally distributed, without total momentum, scaled to the temperature exactly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThermalSpec {
+    /// k_B T (energy).
+    pub energy: f64,
+    pub seed: u64,
+}
+
 /// What is done to a set during the run; expressions of reference x, y, z and t; `None` leaves a component free.
 #[derive(Debug, Clone)]
 pub struct ConditionSpec {
@@ -350,6 +409,8 @@ pub enum FamilyChoice {
     Auto,
     Stencil,
     List,
+    /// Current neighbours within the cut-off of a potential.
+    Neighbours,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -219,7 +219,7 @@ fn a_cut_of_one_image_cuts_both_directions() {
         let family: Vec<usize> = body
             .slots
             .iter()
-            .map(|s| it.family_size(*s as usize))
+            .map(|s| it.family_size(&body, *s as usize))
             .collect();
         if kind == CrackKind::Broken {
             assert_eq!(

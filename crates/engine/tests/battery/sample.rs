@@ -165,6 +165,8 @@ impl Case {
             vec![]
         };
         Spec {
+            potential: None,
+            thermal: None,
             title: self.name(),
             dimension: d,
             plane,

@@ -146,6 +146,12 @@ fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
 fn material(m: &MaterialSpec, units: UnitSystem) -> String {
     let pressure = |p: f64| units.write(p, Dim::PRESSURE);
     let law = match m.law {
+        LawSpec::Springs(PmbStiffness::Young(e)) => format!("linear springs, E = {}", pressure(e)),
+        LawSpec::Springs(PmbStiffness::Bulk(k)) => format!("linear springs, K = {}", pressure(k)),
+        LawSpec::Springs(PmbStiffness::Micromodulus(c)) => {
+            format!("linear springs, c = {}", units.write(c, Dim::MICROMODULUS))
+        }
+        LawSpec::Atoms => "atoms".to_string(),
         LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(e)),
         LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(k)),
         LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => {

@@ -1,7 +1,10 @@
 //! The deck as written: one struct per table, nothing interpreted yet.
 
+mod atoms;
+
 use super::units::UnitSystem;
 use super::value::{At, Components, Number, Or, Vector, Written};
+pub use atoms::{Buckingham, Eam, EamForm, EndName, LennardJones, Morse, Thermal};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -36,14 +39,16 @@ pub struct Document {
     /// Bonds between unlike materials; series when left out.
     pub interface: Option<InterfaceName>,
     /// { m_ratio = 3 } in lattice spacings, or a length.
-    pub horizon: At<Or<Written, HorizonRatio>>,
+    /// Not needed by atoms that talk to their current neighbours.
+    pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// constant for pmb and inverse for lps when left out.
     pub influence: Option<InfluenceName>,
     /// Scale the partner's volume where its cell straddles the horizon; true when left out.
     pub volume_scaling: Option<bool>,
     /// discrete (the body really has the modulus asked for) when left out.
     pub calibration: Option<CalibrationName>,
-    /// auto when left out.
+    /// auto when left out: a stencil on lattices, a list of a cloud, current neighbours of atoms. Atoms on a "stencil" keep
+    /// the neighbours they have in the lattice.
     pub family: Option<FamilyName>,
     /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
     pub periodic: Option<At<Periodic>>,
@@ -51,6 +56,8 @@ pub struct Document {
     pub precrack: Vec<At<Precrack>>,
     /// On when a material can fracture; false turns it off.
     pub contact: Option<Or<bool, Contact>>,
+    /// Maxwellian velocities.
+    pub thermal: Option<Thermal>,
     #[serde(default)]
     pub initial: Vec<At<Initial>>,
     #[serde(default)]
@@ -145,6 +152,8 @@ pub struct Material {
     pub set: Option<At<String>>,
     /// Left out, the densities in the LAMMPS data file are taken; given, it takes their place.
     pub density: Option<Number>,
+    /// Mass of a point, instead of the density; of atoms taken from an eam file when left out.
+    pub mass: Option<Number>,
     pub law: At<Law>,
     pub fracture: Option<At<Fracture>>,
 }
@@ -160,6 +169,15 @@ pub enum Law {
     LpsAsTyped(Elastic),
     /// W = E(θ) + bonds, with the two stiffnesses.
     EamLike(EamLike),
+    /// Linear springs, the bond-based law linearised about the reference: one of young, bulk, micromodulus.
+    Springs(Elastic),
+    LennardJones(LennardJones),
+    Morse(Morse),
+    Buckingham(Buckingham),
+    /// Embedded-atom model from a file.
+    Eam(Eam),
+    /// Embedded-atom model in closed form.
+    EamForm(Box<EamForm>),
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -350,7 +368,7 @@ names! {
     InterfaceName { Series, Parallel, Minimum }
     InfluenceName { Constant, Inverse, Conical, Gaussian, CubicSpline }
     CalibrationName { Continuum, Discrete }
-    FamilyName { Auto, Stencil, List }
+    FamilyName { Auto, Stencil, List, Neighbours }
     CrackName { Absent, Broken }
     /// Point fields that can be written.
     FieldName { Displacement, Velocity, Damage, EnergyDensity, Dilatation, Mark, Id, Fragment }

@@ -3,12 +3,19 @@
 //! A potential is written once, as a function of `q = r²` over any [`Number`]; forces, elastic constants, dispersion
 //! and gradient coefficients follow by differentiation of that one text. A pair potential is one file with `pair`.
 
+pub mod buckingham;
+pub mod bulk;
+pub mod cut;
 pub mod lennard_jones;
+pub mod mei;
+pub mod morse;
+pub mod tabulated;
 
 use super::number::Number;
+use std::sync::Arc;
 
 /// An interatomic potential of one kind of atom.
-pub trait Potential: Send + Sync + 'static {
+pub trait Potential: Clone + Send + Sync + 'static {
     /// Is there a density f and an embedding energy F?
     const EMBEDDED: bool = false;
 
@@ -26,5 +33,84 @@ pub trait Potential: Send + Sync + 'static {
     /// Embedding energy F (energy) of the density ρ.
     fn embedding<N: Number>(&self, _density: N) -> N {
         N::constant(0.0)
+    }
+
+    /// F has no meaning at this density or below.
+    fn least_density(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
+}
+
+/// All forms of potentials; adding one adds a variant here and an arm in [`Form::apply`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Form {
+    LennardJones(lennard_jones::LennardJones),
+    Morse(morse::Morse),
+    Buckingham(buckingham::Buckingham),
+    /// Embedded-atom model in closed form.
+    Mei(Box<mei::Mei>),
+    /// Embedded-atom model from tables.
+    Tabulated(Arc<tabulated::Tabulated>),
+}
+
+/// What is done with a potential of a known kind.
+pub trait Visitor {
+    type Out;
+    fn visit<P: Potential>(self, potential: P) -> Self::Out;
+}
+
+/// A potential as a spec has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PotentialSpec {
+    pub form: Form,
+    /// Cut-off of pair potentials (length), and how they end there; ∞: none.
+    pub cutoff: f64,
+    pub end: cut::End,
+}
+
+impl PotentialSpec {
+    pub fn name(&self) -> &'static str {
+        match &self.form {
+            Form::LennardJones(_) => "lennard_jones",
+            Form::Morse(_) => "morse",
+            Form::Buckingham(_) => "buckingham",
+            Form::Mei(_) => "mei",
+            Form::Tabulated(_) => "eam",
+        }
+    }
+
+    /// The only match on the form.
+    pub fn apply<V: Visitor>(&self, visitor: V) -> V::Out {
+        use cut::Cut;
+        let (cutoff, end) = (self.cutoff, self.end);
+        match &self.form {
+            Form::LennardJones(p) => visitor.visit(Cut::new(*p, cutoff, end)),
+            Form::Morse(p) => visitor.visit(Cut::new(*p, cutoff, end)),
+            Form::Buckingham(p) => visitor.visit(Cut::new(*p, cutoff, end)),
+            Form::Mei(p) => visitor.visit((**p).clone()),
+            Form::Tabulated(p) => visitor.visit(p.clone()),
+        }
+    }
+}
+
+impl<P: Potential> Potential for Arc<P> {
+    const EMBEDDED: bool = P::EMBEDDED;
+    fn cutoff(&self) -> f64 {
+        (**self).cutoff()
+    }
+    #[inline(always)]
+    fn pair<N: Number>(&self, q: N) -> N {
+        (**self).pair(q)
+    }
+    #[inline(always)]
+    fn density<N: Number>(&self, q: N) -> N {
+        (**self).density(q)
+    }
+    #[inline(always)]
+    fn embedding<N: Number>(&self, density: N) -> N {
+        (**self).embedding(density)
+    }
+    fn least_density(&self) -> f64 {
+        (**self).least_density()
     }
 }

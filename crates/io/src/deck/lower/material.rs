@@ -1,5 +1,6 @@
 //! Materials: laws, moduli, fracture.
 
+use super::atoms::AtomsPotential;
 use super::context::{Context, Result};
 use crate::deck::document::{Elastic, Fracture, Law, Material};
 use crate::deck::units::{Dim, short};
@@ -16,8 +17,10 @@ pub(super) fn materials(
     written: &BTreeMap<String, At<Material>>,
     sets: &[SetSpec],
     body: &mut BodySpec,
+    potential: Option<&AtomsPotential>,
 ) -> Result<Vec<MaterialSpec>> {
     let several = written.len() > 1;
+    let point = point_volume(body, context.dimension);
     let of_file = densities(context, written, body)?;
     let mut materials: Vec<MaterialSpec> = Vec::new();
     for (name, material) in written {
@@ -50,7 +53,22 @@ pub(super) fn materials(
                 "all materials of a body use the same kind of law",
             ));
         }
+        let by_mass = |mass: f64| match point {
+            Some(volume) => Ok(mass / volume),
+            None => Err(context.error_with(
+                &material.span,
+                "the points of this body have different volumes: a mass gives no density",
+                "give the density",
+            )),
+        };
         let density = match (&given.density, &of_file) {
+            _ if let Some(mass) = &given.mass => {
+                if let Some(density) = &given.density {
+                    return Err(context.error(&density.span, "give one of density and mass"));
+                }
+                by_mass(context.positive(mass, Dim::MASS, "the mass")?)?
+            }
+            (None, None) if let Some(mass) = potential.and_then(|p| p.mass) => by_mass(mass)?,
             (Some(density), _) => context.positive(density, Dim::DENSITY, "the density")?,
             (None, Some(cloud)) => mean_density(cloud, &set, sets),
             (None, None) => {
@@ -123,31 +141,7 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
 fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
     let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
     match &law.value {
-        Law::Pmb(e) => {
-            if let Some(wrong) = e.poisson.as_ref().or(e.shear.as_ref()) {
-                let help = "Poisson's ratio of a bond-based law is 1/4 (plane stress 1/3); use lps to choose it";
-                return Err(context.error_with(&wrong.span, "pmb takes one modulus", help));
-            }
-            let stiffness = [
-                ("young", e.young.as_ref()),
-                ("bulk", e.bulk.as_ref()),
-                ("micromodulus", e.micromodulus.as_ref()),
-            ];
-            let given = stiffness.map(|(name, n)| (name, n.is_some()));
-            let which = context.one_of(&law.span, "pmb", &given)?;
-            let Some(number) = stiffness[which].1 else {
-                return Err(context.error(&law.span, "pmb needs a stiffness"));
-            };
-            Ok(LawSpec::Pmb(match which {
-                0 => PmbStiffness::Young(pressure(number, "Young's modulus")?),
-                1 => PmbStiffness::Bulk(pressure(number, "the bulk modulus")?),
-                _ => PmbStiffness::Micromodulus(context.positive(
-                    number,
-                    Dim::MICROMODULUS,
-                    "the micromodulus",
-                )?),
-            }))
-        }
+        Law::Pmb(e) => pmb(context, &law.span, e, "pmb").map(LawSpec::Pmb),
         Law::Lps(e) => moduli(context, &law.span, e).map(LawSpec::Lps),
         Law::LpsAsTyped(e) => match e {
             Elastic {
@@ -162,10 +156,61 @@ fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
             }),
             _ => Err(context.error(&law.span, "lps_as_typed takes bulk and shear")),
         },
+        Law::Springs(e) => {
+            let pmb = pmb(context, &law.span, e, "springs")?;
+            Ok(LawSpec::Springs(pmb))
+        }
+        Law::LennardJones(_)
+        | Law::Morse(_)
+        | Law::Buckingham(_)
+        | Law::Eam(_)
+        | Law::EamForm(_) => Ok(LawSpec::Atoms),
         Law::EamLike(e) => Ok(LawSpec::EamLike {
             pair: pressure(&e.pair, "the stiffness of the pairs")?,
             volume: context.finite(&e.volume, Dim::PRESSURE)?,
         }),
+    }
+}
+
+/// The one stiffness of a bond-based law.
+fn pmb(context: &Context, span: &Range<usize>, e: &Elastic, name: &str) -> Result<PmbStiffness> {
+    let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
+    if let Some(wrong) = e.poisson.as_ref().or(e.shear.as_ref()) {
+        let help =
+            "Poisson's ratio of a bond-based law is 1/4 (plane stress 1/3); use lps to choose it";
+        return Err(context.error_with(&wrong.span, format!("{name} takes one modulus"), help));
+    }
+    let stiffness = [
+        ("young", e.young.as_ref()),
+        ("bulk", e.bulk.as_ref()),
+        ("micromodulus", e.micromodulus.as_ref()),
+    ];
+    let given = stiffness.map(|(name, n)| (name, n.is_some()));
+    let which = context.one_of(span, name, &given)?;
+    let Some(number) = stiffness[which].1 else {
+        return Err(context.error(span, format!("{name} needs a stiffness")));
+    };
+    Ok(match which {
+        0 => PmbStiffness::Young(pressure(number, "Young's modulus")?),
+        1 => PmbStiffness::Bulk(pressure(number, "the bulk modulus")?),
+        _ => PmbStiffness::Micromodulus(context.positive(
+            number,
+            Dim::MICROMODULUS,
+            "the micromodulus",
+        )?),
+    })
+}
+
+/// Volume of every point (length^D), if it is the same.
+fn point_volume(body: &BodySpec, dimension: usize) -> Option<f64> {
+    match body {
+        BodySpec::Lattice { kind, spacing, .. } | BodySpec::Sites { kind, spacing, .. } => {
+            Some(kind.site_volume() * spacing.powi(dimension as i32))
+        }
+        BodySpec::Cloud(cloud) => {
+            let first = cloud.volume.first()?;
+            cloud.volume.iter().all(|v| v == first).then_some(*first)
+        }
     }
 }
 

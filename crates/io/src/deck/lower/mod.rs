@@ -1,5 +1,6 @@
 //! From the deck as written to the specification: units, defaults, checks.
 
+mod atoms;
 mod body;
 mod context;
 mod material;
@@ -18,6 +19,7 @@ use super::source::Source;
 use super::units::{Dim, short};
 use super::value::{At, Or, Written};
 use crate::read::Points;
+use crate::read::eam::{self, EamFile};
 use context::{Context, Result};
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule,
@@ -43,6 +45,16 @@ impl Files<'_> {
         let path = self.folder.join(&file.value);
         crate::read::points(&path).map_err(|e| context.error(&file.span, e.to_string()))
     }
+
+    /// The table of an embedded-atom model.
+    fn eam(&self, context: &Context, file: &At<String>) -> Result<EamFile> {
+        let path = self.folder.join(&file.value);
+        let read = match path.extension().is_some_and(|e| e == "eam") {
+            true => eam::funcfl(&[&path]),
+            false => eam::setfl(&path),
+        };
+        read.map_err(|e| context.error(&file.span, e.to_string()))
+    }
 }
 
 pub(super) struct Lowered {
@@ -67,7 +79,25 @@ pub(super) fn lower(
     )?;
     let periodic = body::periods(&context, document.periodic.as_ref(), &mut body)?;
     let mut sets = body::sets(&context, &document.sets, &body)?;
-    let materials = material::materials(&context, &document.material, &sets, &mut body)?;
+    let potential = atoms::potential(&context, &document.material, &body, files)?;
+    let materials = material::materials(
+        &context,
+        &document.material,
+        &sets,
+        &mut body,
+        potential.as_ref(),
+    )?;
+    let current = potential.is_some()
+        && matches!(
+            document.family,
+            None | Some(FamilyName::Auto | FamilyName::Neighbours)
+        );
+    if document.family == Some(FamilyName::Neighbours) && !current {
+        return Err(context.error(
+            &document.body.span,
+            "family = \"neighbours\" belongs to interatomic potentials (lennard_jones, morse, eam, …)",
+        ));
+    }
     let mut initial = Vec::new();
     for (index, at) in document.initial.iter().enumerate() {
         initial.push(motion::initial(&context, index, at, &mut sets)?);
@@ -92,7 +122,24 @@ pub(super) fn lower(
             Some(PlaneName::Stress) | None => Plane::Stress,
         },
         section,
-        horizon: horizon(&context, &document.horizon, &body)?,
+        horizon: match &document.horizon {
+            Some(written) => horizon(&context, written, &body)?,
+            // the cut-off takes its place
+            None if current => Horizon::Ratio(1),
+            None => {
+                return Err(context.error_with(
+                    &document.body.span,
+                    "the key `horizon` is missing",
+                    "write horizon = { m_ratio = 3 }, or a length",
+                ));
+            }
+        },
+        potential: potential.map(|p| p.spec),
+        thermal: document
+            .thermal
+            .as_ref()
+            .map(|t| atoms::thermal(&context, t))
+            .transpose()?,
         interface: match document.interface {
             Some(InterfaceName::Parallel) => InterfaceRule::Parallel,
             Some(InterfaceName::Minimum) => InterfaceRule::Minimum,
@@ -121,6 +168,7 @@ pub(super) fn lower(
         family: match document.family {
             Some(FamilyName::Stencil) => FamilyChoice::Stencil,
             Some(FamilyName::List) => FamilyChoice::List,
+            Some(FamilyName::Neighbours) => FamilyChoice::Neighbours,
             Some(FamilyName::Auto) | None => FamilyChoice::Auto,
         },
         schedule: run.schedule,

@@ -60,6 +60,8 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
         members: Members::Mark(*kind as i32),
     };
     Ok(Spec {
+        potential: None,
+        thermal: None,
         title: setup.title.clone(),
         dimension: setup.dimension,
         plane: Plane::Stress,

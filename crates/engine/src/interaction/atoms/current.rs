@@ -1,0 +1,369 @@
+//! A potential between atoms that are near now: molecular dynamics.
+
+use super::{bad_density, embed, faults};
+use crate::body::{Body, Field};
+use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::lane::{Lane, TILE};
+use crate::execute::simd::{Kernel, Simd};
+use crate::family::neighbours::near::NearList;
+use crate::interaction::{BondState, Fault, Interaction, PointEnergies, Sweep, Tally};
+use crate::law::number::Dual;
+use crate::law::potential::Potential;
+
+/// Margin of the list, in cut-offs.
+const SKIN: f64 = 0.12;
+
+/// A potential on current neighbours.
+#[derive(Clone)]
+pub struct CurrentAtoms<const D: usize, P> {
+    simd: Simd,
+    potential: P,
+    cutoff: f64,
+    list: NearList<D>,
+    faults: Vec<Option<Fault>>,
+    sums: Vec<[f64; 7]>,
+    /// Neighbours of every slot in the reference.
+    family: Vec<u16>,
+}
+
+impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
+    pub fn new(body: &Body<D>, potential: P, simd: Simd) -> Self {
+        let cutoff = potential.cutoff();
+        let mut list = NearList::new(body, cutoff, SKIN * cutoff);
+        list.update(body, &body.at_rest(), simd);
+        let mut family = vec![0; body.len];
+        let blocks = list.blocks();
+        let at = list.positions();
+        for (t, lines) in (0..blocks).flat_map(|b| list.tiles(b)) {
+            for (l, &slot) in list.slots(t).iter().enumerate() {
+                let x = at[t * TILE + l];
+                let near = |j: u32| -> bool {
+                    let y = at[j as usize];
+                    (0..D).map(|a| (y[a] - x[a]).powi(2)).sum::<f64>() < cutoff * cutoff
+                };
+                let count = lines.iter().filter(|line| near(line[l])).count();
+                family[slot as usize] = count.min(u16::MAX as usize) as u16;
+            }
+        }
+        CurrentAtoms {
+            simd,
+            potential,
+            cutoff,
+            list,
+            faults: vec![None; blocks],
+            sums: vec![[0.0; 7]; blocks],
+            family,
+        }
+    }
+
+    /// Positions and, with embedding, F′ in their fourth place.
+    fn ready(&mut self, body: &Body<D>, u: &Field<D>) -> Tally {
+        self.list.update(body, u, self.simd);
+        if !P::EMBEDDED {
+            return Tally::default();
+        }
+        let slope = Shared(self.list.positions_mut().as_mut_ptr().cast::<f64>());
+        let mut found = std::mem::take(&mut self.faults);
+        let kernel = Density {
+            view: self.view(),
+            slope,
+        };
+        for_each_block(self.simd, &kernel, &mut found);
+        self.faults = found;
+        self.list.copy_to_ghosts();
+        faults(&self.faults)
+    }
+
+    fn view(&self) -> View<'_, D, P> {
+        View {
+            list: &self.list,
+            position: self.list.positions().as_ptr().cast(),
+            potential: &self.potential,
+            limit: self.cutoff * self.cutoff,
+        }
+    }
+
+    /// Energy and virial of the blocks, and energies per slot where asked for.
+    fn sums(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        out: Shared,
+        volume: &crate::body::Values,
+    ) -> [f64; 7] {
+        self.ready(body, u);
+        let mut sums = std::mem::take(&mut self.sums);
+        let kernel = Energies {
+            view: self.view(),
+            out,
+            volume,
+        };
+        for_each_block(self.simd, &kernel, &mut sums);
+        let mut total = [0.0; 7];
+        for s in &sums {
+            for (t, s) in total.iter_mut().zip(s) {
+                *t += s;
+            }
+        }
+        self.sums = sums;
+        total
+    }
+}
+
+struct View<'a, const D: usize, P> {
+    list: &'a NearList<D>,
+    /// `[atoms][4]`
+    position: *const f64,
+    potential: &'a P,
+    /// Squared length.
+    limit: f64,
+}
+
+// SAFETY: the pointer is into the list that the view borrows
+unsafe impl<const D: usize, P: Sync> Sync for View<'_, D, P> {}
+
+impl<const D: usize, P: Potential> View<'_, D, P> {
+    /// Positions and fourth numbers of a tile.
+    #[inline(always)]
+    fn here<L: Lane>(&self, tile: usize) -> [L; 4] {
+        let first = (tile * TILE) as u32;
+        let mut index = [first; TILE];
+        for (l, i) in index.iter_mut().enumerate() {
+            *i += l as u32;
+        }
+        // SAFETY: there are whole tiles of positions
+        unsafe { L::gather4(self.position, index.as_ptr()) }
+    }
+
+    /// Vectors to a line of neighbours, their squares, and their fourth numbers.
+    #[inline(always)]
+    fn vector<L: Lane>(&self, line: &[u32; TILE], i: &[L; 4]) -> ([L; D], L, L) {
+        // SAFETY: listed atoms have positions
+        let j = unsafe { L::gather4(self.position, line.as_ptr()) };
+        let mut y = [L::splat(0.0); D];
+        let mut q = L::splat(0.0);
+        for a in 0..D {
+            y[a] = j[a] - i[a];
+            q = y[a].fma(y[a], q);
+        }
+        (y, q, j[3])
+    }
+
+    /// Σ f of a tile.
+    #[inline(always)]
+    fn density<L: Lane>(&self, lines: &[[u32; TILE]], i: &[L; 4]) -> L {
+        let mut density = L::splat(0.0);
+        for line in lines {
+            let (_, q, _) = self.vector(line, i);
+            let f = self.potential.density(Dual::variable(q)).value;
+            density = density + f.zero_if(q.ge(L::splat(self.limit)));
+        }
+        density
+    }
+
+    /// `dφ/dq + (F′_i + F′_j) df/dq`, 0 beyond the cut-off.
+    #[inline(always)]
+    fn pull<L: Lane>(&self, q: L, slopes: L) -> L {
+        let mut pull = self.potential.pair(Dual::variable(q)).slope;
+        if P::EMBEDDED {
+            let f = self.potential.density(Dual::variable(q)).slope;
+            pull = f.fma(slopes, pull);
+        }
+        pull.zero_if(q.ge(L::splat(self.limit)))
+    }
+}
+
+struct Density<'a, const D: usize, P> {
+    view: View<'a, D, P>,
+    /// `[atoms][4]`: F′ goes to the fourth place of own atoms.
+    slope: Shared,
+}
+
+impl<const D: usize, P: Potential> Kernel for Density<'_, D, P> {
+    type Out = Option<Fault>;
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
+        let view = &self.view;
+        let mut fault = None;
+        for (t, lines) in view.list.tiles(block) {
+            let density = view.density::<L>(lines, &view.here(t));
+            let [_, slope] = embed(view.potential, density);
+            let slots = view.list.slots(t);
+            for (l, slope) in slope.to_array().iter().enumerate().take(slots.len()) {
+                // SAFETY: tiles are disjoint, and no pass reads these places now
+                unsafe { *self.slope.at(4 * (t * TILE + l) + 3) = *slope };
+            }
+            let owned = ((1u32 << slots.len()) - 1) as u8;
+            if fault.is_none()
+                && let Some((l, density)) = bad_density(view.potential, density.to_array(), owned)
+            {
+                fault = Some(Fault::Density {
+                    slot: slots[l] as usize,
+                    density,
+                });
+            }
+        }
+        fault
+    }
+}
+
+struct Forces<'a, const D: usize, P> {
+    view: View<'a, D, P>,
+    f: [Shared; D],
+    volume: &'a crate::body::Values,
+}
+
+impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
+    type Out = ();
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        let view = &self.view;
+        for (t, lines) in view.list.tiles(block) {
+            let i = view.here::<L>(t);
+            let mut force = [L::splat(0.0); D];
+            for line in lines {
+                let (y, q, other) = view.vector(line, &i);
+                let pull = view.pull(q, i[3] + other);
+                for a in 0..D {
+                    force[a] = pull.fma(y[a], force[a]);
+                }
+            }
+            for a in 0..D {
+                let f = force[a].to_array();
+                for (f, &slot) in f.iter().zip(view.list.slots(t)) {
+                    let scale = 2.0 / self.volume.at(slot as usize);
+                    // SAFETY: every slot belongs to one atom
+                    unsafe { *self.f[a].at(slot as usize) = scale * f };
+                }
+            }
+        }
+    }
+}
+
+struct Energies<'a, const D: usize, P> {
+    view: View<'a, D, P>,
+    /// Energy density per slot, if asked for.
+    out: Shared,
+    volume: &'a crate::body::Values,
+}
+
+impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
+    /// Energy and virial.
+    type Out = [f64; 7];
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
+        let view = &self.view;
+        let mut sum = [0.0; 7];
+        for (t, lines) in view.list.tiles(block) {
+            let i = view.here::<L>(t);
+            let mut energy = L::splat(0.0);
+            let mut virial = [L::splat(0.0); 6];
+            for line in lines {
+                let (y, q, other) = view.vector(line, &i);
+                let pair = view.potential.pair(Dual::variable(q)).value;
+                energy = energy + pair.zero_if(q.ge(L::splat(view.limit)));
+                let pull = view.pull(q, i[3] + other);
+                for (v, (m, n)) in virial.iter_mut().zip(crate::interaction::VIRIAL) {
+                    if n < D {
+                        *v = (pull * y[m]).fma(y[n], *v);
+                    }
+                }
+            }
+            energy = energy * L::splat(0.5);
+            if P::EMBEDDED {
+                let [f, _] = embed(view.potential, view.density(lines, &i));
+                energy = energy + f;
+            }
+            let slots = view.list.slots(t);
+            for (e, &slot) in energy.to_array().iter().zip(slots) {
+                if !self.out.0.is_null() {
+                    let slot = slot as usize;
+                    // SAFETY: every slot belongs to one atom
+                    unsafe { *self.out.at(slot) = e / self.volume.at(slot) };
+                }
+                sum[0] += e;
+            }
+            for (sum, v) in sum[1..].iter_mut().zip(virial) {
+                *sum -= v.to_array()[..slots.len()].iter().sum::<f64>();
+            }
+        }
+        sum
+    }
+}
+
+impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
+    fn family(&self) -> &'static str {
+        "neighbours"
+    }
+
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        _: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        if let Some(seen) = seen {
+            seen.zeros(body.len);
+            let out = Shared(seen.strain.as_mut_ptr());
+            self.sums(body, u, out, &body.volume);
+        }
+        let tally = self.ready(body, u);
+        let kernel = Forces {
+            view: self.view(),
+            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            volume: &body.volume,
+        };
+        for_each_block(self.simd, &kernel, &mut vec![(); self.list.blocks()]);
+        tally
+    }
+
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        [self.sums(body, u, Shared::NULL, &body.volume)[0], 0.0]
+    }
+
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        out.zeros(body.len);
+        let strain = Shared(out.strain.as_mut_ptr());
+        // the list may have to be made anew, for a state that is only looked at
+        self.clone().sums(body, u, strain, &body.volume);
+    }
+
+    /// Pairs of the current list that are within the cut-off now.
+    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let at = self.list.positions();
+        for (t, lines) in (0..self.list.blocks()).flat_map(|b| self.list.tiles(b)) {
+            for line in lines {
+                for (l, &slot) in self.list.slots(t).iter().enumerate() {
+                    let (x, y) = (at[t * TILE + l], at[line[l] as usize]);
+                    let xi: [f64; D] = std::array::from_fn(|a| y[a] - x[a]);
+                    let near = xi.iter().map(|c| c * c).sum::<f64>() < self.cutoff * self.cutoff;
+                    if let Some(j) = self.list.original(line[l] as usize)
+                        && near
+                        && (slot as usize) < j
+                    {
+                        visit(slot as usize, j, xi, BondState::Whole);
+                    }
+                }
+            }
+        }
+    }
+
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        let sums = self.sums(body, u, Shared::NULL, &body.volume);
+        Some(std::array::from_fn(|n| sums[n + 1]))
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.family.iter().map(|n| *n as u64).sum()
+    }
+
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
+        self.family[slot] as usize
+    }
+
+    fn bytes(&self) -> usize {
+        self.list.bytes() + 2 * self.family.len()
+    }
+}

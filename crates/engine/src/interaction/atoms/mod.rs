@@ -1,0 +1,38 @@
+//! Interatomic potentials on families: fixed lattice neighbours with current distances, or current neighbours.
+//!
+//! The force on i is `Σ_j 2 [φ′ + (F′_i + F′_j) f′] (y_j − y_i)` with derivatives with respect to `q = r²`
+//! (seleson2014 (2.3)); force densities are that over the atom's volume.
+
+pub mod current;
+pub mod fixed;
+
+use super::{Fault, Tally};
+use crate::execute::lane::{Lane, TILE};
+use crate::law::number::Dual;
+use crate::law::potential::Potential;
+
+/// What the embedding energy says of a tile of densities: F and F′.
+#[inline(always)]
+fn embed<L: Lane, P: Potential>(potential: &P, density: L) -> [L; 2] {
+    let f = potential.embedding(Dual::variable(density));
+    [f.value, f.slope]
+}
+
+/// The first of eight densities that F has no meaning at; `owned` are the lanes that have a point.
+fn bad_density<P: Potential>(
+    potential: &P,
+    density: [f64; TILE],
+    owned: u8,
+) -> Option<(usize, f64)> {
+    let least = potential.least_density();
+    let bad = |l: &usize| owned >> l & 1 == 1 && (density[*l] <= least || density[*l].is_nan());
+    (0..TILE).find(bad).map(|l| (l, density[l]))
+}
+
+/// A tally of nothing but faults: the first in order.
+fn faults(found: &[Option<Fault>]) -> Tally {
+    Tally {
+        fault: found.iter().find_map(|f| *f),
+        ..Tally::default()
+    }
+}

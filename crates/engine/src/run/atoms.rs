@@ -1,0 +1,139 @@
+//! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
+
+use super::model::Model;
+use super::reference::{SplitMix, current_neighbours};
+use crate::error::BuildError;
+use crate::family::stencil::Stencil;
+use crate::law::potential::{Potential, PotentialSpec, Visitor, bulk::bulk};
+use crate::space::AXES;
+use crate::space::lattice::LatticeKind;
+use crate::spec::{Horizon, Spec, ThermalSpec};
+
+struct CutOff;
+
+impl Visitor for CutOff {
+    type Out = f64;
+    fn visit<P: Potential>(self, potential: P) -> f64 {
+        potential.cutoff()
+    }
+}
+
+/// Distance beyond which a potential says nothing (length).
+pub(super) fn cutoff(potential: &PotentialSpec) -> f64 {
+    potential.apply(CutOff)
+}
+
+/// A potential on current neighbours needs a cut-off, and periods of at least two of them.
+pub(super) fn check_box(
+    potential: &PotentialSpec,
+    period: &[Option<f64>],
+) -> Result<(), BuildError> {
+    let cutoff = cutoff(potential);
+    if !(cutoff > 0.0 && cutoff.is_finite()) {
+        return Err(BuildError::new(
+            "potential.cutoff",
+            format!("the potential has no cut-off ({cutoff})"),
+        )
+        .help("give a cutoff, or fixed neighbours: family = \"stencil\""));
+    }
+    for (axis, p) in AXES.iter().zip(period) {
+        if let Some(p) = p
+            && cutoff > 0.5 * p * (1.0 + 1e-12)
+        {
+            return Err(BuildError::new(
+                "potential.cutoff",
+                format!(
+                    "the cut-off {cutoff:.6e} is beyond half the period {p:.6e} along {axis}: an atom would see another twice"
+                ),
+            )
+            .help("make the box longer along this axis, or the cut-off shorter"));
+        }
+    }
+    Ok(())
+}
+
+/// Warnings about the perfect crystal: pressure, and densities that the embedding energy does not know.
+pub(super) fn crystal(
+    spec: &Spec,
+    potential: &PotentialSpec,
+    kind: LatticeKind,
+    spacing: f64,
+) -> Result<Option<String>, BuildError> {
+    let horizon = match (current_neighbours(spec), spec.horizon) {
+        (true, _) => Horizon::Length(cutoff(potential)),
+        (false, h) => h,
+    };
+    let length = match horizon {
+        Horizon::Ratio(m) => m as f64 * spacing,
+        Horizon::Length(d) => d,
+    };
+    // someone else says what is wrong with these
+    if !(length.is_finite() && spacing > 0.0 && length < 100.0 * spacing) {
+        return Ok(None);
+    }
+    let volume = kind.site_volume() * spacing.powi(kind.dimension() as i32) * spec.section;
+    let stencil = Stencil::new(kind, spacing, horizon);
+    let found = bulk(potential, &stencil, spacing, volume);
+    if found.density <= found.least_density {
+        return Err(BuildError::new(
+            "potential",
+            format!(
+                "the electron density of the perfect {} lattice of spacing {spacing:e} is {:.6e}: the embedding energy has no meaning there, its logarithm needs a positive density",
+                kind.name(),
+                found.density
+            ),
+        )
+        .help("the length scale of the density does not fit this lattice: give density_length of its own"));
+    }
+    // pressure against that of a strain of a thousandth
+    let stiff = bulk(potential, &stencil, spacing * 0.999, volume);
+    let scale = (stiff.pressure - found.pressure).abs();
+    Ok((found.pressure.abs() > 1e-3 * scale).then(|| {
+        format!(
+            "the {} lattice of spacing {spacing:e} is not in equilibrium: its pressure is {:.6e} (energy per volume), its energy per atom {:.6e}; free ends and surfaces will move, and constants of this state include the pressure",
+            kind.name(),
+            found.pressure,
+            found.energy
+        )
+    }))
+}
+
+impl<const D: usize> Model<D> {
+    /// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to
+    /// the temperature `(D N − D) k_B T / 2 = kinetic energy`. The same for a seed on every machine and number of threads.
+    pub(super) fn heat(&mut self, thermal: ThermalSpec) {
+        let mut random = SplitMix(thermal.seed);
+        let slots: Vec<usize> = self.body.slots.iter().map(|s| *s as usize).collect();
+        let mass: Vec<f64> = slots
+            .iter()
+            .map(|&s| self.body.volume.at(s) * self.body.density.at(s))
+            .collect();
+        let mut momentum = [0.0; D];
+        for (&s, m) in slots.iter().zip(&mass) {
+            for a in 0..D {
+                // Box & Muller 1958
+                let (x, y) = (1.0 - random.unit(), random.unit());
+                let normal = (-2.0 * x.ln()).sqrt() * (std::f64::consts::TAU * y).cos();
+                self.v[a][s] = (thermal.energy / m).sqrt() * normal;
+                momentum[a] += m * self.v[a][s];
+            }
+        }
+        let total: f64 = mass.iter().sum();
+        let mut twice = 0.0;
+        for (&s, m) in slots.iter().zip(&mass) {
+            for a in 0..D {
+                self.v[a][s] -= momentum[a] / total;
+                twice += m * self.v[a][s] * self.v[a][s];
+            }
+        }
+        let free = (D * slots.len().saturating_sub(1)) as f64;
+        if twice > 0.0 {
+            let scale = (free * thermal.energy / twice).sqrt();
+            for &s in &slots {
+                for a in 0..D {
+                    self.v[a][s] *= scale;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Interatomic potentials and linear springs: force = −∂energy, exchange of energy, closed forms, equivalences.
+
+mod chain;
+mod crystal;
+mod sample;

@@ -1,0 +1,178 @@
+//! Potentials and bodies that the tests share.
+
+use peridyne::law::potential::buckingham::Buckingham;
+use peridyne::law::potential::cut::End;
+use peridyne::law::potential::lennard_jones::LennardJones;
+use peridyne::law::potential::mei::{Mei, MeiSpec};
+use peridyne::law::potential::morse::Morse;
+use peridyne::law::potential::tabulated::Tabulated;
+use peridyne::law::potential::{Form, Potential, PotentialSpec};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::*;
+use std::sync::Arc;
+
+/// The copper-like constants of seleson2014 Table 1, with lengths in nearest distances `h` and shells of `kind`.
+pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> Mei {
+    Mei::new(MeiSpec {
+        cohesive: 3.54,
+        pair: 0.1217,
+        alpha: 5.082,
+        beta: 5.85,
+        gamma: 6.82054,
+        lambda: 12.06,
+        density: [0.14095, -1.93222, 9.60043, -21.23718, 20.18581, -5.81656],
+        density_scale: 1.0 / 12.0,
+        pair_length: h,
+        density_length: h,
+        near: 1.7 * h,
+        cutoff: 1.95 * h,
+        shells,
+        nearest: h,
+        shell_scale: 1.0,
+    })
+}
+
+pub const FCC_SHELLS: [(f64, f64); 4] = [
+    (12.0, 1.0),
+    (6.0, 1.4142135623730951),
+    (24.0, 1.7320508075688772),
+    (12.0, 2.0),
+];
+
+/// Every form and every end, all with the cut-off 1.95 and a least energy near the distance 1.
+pub fn potentials() -> Vec<(String, PotentialSpec)> {
+    let cutoff = 1.95;
+    let pairs = [
+        (
+            "lj",
+            Form::LennardJones(LennardJones {
+                epsilon: 1.2,
+                sigma: 0.9,
+            }),
+        ),
+        (
+            "morse",
+            Form::Morse(Morse {
+                depth: 0.7,
+                alpha: 4.0,
+                distance: 1.02,
+            }),
+        ),
+        (
+            "buckingham",
+            Form::Buckingham(Buckingham {
+                strength: 4e4,
+                range: 0.09,
+                dispersion: 1.1,
+            }),
+        ),
+    ];
+    let ends = [
+        ("truncated", End::Truncated),
+        ("shifted", End::Shifted),
+        ("shifted force", End::ShiftedForce),
+        ("smooth", End::Smooth(1.6)),
+    ];
+    let mut all = vec![];
+    for (name, form) in pairs {
+        for (end_name, end) in ends {
+            all.push((
+                format!("{name}, {end_name}"),
+                PotentialSpec {
+                    form: form.clone(),
+                    cutoff,
+                    end,
+                },
+            ));
+        }
+    }
+    let closed = mei(1.0, FCC_SHELLS.to_vec());
+    let (n, dr, drho) = (800, 1.95 / 799.0, 3.0 / 799.0);
+    let sample = |f: &dyn Fn(f64) -> f64, step: f64| -> Vec<f64> {
+        (0..n).map(|m| f(step * (m as f64).max(40.0))).collect()
+    };
+    let table = Tabulated::new(
+        drho,
+        &sample(&|rho| closed.embedding(rho), drho),
+        dr,
+        &sample(&|r| closed.density(r * r), dr),
+        &sample(&|r| r * closed.pair(r * r), dr),
+        1.95,
+    );
+    for (name, form) in [
+        ("closed form", Form::Mei(Box::new(closed))),
+        ("table", Form::Tabulated(Arc::new(table))),
+    ] {
+        all.push((
+            format!("eam, {name}"),
+            PotentialSpec {
+                form,
+                cutoff: f64::INFINITY,
+                end: End::Truncated,
+            },
+        ));
+    }
+    all
+}
+
+/// A lattice block of `cells` with nearest distance `nearest`.
+pub fn block(kind: LatticeKind, nearest: f64, cells: usize) -> BodySpec {
+    let d = kind.dimension();
+    let mut quarters = vec![];
+    for i in 0..cells.pow(d as u32) {
+        let cell: [usize; 3] = std::array::from_fn(|a| {
+            if a < d {
+                i / cells.pow(a as u32) % cells
+            } else {
+                0
+            }
+        });
+        for b in kind.basis() {
+            quarters.push(std::array::from_fn(|a| 4 * cell[a] as i32 + b[a]));
+        }
+    }
+    BodySpec::Sites {
+        kind,
+        spacing: nearest / kind.nearest(),
+        origin: [0.0; 3],
+        quarters,
+        volume: None,
+    }
+}
+
+/// Atoms on that block.
+pub fn atoms(
+    kind: LatticeKind,
+    cells: usize,
+    potential: &PotentialSpec,
+    family: FamilyChoice,
+    periodic: bool,
+) -> Spec {
+    let d = kind.dimension();
+    let mut spec = Spec::new(d, block(kind, 1.02, cells), 1.3, LawSpec::Atoms);
+    let a = 1.02 / kind.nearest();
+    spec.potential = Some(potential.clone());
+    spec.family = family;
+    // neighbours of the lattice that the cut-off leaves, and some more
+    spec.horizon = Horizon::Length(2.3);
+    if periodic {
+        spec.periodic =
+            std::array::from_fn(|x| (x < d).then_some(a * kind.edges()[x] * cells as f64));
+    }
+    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec.schedule.force_unstable = true;
+    spec
+}
+
+/// A fixed sequence of numbers in ±½.
+pub struct Noise(pub u64);
+
+impl Noise {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    }
+}
