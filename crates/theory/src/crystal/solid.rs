@@ -53,10 +53,16 @@ impl LatticeSolid {
         self.kind.site_volume() * self.spacing.powi(self.kind.dimension() as i32) * self.section
     }
 
+    /// Edge of a cube (square) of the volume of a point: over which the horizon cuts volumes.
+    fn point(&self) -> f64 {
+        let d = self.kind.dimension() as f64;
+        self.spacing * self.kind.site_volume().powf(1.0 / d)
+    }
+
     /// `ω ν V` of a bond.
     fn weight(&self, r0: f64) -> f64 {
         let fraction = if self.volume_scaling {
-            volume_fraction(r0, self.delta(), self.spacing)
+            volume_fraction(r0, self.delta(), self.point())
         } else {
             1.0
         };
