@@ -1,4 +1,14 @@
 //! Model to model: what a model of points is as a continuum.
+//!
+//! | question | module |
+//! |---|---|
+//! | what is a lattice with a law about its reference state? | [`crystal`] |
+//! | which waves does it carry, how fast? | [`dispersion`] |
+//! | which time step is stable? | [`stability`] |
+//! | how stiff is it? | [`lattice_elastic`]; of a finite body [`elastic`] |
+//! | which differential equation is it? | [`gradient`], exactly by [`exact`] |
+//! | is one model an upscaling of another, to which order? | [`upscaling`] |
+//! | with which order do errors fall? | [`convergence`] |
 
 // tensors are indexed by components
 #![allow(clippy::needless_range_loop)]

@@ -187,9 +187,58 @@ fn climb<const D: usize>(start: Limit<D>, width: f64, top: impl Fn([f64; D]) -> 
     best
 }
 
+/// The observed limit: the border between steps that run and steps that do not, by bisection between a stable and an
+/// unstable one until they are `tolerance` apart (relative); `None` if they are not what they should be.
+pub fn observed(
+    mut stable: impl FnMut(f64) -> bool,
+    [mut low, mut high]: [f64; 2],
+    tolerance: f64,
+) -> Option<f64> {
+    if !stable(low) || stable(high) {
+        return None;
+    }
+    while high - low > tolerance * high {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if stable(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(0.5 * (low + high))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_run_blows_up_beyond_the_sharp_limit() {
+        // springs with two neighbours on a ring that holds the wave of the limit, 2π/3
+        let chain = LinearChain::springs(3.0, 1.0, 2);
+        let n = 12;
+        let runs = |dt: f64| {
+            let mut u: Vec<f64> = (0..n).map(|i| ((i * i) as f64).sin()).collect();
+            let mut v = vec![0.0; n];
+            for _ in 0..4000 {
+                for i in 0..n {
+                    let pull = |j: usize| u[(i + j) % n] + u[(i + n - j) % n] - 2.0 * u[i];
+                    v[i] += dt * (chain.stiffness[0] * pull(1) + chain.stiffness[1] * pull(2));
+                }
+                for i in 0..n {
+                    u[i] += dt * v[i];
+                }
+            }
+            u.iter().all(|x| x.abs() < 1e6)
+        };
+        let limit = chain.largest(1.0).time_step();
+        let found = observed(runs, [0.5 * limit, 2.0 * limit], 1e-4).unwrap();
+        assert!((found / limit - 1.0).abs() < 2e-4, "{found} {limit}");
+        assert_eq!(observed(|_| true, [1.0, 2.0], 1e-3), None);
+    }
     use crate::crystal::LatticeSolid;
     use peridyne::law::solid::eam_like::Solid;
     use peridyne::space::lattice::LatticeKind;

@@ -99,9 +99,13 @@ impl<F: Field + fmt::Display> fmt::Display for Comparison<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::crystal::{Crystal, Reach};
     use crate::exact::{Q, q};
     use crate::gradient::linear::{LinearChain, springs_continuum};
     use crate::gradient::power_law::PowerLawChain;
+    use peridyne::law::number::Number;
+    use peridyne::law::potential::Potential;
+    use peridyne::space::lattice::LatticeKind;
 
     #[test]
     fn springs_at_one_horizon_differ_by_one_over_n() {
@@ -143,6 +147,46 @@ mod tests {
             c.to_string()
                 .ends_with("upscalings of each other to order 2")
         );
+    }
+
+    /// An embedded-atom potential with lengths in units of `h` and energies per volume of a point kept (seleson2014
+    /// section 3): f = e^{−r/h}, F = −h√ρ, φ = 3h e^{−4r/h}.
+    struct Metal {
+        h: f64,
+    }
+    impl Potential for Metal {
+        const EMBEDDED: bool = true;
+        fn cutoff(&self) -> f64 {
+            4.5 * self.h
+        }
+        fn pair<N: Number>(&self, q: N) -> N {
+            q.sqrt().times(-4.0 / self.h).exp().times(3.0 * self.h)
+        }
+        fn density<N: Number>(&self, q: N) -> N {
+            q.sqrt().times(-1.0 / self.h).exp()
+        }
+        fn embedding<N: Number>(&self, density: N) -> N {
+            density.sqrt().times(-self.h)
+        }
+    }
+
+    #[test]
+    fn a_coarse_embedded_atom_chain_is_an_upscaling_in_long_waves_only() {
+        let expansion = |h: f64| {
+            let (crystal, _) =
+                Crystal::<1>::of_potential(&Metal { h }, LatticeKind::Chain, h, h, Reach::Cutoff)
+                    .unwrap();
+            LinearChain::of_crystal(&crystal).unwrap().expansion(3)
+        };
+        let (fine, coarse) = (expansion(1.0), expansion(2.0));
+        let c = compare(&fine, &coarse, 1e-12);
+        assert_eq!(c.equal_to_order(), 2);
+        // the coarse chain is the fine one in other units of length: order 2p + 2 grows with h^2p, exactly
+        for (p, row) in c.rows.iter().enumerate() {
+            let scaled = row.left.scale(&4f64.powi(p as i32));
+            let rest = row.right.sub(&scaled);
+            assert!(largest(&rest) <= 1e-13 * largest(&row.right));
+        }
     }
 
     #[test]

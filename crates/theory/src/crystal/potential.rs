@@ -93,6 +93,35 @@ impl<const D: usize> Crystal<D> {
     }
 }
 
+/// The spacing at which the lattice has no pressure, between `low` and `high` and to round-off; `None` if the pressure
+/// has one sign at both, or there is no crystal.
+pub fn equilibrium<const D: usize>(
+    potential: &impl Potential,
+    kind: LatticeKind,
+    reach: Reach,
+    [mut low, mut high]: [f64; 2],
+) -> Option<f64> {
+    let pressure = |a: f64| {
+        let (_, reference) = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach).ok()?;
+        Some(reference.pressure)
+    };
+    let (first, last) = (pressure(low)?, pressure(high)?);
+    if first * last > 0.0 {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return Some(middle);
+        }
+        if pressure(middle)? * first > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
 fn neighbours<const D: usize>(
     potential: &impl Potential,
     kind: LatticeKind,
@@ -105,14 +134,18 @@ fn neighbours<const D: usize>(
         Reach::Horizon(h) => h,
         Reach::Shells(n) => return shells(kind, spacing, n),
     };
-    let found = links(kind, spacing, horizon)?;
+    let mut found = links::<D>(kind, spacing, horizon)?;
+    // beyond its cut-off a potential says nothing
+    found.retain(|l| spacing * (l.squared as f64).sqrt() / 4.0 <= potential.cutoff());
     if found.is_empty() {
-        let reach = match horizon {
+        let asked = match horizon {
             Horizon::Length(d) => d,
             Horizon::Ratio(m) => m as f64 * spacing,
         };
-        let nearest = kind.nearest() * spacing;
-        return Err(CrystalError::NoNeighbours { reach, nearest });
+        return Err(CrystalError::NoNeighbours {
+            reach: asked.min(potential.cutoff()),
+            nearest: kind.nearest() * spacing,
+        });
     }
     Ok(found)
 }
@@ -129,7 +162,9 @@ fn shells<const D: usize>(
             most: SHELLS,
         });
     }
-    for m in 1.. {
+    let mut m = 0;
+    loop {
+        m += 1;
         let mut found = links::<D>(kind, spacing, Horizon::Ratio(m))?;
         let mut squares: Vec<i64> = found.iter().map(|l| l.squared).collect();
         squares.sort_unstable();
@@ -139,7 +174,6 @@ fn shells<const D: usize>(
             return Ok(found);
         }
     }
-    unreachable!("every larger horizon holds more shells")
 }
 
 #[cfg(test)]
@@ -186,6 +220,27 @@ mod tests {
         assert_eq!(reference.neighbours, 18);
         assert!(crystal.residual() < 1e-15);
         assert!((crystal.density() * a * a * a / 4.0 - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn chains_of_lennard_jones_rest_where_the_sums_say() {
+        // σ = a (Z(6)/(2 Z(12)))^(1/6), not a/2^(1/6)
+        use crate::exact::zeta;
+        let lj = LennardJones {
+            epsilon: 1.0,
+            sigma: 1.0,
+        };
+        for n in [1, 4] {
+            let reach = Reach::Shells(n);
+            let a = equilibrium::<1>(&lj, LatticeKind::Chain, reach, [0.9, 1.5]).unwrap();
+            let z = |p| zeta::<f64>(n as usize, p);
+            let sigma = a * (z(6) / (2.0 * z(12))).powf(1.0 / 6.0);
+            assert!((sigma - 1.0).abs() < 1e-14, "{n}: {a}");
+        }
+        assert_eq!(
+            equilibrium::<1>(&lj, LatticeKind::Chain, Reach::Shells(1), [1.2, 1.5]),
+            None
+        );
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! Φ_b the bond's force constants, `G_r = Σ_{b of r} share n (e^{ik·ξ} at `to` − 1 at r)` the row of the point scalar.
 //! Phases go by positions, so that D is smooth in k and D(−k) is its conjugate.
 
+pub mod agreement;
 pub mod chain;
 pub mod hermitian;
 pub mod zone;

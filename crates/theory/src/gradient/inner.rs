@@ -5,12 +5,12 @@
 //! motion is `ρ ÿ = Σ_k (−1)^{k+1} (d/dx)^k ∂W/∂y⁽ᵏ⁾`. Truncated energies are an energy's equation at any order.
 
 use super::Expansion;
-use super::power_law::{PowerLawChain, binomial};
+use super::power_law::{PowerLawChain, SymbolicOrder, binomial};
 use crate::exact::polynomial::JetPolynomial;
 use crate::exact::{Field, factorial};
 
-/// Energy density of `r^{−n}` with amplitude 1: `orders[p]` belongs to `Z_N(n − 2p) Δx^{2p−n}`.
-pub fn energy_orders<F: Field>(n: i32, terms: usize) -> Vec<JetPolynomial<F>> {
+/// Energy density of `r^{−n}` with amplitude 1, by powers Δx⁰, Δx², ….
+pub fn energy_orders<F: Field>(n: i32, terms: usize) -> Vec<SymbolicOrder<F>> {
     let strain: Vec<JetPolynomial<F>> = (0..terms)
         .map(|p| match 2 * p {
             0 => JetPolynomial::term(F::one(), &[]),
@@ -24,6 +24,8 @@ pub fn energy_orders<F: Field>(n: i32, terms: usize) -> Vec<JetPolynomial<F>> {
     binomial(&strain, -n)
         .into_iter()
         .map(|p| p.mul(&JetPolynomial::term(F::one(), &[-n])))
+        .enumerate()
+        .map(|(p, polynomial)| SymbolicOrder::new(n, p, polynomial))
         .collect()
 }
 
@@ -42,8 +44,8 @@ pub fn variation<F: Field>(energy: &JetPolynomial<F>) -> JetPolynomial<F> {
 pub fn energy<F: Field>(chain: &PowerLawChain<F>, terms: usize) -> Vec<JetPolynomial<F>> {
     let mut sum = vec![JetPolynomial::zero(); terms];
     for (n, amplitude) in &chain.amplitudes {
-        for (p, polynomial) in energy_orders(*n, terms).into_iter().enumerate() {
-            sum[p] = sum[p].add(&polynomial.scale(&chain.weight(*n, p, amplitude)));
+        for (part, order) in sum.iter_mut().zip(energy_orders(*n, terms)) {
+            *part = part.add(&order.on(chain, amplitude));
         }
     }
     sum

@@ -83,11 +83,7 @@ impl<F: Field> LinearChain<F> {
     /// `c_2, c_4, …` (force / length² times length^{2p}): `ρ ü = Σ c_{2p} ∂^{2p} u`.
     pub fn coefficients(&self, terms: usize) -> Vec<F> {
         let length = 2 * terms + 1;
-        let wave = |j: usize| {
-            let kx = Series::monomial(length, 1, F::whole(j as i64) * self.spacing.clone());
-            // the constant term is 0
-            kx.cos_sin().unwrap_or_else(|| [kx.clone(), kx])
-        };
+        let wave = |j: usize| cos_sin(F::whole(j as i64) * self.spacing.clone(), length);
         let mut sum = Series::constant(length, F::zero());
         for (j, k) in self.stiffness.iter().enumerate() {
             let [cos, _] = wave(j + 1);
@@ -122,6 +118,20 @@ impl<F: Field> LinearChain<F> {
             curvature: self.curvature.value(),
         }
     }
+}
+
+/// Cosine and sine of kx as series in k.
+fn cos_sin<F: Field>(x: F, terms: usize) -> [Series<F>; 2] {
+    let mut series = [0, 1].map(|_| Series::constant(terms, F::zero()));
+    let mut term = F::one();
+    for n in 0..terms {
+        if n > 0 {
+            term = term * x.clone() / F::whole(n as i64);
+        }
+        let sign = if n % 4 < 2 { F::one() } else { -F::one() };
+        series[n % 2].0[n] = sign * term.clone();
+    }
+    series
 }
 
 impl LinearChain<f64> {

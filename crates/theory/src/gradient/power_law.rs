@@ -8,6 +8,7 @@
 use super::Expansion;
 use crate::exact::polynomial::JetPolynomial;
 use crate::exact::{Field, factorial, zeta};
+use std::fmt;
 
 /// A chain of points, every one bound to `neighbours` on each side.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +21,46 @@ pub struct PowerLawChain<F> {
     pub neighbours: usize,
 }
 
-/// Force density of the part `r^{−n}` with amplitude 1: `orders[p]` belongs to `Z_N(n − 2p) Δx^{2p−n}`.
-pub fn orders<F: Field>(n: i32, terms: usize) -> Vec<JetPolynomial<F>> {
+/// One gradient order of one power law: `Z_N(zeta) Δx^spacing · polynomial`, for any chain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SymbolicOrder<F> {
+    /// Index of `Z_N(n) = Σ_{j≤N} j^{−n}`.
+    pub zeta: i32,
+    /// Power of Δx.
+    pub spacing: i32,
+    pub polynomial: JetPolynomial<F>,
+}
+
+impl<F: Field> SymbolicOrder<F> {
+    pub(super) fn new(n: i32, p: usize, polynomial: JetPolynomial<F>) -> Self {
+        let shift = 2 * p as i32;
+        SymbolicOrder {
+            zeta: n - shift,
+            spacing: shift - n,
+            polynomial,
+        }
+    }
+
+    /// On a chain, with the amplitude `A_n/Δx`.
+    pub fn on(&self, chain: &PowerLawChain<F>, amplitude: &F) -> JetPolynomial<F> {
+        let z: F = zeta(chain.neighbours, self.zeta);
+        self.polynomial
+            .scale(&(amplitude.clone() * z * chain.spacing.to(self.spacing)))
+    }
+}
+
+impl<F: Field + fmt::Display> fmt::Display for SymbolicOrder<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "Z({}) Δx^{} [{}]",
+            self.zeta, self.spacing, self.polynomial
+        )
+    }
+}
+
+/// Force density of the part `r^{−n}` with amplitude 1, by gradient orders 2, 4, ….
+pub fn orders<F: Field>(n: i32, terms: usize) -> Vec<SymbolicOrder<F>> {
     let exponent = -n - 1;
     let strain: Vec<JetPolynomial<F>> = (0..2 * terms)
         .map(|k| match k {
@@ -34,7 +73,8 @@ pub fn orders<F: Field>(n: i32, terms: usize) -> Vec<JetPolynomial<F>> {
     (0..terms)
         .map(|p| {
             let c = F::whole(-2 * n as i64);
-            power[2 * p + 1].mul(&JetPolynomial::term(c, &[exponent]))
+            let polynomial = power[2 * p + 1].mul(&JetPolynomial::term(c, &[exponent]));
+            SymbolicOrder::new(n, p, polynomial)
         })
         .collect()
 }
@@ -95,17 +135,11 @@ impl<F: Field> PowerLawChain<F> {
     pub fn expansion(&self, terms: usize) -> Expansion<F> {
         let mut sum = vec![JetPolynomial::zero(); terms];
         for (n, amplitude) in &self.amplitudes {
-            for (p, polynomial) in orders(*n, terms).into_iter().enumerate() {
-                sum[p] = sum[p].add(&polynomial.scale(&self.weight(*n, p, amplitude)));
+            for (part, order) in sum.iter_mut().zip(orders(*n, terms)) {
+                *part = part.add(&order.on(self, amplitude));
             }
         }
         Expansion { orders: sum }
-    }
-
-    /// `A_n/Δx · Z_N(n − 2p) Δx^{2p−n}`
-    pub(super) fn weight(&self, n: i32, p: usize, amplitude: &F) -> F {
-        let shift = 2 * p as i32 - n;
-        amplitude.clone() * zeta(self.neighbours, -shift) * self.spacing.to(shift)
     }
 
     /// Force density of the points themselves at `x`, exactly.
@@ -223,9 +257,18 @@ mod tests {
     #[test]
     fn squares_are_linear() {
         // φ = ½ r²: every order is y⁽²ᵖ⁺²⁾ with 2/(2p+2)! Z(−2p−2)
-        for (p, polynomial) in orders::<Q>(-2, 4).into_iter().enumerate() {
+        for (p, order) in orders::<Q>(-2, 4).into_iter().enumerate() {
             let c = q(4, 1) / factorial::<Q>(2 * p + 2);
-            assert_eq!(polynomial, JetPolynomial::derivative_of_order(2 * p + 2, c));
+            let expected = JetPolynomial::derivative_of_order(2 * p + 2, c);
+            assert_eq!(order.polynomial, expected);
         }
+    }
+
+    #[test]
+    fn orders_print_with_their_sums() {
+        let second = orders::<Q>(12, 2)[0].to_string();
+        assert_eq!(second, "Z(12) Δx^-12 [(156) y'' y'^-14]");
+        let fourth = orders::<Q>(6, 2)[1].to_string();
+        assert!(fourth.starts_with("Z(4) Δx^-4 ["), "{fourth}");
     }
 }
