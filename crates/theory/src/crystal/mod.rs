@@ -185,3 +185,30 @@ impl<const D: usize> Crystal<D> {
         }
     }
 }
+
+/// A chain of two unlike atoms per cell, of the lowest symmetry: for tests.
+#[cfg(test)]
+pub(crate) fn dimer() -> Crystal<1> {
+    let bond = |from, to, x: f64, tension, stiffness, share| Bond {
+        from,
+        to,
+        xi: [x],
+        tension,
+        stiffness,
+        share,
+    };
+    Crystal {
+        cell: [[1.0]],
+        basis: vec![[0.0], [0.4]],
+        mass: vec![1.0, 1.7],
+        bonds: vec![
+            bond(0, 1, 0.4, 0.3, 2.0, 0.8),
+            bond(0, 1, -0.6, 0.2, 1.1, 0.3),
+            bond(1, 0, -0.4, 0.3, 2.0, 0.5),
+            bond(1, 0, 0.6, 0.2, 1.1, 0.2),
+            bond(0, 0, 1.0, -0.1, 0.4, 0.15),
+            bond(0, 0, -1.0, -0.1, 0.4, 0.15),
+        ],
+        curvature: vec![0.9, 1.3],
+    }
+}
