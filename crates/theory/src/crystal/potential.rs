@@ -128,20 +128,21 @@ fn neighbours<const D: usize>(
     spacing: f64,
     reach: Reach,
 ) -> Result<Vec<Link<D>>, CrystalError> {
-    let horizon = match reach {
-        Reach::Cutoff if potential.cutoff().is_finite() => Horizon::Length(potential.cutoff()),
+    let within = |h| links::<D>(kind, spacing, h);
+    let distance = |l: &Link<D>| spacing * (l.squared as f64).sqrt() / 4.0;
+    let (mut found, asked) = match reach {
+        Reach::Cutoff if potential.cutoff().is_finite() => {
+            let cutoff = potential.cutoff();
+            (within(Horizon::Length(cutoff))?, cutoff)
+        }
         Reach::Cutoff => return Err(CrystalError::NoCutoff),
-        Reach::Horizon(h) => h,
-        Reach::Shells(n) => return shells(kind, spacing, n),
+        Reach::Horizon(Horizon::Length(d)) => (within(Horizon::Length(d))?, d),
+        Reach::Horizon(h @ Horizon::Ratio(m)) => (within(h)?, m as f64 * spacing),
+        Reach::Shells(n) => (shells(kind, spacing, n)?, f64::INFINITY),
     };
-    let mut found = links::<D>(kind, spacing, horizon)?;
     // beyond its cut-off a potential says nothing
-    found.retain(|l| spacing * (l.squared as f64).sqrt() / 4.0 <= potential.cutoff());
+    found.retain(|l| distance(l) <= potential.cutoff());
     if found.is_empty() {
-        let asked = match horizon {
-            Horizon::Length(d) => d,
-            Horizon::Ratio(m) => m as f64 * spacing,
-        };
         return Err(CrystalError::NoNeighbours {
             reach: asked.min(potential.cutoff()),
             nearest: kind.nearest() * spacing,
@@ -183,7 +184,7 @@ mod tests {
     use peridyne::law::potential::lennard_jones::LennardJones;
 
     /// Johnson-like embedded atom: f = e^{−βr}, F = −√ρ + 0.1 ρ, φ = A e^{−αr}.
-    pub struct Metal;
+    struct Metal;
     impl Potential for Metal {
         const EMBEDDED: bool = true;
         fn cutoff(&self) -> f64 {
@@ -241,6 +242,16 @@ mod tests {
             equilibrium::<1>(&lj, LatticeKind::Chain, Reach::Shells(1), [1.2, 1.5]),
             None
         );
+    }
+
+    #[test]
+    fn beyond_its_cutoff_a_potential_says_nothing() {
+        let of = |reach| Crystal::<3>::of_potential(&Metal, LatticeKind::Fcc, 1.4, 1.0, reach);
+        let wide = of(Reach::Horizon(Horizon::Ratio(2))).unwrap();
+        assert_eq!(wide, of(Reach::Cutoff).unwrap());
+        assert_eq!(wide, of(Reach::Shells(6)).unwrap());
+        // shells at 0.99, 1.4, 1.71, 1.98; the next is at 2.21
+        assert_eq!(wide.1.neighbours, 54);
     }
 
     #[test]

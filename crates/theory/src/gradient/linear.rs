@@ -63,6 +63,38 @@ impl<F: Field> LinearChain<F> {
         }
     }
 
+    /// Bond-based (PMB) bar of unit section, from the micromodulus c and the weights ων of the neighbours on one side:
+    /// `K_j = c ων Δx²/(jΔx)`.
+    pub fn bond_based(c: F, weights: &[F], spacing: F) -> Self {
+        let stiffness = |(j, w): (i64, &F)| c.clone() * w.clone() * spacing.clone() / F::whole(j);
+        LinearChain {
+            stiffness: (1..).zip(weights).map(stiffness).collect(),
+            share: vec![],
+            curvature: F::zero(),
+            spacing: spacing.clone(),
+        }
+    }
+
+    /// EAM-like bar (LPS) of unit section, from n, κ, β of the engine's `eam_like::Solid` and the weights ων:
+    /// `K_j = 2β ων Δx²/m`, `f_j = n ων jΔx²/m`, `F″ = κΔx`, `m = 2 Σ ων j² Δx³`.
+    pub fn state_based([n, kappa, beta]: [F; 3], weights: &[F], spacing: F) -> Self {
+        let square = spacing.clone() * spacing.clone();
+        let numbered = || (1..).map(F::whole).zip(weights);
+        let sum = numbered().fold(F::zero(), |s, (j, w)| s + w.clone() * j.clone() * j);
+        let m = F::whole(2) * sum * square.clone() * spacing.clone();
+        let scale = square / m;
+        LinearChain {
+            stiffness: numbered()
+                .map(|(_, w)| F::whole(2) * beta.clone() * w.clone() * scale.clone())
+                .collect(),
+            share: numbered()
+                .map(|(j, w)| n.clone() * w.clone() * j * scale.clone())
+                .collect(),
+            curvature: kappa * spacing.clone(),
+            spacing,
+        }
+    }
+
     /// Bonds of power laws, `φ = Σ A_n r^{−n}` with `(n, A_n)`, about the unstretched chain: `K_j = φ″(jΔx)`.
     pub fn power_law(amplitudes: &[(i32, F)], spacing: F, neighbours: usize) -> Self {
         let stiffness = |j: i64| {
@@ -256,6 +288,20 @@ mod tests {
         // one neighbour: k̄/(2Δx) versines and c̄ sin²/Δx
         let c = LinearChain::structured_eam(q(2, 1), q(1, 1), 1, q(1, 1), 1).coefficients(2);
         assert_eq!(c, [q(2, 1), q(1, 12) + q(1, 3)]);
+    }
+
+    #[test]
+    fn peridynamic_bars() {
+        // c = 2K1/δ² of the integral is 1 + 1/N too stiff; with it, the bar is the chain of springs
+        let (n, a) = (4, q(1, 4));
+        let weights = vec![q(1, 1); n];
+        let bar = LinearChain::bond_based(q(2, 1), &weights, a.clone());
+        assert_eq!(bar, LinearChain::springs(q(5, 4), a.clone(), n));
+        // the structured embedded-atom model is the EAM-like bar with ω = r^{−p}, k̄ = 2β, c̄ = n²κ
+        let weights: Vec<Q> = (1..=4).map(|j| (Q::whole(j) * &a).to(-2)).collect();
+        let bar = LinearChain::state_based([q(3, 1), q(2, 5), q(7, 2)], &weights, a.clone());
+        let eam = LinearChain::structured_eam(q(7, 1), q(18, 5), 2, a, n);
+        assert_eq!(bar.coefficients(5), eam.coefficients(5));
     }
 
     #[test]
