@@ -1,9 +1,29 @@
 //! Model to model: what a model of points is as a continuum.
+//!
+//! | question | module |
+//! |---|---|
+//! | what is a lattice with a law about its reference state? | [`crystal`] |
+//! | which waves does it carry, how fast? | [`dispersion`] |
+//! | which time step is stable? | [`stability`] |
+//! | how stiff is it? | [`lattice_elastic`]; of a finite body [`elastic`] |
+//! | which differential equation is it? | [`gradient`], exactly by [`exact`] |
+//! | is one model an upscaling of another, to which order? | [`upscaling`] |
+//! | with which order do errors fall? | [`convergence`] |
 
 // tensors are indexed by components
 #![allow(clippy::needless_range_loop)]
 
 pub mod asked;
+pub mod convergence;
+pub mod crystal;
+pub mod dispersion;
 pub mod elastic;
+pub mod exact;
 pub mod fracture;
+pub mod gradient;
+pub mod jet;
+pub mod lattice_elastic;
+pub mod moments;
+pub mod stability;
 pub mod stiffness;
+pub mod upscaling;

@@ -1,0 +1,214 @@
+//! A periodic set of points about its reference state: the linear model that dispersion, stability and elastic
+//! constants read, whatever the law.
+//!
+//! Energy per cell to second order in displacements, η = u_to − u_from, n the bond's direction:
+//! `½ · ½ Σ_bonds [stiffness (n·η)² + tension (|η|² − (n·η)²)] + ½ Σ_s F″_s (Σ_bonds of s share n·η)²`,
+//! the first sum over directed bonds. For an embedded-atom potential `V = φ + (F′_s + F′_t) f`, share = f′.
+
+pub mod cells;
+pub mod potential;
+pub mod solid;
+
+use peridyne::space::lattice::LatticeKind;
+
+pub use potential::{Reach, Reference};
+pub use solid::LatticeSolid;
+
+/// A directed bond, from a site of cell 0 to a site of this or another cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bond<const D: usize> {
+    pub from: usize,
+    pub to: usize,
+    /// Reference vector (length).
+    pub xi: [f64; D],
+    /// `V′(r)/r` (force / length).
+    pub tension: f64,
+    /// `V″(r)` (force / length).
+    pub stiffness: f64,
+    /// `f′(r)`: what the extension adds to the point scalar of `from`.
+    pub share: f64,
+}
+
+impl<const D: usize> Bond<D> {
+    pub fn length(&self) -> f64 {
+        self.xi.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// Unit vector.
+    pub fn direction(&self) -> [f64; D] {
+        let r = self.length();
+        self.xi.map(|x| x / r)
+    }
+
+    /// `tension (1 − n⊗n) + stiffness n⊗n` (force / length).
+    pub fn force_constants(&self) -> [[f64; D]; D] {
+        let n = self.direction();
+        let mut c = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                c[a][b] = (self.stiffness - self.tension) * n[a] * n[b];
+            }
+            c[a][a] += self.tension;
+        }
+        c
+    }
+}
+
+/// Lattice vectors, sites and bonds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crystal<const D: usize> {
+    /// Rows: lattice vectors (length).
+    pub cell: [[f64; D]; D],
+    /// Positions of the sites in the cell (length).
+    pub basis: Vec<[f64; D]>,
+    /// `[site]`
+    pub mass: Vec<f64>,
+    /// Every directed bond of every site of the cell.
+    pub bonds: Vec<Bond<D>>,
+    /// `[site]` F″ of the point scalar; 0 for pair laws.
+    pub curvature: Vec<f64>,
+}
+
+/// Why there is no crystal.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CrystalError {
+    #[error("a {lattice} lattice has {expected} dimensions, not {found}")]
+    Dimension {
+        lattice: &'static str,
+        expected: usize,
+        found: usize,
+    },
+    #[error("{what} is {value}, expected a positive number")]
+    NotPositive { what: &'static str, value: f64 },
+    #[error("the potential has no cut-off: say up to which distance or shell neighbours count")]
+    NoCutoff,
+    #[error("no neighbour within the reach of {reach}: the nearest is at {nearest}")]
+    NoNeighbours { reach: f64, nearest: f64 },
+    #[error("at most {most} shells of neighbours are counted, {asked} were asked for")]
+    TooManyShells { asked: u32, most: u32 },
+    #[error(
+        "the embedding energy has no value at the reference density {density}: the state is outside of what the \
+         potential describes"
+    )]
+    Density { density: f64 },
+    #[error("the potential has no value at the distance {distance} of the reference")]
+    Distance { distance: f64 },
+}
+
+fn positive(what: &'static str, value: f64) -> Result<(), CrystalError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(CrystalError::NotPositive { what, value })
+    }
+}
+
+fn same_dimension<const D: usize>(kind: LatticeKind) -> Result<(), CrystalError> {
+    if kind.dimension() == D {
+        Ok(())
+    } else {
+        Err(CrystalError::Dimension {
+            lattice: kind.name(),
+            expected: kind.dimension(),
+            found: D,
+        })
+    }
+}
+
+impl<const D: usize> Crystal<D> {
+    /// Volume (area, length) of the cell.
+    pub fn volume(&self) -> f64 {
+        cells::determinant(&self.cell).abs()
+    }
+
+    /// Mass per volume (area, length) of the D dimensions.
+    pub fn density(&self) -> f64 {
+        self.mass.iter().sum::<f64>() / self.volume()
+    }
+
+    /// Rows: reciprocal vectors, `a_i · b_j = 2π δ_ij`.
+    pub fn reciprocal(&self) -> [[f64; D]; D] {
+        cells::reciprocal(&self.cell)
+    }
+
+    /// Stress of the reference `σ = (1/V) ½ Σ tension ξ⊗ξ` (force / area, in 2-D per thickness); −pressure if isotropic.
+    pub fn stress(&self) -> [[f64; D]; D] {
+        let v = self.volume();
+        let mut s = [[0.0; D]; D];
+        for b in &self.bonds {
+            for i in 0..D {
+                for j in 0..D {
+                    s[i][j] += 0.5 * b.tension * b.xi[i] * b.xi[j] / v;
+                }
+            }
+        }
+        s
+    }
+
+    /// Pressure of the reference.
+    pub fn pressure(&self) -> f64 {
+        let s = self.stress();
+        -(0..D).map(|i| s[i][i]).sum::<f64>() / D as f64
+    }
+
+    /// Largest net force on a site of the reference: 0 in equilibrium.
+    pub fn residual(&self) -> f64 {
+        let mut force = vec![[0.0; D]; self.basis.len()];
+        for b in &self.bonds {
+            for a in 0..D {
+                force[b.from][a] += b.tension * b.xi[a];
+            }
+        }
+        force
+            .iter()
+            .map(|f| f.iter().map(|x| x * x).sum::<f64>().sqrt())
+            .fold(0.0, f64::max)
+    }
+
+    /// The same crystal turned by an orthogonal matrix, `x → R x`.
+    pub fn rotated(&self, r: [[f64; D]; D]) -> Crystal<D> {
+        let turn = |x: [f64; D]| -> [f64; D] {
+            std::array::from_fn(|i| (0..D).map(|j| r[i][j] * x[j]).sum())
+        };
+        Crystal {
+            cell: self.cell.map(turn),
+            basis: self.basis.iter().map(|x| turn(*x)).collect(),
+            bonds: self
+                .bonds
+                .iter()
+                .map(|b| Bond {
+                    xi: turn(b.xi),
+                    ..*b
+                })
+                .collect(),
+            ..self.clone()
+        }
+    }
+}
+
+/// A chain of two unlike atoms per cell, of the lowest symmetry: for tests.
+#[cfg(test)]
+pub(crate) fn dimer() -> Crystal<1> {
+    let bond = |from, to, x: f64, tension, stiffness, share| Bond {
+        from,
+        to,
+        xi: [x],
+        tension,
+        stiffness,
+        share,
+    };
+    Crystal {
+        cell: [[1.0]],
+        basis: vec![[0.0], [0.4]],
+        mass: vec![1.0, 1.7],
+        bonds: vec![
+            bond(0, 1, 0.4, 0.3, 2.0, 0.8),
+            bond(0, 1, -0.6, 0.2, 1.1, 0.3),
+            bond(1, 0, -0.4, 0.3, 2.0, 0.5),
+            bond(1, 0, 0.6, 0.2, 1.1, 0.2),
+            bond(0, 0, 1.0, -0.1, 0.4, 0.15),
+            bond(0, 0, -1.0, -0.1, 0.4, 0.15),
+        ],
+        curvature: vec![0.9, 1.3],
+    }
+}

@@ -1,0 +1,182 @@
+//! Crystals of a peridynamic solid: points on a lattice, each with the volume of its cell.
+//!
+//! Forces per point are force densities times the volume; masses are ρV.
+
+use super::cells::{links, primitive};
+use super::{Bond, Crystal, CrystalError, positive};
+use peridyne::family::volume_fraction;
+use peridyne::law::influence::influence;
+use peridyne::law::micromodulus::{Moments, micromodulus};
+use peridyne::law::solid::eam_like::Solid;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::{Calibration, Horizon, Influence, LawSpec, Plane};
+
+/// A body of one material on a lattice, without boundary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatticeSolid {
+    pub kind: LatticeKind,
+    pub spacing: f64,
+    pub horizon: Horizon,
+    /// Thickness (2-D) or cross-section (1-D); 1 in 3-D.
+    pub section: f64,
+    /// Mass per volume.
+    pub density: f64,
+    pub influence: Influence,
+    /// Partners' volumes fade at the horizon.
+    pub volume_scaling: bool,
+}
+
+impl LatticeSolid {
+    /// With ω = 1, unit section and density, and whole volumes.
+    pub fn new(kind: LatticeKind, spacing: f64, horizon: Horizon) -> Self {
+        LatticeSolid {
+            kind,
+            spacing,
+            horizon,
+            section: 1.0,
+            density: 1.0,
+            influence: Influence::Constant,
+            volume_scaling: false,
+        }
+    }
+
+    /// δ (length).
+    pub fn delta(&self) -> f64 {
+        match self.horizon {
+            Horizon::Ratio(m) => m as f64 * self.spacing,
+            Horizon::Length(d) => d,
+        }
+    }
+
+    /// Volume of a point.
+    pub fn volume(&self) -> f64 {
+        self.kind.site_volume() * self.spacing.powi(self.kind.dimension() as i32) * self.section
+    }
+
+    /// Edge of a cube (square) of the volume of a point: over which the horizon cuts volumes.
+    fn point(&self) -> f64 {
+        let d = self.kind.dimension() as f64;
+        self.spacing * self.kind.site_volume().powf(1.0 / d)
+    }
+
+    /// `ω ν V` of a bond.
+    fn weight(&self, r0: f64) -> f64 {
+        let fraction = if self.volume_scaling {
+            volume_fraction(r0, self.delta(), self.point())
+        } else {
+            1.0
+        };
+        influence(self.influence, r0, self.delta()) * fraction * self.volume()
+    }
+
+    /// Sums over a family: `Σ ω ν V r0`, `Σ ω ν V r0²`.
+    pub fn moments<const D: usize>(&self) -> Result<Moments, CrystalError> {
+        let bare = self.bonds::<D>(|_| [0.0; 2])?;
+        let mut m = Moments {
+            first: 0.0,
+            second: 0.0,
+        };
+        for b in bare.bonds.iter().filter(|b| b.from == 0) {
+            let r = b.length();
+            m.first += self.weight(r) * r;
+            m.second += self.weight(r) * r * r;
+        }
+        Ok(m)
+    }
+
+    /// Bonds with `[stiffness, share]` by reference length.
+    fn bonds<const D: usize>(
+        &self,
+        law: impl Fn(f64) -> [f64; 2],
+    ) -> Result<Crystal<D>, CrystalError> {
+        positive("the lattice spacing", self.spacing)?;
+        positive("the density", self.density)?;
+        positive("the section", self.section)?;
+        positive("the horizon", self.delta())?;
+        let (cell, sites) = primitive::<D>(self.kind)?;
+        let links = links::<D>(self.kind, self.spacing, self.horizon)?;
+        if links.is_empty() {
+            return Err(CrystalError::NoNeighbours {
+                reach: self.delta(),
+                nearest: self.kind.nearest() * self.spacing,
+            });
+        }
+        Ok(Crystal {
+            cell: cell.map(|row| row.map(|x| x * self.spacing)),
+            mass: vec![self.density * self.volume(); sites.len()],
+            curvature: vec![0.0; sites.len()],
+            basis: sites.iter().map(|s| s.map(|x| x * self.spacing)).collect(),
+            bonds: links
+                .iter()
+                .map(|l| {
+                    let [stiffness, share] = law(self.spacing * (l.squared as f64).sqrt() / 4.0);
+                    Bond {
+                        from: l.from,
+                        to: l.to,
+                        xi: l.offset.map(|x| x * self.spacing),
+                        tension: 0.0,
+                        stiffness,
+                        share,
+                    }
+                })
+                .collect(),
+        })
+    }
+
+    /// Bond-based (PMB) solid of micromodulus c: `stiffness = c ω ν V² / r0`.
+    pub fn bond_based<const D: usize>(&self, c: f64) -> Result<Crystal<D>, CrystalError> {
+        let v = self.volume();
+        self.bonds(|r| [c * self.weight(r) * v / r, 0.0])
+    }
+
+    /// EAM-like solid (LPS): `stiffness = 2β ω ν V²/m`, `share = n ω ν V r0/m`, `F″ = κV`.
+    pub fn state_based<const D: usize>(&self, solid: Solid) -> Result<Crystal<D>, CrystalError> {
+        let v = self.volume();
+        let m = self.moments::<D>()?.second;
+        let mut crystal = self.bonds::<D>(|r| {
+            let w = self.weight(r);
+            [2.0 * solid.beta * w * v / m, solid.n * w * r / m]
+        })?;
+        crystal.curvature.fill(solid.kappa * v);
+        Ok(crystal)
+    }
+
+    /// Any law of the engine's specification.
+    pub fn of_law<const D: usize>(
+        &self,
+        law: LawSpec,
+        plane: Plane,
+        calibration: Calibration,
+    ) -> Result<Crystal<D>, CrystalError> {
+        match law {
+            LawSpec::Pmb(stiffness) => {
+                let moments = match calibration {
+                    Calibration::Discrete => self.moments::<D>()?,
+                    Calibration::Continuum => {
+                        Moments::continuum(D, self.delta(), self.section, self.influence)
+                    }
+                };
+                self.bond_based(micromodulus(D, plane, stiffness, moments))
+            }
+            LawSpec::Lps(moduli) => {
+                let (g, l) = (moduli.shear(), moduli.lame());
+                let lambda = match (D, plane) {
+                    (1, _) => moduli.young - 2.0 * g,
+                    (2, Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
+                    _ => l,
+                };
+                self.state_based(Solid::lps(D, lambda, g))
+            }
+            LawSpec::LpsAsTyped { bulk, shear } => self.state_based(Solid {
+                n: 3.0,
+                kappa: bulk - 5.0 / 3.0 * shear,
+                beta: 15.0 * shear,
+            }),
+            LawSpec::EamLike { pair, volume } => self.state_based(Solid {
+                n: 3.0,
+                kappa: volume / 3.0,
+                beta: 0.5 * pair,
+            }),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Is one model an upscaling of another? The test of seleson2009 section 3: expand both to gradient equations, compare
+//! order by order.
+
+use crate::exact::Field;
+use crate::exact::polynomial::JetPolynomial;
+use crate::gradient::Expansion;
+use std::fmt;
+
+/// One gradient order of two models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row<F> {
+    /// Gradient order: 2, 4, ….
+    pub order: usize,
+    pub left: JetPolynomial<F>,
+    pub right: JetPolynomial<F>,
+    /// Largest difference of coefficients over the largest coefficient; 0 where they are the same.
+    pub relative: f64,
+    pub equal: bool,
+}
+
+/// Two gradient equations side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison<F> {
+    pub rows: Vec<Row<F>>,
+}
+
+/// Compare order by order. `tolerance` is relative; 0 asks for equality, which fractions can meet.
+pub fn compare<F: Field>(
+    left: &Expansion<F>,
+    right: &Expansion<F>,
+    tolerance: f64,
+) -> Comparison<F> {
+    let rows = left.orders.iter().zip(&right.orders).enumerate();
+    Comparison {
+        rows: rows
+            .map(|(p, (l, r))| {
+                let difference = largest(&l.sub(r));
+                let scale = largest(l).max(largest(r));
+                // equality is decided in the field, not in its rounding
+                let equal = l == r || (tolerance > 0.0 && difference <= tolerance * scale);
+                Row {
+                    order: 2 * p + 2,
+                    left: l.clone(),
+                    right: r.clone(),
+                    relative: if l == r { 0.0 } else { difference / scale },
+                    equal,
+                }
+            })
+            .collect(),
+    }
+}
+
+fn largest<F: Field>(p: &JetPolynomial<F>) -> f64 {
+    p.terms().map(|(_, c)| c.value().abs()).fold(0.0, f64::max)
+}
+
+impl<F> Comparison<F> {
+    /// The gradient order to which the models agree: 0 if not even in long waves.
+    pub fn equal_to_order(&self) -> usize {
+        self.rows
+            .iter()
+            .take_while(|r| r.equal)
+            .last()
+            .map_or(0, |r| r.order)
+    }
+
+    /// The first order in which they differ; `None` if in none of those compared.
+    pub fn first_difference(&self) -> Option<&Row<F>> {
+        self.rows.iter().find(|r| !r.equal)
+    }
+}
+
+impl<F: Field + fmt::Display> fmt::Display for Comparison<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for row in &self.rows {
+            if row.equal {
+                writeln!(f, "order {}: equal: {}", row.order, row.left)?;
+            } else {
+                writeln!(
+                    f,
+                    "order {}: different by {:.3e}: {} against {}",
+                    row.order, row.relative, row.left, row.right
+                )?;
+            }
+        }
+        match (self.equal_to_order(), self.rows.last()) {
+            (0, _) => write!(f, "no upscaling: long waves already differ"),
+            (n, Some(last)) if n == last.order => {
+                write!(
+                    f,
+                    "upscalings of each other to order {n}, the last compared"
+                )
+            }
+            (n, _) => write!(f, "upscalings of each other to order {n}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crystal::{Crystal, Reach};
+    use crate::exact::{Q, q};
+    use crate::gradient::linear::{LinearChain, springs_continuum};
+    use crate::gradient::power_law::PowerLawChain;
+    use peridyne::law::number::Number;
+    use peridyne::law::potential::Potential;
+    use peridyne::space::lattice::LatticeKind;
+
+    #[test]
+    fn springs_at_one_horizon_differ_by_one_over_n() {
+        // MD with N = 8 at a = 1 and the discretised integral with M = 16 at Δx = ½
+        let expansion = |n: i64| LinearChain::springs(q(1, 1), q(8, n), n as usize).expansion(4);
+        let c = compare(&expansion(8), &expansion(16), 0.0);
+        assert_eq!(c.equal_to_order(), 2);
+        let row = c.first_difference().unwrap();
+        assert_eq!(row.left.coefficient(&[0, 0, 0, 1]), q(64, 24) * q(9, 8));
+        assert_eq!(row.right.coefficient(&[0, 0, 0, 1]), q(64, 24) * q(17, 16));
+        // the difference to the integral halves when N doubles, in every order
+        let limit = Expansion::linear(&springs_continuum(q(1, 1), q(8, 1), 4));
+        for p in 1..4 {
+            let d = |n| compare(&expansion(n), &limit, 0.0).rows[p].relative;
+            assert!(
+                (d(512) / d(1024) - 2.0).abs() < 0.02,
+                "{}",
+                d(512) / d(1024)
+            );
+        }
+    }
+
+    #[test]
+    fn the_limits_are_equal_to_all_orders() {
+        // (4.2) with Na = δ is (4.4): one closed form
+        let md = Expansion::linear(&springs_continuum(q(3, 2), q(5, 1) * q(2, 1), 8));
+        let pd = Expansion::linear(&springs_continuum(q(3, 2), q(10, 1), 8));
+        let c = compare(&md, &pd, 0.0);
+        assert_eq!((c.equal_to_order(), c.first_difference()), (16, None));
+    }
+
+    #[test]
+    fn a_local_model_agrees_in_long_waves_only() {
+        let local = LinearChain::springs(q(1, 1), q(1, 1), 1).expansion(3);
+        let nonlocal = LinearChain::springs(q(1, 1), q(1, 1), 5).expansion(3);
+        let c = compare(&local, &nonlocal, 0.0);
+        assert_eq!(c.first_difference().map(|r| r.order), Some(4));
+        assert!(
+            c.to_string()
+                .ends_with("upscalings of each other to order 2")
+        );
+    }
+
+    /// An embedded-atom potential with lengths in units of `h` and energies per volume of a point kept (seleson2014
+    /// section 3): f = e^{−r/h}, F = −h√ρ, φ = 3h e^{−4r/h}.
+    struct Metal {
+        h: f64,
+    }
+    impl Potential for Metal {
+        const EMBEDDED: bool = true;
+        fn cutoff(&self) -> f64 {
+            4.5 * self.h
+        }
+        fn pair<N: Number>(&self, q: N) -> N {
+            q.sqrt().times(-4.0 / self.h).exp().times(3.0 * self.h)
+        }
+        fn density<N: Number>(&self, q: N) -> N {
+            q.sqrt().times(-1.0 / self.h).exp()
+        }
+        fn embedding<N: Number>(&self, density: N) -> N {
+            density.sqrt().times(-self.h)
+        }
+    }
+
+    #[test]
+    fn a_coarse_embedded_atom_chain_is_an_upscaling_in_long_waves_only() {
+        let expansion = |h: f64| {
+            let (crystal, _) =
+                Crystal::<1>::of_potential(&Metal { h }, LatticeKind::Chain, h, h, Reach::Cutoff)
+                    .unwrap();
+            LinearChain::of_crystal(&crystal).unwrap().expansion(3)
+        };
+        let (fine, coarse) = (expansion(1.0), expansion(2.0));
+        let c = compare(&fine, &coarse, 1e-12);
+        assert_eq!(c.equal_to_order(), 2);
+        // the coarse chain is the fine one in other units of length: order 2p + 2 grows with h^2p, exactly
+        for (p, row) in c.rows.iter().enumerate() {
+            let scaled = row.left.scale(&4f64.powi(p as i32));
+            let rest = row.right.sub(&scaled);
+            assert!(largest(&rest) <= 1e-13 * largest(&row.right));
+        }
+    }
+
+    #[test]
+    fn lennard_jones_is_its_own_upscaling_at_one_resolution_only() {
+        let (e, s6, a, n) = (q(1, 72), q(1, 2), q(1, 1), 4);
+        let parameters = || [e.clone(), s6.clone(), a.clone()];
+        let [e1, s1, a1] = parameters();
+        let md = PowerLawChain::lennard_jones(e1, s1, a1, n).expansion(4);
+        let [e1, s1, a1] = parameters();
+        let [eb, sb] = PowerLawChain::upscaled_parameters(e1, s1, a1, n);
+        let pd = |coarse: i64| {
+            let [e, s] = [eb.clone(), sb.clone()];
+            PowerLawChain::lennard_jones_upscaled(e, s, q(coarse, 1), n / coarse as usize)
+                .expansion(4)
+        };
+        let same: Comparison<Q> = compare(&md, &pd(1), 0.0);
+        assert_eq!((same.equal_to_order(), same.first_difference()), (8, None));
+        for coarse in [2, 4] {
+            let c = compare(&md, &pd(coarse), 0.0);
+            assert_eq!(c.equal_to_order(), 2);
+            assert_eq!(c.first_difference().map(|r| r.order), Some(4));
+        }
+    }
+}
