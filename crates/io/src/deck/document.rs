@@ -79,6 +79,8 @@ pub struct Body {
     /// Position of one lattice site; 0 when left out.
     pub origin: Option<Vector>,
     pub region: Option<At<Shape>>,
+    /// Whole cells along each axis from the origin on, instead of a region.
+    pub cells: Option<At<Vec<At<u32>>>>,
     /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), or LAMMPS data of `atom_style peri` (.data, .lmp: volume
     /// and density of each point, the atom type as mark), relative to the deck.
     pub file: Option<At<String>>,

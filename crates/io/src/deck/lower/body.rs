@@ -135,14 +135,18 @@ fn lattice(context: &Context, body: &At<Body>, kind: LatticeKind) -> Result<Body
         .as_ref()
         .ok_or_else(|| missing("spacing", "\"0.5 mm\""))?;
     let spacing = context.positive(spacing, Dim::LENGTH, "the spacing")?;
-    let shape = written
-        .region
-        .as_ref()
-        .ok_or_else(|| missing("region", "{ block = { low = .., high = .. } }"))?;
     let origin = written
         .origin
         .as_ref()
         .map_or(Ok([0.0; 3]), |o| context.finite_vector(o, Dim::LENGTH))?;
+    let region = match (&written.region, &written.cells) {
+        (Some(shape), None) => region(context, shape)?,
+        (None, Some(cells)) => whole_cells(context, cells, kind, spacing, origin)?,
+        (None, None) => return Err(missing("region", "{ block = { low = .., high = .. } }")),
+        (Some(_), Some(cells)) => {
+            return Err(context.error(&cells.span, "give one of region and cells"));
+        }
+    };
     let perturb = match &written.perturb {
         None => None,
         Some(perturb) => {
@@ -165,9 +169,35 @@ fn lattice(context: &Context, body: &At<Body>, kind: LatticeKind) -> Result<Body
         kind,
         spacing,
         origin,
-        region: region(context, shape)?,
+        region,
         perturb,
     })
+}
+
+/// The block of so many cells along each axis; its upper faces lie just below the next cells.
+fn whole_cells(
+    context: &Context,
+    cells: &At<Vec<At<u32>>>,
+    kind: LatticeKind,
+    spacing: f64,
+    origin: [f64; 3],
+) -> Result<Region> {
+    let d = context.dimension;
+    if cells.value.len() != d {
+        let message = format!("{} numbers of cells in {d}-D", cells.value.len());
+        let example = ["cells = [100]", "cells = [20, 20]", "cells = [20, 20, 20]"][d - 1];
+        return Err(context.error_with(&cells.span, message, format!("write {example}")));
+    }
+    let (mut low, mut high) = ([-INF; 3], [INF; 3]);
+    for (a, n) in cells.value.iter().enumerate() {
+        if n.value == 0 {
+            return Err(context.error(&n.span, "no cells, no body"));
+        }
+        let edge = spacing * kind.edges()[a];
+        low[a] = origin[a] - edge / 8.0;
+        high[a] = origin[a] + edge * (f64::from(n.value) - 0.125);
+    }
+    Ok(Region::Block { low, high })
 }
 
 pub(super) fn region(context: &Context, shape: &At<Shape>) -> Result<Region> {
@@ -301,6 +331,7 @@ fn mark_number(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<i3
 pub(super) fn periods(
     context: &Context,
     written: Option<&At<Periodic>>,
+    cells: Option<&At<Vec<At<u32>>>>,
     body: &mut BodySpec,
 ) -> Result<[Option<f64>; 3]> {
     let mut out = [None; 3];
@@ -341,8 +372,10 @@ pub(super) fn periods(
                 ..
             } => {
                 let (low, high) = region.bounds();
-                let length = period.unwrap_or(high[a] - low[a]);
                 let edge = *spacing * kind.edges()[a];
+                let own = cells.and_then(|c| c.value.get(a));
+                let own = own.map(|n| f64::from(n.value) * edge);
+                let length = period.or(own).unwrap_or(high[a] - low[a]);
                 let cells = length / edge;
                 if !length.is_finite() || !low[a].is_finite() {
                     let help = "clip the region with a block along it";
@@ -360,6 +393,10 @@ pub(super) fn periods(
                         context.units.write(edge, Dim::LENGTH)
                     );
                     return Err(context.error_with(&span, message, help));
+                }
+                if own.is_some_and(|own| own == length) {
+                    out[a] = Some(length);
+                    continue;
                 }
                 let (mut from, mut to) = ([-INF; 3], [INF; 3]);
                 (from[a], to[a]) = (low[a], low[a] + length - edge / 8.0);

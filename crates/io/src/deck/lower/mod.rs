@@ -77,7 +77,12 @@ pub(super) fn lower(
         document.dimension.as_ref(),
         files,
     )?;
-    let periodic = body::periods(&context, document.periodic.as_ref(), &mut body)?;
+    let periodic = body::periods(
+        &context,
+        document.periodic.as_ref(),
+        document.body.value.cells.as_ref(),
+        &mut body,
+    )?;
     let mut sets = body::sets(&context, &document.sets, &body)?;
     let potential = atoms::potential(&context, &document.material, &body, files)?;
     let materials = material::materials(
