@@ -30,8 +30,7 @@ def sample():
 
 def write(directory):
     atoms = sample()
-    columns = ["symbols", "positions", "masses", "momenta"]
-    ase.io.write(directory / "ase.xyz", [atoms, atoms], format="extxyz", columns=columns, write_results=True)
+    ase.io.write(directory / "ase.xyz", [atoms, atoms], format="extxyz")
     ase.io.write(directory / "ase.data", atoms, format="lammps-data", atom_style="atomic", masses=True, velocities=True,
                  specorder=["Cu", "Ni"], units="metal")
 
@@ -54,11 +53,11 @@ def read(directory):
     close("extxyz velocities", mine.arrays["velo"], atoms.get_velocities(), 1e-14)
     close("extxyz forces", mine.get_forces(apply_constraint=False), atoms.get_forces(apply_constraint=False), 0.0)
     data = ase.io.read(directory / "peridyne.data", format="lammps-data", atom_style="atomic", sort_by_id=True)
-    close("data positions", data.positions, atoms.positions, 0.0)
+    close("data positions", data.positions, atoms.positions, 1e-14)
     close("data masses", data.get_masses(), atoms.get_masses(), 0.0)
     dump = ase.io.read(directory / "peridyne.lammpstrj", format="lammps-dump-text", index=-1)
     order = np.argsort(dump.arrays["id"]) if "id" in dump.arrays else slice(None)
-    close("dump positions", dump.positions[order], atoms.positions, 0.0)
+    close("dump positions", dump.positions[order], atoms.positions, 1e-14)
     close("dump forces", dump.get_forces(apply_constraint=False)[order], atoms.get_forces(apply_constraint=False), 0.0)
 
 
