@@ -53,7 +53,7 @@ fn copper_of_foiles_has_its_first_values() {
     assert_eq!(file.element("Cu").unwrap(), 0);
     assert_eq!(
         (file.dr, file.cutoff),
-        (1.0000000000000009e-02, 4.9499999999999886)
+        (1.0000000000000009e-02, 4.949_999_999_999_989)
     );
     assert_eq!((file.pair[0].len(), file.embedding[0].len()), (499, 499));
     assert!((file.embedding[0][1] + 3.156_163_690_342_435e-1).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! `read_data` for `atom_style peri`.
+//! `read_data` for `atom_style peri`, and data files of `atom_style atomic`.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -9,13 +9,47 @@ use super::domain::SimBox;
 use super::error::{Problem, Result};
 use super::session::Session;
 
+/// Which columns an atom has; told by the comment `Atoms # STYLE`, else by their number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// `id type volume density x y z [ix iy iz]`
+    Peri,
+    /// `id type x y z [ix iy iz]`
+    Atomic,
+}
+
+impl Style {
+    /// Numbers of an atom without image flags.
+    fn columns(self) -> usize {
+        match self {
+            Style::Peri => 7,
+            Style::Atomic => 5,
+        }
+    }
+
+    fn of(columns: usize) -> Option<Style> {
+        let styles = [Style::Peri, Style::Atomic];
+        styles
+            .into_iter()
+            .find(|s| [s.columns(), s.columns() + 3].contains(&columns))
+    }
+}
+
+/// Mass and name (comment) of each type, where the file says it.
+pub type Masses = Vec<Option<(f64, Option<String>)>>;
+
 /// What a data file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataFile {
+    pub style: Style,
     pub types: usize,
+    /// Empty without the section `Masses`.
+    pub masses: Masses,
     pub low: [f64; 3],
     pub high: [f64; 3],
+    /// Volumes and densities are 1 with [`Style::Atomic`].
     pub atoms: Atoms,
+    pub has_velocities: bool,
     /// Image flags other than 0 were present (and are dropped).
     pub had_images: bool,
 }
@@ -76,9 +110,9 @@ pub(super) fn open(path: &Path, shown: &str) -> Result<BufReader<File>> {
         .map_err(|e| Problem::new(format!("cannot open {shown}: {e}")))
 }
 
-const SECTIONS: [&str; 2] = ["Atoms", "Velocities"];
+const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
 
-/// Reads a data file of `atom_style peri`: `id type volume density x y z [ix iy iz]` per atom.
+/// Reads a data file of `atom_style peri` or `atomic`.
 ///
 /// # Errors
 /// File and line of the first mistake.
@@ -132,13 +166,26 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
         })?;
     }
     let mut atoms: Option<Atoms> = None;
-    let mut had_images = false;
+    let mut style = None;
+    let (mut had_images, mut has_velocities) = (false, false);
+    let mut masses = Vec::new();
     loop {
         match (section.as_str(), atoms.is_some()) {
             ("Atoms", false) => {
-                atoms = Some(read_atoms(&mut lines, count, types, &mut had_images)?)
+                style = told_style(&lines)?;
+                atoms = Some(read_atoms(
+                    &mut lines,
+                    count,
+                    types,
+                    &mut style,
+                    &mut had_images,
+                )?);
             }
-            ("Velocities", true) => read_velocities(&mut lines, &mut atoms)?,
+            ("Masses", _) => masses = read_masses(&mut lines, types)?,
+            ("Velocities", true) => {
+                read_velocities(&mut lines, &mut atoms)?;
+                has_velocities = true;
+            }
             ("Velocities", false) => {
                 return Err(lines.fail("the section `Atoms` must come before `Velocities`"));
             }
@@ -161,12 +208,64 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
     }
     let atoms = atoms.unwrap_or_default();
     Ok(DataFile {
+        style: style.unwrap_or(Style::Peri),
         types,
+        masses,
         low: corners.map(|c| c[0]),
         high: corners.map(|c| c[1]),
         atoms,
+        has_velocities,
         had_images,
     })
+}
+
+/// Style by the comment of the line `Atoms`.
+fn told_style<R: BufRead>(lines: &Lines<R>) -> Result<Option<Style>> {
+    let Some((_, comment)) = lines.text.split_once('#') else {
+        return Ok(None);
+    };
+    match comment.trim() {
+        "peri" => Ok(Some(Style::Peri)),
+        "atomic" => Ok(Some(Style::Atomic)),
+        "" => Ok(None),
+        other => Err(lines
+            .fail(format!("atom_style `{other}` is not supported"))
+            .help("supported: peri, atomic")),
+    }
+}
+
+fn read_masses<R: BufRead>(lines: &mut Lines<R>, types: usize) -> Result<Masses> {
+    // the header is not trusted with memory
+    let mut masses: Masses = Vec::new();
+    for k in 0..types {
+        let words = row(lines, "Masses", k, types)?;
+        let [kind, mass] = &words[..] else {
+            return Err(lines.fail(format!(
+                "a mass has 2 numbers (type mass), found {}",
+                words.len()
+            )));
+        };
+        let kind = whole(lines, kind)?;
+        if !(1..=types).contains(&kind) {
+            return Err(lines.fail(format!("atom type {kind} is not between 1 and {types}")));
+        }
+        let mass = finite(mass).map_err(|e| lines.fail(e))?;
+        if mass <= 0.0 {
+            return Err(lines.fail(format!("the mass must be positive, found {mass}")));
+        }
+        let comment = lines
+            .text
+            .split_once('#')
+            .map(|(_, c)| c.trim().to_string());
+        if masses.len() < kind {
+            masses.resize(kind, None);
+        }
+        let name = comment.filter(|c| !c.is_empty() && !c.contains(char::is_whitespace));
+        if masses[kind - 1].replace((mass, name)).is_some() {
+            return Err(lines.fail(format!("the mass of type {kind} is there twice")));
+        }
+    }
+    Ok(masses)
 }
 
 fn whole<R: BufRead>(lines: &Lines<R>, word: &str) -> Result<usize> {
@@ -204,6 +303,7 @@ fn read_atoms<R: BufRead>(
     lines: &mut Lines<R>,
     count: usize,
     types: usize,
+    style: &mut Option<Style>,
     had_images: &mut bool,
 ) -> Result<Atoms> {
     // the header is not trusted with memory
@@ -215,13 +315,17 @@ fn read_atoms<R: BufRead>(
                 "the section `Atoms` ends after {k} lines, the header says {count} atoms"
             )));
         }
-        if words.len() != 7 && words.len() != 10 {
+        let known = style.or(Style::of(words.len()));
+        let told = *style.get_or_insert(known.unwrap_or(Style::Peri));
+        let columns = told.columns();
+        if words.len() != columns && words.len() != columns + 3 {
             return Err(lines
                 .fail(format!(
-                    "an atom has 7 numbers (or 10 with image flags), found {}",
+                    "an atom has {columns} numbers (or {} with image flags), found {}",
+                    columns + 3,
                     words.len()
                 ))
-                .help("atom_style peri: id type volume density x y z [ix iy iz]"));
+                .help("atom_style peri: id type volume density x y z [ix iy iz]; atom_style atomic: id type x y z [ix iy iz]"));
         }
         let id = whole(lines, &words[0])?;
         let kind = whole(lines, &words[1])?;
@@ -231,8 +335,8 @@ fn read_atoms<R: BufRead>(
         if !(1..=types).contains(&kind) {
             return Err(lines.fail(format!("atom type {kind} is not between 1 and {types}")));
         }
-        let mut v = [0.0; 5];
-        for (slot, word) in v.iter_mut().zip(&words[2..7]) {
+        let mut v = [1.0; 5];
+        for (slot, word) in v[7 - columns..].iter_mut().zip(&words[2..columns]) {
             *slot = finite(word).map_err(|e| lines.fail(e))?;
         }
         for (value, name) in v.iter().zip(["volume", "density"]) {
@@ -240,7 +344,7 @@ fn read_atoms<R: BufRead>(
                 return Err(lines.fail(format!("the {name} must be positive, found {value}")));
             }
         }
-        for flag in &words[7..] {
+        for flag in &words[columns..] {
             let flag: i64 = flag
                 .parse()
                 .map_err(|_| lines.fail(format!("image flag `{flag}` is not a whole number")))?;
@@ -309,8 +413,14 @@ impl Session<'_> {
     /// Takes a data file as box and atoms.
     ///
     /// # Errors
-    /// Atoms outside the box.
+    /// Another atom style; atoms outside the box.
     pub fn take_data(&mut self, mut data: DataFile, path: &str) -> Result<()> {
+        if data.style != Style::Peri {
+            return Err(Problem::new(format!(
+                "{path}: the file is of atom_style atomic, without volumes and densities"
+            ))
+            .help("atom_style peri: id type volume density x y z [ix iy iz]"));
+        }
         let domain = SimBox::new(data.low, data.high, self.faces);
         let n = data.atoms.len();
         if data.had_images {

@@ -34,7 +34,7 @@ mod variable;
 mod write_data;
 
 pub use self::atoms::{Atoms, Column, Ids, Members, Reference, SiteLattice};
-pub use self::data::{DataFile, read_data};
+pub use self::data::{DataFile, Style, read_data};
 pub use self::domain::{Face, SimBox};
 pub use self::error::{Place, Problem, ScriptError};
 pub use self::read_dump::{Frame, read_frame};

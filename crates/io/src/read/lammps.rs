@@ -1,11 +1,11 @@
 //! LAMMPS data files of `atom_style peri`: each point with its volume and density, the atom type as mark.
 
 use super::{ReadError, Sourced};
-use crate::lammps::{Atoms, Column, DataFile, Place, read_data};
+use crate::lammps::{Atoms, Column, DataFile, Place, Style, read_data};
 use peridyne::spec::Cloud;
 
-pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
-    let file = read_data(text.as_bytes(), name).map_err(|problem| {
+pub(super) fn file(text: &str, name: &str) -> Result<DataFile, ReadError> {
+    read_data(text.as_bytes(), name).map_err(|problem| {
         let line = match problem.place {
             Place::File { line, .. } if line > 0 => Some(line),
             _ => None,
@@ -15,10 +15,23 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
             None => problem.message,
         };
         error(name, line, message)
-    })?;
+    })
+}
+
+pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
     let DataFile {
-        atoms, had_images, ..
-    } = file;
+        atoms,
+        had_images,
+        style,
+        ..
+    } = file(text, name)?;
+    if style != Style::Peri {
+        return Err(error(
+            name,
+            None,
+            "the file is of atom_style atomic, without volumes; points need atom_style peri: id type volume density x y z",
+        ));
+    }
     let n = atoms.len();
     if n == 0 {
         return Err(error(name, None, "the file has no atoms"));
@@ -62,7 +75,7 @@ fn each(atoms: &Atoms, column: &Column<f64>) -> Vec<f64> {
     (0..atoms.len()).map(|i| column.get(i)).collect()
 }
 
-fn error(name: &str, line: Option<usize>, message: impl Into<String>) -> ReadError {
+pub(super) fn error(name: &str, line: Option<usize>, message: impl Into<String>) -> ReadError {
     ReadError {
         file: name.into(),
         line,

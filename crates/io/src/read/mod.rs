@@ -1,15 +1,23 @@
-//! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), and tables of potentials ([`eam`]).
+//! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), atoms
+//! ([`extxyz`], [`dump`], [`data`]), and tables of potentials ([`eam`]).
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count;
 //! second-order cells are taken by their corners.
 
 mod abaqus;
+mod atoms;
 mod cell;
+pub mod data;
+pub mod dump;
 pub mod eam;
+pub mod extxyz;
 mod gmsh;
 mod lammps;
 mod lines;
+mod stream;
 mod text;
+
+pub use atoms::{Atoms, Frame, Species};
 
 use peridyne::spec::Cloud;
 use std::collections::HashMap;

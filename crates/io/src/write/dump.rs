@@ -1,10 +1,12 @@
-//! LAMMPS text dump (`dump custom`) of a snapshot: what reads LAMMPS's dumps reads it.
+//! LAMMPS text dump (`dump custom`) of a snapshot or of atoms: what reads LAMMPS's dumps reads it.
 
 use std::io::{self, Write};
 
 use peridyne::observe::Snapshot;
 
+use super::extxyz::check;
 use super::fields::{Field, fields, positions};
+use crate::read::Atoms;
 
 /// The box of a dump; without one it is shrunk around the points, half a spacing wider on each side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,14 +27,9 @@ pub fn write_frame<W: Write>(w: &mut W, s: &Snapshot, cell: &DumpBox) -> io::Res
     let mut columns = fields(s)?;
     // x, y, z say it already
     columns.retain(|(name, _)| *name != "displacement");
-    writeln!(w, "ITEM: TIMESTEP\n{}", s.step)?;
-    writeln!(w, "ITEM: NUMBER OF ATOMS\n{}", s.reference.len())?;
     let flags = cell.periodic.map(|p| if p { "pp" } else { "ss" });
-    writeln!(w, "ITEM: BOX BOUNDS {}", flags.join(" "))?;
-    for [low, high] in cell.bounds.unwrap_or_else(|| shrunk(s)) {
-        writeln!(w, "{low:?} {high:?}")?;
-    }
-    write!(w, "ITEM: ATOMS id type x y z")?;
+    let bounds = cell.bounds.unwrap_or_else(|| shrunk(s));
+    head(w, s.step, s.reference.len(), flags, bounds)?;
     for (name, _) in &columns {
         match *name {
             "velocity" => write!(w, " vx vy vz")?,
@@ -51,6 +48,56 @@ pub fn write_frame<W: Write>(w: &mut W, s: &Snapshot, cell: &DumpBox) -> io::Res
                 Field::Integer(v) => write!(w, " {}", v[i])?,
                 Field::Count(v) => write!(w, " {}", v[i])?,
             }
+        }
+        writeln!(w)?;
+    }
+    Ok(())
+}
+
+/// All up to the columns `id type x y z`.
+fn head<W: Write>(
+    w: &mut W,
+    step: u64,
+    count: usize,
+    flags: [&str; 3],
+    bounds: [[f64; 2]; 3],
+) -> io::Result<()> {
+    writeln!(w, "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{count}")?;
+    writeln!(w, "ITEM: BOX BOUNDS {}", flags.join(" "))?;
+    for [low, high] in bounds {
+        writeln!(w, "{low:?} {high:?}")?;
+    }
+    write!(w, "ITEM: ATOMS id type x y z")
+}
+
+/// Writes one frame of atoms: `id type x y z`, and `vx vy vz`, `fx fy fz` and `c_pe` (energy) where they are known. Positions
+/// are written as they are; see [`Atoms::wrap`].
+///
+/// # Errors
+/// Those of `w`; `InvalidInput` for arrays of unequal lengths.
+pub fn write_atoms<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
+    check(atoms)?;
+    if let Some(time) = atoms.time {
+        writeln!(w, "ITEM: TIME\n{time:?}")?;
+    }
+    let flags = atoms.periodic.map(|p| if p { "pp" } else { "ff" });
+    let bounds = std::array::from_fn(|a| [atoms.low[a], atoms.high[a]]);
+    head(w, atoms.step.unwrap_or(0), atoms.len(), flags, bounds)?;
+    let vectors = [(&atoms.velocity, "vx vy vz"), (&atoms.force, "fx fy fz")];
+    for (_, names) in vectors.iter().filter(|v| v.0.is_some()) {
+        write!(w, " {names}")?;
+    }
+    if atoms.energy.is_some() {
+        write!(w, " c_pe")?;
+    }
+    writeln!(w)?;
+    for (i, [x, y, z]) in atoms.position.iter().enumerate() {
+        write!(w, "{} {} {x:?} {y:?} {z:?}", i + 1, atoms.kind[i] + 1)?;
+        for v in vectors.iter().filter_map(|v| v.0.as_ref()) {
+            v[i].iter().try_for_each(|c| write!(w, " {c:?}"))?;
+        }
+        if let Some(e) = &atoms.energy {
+            write!(w, " {:?}", e[i])?;
         }
         writeln!(w)?;
     }

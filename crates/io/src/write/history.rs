@@ -28,6 +28,14 @@ impl Column {
             unit: unit.into(),
         }
     }
+
+    /// The cell of the header.
+    pub(super) fn header(&self) -> String {
+        match self.unit.as_str() {
+            "" => quoted(&self.name),
+            unit => quoted(&format!("{} [{unit}]", self.name)),
+        }
+    }
 }
 
 /// An open `history.csv`.
@@ -45,12 +53,8 @@ impl History {
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, WriteError> {
         let mut header = String::from("step");
         for column in columns {
-            let cell = match column.unit.as_str() {
-                "" => column.name.clone(),
-                unit => format!("{} [{unit}]", column.name),
-            };
             header += ",";
-            header += &quoted(&cell);
+            header += &column.header();
         }
         header += "\n";
         write_file(path, |w| w.write_all(header.as_bytes()))?;
@@ -101,7 +105,7 @@ impl History {
 }
 
 /// A CSV cell (RFC 4180).
-fn quoted(cell: &str) -> String {
+pub(super) fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {

@@ -1,14 +1,19 @@
 //! Writers: each turns snapshots or numbers into one format, atomically, and does nothing else.
 
 pub mod atomic;
+pub mod data;
 pub mod dump;
+pub mod extxyz;
 pub mod fields;
 pub mod history;
 pub mod picture;
+pub mod plot;
 pub mod pvd;
 pub mod run_json;
 pub mod series;
 pub mod setfl;
+pub mod table;
+pub mod trajectory;
 pub mod vtu;
 
 pub use atomic::WriteError;

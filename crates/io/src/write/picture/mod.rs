@@ -7,7 +7,7 @@ mod body;
 mod chain;
 pub mod colormap;
 pub mod image;
-mod label;
+pub(super) mod label;
 mod view;
 
 use std::path::Path;

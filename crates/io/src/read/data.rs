@@ -1,0 +1,57 @@
+//! LAMMPS data files of `atom_style atomic`.
+
+use super::atoms::{Atoms, Species};
+use super::{ReadError, lammps};
+use crate::lammps::{DataFile, Style};
+use std::path::Path;
+
+/// Reads the atoms, in order of the ids; species are named by the comments of `Masses`, else by the number of the type.
+/// The file does not say which axes are periodic: all are.
+///
+/// # Errors
+/// File and line of the first mistake; another atom style.
+pub fn data(path: &Path) -> Result<Atoms, ReadError> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| lammps::error(&name, None, format!("cannot read it: {e}")))?;
+    parse_data(&text, &name)
+}
+
+/// The same from a text; `name` is for messages.
+pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
+    let file: DataFile = lammps::file(text, name)?;
+    if file.style != Style::Atomic {
+        return Err(lammps::error(
+            name,
+            None,
+            "the file is of atom_style peri; here atoms are read: id type x y z [ix iy iz]",
+        ));
+    }
+    if file.types > 1 << 16 {
+        let message = format!("{} atom types, of which 65536 are read", file.types);
+        return Err(lammps::error(name, None, message));
+    }
+    let n = file.atoms.len();
+    let species = (0..file.types)
+        .map(|t| {
+            let mass = file.masses.get(t).cloned().flatten();
+            let own = (t + 1).to_string();
+            Species {
+                name: mass.as_ref().and_then(|m| m.1.clone()).unwrap_or(own),
+                mass: mass.map(|m| m.0),
+            }
+        })
+        .collect();
+    Ok(Atoms {
+        species,
+        kind: (0..n).map(|i| file.atoms.types.get(i) - 1).collect(),
+        position: (0..n).map(|i| file.atoms.position(i)).collect(),
+        velocity: file
+            .has_velocities
+            .then(|| (0..n).map(|i| file.atoms.velocity.get(i)).collect()),
+        low: file.low,
+        high: file.high,
+        periodic: [true; 3],
+        ..Atoms::default()
+    })
+}

@@ -1,0 +1,279 @@
+//! LAMMPS text dumps of atoms: `id`, `type` or `element`, positions (`x`, `xu` or scaled `xs`), velocities, forces.
+
+use super::ReadError;
+use super::atoms::{Atoms, Frame, Names};
+use super::stream::Stream;
+use std::io::BufRead;
+use std::path::Path;
+
+/// Reads one frame of a dump, in order of the ids.
+///
+/// # Errors
+/// File and line: truncated, missing columns, something else than finite numbers, a tilted box, no such frame.
+pub fn dump(path: &Path, which: Frame) -> Result<Atoms, ReadError> {
+    let last = match which {
+        Frame::Last => count(Stream::open(path)?)?.saturating_sub(1),
+        _ => 0,
+    };
+    parse(Stream::open(path)?, which, last)
+}
+
+/// The same from a text; `name` is for messages.
+pub fn parse_dump(text: &str, name: &str, which: Frame) -> Result<Atoms, ReadError> {
+    let stream = || Stream::new(text.as_bytes(), name);
+    let last = match which {
+        Frame::Last => count(stream())?.saturating_sub(1),
+        _ => 0,
+    };
+    parse(stream(), which, last)
+}
+
+/// Number of frames of a file.
+pub fn frames(path: &Path) -> Result<usize, ReadError> {
+    count(Stream::open(path)?)
+}
+
+/// What stands before the atoms of a frame.
+struct Head {
+    step: u64,
+    time: Option<f64>,
+    count: usize,
+    low: [f64; 3],
+    high: [f64; 3],
+    periodic: [bool; 3],
+    columns: Vec<String>,
+}
+
+/// The line after an item.
+fn value<R: BufRead>(stream: &mut Stream<R>, item: &str) -> Result<String, ReadError> {
+    let line = stream.expect(|| format!("a line after {item} is missing"))?;
+    Ok(line.trim().to_string())
+}
+
+/// `None` at the end of the file.
+fn head<R: BufRead>(stream: &mut Stream<R>) -> Result<Option<Head>, ReadError> {
+    let mut frame = Head {
+        step: 0,
+        time: None,
+        count: 0,
+        low: [0.0; 3],
+        high: [0.0; 3],
+        periodic: [false; 3],
+        columns: Vec::new(),
+    };
+    let (mut begun, mut boxed) = (false, false);
+    while let Some(line) = stream.next()? {
+        let line = line.trim().to_string();
+        let Some(item) = line.strip_prefix("ITEM: ") else {
+            if line.is_empty() {
+                continue;
+            }
+            return Err(stream.error(format!(
+                "expected `ITEM: …`, found `{line}`: is this a LAMMPS text dump?"
+            )));
+        };
+        if let Some(columns) = item.strip_prefix("ATOMS") {
+            if !boxed {
+                return Err(stream.error("a frame has no `ITEM: BOX BOUNDS`"));
+            }
+            frame.columns = columns.split_whitespace().map(str::to_string).collect();
+            return Ok(Some(frame));
+        }
+        begun = true;
+        if let Some(flags) = item.strip_prefix("BOX BOUNDS") {
+            let flags: Vec<&str> = flags.split_whitespace().collect();
+            if flags.iter().any(|f| ["xy", "xz", "yz", "abc"].contains(f)) {
+                return Err(stream.error("tilted boxes are not read: use an orthogonal box"));
+            }
+            frame.periodic =
+                std::array::from_fn(|a| flags.get(a).is_some_and(|f| f.starts_with('p')));
+            for a in 0..3 {
+                let line = value(stream, "BOX BOUNDS")?;
+                let words: Vec<&str> = line.split_whitespace().collect();
+                let [low, high] = words[..] else {
+                    return Err(stream.error(format!("expected two bounds, found `{line}`")));
+                };
+                frame.low[a] = stream.finite(low, "a bound")?;
+                frame.high[a] = stream.finite(high, "a bound")?;
+            }
+            boxed = true;
+            continue;
+        }
+        let text = value(stream, item)?;
+        match item {
+            "TIMESTEP" => {
+                frame.step = text
+                    .parse()
+                    .map_err(|_| stream.error(format!("expected a time step, found `{text}`")))?;
+            }
+            "NUMBER OF ATOMS" => frame.count = stream.count(&text, "the number of atoms")?,
+            "TIME" => frame.time = Some(stream.finite(&text, "the time")?),
+            _ => {}
+        }
+    }
+    if begun {
+        return Err(stream.error("the file ends within the head of a frame"));
+    }
+    Ok(None)
+}
+
+fn skip<R: BufRead>(stream: &mut Stream<R>, head: &Head) -> Result<(), ReadError> {
+    for k in 0..head.count {
+        stream.expect(|| {
+            format!(
+                "{k} of {} atoms of step {} are there",
+                head.count, head.step
+            )
+        })?;
+    }
+    Ok(())
+}
+
+fn count<R: BufRead>(mut stream: Stream<R>) -> Result<usize, ReadError> {
+    let mut frames = 0;
+    while let Some(head) = head(&mut stream)? {
+        skip(&mut stream, &head)?;
+        frames += 1;
+    }
+    Ok(frames)
+}
+
+fn parse<R: BufRead>(mut stream: Stream<R>, which: Frame, last: usize) -> Result<Atoms, ReadError> {
+    let mut steps = Vec::new();
+    while let Some(head) = head(&mut stream)? {
+        let wanted = match which {
+            Frame::Step(step) => head.step == step,
+            Frame::Index(index) => steps.len() == index,
+            Frame::Last => steps.len() == last,
+        };
+        if wanted {
+            return frame(&mut stream, head);
+        }
+        skip(&mut stream, &head)?;
+        steps.push(head.step);
+    }
+    let known: Vec<String> = steps
+        .iter()
+        .rev()
+        .take(10)
+        .rev()
+        .map(u64::to_string)
+        .collect();
+    let known = format!(
+        "it has {} frames, the last of steps {}",
+        steps.len(),
+        known.join(", ")
+    );
+    Err(stream.whole(match which {
+        _ if steps.is_empty() => "the file has no frames".to_string(),
+        Frame::Step(step) => format!("there is no frame of step {step}: {known}"),
+        Frame::Index(index) => format!("there is no frame {index}: {known}"),
+        Frame::Last => known,
+    }))
+}
+
+/// Columns of the three components of a quantity, by their names.
+fn triple(columns: &[String], names: [&str; 3]) -> Option<[usize; 3]> {
+    let find = |name: &str| columns.iter().position(|c| c == name);
+    Some([find(names[0])?, find(names[1])?, find(names[2])?])
+}
+
+fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadError> {
+    let columns = &head.columns;
+    let find = |name: &str| columns.iter().position(|c| c == name);
+    let missing = |what: &str| {
+        stream.error(format!(
+            "the dump has no column {what}; it has {}",
+            columns.join(" ")
+        ))
+    };
+    let id = find("id").ok_or_else(|| missing("`id`"))?;
+    let kind = find("element").or(find("type"));
+    let kind = kind.ok_or_else(|| missing("`type` or `element`"))?;
+    let plain = triple(columns, ["x", "y", "z"]).or(triple(columns, ["xu", "yu", "zu"]));
+    let scaled = triple(columns, ["xs", "ys", "zs"]).or(triple(columns, ["xsu", "ysu", "zsu"]));
+    let place = plain
+        .or(scaled)
+        .ok_or_else(|| missing("`x y z`, `xu yu zu` or `xs ys zs`"))?;
+    let velocity = triple(columns, ["vx", "vy", "vz"]);
+    let force = triple(columns, ["fx", "fy", "fz"]);
+    let energy = find("c_pe");
+    let mass = find("mass");
+    let mut names = Names::default();
+    let mut rows = Vec::with_capacity(head.count.min(1 << 20));
+    for k in 0..head.count {
+        stream.expect(|| {
+            format!(
+                "{k} of {} atoms of step {} are there",
+                head.count, head.step
+            )
+        })?;
+        let words: Vec<&str> = stream.current().split_whitespace().collect();
+        if words.len() != columns.len() {
+            let got = words.len();
+            return Err(stream.error(format!(
+                "expected the {} columns {}, found {got}",
+                columns.len(),
+                columns.join(" ")
+            )));
+        }
+        let vector = |at: [usize; 3]| -> Result<[f64; 3], ReadError> {
+            let mut v = [0.0; 3];
+            for (c, column) in v.iter_mut().zip(at) {
+                *c = stream.finite(words[column], &columns[column])?;
+            }
+            Ok(v)
+        };
+        let mut x = vector(place)?;
+        if plain.is_none() {
+            x = std::array::from_fn(|a| head.low[a] + x[a] * (head.high[a] - head.low[a]));
+        }
+        let species = names.place(words[kind]);
+        if let Some(mass) = mass {
+            names.species[species as usize].mass = Some(stream.finite(words[mass], "mass")?);
+        }
+        rows.push((
+            stream.count(words[id], "the id")?,
+            species,
+            x,
+            velocity.map(vector).transpose()?,
+            force.map(vector).transpose()?,
+            energy
+                .map(|c| stream.finite(words[c], "c_pe"))
+                .transpose()?,
+        ));
+    }
+    rows.sort_by_key(|r| r.0);
+    if let Some(w) = rows.windows(2).find(|w| w[0].0 == w[1].0) {
+        return Err(stream.error(format!(
+            "the id {} occurs twice in the frame of step {}",
+            w[0].0, head.step
+        )));
+    }
+    // type 1 is the first species whatever atom comes first
+    let mut order: Vec<u32> = (0..names.species.len() as u32).collect();
+    order.sort_by_key(|k| {
+        let name = &names.species[*k as usize].name;
+        (name.parse::<u32>().unwrap_or(u32::MAX), *k)
+    });
+    let mut new = vec![0; order.len()];
+    for (place, old) in order.iter().enumerate() {
+        new[*old as usize] = place as u32;
+    }
+    Ok(Atoms {
+        species: order
+            .iter()
+            .map(|k| names.species[*k as usize].clone())
+            .collect(),
+        kind: rows.iter().map(|r| new[r.1 as usize]).collect(),
+        position: rows.iter().map(|r| r.2).collect(),
+        velocity: velocity.map(|_| rows.iter().filter_map(|r| r.3).collect()),
+        force: force.map(|_| rows.iter().filter_map(|r| r.4).collect()),
+        energy: energy.map(|_| rows.iter().filter_map(|r| r.5).collect()),
+        low: head.low,
+        high: head.high,
+        periodic: head.periodic,
+        step: Some(head.step),
+        time: head.time,
+    })
+}

@@ -1,0 +1,100 @@
+//! Lines of a file one at a time: trajectories do not fit in memory.
+
+use super::ReadError;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+pub(super) struct Stream<R> {
+    reader: R,
+    name: String,
+    /// 1-based number of the line last taken.
+    number: usize,
+    line: String,
+}
+
+impl Stream<BufReader<File>> {
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let name = path.display().to_string();
+        match File::open(path) {
+            Ok(file) => Ok(Stream::new(BufReader::with_capacity(1 << 18, file), &name)),
+            Err(e) => Err(ReadError {
+                file: name,
+                line: None,
+                message: format!("cannot read it: {e}"),
+            }),
+        }
+    }
+}
+
+impl<R: BufRead> Stream<R> {
+    pub fn new(reader: R, name: &str) -> Self {
+        Stream {
+            reader,
+            name: name.to_string(),
+            number: 0,
+            line: String::new(),
+        }
+    }
+
+    /// The next line, without its end; `None` at the end of the file.
+    pub fn next(&mut self) -> Result<Option<&str>, ReadError> {
+        self.line.clear();
+        match self.reader.read_line(&mut self.line) {
+            Ok(0) => Ok(None),
+            Ok(_) => {
+                self.number += 1;
+                Ok(Some(self.line.trim_end()))
+            }
+            Err(e) => {
+                self.number += 1;
+                Err(self.error(format!(
+                    "cannot read this line: {e} (binary or compressed file?)"
+                )))
+            }
+        }
+    }
+
+    /// The next line, which must exist; `missing` says what ends too early.
+    pub fn expect(&mut self, missing: impl FnOnce() -> String) -> Result<&str, ReadError> {
+        if self.next()?.is_none() {
+            return Err(self.error(format!("the file ends: {}", missing())));
+        }
+        Ok(self.line.trim_end())
+    }
+
+    pub fn current(&self) -> &str {
+        self.line.trim_end()
+    }
+
+    pub fn error(&self, message: impl Into<String>) -> ReadError {
+        ReadError {
+            file: self.name.clone(),
+            line: Some(self.number),
+            message: message.into(),
+        }
+    }
+
+    /// A problem of the whole file.
+    pub fn whole(&self, message: impl Into<String>) -> ReadError {
+        ReadError {
+            line: None,
+            ..self.error(message)
+        }
+    }
+
+    pub fn finite(&self, word: &str, what: &str) -> Result<f64, ReadError> {
+        match word.parse::<f64>() {
+            Ok(x) if x.is_finite() => Ok(x),
+            Ok(x) => Err(self.error(format!("{what} is {x}"))),
+            Err(_) => Err(self.error(format!("expected {what}, a number, found `{word}`"))),
+        }
+    }
+
+    pub fn count(&self, word: &str, what: &str) -> Result<usize, ReadError> {
+        match word.trim().parse::<u32>() {
+            Ok(n) => Ok(n as usize),
+            Err(_) => Err(self.error(format!("expected {what}, a whole number, found `{word}`"))),
+        }
+    }
+}

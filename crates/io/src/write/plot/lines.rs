@@ -1,0 +1,475 @@
+//! Lines and points over two axes.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::super::picture::image::{Align, Color, GREY, INK, WHITE};
+use super::axis::Scale;
+use super::canvas::{Drawing, Outline, Shape};
+use super::{WriteError, font, invalid, titled};
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito).
+const COLORS: [Color; 7] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [86, 180, 233],
+    [230, 159, 0],
+    [60, 60, 60],
+];
+const GRID: Color = [228, 230, 234];
+pub(super) const TITLE: f64 = 17.0;
+pub(super) const LABEL: f64 = 14.0;
+pub(super) const TICK: f64 = 12.0;
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    None,
+    Solid,
+    Dashed,
+    Dotted,
+}
+
+/// What is drawn at every point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    None,
+    Disc,
+    Square,
+    Triangle,
+    Diamond,
+}
+
+impl Mark {
+    /// Outline and radius.
+    fn shape(self) -> Option<(Outline, f64)> {
+        let polygon = |corners, turn| Outline::Polygon { corners, turn };
+        Some(match self {
+            Mark::None => return None,
+            Mark::Disc => (Outline::Disc, 3.0),
+            Mark::Square => (polygon(4, std::f64::consts::FRAC_PI_4), 3.9),
+            Mark::Triangle => (polygon(3, 0.0), 4.2),
+            Mark::Diamond => (polygon(4, 0.0), 4.4),
+        })
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Series {
+    label: String,
+    points: Vec<[f64; 2]>,
+    stroke: Stroke,
+    mark: Mark,
+    /// Unequal lengths, told when it is drawn.
+    lengths: [usize; 2],
+}
+
+/// A plot of series; built step by step, then saved.
+#[derive(Debug, Clone)]
+pub struct Plot {
+    title: String,
+    labels: [String; 2],
+    series: Vec<Series>,
+    log: [bool; 2],
+    range: [Option<[f64; 2]>; 2],
+    size: [f64; 2],
+}
+
+impl Plot {
+    pub fn new(title: impl Into<String>) -> Plot {
+        Plot {
+            title: title.into(),
+            labels: [String::new(), String::new()],
+            series: Vec::new(),
+            log: [false; 2],
+            range: [None; 2],
+            size: [760.0, 480.0],
+        }
+    }
+
+    /// What the x axis is, with its unit ("" for pure numbers).
+    #[must_use]
+    pub fn x(mut self, name: &str, unit: &str) -> Plot {
+        self.labels[0] = titled(name, unit);
+        self
+    }
+
+    #[must_use]
+    pub fn y(mut self, name: &str, unit: &str) -> Plot {
+        self.labels[1] = titled(name, unit);
+        self
+    }
+
+    #[must_use]
+    pub fn log_x(mut self) -> Plot {
+        self.log[0] = true;
+        self
+    }
+
+    #[must_use]
+    pub fn log_y(mut self) -> Plot {
+        self.log[1] = true;
+        self
+    }
+
+    /// Shows this part only; without it, all points.
+    #[must_use]
+    pub fn x_range(mut self, low: f64, high: f64) -> Plot {
+        self.range[0] = Some([low, high]);
+        self
+    }
+
+    #[must_use]
+    pub fn y_range(mut self, low: f64, high: f64) -> Plot {
+        self.range[1] = Some([low, high]);
+        self
+    }
+
+    /// A solid line; points that are not finite are gaps. An empty label keeps it out of the legend.
+    #[must_use]
+    pub fn line(self, label: &str, x: &[f64], y: &[f64]) -> Plot {
+        self.series(label, x, y, Stroke::Solid, Mark::None)
+    }
+
+    #[must_use]
+    pub fn dashed(self, label: &str, x: &[f64], y: &[f64]) -> Plot {
+        self.series(label, x, y, Stroke::Dashed, Mark::None)
+    }
+
+    /// Discs without a line.
+    #[must_use]
+    pub fn points(self, label: &str, x: &[f64], y: &[f64]) -> Plot {
+        self.series(label, x, y, Stroke::None, Mark::Disc)
+    }
+
+    #[must_use]
+    pub fn series(mut self, label: &str, x: &[f64], y: &[f64], stroke: Stroke, mark: Mark) -> Plot {
+        self.series.push(Series {
+            label: label.to_string(),
+            points: x.iter().zip(y).map(|(x, y)| [*x, *y]).collect(),
+            stroke,
+            mark,
+            lengths: [x.len(), y.len()],
+        });
+        self
+    }
+
+    /// Writes `name.png` and `name.svg` into `dir`, which is made if needed; gives their paths.
+    ///
+    /// # Errors
+    /// The operating system's; `InvalidInput` for x and y of unequal lengths, an empty range, and when nothing can be
+    /// plotted.
+    pub fn save(&self, dir: &Path, name: &str) -> Result<[PathBuf; 2], WriteError> {
+        super::save(dir, name, self.draw())
+    }
+
+    fn scale(&self, axis: usize) -> io::Result<Scale> {
+        if let Some([low, high]) = self.range[axis] {
+            let log = self.log[axis];
+            if low < high && low.is_finite() && high.is_finite() && (!log || low > 0.0) {
+                return Ok(Scale { low, high, log });
+            }
+            return Err(invalid(format!(
+                "the range {low} to {high} cannot be an axis"
+            )));
+        }
+        let values = self
+            .series
+            .iter()
+            .flat_map(|s| s.points.iter().map(|p| p[axis]));
+        // lines run from edge to edge, but not along the upper and lower one
+        Scale::around(values, self.log[axis], if axis == 0 { 0.0 } else { 0.06 })
+    }
+
+    pub(super) fn draw(&self) -> io::Result<Drawing> {
+        for s in &self.series {
+            let [x, y] = s.lengths;
+            if x != y {
+                return Err(invalid(format!(
+                    "`{}` has {x} values of x and {y} of y",
+                    s.label
+                )));
+            }
+        }
+        let scales = [self.scale(0)?, self.scale(1)?];
+        let mut drawing = Drawing::new(self.size[0], self.size[1]);
+        let frame = axes(
+            &mut drawing,
+            &self.title,
+            &self.labels,
+            scales,
+            [10, 8],
+            false,
+            24.0,
+        );
+        for (k, s) in self.series.iter().enumerate() {
+            self.draw_series(&mut drawing, &frame, s, COLORS[k % COLORS.len()]);
+        }
+        drawing.frame(frame.corner, frame.size, 1.2, INK);
+        self.legend(&mut drawing, &frame);
+        Ok(drawing)
+    }
+
+    fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, s: &Series, color: Color) {
+        let dash = match s.stroke {
+            Stroke::None | Stroke::Solid => None,
+            Stroke::Dashed => Some([8.0, 5.0]),
+            Stroke::Dotted => Some([1.0, 4.5]),
+        };
+        if s.stroke != Stroke::None {
+            for points in frame.clipped(&s.points) {
+                drawing.shapes.push(Shape::Path {
+                    points,
+                    width: 1.8,
+                    color,
+                    dash,
+                });
+            }
+        }
+        if let Some((outline, radius)) = s.mark.shape() {
+            for p in s.points.iter().map(|p| frame.place(*p)) {
+                if frame.holds(p) {
+                    drawing.shapes.push(Shape::Marker {
+                        at: p,
+                        radius,
+                        outline,
+                        color,
+                    });
+                }
+            }
+        }
+    }
+
+    /// In the corner that covers the fewest points.
+    fn legend(&self, drawing: &mut Drawing, frame: &Frame) {
+        let named: Vec<(usize, &Series)> = self
+            .series
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| !s.label.is_empty())
+            .collect();
+        if named.is_empty() {
+            return;
+        }
+        let widest = named
+            .iter()
+            .map(|(_, s)| font::width(&s.label, TICK))
+            .fold(0.0, f64::max);
+        let size = [widest + 56.0, 19.0 * named.len() as f64 + 10.0];
+        let gap = 10.0;
+        let [x0, y0] = frame.corner;
+        let right = x0 + frame.size[0] - size[0] - gap;
+        let bottom = y0 + frame.size[1] - size[1] - gap;
+        let corners = [
+            [right, y0 + gap],
+            [x0 + gap, y0 + gap],
+            [right, bottom],
+            [x0 + gap, bottom],
+        ];
+        let covered = |corner: &[f64; 2]| {
+            let points = self
+                .series
+                .iter()
+                .flat_map(|s| frame.clipped(&s.points))
+                .flatten();
+            let inside = points.filter(|p| {
+                (0..2).all(|a| p[a] > corner[a] - 4.0 && p[a] < corner[a] + size[a] + 4.0)
+            });
+            inside.count()
+        };
+        let Some(corner) = corners.into_iter().min_by_key(covered) else {
+            return;
+        };
+        drawing.shapes.push(Shape::Rectangle {
+            corner,
+            size,
+            fill: WHITE,
+        });
+        drawing.frame(corner, size, 0.8, [190, 194, 200]);
+        for (row, (k, s)) in named.into_iter().enumerate() {
+            let y = corner[1] + 5.0 + 19.0 * row as f64 + 9.5;
+            let color = COLORS[k % COLORS.len()];
+            let sample = Series {
+                points: Vec::new(),
+                ..s.clone()
+            };
+            let place = [corner[0] + 8.0, corner[0] + 40.0];
+            let dash = match sample.stroke {
+                Stroke::Dashed => Some([8.0, 5.0]),
+                Stroke::Dotted => Some([1.0, 4.5]),
+                _ => None,
+            };
+            if sample.stroke != Stroke::None {
+                drawing.shapes.push(Shape::Path {
+                    points: vec![[place[0], y], [place[1], y]],
+                    width: 1.8,
+                    color,
+                    dash,
+                });
+            }
+            if let Some((outline, radius)) = sample.mark.shape() {
+                drawing.shapes.push(Shape::Marker {
+                    at: [0.5 * (place[0] + place[1]), y],
+                    radius,
+                    outline,
+                    color,
+                });
+            }
+            drawing.text(
+                [corner[0] + 47.0, y + 4.3],
+                &s.label,
+                TICK,
+                Align::Left,
+                INK,
+            );
+        }
+    }
+}
+
+/// The rectangle of the data.
+pub(super) struct Frame {
+    pub corner: [f64; 2],
+    pub size: [f64; 2],
+    pub scales: [Scale; 2],
+    /// y grows downwards.
+    pub down: bool,
+}
+
+impl Frame {
+    pub fn place(&self, p: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [self.scales[0].part(p[0]), self.scales[1].part(p[1])];
+        let y = if self.down { y } else { 1.0 - y };
+        [
+            self.corner[0] + x * self.size[0],
+            self.corner[1] + y * self.size[1],
+        ]
+    }
+
+    fn holds(&self, p: [f64; 2]) -> bool {
+        (0..2).all(|a| p[a] >= self.corner[a] - 0.5 && p[a] <= self.corner[a] + self.size[a] + 0.5)
+    }
+
+    /// The pieces of a line that lie inside, without points that nobody could tell apart.
+    fn clipped(&self, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+        let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
+        let mut open = false;
+        for pair in points.windows(2) {
+            let (from, to) = (self.place(pair[0]), self.place(pair[1]));
+            let Some((a, b, whole)) = self.inside(from, to) else {
+                open = false;
+                continue;
+            };
+            match pieces.last_mut() {
+                Some(piece) if open => {
+                    let near = piece
+                        .last()
+                        .is_some_and(|p| (p[0] - b[0]).hypot(p[1] - b[1]) < 0.3);
+                    if !near || !whole {
+                        piece.push(b);
+                    }
+                }
+                _ => pieces.push(vec![a, b]),
+            }
+            open = whole;
+        }
+        pieces
+    }
+
+    /// Part of a segment inside, and whether its end is.
+    fn inside(&self, from: [f64; 2], to: [f64; 2]) -> Option<([f64; 2], [f64; 2], bool)> {
+        if !from.iter().chain(&to).all(|c| c.is_finite()) {
+            return None;
+        }
+        let (mut start, mut end) = (0.0f64, 1.0f64);
+        for a in 0..2 {
+            let (low, high) = (self.corner[a], self.corner[a] + self.size[a]);
+            let d = to[a] - from[a];
+            if d == 0.0 {
+                if from[a] < low - 1e-9 || from[a] > high + 1e-9 {
+                    return None;
+                }
+                continue;
+            }
+            let (s, e) = ((low - from[a]) / d, (high - from[a]) / d);
+            start = start.max(s.min(e));
+            end = end.min(s.max(e));
+        }
+        let at = |t: f64| {
+            [
+                from[0] + t * (to[0] - from[0]),
+                from[1] + t * (to[1] - from[1]),
+            ]
+        };
+        (start <= end).then(|| (at(start), at(end), end >= 1.0))
+    }
+}
+
+/// Room that the numbers of the y axis and its title take.
+pub(super) fn beside(ticks: &[(f64, String)]) -> f64 {
+    46.0 + ticks
+        .iter()
+        .map(|t| font::width(&t.1, TICK))
+        .fold(0.0, f64::max)
+}
+
+/// Draws title, axes, grid and their texts; `right` is left free beside the data.
+pub(super) fn axes(
+    drawing: &mut Drawing,
+    title: &str,
+    labels: &[String; 2],
+    scales: [Scale; 2],
+    wanted: [usize; 2],
+    down: bool,
+    right: f64,
+) -> Frame {
+    let ticks = [scales[0].ticks(wanted[0]), scales[1].ticks(wanted[1])];
+    let corner = [
+        beside(&ticks[1]),
+        if title.is_empty() { 20.0 } else { 48.0 },
+    ];
+    let size = [
+        drawing.width - corner[0] - right,
+        drawing.height - corner[1] - 56.0,
+    ];
+    let frame = Frame {
+        corner,
+        size,
+        scales,
+        down,
+    };
+    let (bottom, end) = (corner[1] + size[1], corner[0] + size[0]);
+    for (value, text) in &ticks[0] {
+        let [x, _] = frame.place([*value, scales[1].low]);
+        drawing.segment([x, corner[1]], [x, bottom], 0.8, GRID);
+        drawing.segment([x, bottom], [x, bottom + 5.0], 1.0, INK);
+        drawing.text([x, bottom + 19.0], text, TICK, Align::Center, INK);
+    }
+    for (value, text) in &ticks[1] {
+        let [_, y] = frame.place([scales[0].low, *value]);
+        drawing.segment([corner[0], y], [end, y], 0.8, GRID);
+        drawing.segment([corner[0] - 5.0, y], [corner[0], y], 1.0, INK);
+        drawing.text([corner[0] - 9.0, y + 4.2], text, TICK, Align::Right, INK);
+    }
+    let middle = [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]];
+    drawing.text(
+        [middle[0], bottom + 43.0],
+        &labels[0],
+        LABEL,
+        Align::Center,
+        INK,
+    );
+    drawing.upright([21.0, middle[1]], &labels[1], LABEL, INK);
+    drawing.text([corner[0], 29.0], title, TITLE, Align::Left, INK);
+    if ticks.iter().any(Vec::is_empty) {
+        drawing.text(
+            [end, 29.0],
+            "the range is too narrow for numbers",
+            TICK,
+            Align::Right,
+            GREY,
+        );
+    }
+    frame
+}

@@ -1,0 +1,352 @@
+//! What a paper says, what was computed, and whether they agree.
+
+use serde::{Deserialize, Serialize};
+
+use crate::experiment::{Computed, Failure};
+
+/// How firmly a claim can be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A formula, a count or a printed number.
+    Exact,
+    /// Read off a picture.
+    Digitised,
+    /// A statement in words; the code says whether it holds.
+    Qualitative,
+}
+
+/// A number or words.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    Number(f64),
+    Text(String),
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Value::Number(x) => write!(f, "{x}"),
+            Value::Text(text) => f.write_str(text),
+        }
+    }
+}
+
+/// How far a number may be from the published one; the wider of both counts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tolerance {
+    #[serde(default)]
+    pub absolute: f64,
+    #[serde(default)]
+    pub relative: f64,
+}
+
+impl Tolerance {
+    fn allows(self, computed: f64, published: f64) -> bool {
+        let room = self.absolute.max(self.relative * published.abs());
+        (computed - published).abs() <= room
+    }
+}
+
+impl std::fmt::Display for Tolerance {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match (self.absolute, self.relative) {
+            (0.0, 0.0) => f.write_str("0"),
+            (a, 0.0) => write!(f, "{a}"),
+            (0.0, r) => write!(f, "{} %", 100.0 * r),
+            (a, r) => write!(f, "{a} or {} %", 100.0 * r),
+        }
+    }
+}
+
+/// An entry of `claims.toml`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Published {
+    /// By which the code gives the computed value.
+    pub key: String,
+    pub what: String,
+    pub published: Value,
+    #[serde(default)]
+    pub tolerance: Tolerance,
+    pub kind: Kind,
+    #[serde(default)]
+    pub note: String,
+    /// Not asked of the small variant.
+    #[serde(default)]
+    pub full_only: bool,
+}
+
+/// A claim with its answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Claim {
+    pub key: String,
+    pub what: String,
+    pub published: Value,
+    pub computed: Value,
+    pub tolerance: Tolerance,
+    pub kind: Kind,
+    pub pass: bool,
+    pub note: String,
+}
+
+/// Reads `claims.toml`.
+///
+/// # Errors
+/// Line and column; a key that is there twice, words with a tolerance, a tolerance that is negative or no number.
+pub fn parse(text: &str) -> Result<Vec<Published>, Failure> {
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct File {
+        claim: Vec<Published>,
+    }
+    let file: File = toml::from_str(text).map_err(|e| Failure::new(format!("claims.toml: {e}")))?;
+    for (k, claim) in file.claim.iter().enumerate() {
+        let key = &claim.key;
+        let wrong = |what: &str| Err(Failure::new(format!("claims.toml: `{key}` {what}")));
+        if file.claim[..k].iter().any(|c| c.key == *key) {
+            return wrong("is there twice");
+        }
+        let Tolerance { absolute, relative } = claim.tolerance;
+        if !(absolute >= 0.0 && relative >= 0.0 && absolute.is_finite() && relative.is_finite()) {
+            return wrong("has a tolerance that is negative or not finite");
+        }
+        let words = matches!(claim.published, Value::Text(_));
+        if words && claim.tolerance != Tolerance::default() {
+            return wrong(
+                "is in words and has a tolerance; write the number or leave the tolerance out",
+            );
+        }
+        if !words && claim.kind == Kind::Qualitative {
+            return wrong(
+                "is qualitative and a number; write words, or kind = \"exact\" or \"digitised\"",
+            );
+        }
+    }
+    Ok(file.claim)
+}
+
+/// Compares claims with computed values: exactly one value for each claim, none for others.
+///
+/// # Errors
+/// Names all keys without value, without claim, or with two values; values of another kind than published.
+pub fn compare(
+    published: &[Published],
+    computed: &[(String, Computed)],
+    small: bool,
+) -> Result<Vec<Claim>, Failure> {
+    let asked: Vec<&Published> = published
+        .iter()
+        .filter(|p| !(small && p.full_only))
+        .collect();
+    let values = |key: &str| computed.iter().filter(|(k, _)| k == key).count();
+    let quoted = |keys: Vec<&str>| keys.join("`, `");
+    let mut problems = Vec::new();
+    let missing: Vec<&str> = asked
+        .iter()
+        .map(|p| p.key.as_str())
+        .filter(|k| values(k) == 0)
+        .collect();
+    if !missing.is_empty() {
+        problems.push(format!(
+            "claims without a computed value: `{}`",
+            quoted(missing)
+        ));
+    }
+    let mut twice: Vec<&str> = computed
+        .iter()
+        .map(|(k, _)| k.as_str())
+        .filter(|k| values(k) > 1)
+        .collect();
+    twice.dedup();
+    if !twice.is_empty() {
+        problems.push(format!("more than one value for: `{}`", quoted(twice)));
+    }
+    let unknown: Vec<&str> = computed
+        .iter()
+        .map(|(k, _)| k.as_str())
+        .filter(|k| !asked.iter().any(|p| p.key == *k))
+        .collect();
+    if !unknown.is_empty() {
+        problems.push(format!(
+            "values without a claim in claims.toml: `{}`",
+            quoted(unknown)
+        ));
+    }
+    if !problems.is_empty() {
+        return Err(Failure::new(problems.join("; ")));
+    }
+    asked
+        .into_iter()
+        .filter_map(|p| Some((p, &computed.iter().find(|(k, _)| *k == p.key)?.1)))
+        .map(|(p, value)| judged(p, value))
+        .collect()
+}
+
+fn judged(p: &Published, value: &Computed) -> Result<Claim, Failure> {
+    let (pass, computed) = match (&p.published, value) {
+        (Value::Number(printed), Computed::Number(x)) => {
+            (p.tolerance.allows(*x, *printed), Value::Number(*x))
+        }
+        (Value::Text(printed), Computed::Text(text)) if p.kind != Kind::Qualitative => {
+            (printed == text, Value::Text(text.clone()))
+        }
+        (Value::Text(_), Computed::Holds(text, holds)) if p.kind == Kind::Qualitative => {
+            (*holds, Value::Text(text.clone()))
+        }
+        _ => {
+            let wants = match (&p.published, p.kind) {
+                (Value::Number(_), _) => "a number: use Findings::number",
+                (_, Kind::Qualitative) => "whether it holds: use Findings::holds",
+                _ => "words: use Findings::text",
+            };
+            return Err(Failure::new(format!("the claim `{}` takes {wants}", p.key)));
+        }
+    };
+    Ok(Claim {
+        key: p.key.clone(),
+        what: p.what.clone(),
+        published: p.published.clone(),
+        computed,
+        tolerance: p.tolerance,
+        kind: p.kind,
+        pass,
+        note: p.note.clone(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLAIMS: &str = r#"
+[[claim]]
+key = "n"
+what = "steps"
+published = 184
+kind = "exact"
+
+[[claim]]
+key = "cost"
+what = "relative cost"
+published = 0.22
+tolerance = { absolute = 0.005 }
+kind = "digitised"
+full_only = true
+
+[[claim]]
+key = "limit"
+what = "f for m = 2"
+published = "8/7"
+kind = "exact"
+
+[[claim]]
+key = "shape"
+what = "two pulses"
+published = "the pulse splits"
+kind = "qualitative"
+"#;
+
+    fn values(n: f64, cost: f64, limit: &str, holds: bool) -> Vec<(String, Computed)> {
+        vec![
+            ("n".into(), Computed::Number(n)),
+            ("cost".into(), Computed::Number(cost)),
+            ("limit".into(), Computed::Text(limit.into())),
+            ("shape".into(), Computed::Holds("two maxima".into(), holds)),
+        ]
+    }
+
+    fn passes(values: &[(String, Computed)]) -> Vec<bool> {
+        let claims = compare(&parse(CLAIMS).unwrap(), values, false).unwrap();
+        claims.iter().map(|c| c.pass).collect()
+    }
+
+    #[test]
+    fn values_are_compared_with_their_tolerance() {
+        assert_eq!(passes(&values(184.0, 0.2202, "8/7", true)), [true; 4]);
+        assert_eq!(passes(&values(184.1, 0.226, "8/9", false)), [false; 4]);
+        assert_eq!(
+            passes(&values(f64::NAN, f64::INFINITY, "", true)),
+            [false, false, false, true]
+        );
+        assert!(
+            Tolerance {
+                absolute: 0.0,
+                relative: 0.01
+            }
+            .allows(99.1, 100.0)
+        );
+        assert!(
+            !Tolerance {
+                absolute: 0.5,
+                relative: 0.01
+            }
+            .allows(98.9, 100.0)
+        );
+    }
+
+    #[test]
+    fn every_claim_has_one_value_and_every_value_a_claim() {
+        let published = parse(CLAIMS).unwrap();
+        let told = |values: &[(String, Computed)], small: bool| {
+            compare(&published, values, small).unwrap_err().to_string()
+        };
+        let good = values(1.0, 1.0, "", true);
+        assert_eq!(
+            told(&good[..2], false),
+            "claims without a computed value: `limit`, `shape`"
+        );
+        // the small variant is not asked for the cost, and must not answer
+        assert_eq!(
+            told(&good, true),
+            "values without a claim in claims.toml: `cost`"
+        );
+        let small: Vec<_> = good.iter().filter(|v| v.0 != "cost").cloned().collect();
+        assert_eq!(compare(&published, &small, true).unwrap().len(), 3);
+        let mut twice = good.clone();
+        twice.push(("n".into(), Computed::Number(2.0)));
+        assert!(told(&twice, false).contains("more than one value for: `n`"));
+        let mut kind = good;
+        kind[0].1 = Computed::Text("184".into());
+        assert_eq!(
+            told(&kind, false),
+            "the claim `n` takes a number: use Findings::number"
+        );
+    }
+
+    #[test]
+    fn mistakes_in_claims_are_named() {
+        for (change, message) in [
+            (
+                ("published = 184", "published = 184\nnumber = 3"),
+                "unknown field `number`",
+            ),
+            (("key = \"cost\"", "key = \"n\""), "`n` is there twice"),
+            (
+                ("absolute = 0.005", "absolute = -1"),
+                "`cost` has a tolerance that is negative",
+            ),
+            (
+                (
+                    "published = \"8/7\"",
+                    "published = \"8/7\"\ntolerance = { relative = 0.1 }",
+                ),
+                "`limit` is in words and has a tolerance",
+            ),
+            (
+                ("kind = \"exact\"", "kind = \"qualitative\""),
+                "`n` is qualitative and a number",
+            ),
+            (
+                ("kind = \"exact\"", "kind = \"exakt\""),
+                "unknown variant `exakt`",
+            ),
+        ] {
+            let text = CLAIMS.replacen(change.0, change.1, 1);
+            let told = parse(&text).unwrap_err().to_string();
+            assert!(told.contains(message), "{told}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Reports as Markdown.
+
+use crate::claim::{Claim, Kind};
+use crate::reproduce::{Outcome, Report};
+
+/// A cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Exact => "exact",
+        Kind::Digitised => "digitised",
+        Kind::Qualitative => "qualitative",
+    }
+}
+
+fn row(c: &Claim) -> String {
+    let pass = if c.pass { "yes" } else { "**no**" };
+    let tolerance = match c.kind {
+        Kind::Qualitative => String::new(),
+        _ => c.tolerance.to_string(),
+    };
+    let cells = [
+        c.what.clone(),
+        c.published.to_string(),
+        c.computed.to_string(),
+        tolerance,
+        kind(c.kind).to_string(),
+        pass.to_string(),
+        c.note.clone(),
+    ];
+    format!("| {} |\n", cells.map(|t| cell(&t)).join(" | "))
+}
+
+/// `page.md` of a figure.
+pub fn page(report: &Report, readme: &str) -> String {
+    let Report { paper, figure, .. } = report;
+    let variant = if report.small { "small variant, " } else { "" };
+    let mut text = format!(
+        "# {}\n\n{paper}/{figure}, {variant}{:.1} s, peridyne {}\n\n",
+        report.title, report.seconds, report.version
+    );
+    text += "| claim | published | computed | tolerance | kind | holds | note |\n|---|---|---|---|---|---|---|\n";
+    report.claims.iter().for_each(|c| text += &row(c));
+    text.push('\n');
+    for file in report.files.iter().filter(|f| f.ends_with(".png")) {
+        text += &format!("![{file}]({file})\n\n");
+    }
+    let links: Vec<String> = report.files.iter().map(|f| format!("[{f}]({f})")).collect();
+    if !links.is_empty() {
+        text += &format!("Files: {}\n\n", links.join(", "));
+    }
+    // the page has a title of its own
+    let body = readme
+        .trim_start()
+        .lines()
+        .skip_while(|l| l.starts_with("# ") || l.is_empty());
+    text += &body.collect::<Vec<_>>().join("\n");
+    text.push('\n');
+    text
+}
+
+/// `index.md`: all figures that have a report, and those that failed now.
+pub fn index(reports: &[Report], outcomes: &[Outcome]) -> String {
+    let mut text = String::from(
+        "# The papers' experiments\n\n| experiment | title | claims that hold | variant | time |\n|---|---|---|---|---|\n",
+    );
+    for r in reports {
+        let name = format!("{}/{}", r.paper, r.figure);
+        let held = r.claims.iter().filter(|c| c.pass).count();
+        let held = format!("{held} of {}", r.claims.len());
+        let held = if r.pass { held } else { format!("**{held}**") };
+        let variant = if r.small { "small" } else { "full" };
+        text += &format!(
+            "| [{name}]({name}/page.md) | {} | {held} | {variant} | {:.1} s |\n",
+            cell(&r.title),
+            r.seconds
+        );
+    }
+    for outcome in outcomes {
+        if let Outcome::Failed {
+            paper,
+            figure,
+            failure,
+        } = outcome
+        {
+            text += &format!(
+                "| {paper}/{figure} | **failed**: {} | | | |\n",
+                cell(&failure.to_string())
+            );
+        }
+    }
+    text
+}

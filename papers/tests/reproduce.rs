@@ -1,0 +1,214 @@
+//! The framework with experiments of its own, and every experiment of the papers in its small variant.
+
+use peridyne_papers::reproduce::{Options, Outcome, reproduce, reproduce_of, select};
+use peridyne_papers::{Context, Experiment, Failure, Findings, all};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+fn options(out: &Path) -> Options<'static> {
+    Options {
+        out: out.to_path_buf(),
+        small: true,
+        force: false,
+        threads: 2,
+        progress: &|_| {},
+    }
+}
+
+/// Counts how often it runs and how often its part is computed.
+struct Counted {
+    figure: &'static str,
+    runs: AtomicUsize,
+    parts: AtomicUsize,
+    /// Fails after the part this many times.
+    failures: AtomicUsize,
+    value: f64,
+}
+
+impl Counted {
+    fn new(figure: &'static str, value: f64, failures: usize) -> Counted {
+        Counted {
+            figure,
+            runs: AtomicUsize::new(0),
+            parts: AtomicUsize::new(0),
+            failures: AtomicUsize::new(failures),
+            value,
+        }
+    }
+
+    fn counts(&self) -> (usize, usize) {
+        (
+            self.runs.load(Ordering::Relaxed),
+            self.parts.load(Ordering::Relaxed),
+        )
+    }
+}
+
+impl Experiment for Counted {
+    fn key(&self) -> &'static str {
+        "author2001"
+    }
+    fn figure(&self) -> &'static str {
+        self.figure
+    }
+    fn title(&self) -> &'static str {
+        "A | test"
+    }
+    fn claims(&self) -> &'static str {
+        "[[claim]]\nkey = \"a\"\nwhat = \"an answer\"\npublished = 42\ntolerance = { relative = 0.01 }\nkind = \"digitised\"\n"
+    }
+    fn readme(&self) -> &'static str {
+        "# Title\n\nUnsaid: all.\n"
+    }
+    fn sources(&self) -> &'static [&'static str] {
+        &["v1"]
+    }
+    fn run(&self, context: &Context) -> Result<Findings, Failure> {
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        let value = context.part("long", || {
+            self.parts.fetch_add(1, Ordering::Relaxed);
+            Ok(self.value)
+        })?;
+        if self.failures.load(Ordering::Relaxed) > 0 {
+            self.failures.fetch_sub(1, Ordering::Relaxed);
+            return Err(Failure::new("cut off"));
+        }
+        let path = context.out.join("p.png");
+        std::fs::write(&path, b"png").map_err(|e| Failure::new(e.to_string()))?;
+        let mut found = Findings::new();
+        found.number("a", value);
+        found.file(path);
+        Ok(found)
+    }
+}
+
+#[test]
+fn a_finished_figure_is_kept_until_forced() {
+    let dir = tempfile::tempdir().unwrap();
+    let experiment = Counted::new("figure-1", 42.3, 0);
+    let all: [&dyn Experiment; 1] = [&experiment];
+    let run = |options: &Options| reproduce_of(&all, None, options).unwrap().remove(0);
+    assert!(matches!(run(&options(dir.path())), Outcome::Ran(r) if r.pass));
+    assert!(matches!(run(&options(dir.path())), Outcome::Kept(r) if r.pass && r.claims.len() == 1));
+    assert_eq!(experiment.counts(), (1, 1));
+    let full = Options {
+        small: false,
+        ..options(dir.path())
+    };
+    assert!(matches!(run(&full), Outcome::Ran(_)));
+    assert_eq!(experiment.counts(), (2, 2));
+    std::fs::remove_file(dir.path().join("author2001/figure-1/p.png")).unwrap();
+    assert!(matches!(run(&full), Outcome::Ran(_)));
+    // its part was kept
+    assert_eq!(experiment.counts(), (3, 2));
+    let forced = Options {
+        force: true,
+        ..full
+    };
+    assert!(matches!(run(&forced), Outcome::Ran(_)));
+    assert_eq!(experiment.counts(), (4, 3));
+}
+
+#[test]
+fn a_run_that_is_cut_off_goes_on_and_others_are_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let (broken, wrong) = (
+        Counted::new("figure-1", 42.0, 1),
+        Counted::new("figure-2", 40.0, 0),
+    );
+    let all: [&dyn Experiment; 2] = [&broken, &wrong];
+    let outcomes = reproduce_of(&all, Some("author2001"), &options(dir.path())).unwrap();
+    assert!(
+        matches!(&outcomes[0], Outcome::Failed { failure, .. } if failure.to_string() == "cut off")
+    );
+    assert!(!outcomes[1].pass());
+    let index = std::fs::read_to_string(dir.path().join("index.md")).unwrap();
+    assert!(
+        index.contains("| author2001/figure-1 | **failed**: cut off |"),
+        "{index}"
+    );
+    assert!(index.contains("| [author2001/figure-2](author2001/figure-2/page.md) | A \\| test | **0 of 1** | small |"), "{index}");
+    let outcomes = reproduce_of(&all, Some("author2001/figure-1"), &options(dir.path())).unwrap();
+    assert!(outcomes.len() == 1 && outcomes[0].pass());
+    assert_eq!(broken.counts(), (2, 1));
+    let folder = dir.path().join("author2001/figure-1");
+    let page = std::fs::read_to_string(folder.join("page.md")).unwrap();
+    assert!(
+        page.contains("| an answer | 42 | 42 | 1 % | digitised | yes |  |"),
+        "{page}"
+    );
+    assert!(
+        page.contains("![p.png](p.png)") && page.ends_with("\nUnsaid: all.\n"),
+        "{page}"
+    );
+    // the other one is still in the index
+    let index = std::fs::read_to_string(dir.path().join("index.md")).unwrap();
+    assert!(
+        index.contains("figure-1/page.md") && index.contains("figure-2/page.md"),
+        "{index}"
+    );
+}
+
+#[test]
+fn an_unknown_name_tells_the_closest_and_all() {
+    let told = |name: &str| match select(&all(), Some(name)) {
+        Ok(chosen) => panic!("{name}: {}", chosen.len()),
+        Err(e) => e.to_string(),
+    };
+    let text = told("seleson2009/tabel-4-1");
+    assert!(
+        text.contains("did you mean seleson2009/table-4-1"),
+        "{text}"
+    );
+    let text = told("zzz");
+    assert!(
+        text.starts_with(
+            "there is no experiment `zzz`: There are seleson2009, seleson2009/table-4-1"
+        ),
+        "{text}"
+    );
+    assert!(!select(&all(), Some("seleson2009/")).unwrap().is_empty());
+}
+
+#[test]
+fn the_small_variants_of_all_papers_pass() {
+    let dir = tempfile::tempdir().unwrap();
+    let outcomes = reproduce(None, &options(dir.path())).unwrap();
+    assert_eq!(outcomes.len(), all().len());
+    for outcome in &outcomes {
+        assert!(outcome.pass(), "{outcome:?}");
+    }
+    let folder = dir.path().join("seleson2009/table-4-1");
+    let table = std::fs::read_to_string(folder.join("costs.csv")).unwrap();
+    assert!(
+        table.starts_with(
+            "model,Nx,N,spacing [1],time step [1],Nt,Nx N Nt,relative cost\nMD,4001,20,0.25,1.62"
+        ),
+        "{table}"
+    );
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["claims"][1]["computed"], 162.0);
+    assert_eq!(report["claims"][3]["kind"], "exact");
+}
+
+#[test]
+fn names_are_unique_and_folders_are_complete() {
+    let mut seen = std::collections::HashSet::new();
+    for e in all() {
+        assert!(
+            seen.insert((e.key(), e.figure())),
+            "{}/{} is there twice",
+            e.key(),
+            e.figure()
+        );
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join(e.key())
+            .join(e.figure());
+        for (file, text) in [("claims.toml", e.claims()), ("README.md", e.readme())] {
+            let there = std::fs::read_to_string(folder.join(file)).unwrap();
+            assert_eq!(there, text, "{}", folder.display());
+        }
+        assert!(!e.sources().is_empty() && !e.title().is_empty());
+    }
+}
