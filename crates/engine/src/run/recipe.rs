@@ -69,6 +69,7 @@ impl Recipe {
         let mut atoms = vec![];
         let mut repulsive: f64 = 0.0;
         for (n, m) in spec.materials.iter().enumerate() {
+            solid.extend(Solid::of_law(D, spec.plane, m.law));
             if !(m.density > 0.0 && m.density.is_finite()) {
                 return Err(BuildError::new(
                     at(n, "density"),
@@ -93,27 +94,17 @@ impl Recipe {
                     (c(stiffness), c(stiffness))
                 }
                 LawSpec::Lps(moduli) => {
-                    let (g, l) = (moduli.shear(), moduli.lame());
-                    let lambda = match (D, spec.plane) {
-                        (1, _) => moduli.young - 2.0 * g,
-                        (2, crate::spec::Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
-                        _ => l,
-                    };
-                    solid.push(Solid::lps(D, lambda, g));
                     let k = if D == 1 { moduli.young } else { moduli.bulk() };
-                    (g.min(k), hard(PmbStiffness::Bulk(k)))
+                    (moduli.shear().min(k), hard(PmbStiffness::Bulk(k)))
                 }
-                LawSpec::LpsAsTyped { bulk, shear } => {
-                    solid.push(Solid {
-                        n: 3.0,
-                        kappa: bulk - 5.0 / 3.0 * shear,
-                        beta: 15.0 * shear,
-                    });
-                    (
-                        shear.min(bulk),
-                        18.0 * bulk / (std::f64::consts::PI * horizon.powi(4)),
-                    )
-                }
+                LawSpec::LpsAsTyped { bulk, shear } => (
+                    shear.min(bulk),
+                    18.0 * bulk / (std::f64::consts::PI * horizon.powi(4)),
+                ),
+                LawSpec::EamLike { pair, volume } => (
+                    pair,
+                    hard(PmbStiffness::Bulk((3.0 * volume + 0.5 * pair) / 9.0)),
+                ),
                 LawSpec::Springs(stiffness) => {
                     springs.push(c(stiffness));
                     (c(stiffness), 0.0)
@@ -124,17 +115,6 @@ impl Recipe {
                     };
                     atoms.push(potential.clone());
                     (1.0, 0.0)
-                }
-                LawSpec::EamLike { pair, volume } => {
-                    solid.push(Solid {
-                        n: 3.0,
-                        kappa: volume / 3.0,
-                        beta: 0.5 * pair,
-                    });
-                    (
-                        pair,
-                        hard(PmbStiffness::Bulk((3.0 * volume + 0.5 * pair) / 9.0)),
-                    )
                 }
             };
             if !(value > 0.0 && value.is_finite()) {

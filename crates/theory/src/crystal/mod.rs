@@ -91,6 +91,8 @@ pub enum CrystalError {
          potential describes"
     )]
     Density { density: f64 },
+    #[error("atoms have a potential: take `Crystal::of_potential`")]
+    NotASolid,
     #[error("the potential has no value at the distance {distance} of the reference")]
     Distance { distance: f64 },
 }

@@ -148,8 +148,12 @@ impl LatticeSolid {
         plane: Plane,
         calibration: Calibration,
     ) -> Result<Crystal<D>, CrystalError> {
+        if let Some(solid) = Solid::of_law(D, plane, law) {
+            return self.state_based(solid);
+        }
         match law {
-            LawSpec::Pmb(stiffness) => {
+            // springs are the bond-based solid linearised, and so is every crystal
+            LawSpec::Pmb(stiffness) | LawSpec::Springs(stiffness) => {
                 let moments = match calibration {
                     Calibration::Discrete => self.moments::<D>()?,
                     Calibration::Continuum => {
@@ -158,25 +162,7 @@ impl LatticeSolid {
                 };
                 self.bond_based(micromodulus(D, plane, stiffness, moments))
             }
-            LawSpec::Lps(moduli) => {
-                let (g, l) = (moduli.shear(), moduli.lame());
-                let lambda = match (D, plane) {
-                    (1, _) => moduli.young - 2.0 * g,
-                    (2, Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
-                    _ => l,
-                };
-                self.state_based(Solid::lps(D, lambda, g))
-            }
-            LawSpec::LpsAsTyped { bulk, shear } => self.state_based(Solid {
-                n: 3.0,
-                kappa: bulk - 5.0 / 3.0 * shear,
-                beta: 15.0 * shear,
-            }),
-            LawSpec::EamLike { pair, volume } => self.state_based(Solid {
-                n: 3.0,
-                kappa: volume / 3.0,
-                beta: 0.5 * pair,
-            }),
+            _ => Err(CrystalError::NotASolid),
         }
     }
 }

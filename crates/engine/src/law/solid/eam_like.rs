@@ -10,6 +10,7 @@
 
 use crate::execute::lane::Lane;
 use crate::law::Law;
+use crate::spec::{LawSpec, Plane};
 
 /// Field 0: pressure `P`; field 1: `B = β/m`. Bond constant `k = ω ν V_j`.
 #[derive(Debug, Clone, Copy)]
@@ -64,6 +65,32 @@ impl Solid {
             n,
             kappa: lambda - shear,
             beta: n * (n + 2.0) * shear,
+        }
+    }
+
+    /// Of a state-based law of a spec; `None`: it is none.
+    pub fn of_law(d: usize, plane: Plane, law: LawSpec) -> Option<Solid> {
+        match law {
+            LawSpec::Lps(moduli) => {
+                let (g, l) = (moduli.shear(), moduli.lame());
+                let lambda = match (d, plane) {
+                    (1, _) => moduli.young - 2.0 * g,
+                    (2, Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
+                    _ => l,
+                };
+                Some(Solid::lps(d, lambda, g))
+            }
+            LawSpec::LpsAsTyped { bulk, shear } => Some(Solid {
+                n: 3.0,
+                kappa: bulk - 5.0 / 3.0 * shear,
+                beta: 15.0 * shear,
+            }),
+            LawSpec::EamLike { pair, volume } => Some(Solid {
+                n: 3.0,
+                kappa: volume / 3.0,
+                beta: 0.5 * pair,
+            }),
+            LawSpec::Pmb(_) | LawSpec::Springs(_) | LawSpec::Atoms => None,
         }
     }
 
