@@ -184,6 +184,7 @@ mod tests {
     use peridyne::law::potential::lennard_jones::LennardJones;
 
     /// Johnson-like embedded atom: f = e^{−βr}, F = −√ρ + 0.1 ρ, φ = A e^{−αr}.
+    #[derive(Clone)]
     struct Metal;
     impl Potential for Metal {
         const EMBEDDED: bool = true;

@@ -201,6 +201,7 @@ fn phonons_of_an_embedded_atom_potential_are_those_of_ase() {
 }
 
 /// f = e^{−βr}, F = −√ρ, φ = A e^{−αr}.
+#[derive(Clone)]
 struct Metal;
 impl Potential for Metal {
     const EMBEDDED: bool = true;

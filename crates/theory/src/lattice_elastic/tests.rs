@@ -8,6 +8,7 @@ use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{Calibration, Horizon, LawSpec, PmbStiffness};
 
 /// f = e^{−βr}, F = −√ρ, φ = A e^{−αr}.
+#[derive(Clone)]
 struct Metal;
 impl Potential for Metal {
     const EMBEDDED: bool = true;
