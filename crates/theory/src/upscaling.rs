@@ -151,6 +151,7 @@ mod tests {
 
     /// An embedded-atom potential with lengths in units of `h` and energies per volume of a point kept (seleson2014
     /// section 3): f = e^{−r/h}, F = −h√ρ, φ = 3h e^{−4r/h}.
+    #[derive(Clone)]
     struct Metal {
         h: f64,
     }

@@ -62,6 +62,8 @@ fn case(
         periodic[a] = Some(H * kind.edges()[a] * cells[a] as f64);
     }
     let spec = Spec {
+        potential: None,
+        thermal: None,
         title: String::new(),
         dimension: d,
         plane: Plane::Stress,
