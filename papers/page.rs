@@ -1,11 +1,27 @@
 //! Reports as Markdown.
 
-use crate::claim::{Claim, Kind};
+use crate::claim::{Claim, Kind, Value};
 use crate::reproduce::{Outcome, Report};
 
 /// A cell of a table.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
+}
+
+/// Eight digits are enough to read; `report.json` has all.
+fn computed(value: &Value) -> String {
+    match value {
+        Value::Number(x) if x.is_finite() && *x != 0.0 => {
+            let short: f64 = format!("{x:.7e}").parse().unwrap_or(*x);
+            let plain = (1e-4..1e9).contains(&short.abs());
+            if plain {
+                short.to_string()
+            } else {
+                format!("{short:e}")
+            }
+        }
+        value => value.to_string(),
+    }
 }
 
 fn kind(kind: Kind) -> &'static str {
@@ -25,7 +41,7 @@ fn row(c: &Claim) -> String {
     let cells = [
         c.what.clone(),
         c.published.to_string(),
-        c.computed.to_string(),
+        computed(&c.computed),
         tolerance,
         kind(c.kind).to_string(),
         pass.to_string(),
@@ -93,4 +109,20 @@ pub fn index(reports: &[Report], outcomes: &[Outcome]) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_cells_stay_in_their_table() {
+        let texts = [184.0, 0.2201637090727318, 1.0 / 3e12, -2e9, 0.0, f64::NAN]
+            .map(|x| computed(&Value::Number(x)));
+        assert_eq!(
+            texts,
+            ["184", "0.22016371", "3.3333333e-13", "-2e9", "0", "NaN"]
+        );
+        assert_eq!(cell("a | b\nc"), "a \\| b c");
+    }
 }

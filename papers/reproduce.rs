@@ -177,10 +177,9 @@ fn one(e: &dyn Experiment, options: &Options) -> Result<Outcome, Failure> {
     let out = folder(options, e);
     let inputs = inputs(e, options.small);
     let published = claim::parse(e.claims())?;
-    if let Some(report) = read(&out).filter(|r| r.inputs == inputs && !options.force) {
-        if report.files.iter().all(|f| out.join(f).exists()) {
-            return Ok(Outcome::Kept(report));
-        }
+    let same = |r: &Report| r.inputs == inputs && r.files.iter().all(|f| out.join(f).exists());
+    if let Some(report) = read(&out).filter(|r| same(r) && !options.force) {
+        return Ok(Outcome::Kept(report));
     }
     create_directory(&out)?;
     // a run that is cut off must not look finished

@@ -182,7 +182,7 @@ fn the_small_variants_of_all_papers_pass() {
     let table = std::fs::read_to_string(folder.join("costs.csv")).unwrap();
     assert!(
         table.starts_with(
-            "model,Nx,N,spacing [1],time step [1],Nt,Nx N Nt,relative cost\nMD,4001,20,0.25,1.62"
+            "model,Nx,N,spacing,time step,Nt,Nx N Nt,relative cost\nMD,4001,20,0.25,1.62"
         ),
         "{table}"
     );

@@ -54,7 +54,8 @@ def read(directory):
     close("extxyz forces", mine.get_forces(apply_constraint=False), atoms.get_forces(apply_constraint=False), 0.0)
     data = ase.io.read(directory / "peridyne.data", format="lammps-data", atom_style="atomic", sort_by_id=True)
     close("data positions", data.positions, atoms.positions, 1e-14)
-    close("data masses", data.get_masses(), atoms.get_masses(), 0.0)
+    # ASE converts masses from g/mol with its own constants
+    close("data masses", data.get_masses(), atoms.get_masses(), 1e-6)
     dump = ase.io.read(directory / "peridyne.lammpstrj", format="lammps-dump-text", index=-1)
     order = np.argsort(dump.arrays["id"]) if "id" in dump.arrays else slice(None)
     close("dump positions", dump.positions[order], atoms.positions, 1e-14)

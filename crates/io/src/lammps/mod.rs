@@ -19,6 +19,7 @@ mod error;
 mod fix;
 pub mod host;
 mod lattice;
+mod lines;
 pub mod model;
 mod particles;
 mod printf;

@@ -2,8 +2,8 @@
 
 use std::io::BufRead;
 
-use super::data::{Lines, finite};
 use super::error::Result;
+use super::lines::{Lines, finite};
 
 /// The asked columns of one snapshot.
 #[derive(Debug, Clone, PartialEq)]

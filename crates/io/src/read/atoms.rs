@@ -103,7 +103,7 @@ impl Names {
 pub enum Frame {
     /// From 0.
     Index(usize),
-    /// LAMMPS dumps only; extended XYZ where the comment says `step=`.
+    /// Of this time step: `ITEM: TIMESTEP` of a dump, `step=` in extended XYZ.
     Step(u64),
     Last,
 }

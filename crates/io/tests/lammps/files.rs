@@ -190,3 +190,27 @@ set group all x 0 vy 0\nread_dump {} 0 x vy box no replace yes\nprint \"> $(x[5]
     assert!(printed.iter().all(|l| *l == printed[0]), "{printed:?}");
     assert!(printed[0].ends_with(" 64"), "{printed:?}");
 }
+
+/// A script has points with volumes; a file of atoms has none.
+#[test]
+fn a_file_of_atoms_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("atoms.data");
+    let text = "t\n\n1 atoms\n1 atom types\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nMasses\n\n1 63.55 # Cu\n\nAtoms # atomic\n\n1 1 0.5 0.5 0.5\n";
+    std::fs::write(&path, text).unwrap();
+    let script = format!(
+        "units si\nboundary f f f\natom_style peri\nread_data {}\n",
+        path.display()
+    );
+    let ran = run("in.test", &script, &Options::default());
+    let Err(error) = ran.outcome else {
+        panic!("the atoms were taken");
+    };
+    assert_eq!(error.line, 4);
+    assert!(
+        error
+            .message
+            .contains("is of atom_style atomic, without volumes"),
+        "{error}"
+    );
+}

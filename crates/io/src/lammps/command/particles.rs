@@ -8,6 +8,7 @@ use crate::lammps::data;
 use crate::lammps::domain::{Face, SimBox, corners};
 use crate::lammps::error::{Problem, Result};
 use crate::lammps::host::Quantity;
+use crate::lammps::lines;
 use crate::lammps::read_dump::read_frame;
 use crate::lammps::session::Session;
 
@@ -151,7 +152,7 @@ impl Session<'_> {
         let word = args.next("a file name")?;
         args.finish()?;
         self.no_box_yet()?;
-        let reader = data::open(&self.input_path(word.as_str()), word.as_str())
+        let reader = lines::open(&self.input_path(word.as_str()), word.as_str())
             .map_err(|p| p.or_at(word.span))?;
         self.console.print("Reading data file ...");
         let file = data::read_data(reader, word.as_str())?;
@@ -230,7 +231,7 @@ impl Session<'_> {
                 alternatives.iter().map(|s| format!("{f}{s}")).collect()
             })
             .collect();
-        let reader = data::open(&self.input_path(word.as_str()), word.as_str())
+        let reader = lines::open(&self.input_path(word.as_str()), word.as_str())
             .map_err(|p| p.or_at(word.span))?;
         let (frame, choices) = read_frame(reader, word.as_str(), step, &wanted)?;
         let indices = frame

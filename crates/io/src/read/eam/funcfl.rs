@@ -72,7 +72,7 @@ impl Part {
                 values.lines.error(format!("no element has the atomic number {n}: an eam (funcfl) file has its element by number; setfl files belong to eam/alloy"))
             })?
             .to_string();
-        let grid = Grid::read(&mut values, "Nrho drho Nr dr cutoff")?;
+        let grid = Grid::read(&mut values, 0.0)?;
         let embedding = values.table("the embedding energy F", grid.nrho)?;
         let charge = values.table("the effective charge Z", grid.nr)?;
         let density = values.table("the electron density", grid.nr)?;

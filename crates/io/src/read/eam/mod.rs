@@ -39,7 +39,7 @@ pub struct EamFile {
     pub drho: f64,
     /// Step of the distance (Å).
     pub dr: f64,
-    /// Å; at most one step beyond the last knot.
+    /// Å; at most one and a half steps beyond the last knot, where the last value stays.
     pub cutoff: f64,
     /// `[element][m]`: F(m drho) (eV).
     pub embedding: Vec<Vec<f64>>,

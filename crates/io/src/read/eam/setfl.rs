@@ -32,7 +32,8 @@ pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
         comments.push(line.trim_end().to_string());
     }
     let names = names(&mut values)?;
-    let grid = Grid::read(&mut values, "Nrho drho Nr dr cutoff")?;
+    // many files put the cutoff one step beyond the last knot, where the last value stays
+    let grid = Grid::read(&mut values, 1.5)?;
     let mut file = EamFile {
         source: name.to_string(),
         comments,
@@ -114,7 +115,9 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub fn read(values: &mut Values, what: &str) -> Result<Grid, ReadError> {
+    /// The cutoff may lie `spare` steps beyond the last knot.
+    pub fn read(values: &mut Values, spare: f64) -> Result<Grid, ReadError> {
+        let what = "Nrho drho Nr dr cutoff";
         let words = values.header(&format!("`{what}`"))?;
         if words.len() != 5 {
             return Err(values.lines.error(format!(
@@ -130,13 +133,11 @@ impl Grid {
             dr: values.positive(words.get(3), "dr")?,
             cutoff: values.positive(words.get(4), "the cutoff")?,
         };
-        // many files put the cutoff one step beyond the last knot, where the last value stays
-        let end = grid.nr as f64 * grid.dr;
-        if grid.cutoff > end * (1.0 + 1e-6) {
+        let end = (grid.nr - 1) as f64 * grid.dr;
+        if grid.cutoff > (end + spare * grid.dr) * (1.0 + 1e-6) {
             return Err(values.lines.error(format!(
-                "the cutoff {} lies beyond the tables, which end at (Nr - 1) dr = {}: write a smaller cutoff or longer tables",
-                grid.cutoff,
-                end - grid.dr
+                "the cutoff {} lies beyond the tables, which end at (Nr - 1) dr = {end}: write a smaller cutoff or longer tables",
+                grid.cutoff
             )));
         }
         Ok(grid)

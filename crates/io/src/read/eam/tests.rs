@@ -204,6 +204,13 @@ fn what_is_wrong_is_said_with_its_line() {
         failure_of("a\nb\nc\n1 Cu\n5 1 4000000000 1 5\n29 1 1 FCC\n1 2")
             .contains("3 of its 5 values are missing")
     );
+    // the cutoff of a single element lies within its table, so that it still does on the common grid
+    let single = SINGLE.replace("6.2999999999999998D+00", "6.4D+00");
+    let text = parse_funcfl(&[(&single, "f")]).unwrap_err().to_string();
+    assert!(
+        text.starts_with("f:3: the cutoff 6.4 lies beyond the tables"),
+        "{text}"
+    );
     let single = SINGLE.replace("29 63.55", "129 63.55");
     let text = parse_funcfl(&[(&single, "f")]).unwrap_err().to_string();
     assert!(

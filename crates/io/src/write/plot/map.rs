@@ -7,7 +7,7 @@ use super::super::picture::colormap;
 use super::super::picture::image::{Align, Color, INK, Image};
 use super::axis::Scale;
 use super::canvas::{Drawing, Shape};
-use super::lines::{Frame, LABEL, TICK, axes, beside};
+use super::frame::{Frame, LABEL, TICK, axes, beside};
 use super::{SCALE, WriteError, font, invalid, titled};
 
 /// Where a value is missing.

@@ -1,6 +1,6 @@
 //! Plots as PNG and SVG: lines and points over axes, and images of two-dimensional arrays with a colour bar.
 //!
-//! Files: `axis` puts numbers on an axis, `lines` and `map` lay a plot out, `canvas` is what they draw on, `raster` and
+//! Files: `axis` puts numbers on an axis, `frame` draws the axes, `lines` and `map` what is in them, `canvas` is what they draw on, `raster` and
 //! `svg` are its two outputs, `font` is the text of the PNG.
 //!
 //! ```
@@ -14,6 +14,7 @@
 mod axis;
 mod canvas;
 mod font;
+mod frame;
 mod lines;
 mod map;
 mod raster;
