@@ -2,7 +2,7 @@
 
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
-use peridyne::law::spline::Spline;
+use peridyne::law::spline::{Spline, Twin};
 use std::ops::{Add, Mul, Sub};
 
 /// `Σ a_n t^n`, n < N.
@@ -104,13 +104,27 @@ impl<const N: usize> Number for Jet<N> {
     }
     /// Of the cubic that holds at the value; its derivatives jump at the knots from the second on.
     fn table(self, table: &Spline) -> Self {
-        let ([c, b, a, v], part, inverse) = table.piece(self.0[0]);
-        let mut p = self.times(inverse);
-        p.0[0] = part;
-        ((p.times(c).plus(b) * p).plus(a) * p).plus(v)
+        let (cubic, part, inverse) = table.piece(self.0[0]);
+        self.cubic(cubic, part, inverse)
+    }
+    fn twin(self, twin: &Twin) -> [Self; 2] {
+        let (cubics, part, inverse) = twin.piece(self.0[0]);
+        cubics.map(|c| self.cubic(c, part, inverse))
+    }
+    fn of_twin(self, twin: &Twin, n: usize) -> Self {
+        self.twin(twin)[n]
     }
     fn below(self, limit: f64, a: Self, b: Self) -> Self {
         if self.0[0] < limit { a } else { b }
+    }
+}
+
+impl<const N: usize> Jet<N> {
+    /// A piece of a table, `part` steps beyond its knot.
+    fn cubic(self, [c, b, a, v]: [f64; 4], part: f64, inverse: f64) -> Self {
+        let mut p = self.times(inverse);
+        p.0[0] = part;
+        ((p.times(c).plus(b) * p).plus(a) * p).plus(v)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbers that potentials are written over: a plain number, a number with its slope (forces), or a Taylor series
 //! (elastic constants, gradient coefficients). So every potential is written once, and its derivatives are exact.
 
-use super::spline::Spline;
+use super::spline::{Spline, Twin};
 use crate::execute::lane::Lane;
 use std::ops::{Add, Mul, Sub};
 
@@ -24,6 +24,10 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     fn ln(self) -> Self;
     /// The value of a table.
     fn table(self, table: &Spline) -> Self;
+    /// The values of two tables with the same knots.
+    fn twin(self, twin: &Twin) -> [Self; 2];
+    /// The value of one of them.
+    fn of_twin(self, twin: &Twin, n: usize) -> Self;
     /// `a` where this is below `limit`, else `b`.
     fn below(self, limit: f64, a: Self, b: Self) -> Self;
 
@@ -74,6 +78,14 @@ impl Number for f64 {
     #[inline(always)]
     fn table(self, table: &Spline) -> f64 {
         table.at(self)[0]
+    }
+    #[inline(always)]
+    fn twin(self, twin: &Twin) -> [f64; 2] {
+        twin.lanes(self).map(|[value, _]| value)
+    }
+    #[inline(always)]
+    fn of_twin(self, twin: &Twin, n: usize) -> f64 {
+        twin.lanes_of(n, self)[0]
     }
     #[inline(always)]
     fn below(self, limit: f64, a: f64, b: f64) -> f64 {
@@ -194,6 +206,16 @@ impl<L: Lane> Number for Dual<L> {
     #[inline(always)]
     fn table(self, table: &Spline) -> Self {
         let [value, derivative] = table.lanes(self.value);
+        self.chain(value, derivative)
+    }
+    #[inline(always)]
+    fn twin(self, twin: &Twin) -> [Self; 2] {
+        let [[a, da], [b, db]] = twin.lanes(self.value);
+        [self.chain(a, da), self.chain(b, db)]
+    }
+    #[inline(always)]
+    fn of_twin(self, twin: &Twin, n: usize) -> Self {
+        let [value, derivative] = twin.lanes_of(n, self.value);
         self.chain(value, derivative)
     }
     #[inline(always)]

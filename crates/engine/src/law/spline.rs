@@ -5,16 +5,71 @@
 
 use crate::execute::lane::{Lane, TILE};
 
-/// A function tabulated at `x_m = m Δ`, m = 1…n (in the order of the file; `first` shifts the whole).
+/// Where the knots of a table are: `first + m step`, m = 0 … n−1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Knots {
+    /// 1 / step
+    inverse: f64,
+    /// In steps: where knot 0 is.
+    first: f64,
+    /// Number of the last knot but one.
+    last: f64,
+    /// Beyond the last knot: a straight line (`true`), or the last value.
+    linear: bool,
+}
+
+impl Knots {
+    /// Knot below x, and the part of a step beyond it.
+    #[inline(always)]
+    fn place<L: Lane>(&self, x: L) -> (L, L) {
+        let zero = L::splat(0.0);
+        // not a number stays what it is, on piece 0
+        let p = (x * L::splat(self.inverse) - L::splat(self.first)).max(zero);
+        // of a whole number this may be the knot before: the pieces meet there
+        let mut m = (p - L::splat(0.5)).round();
+        m = m.max(zero).min(L::splat(self.last));
+        let one = L::splat(1.0);
+        let part = p - m;
+        if self.linear {
+            // the straight line is the piece after the last, whose cubic and square terms are 0
+            let beyond = one.lt(part);
+            (
+                L::select(beyond, m + one, m),
+                L::select(beyond, part - one, part),
+            )
+        } else {
+            (m, part.min(one))
+        }
+    }
+}
+
+/// Whole numbers below 2³² as indices, times `stride`.
+#[inline(always)]
+fn indices<L: Lane>(m: L, stride: u32) -> [u32; TILE] {
+    // the last bits of a number of this size count whole ones
+    const WHOLE: f64 = 4503599627370496.0;
+    let bits = (m + L::splat(WHOLE)).to_array();
+    let mut index = [0; TILE];
+    for l in 0..L::N {
+        index[l] = bits[l].to_bits() as u32 * stride;
+    }
+    index
+}
+
+/// Value and slope of cubics in p.
+#[inline(always)]
+fn cubic<L: Lane>([c, b, a, v]: [L; 4], p: L, inverse: f64) -> [L; 2] {
+    let value = c.fma(p, b).fma(p, a).fma(p, v);
+    let slope = (c * L::splat(3.0)).fma(p, b + b).fma(p, a);
+    [value, slope * L::splat(inverse)]
+}
+
+/// A tabulated function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     /// `[n][4]`: coefficients of `p³, p², p, 1` on piece m, `p` the part of a step beyond knot m.
     pieces: Vec<[f64; 4]>,
-    inverse: f64,
-    /// In steps: where knot 0 is.
-    first: f64,
-    /// Beyond the last knot: the last value and slope go on (`true`), or the last value stays.
-    linear: bool,
+    knots: Knots,
 }
 
 impl Spline {
@@ -45,9 +100,12 @@ impl Spline {
             .collect();
         Spline {
             pieces,
-            inverse: 1.0 / step,
-            first: first / step,
-            linear,
+            knots: Knots {
+                inverse: 1.0 / step,
+                first: first / step,
+                last: n as f64 - 2.0,
+                linear,
+            },
         }
     }
 
@@ -63,74 +121,115 @@ impl Spline {
     /// Coefficients of the local cubic in the part of a step beyond its knot, that part, and 1/step: what any
     /// derivative is made of.
     pub fn piece(&self, x: f64) -> ([f64; 4], f64, f64) {
-        let (m, p) = self.place(x);
-        (self.pieces[m], p, self.inverse)
+        let (m, p) = self.knots.place(x);
+        (self.pieces[m as usize], p, self.knots.inverse)
     }
 
+    /// Value and slope.
     #[inline(always)]
-    fn place(&self, x: f64) -> (usize, f64) {
-        let p = x * self.inverse - self.first;
-        let last = self.pieces.len() as f64 - 2.0;
-        // not a number goes to the first piece and stays what it is
-        let m = p.min(last).max(0.0).floor();
-        let mut rest = p - m;
-        if !self.linear {
-            rest = rest.min(1.0);
-        }
-        if p < 0.0 {
-            rest = 0.0;
-        }
-        if self.linear && rest > 1.0 {
-            // the straight line is the last piece, whose cubic and square terms are 0
-            return (m as usize + 1, rest - 1.0);
-        }
-        (m as usize, rest)
-    }
-
-    /// Value, first, second and third derivative.
-    #[inline(always)]
-    pub fn at(&self, x: f64) -> [f64; 4] {
-        let (m, p) = self.place(x);
-        let [c, b, a, v] = self.pieces[m];
-        let i = self.inverse;
-        [
-            ((c * p + b) * p + a) * p + v,
-            ((3.0 * c * p + 2.0 * b) * p + a) * i,
-            (6.0 * c * p + 2.0 * b) * i * i,
-            6.0 * c * i * i * i,
-        ]
+    pub fn at(&self, x: f64) -> [f64; 2] {
+        let (m, p) = self.knots.place(x);
+        cubic(self.pieces[m as usize], p, self.knots.inverse)
     }
 
     /// Values and slopes in all lanes.
     #[inline(always)]
     pub fn lanes<L: Lane>(&self, x: L) -> [L; 2] {
-        let x = x.to_array();
-        let (mut index, mut part) = ([0u32; TILE], [0.0; TILE]);
-        for l in 0..L::N {
-            let (m, p) = self.place(x[l]);
-            (index[l], part[l]) = (m as u32, p);
-        }
+        let (m, p) = self.knots.place(x);
+        let index = indices(m, 1);
         // SAFETY: every index is below the number of pieces
-        unsafe {
-            let p = L::load(part.as_ptr());
-            let [c, b, a, v] = L::gather4(self.pieces.as_ptr().cast(), index.as_ptr());
-            let value = c.fma(p, b).fma(p, a).fma(p, v);
-            let slope = (c * L::splat(3.0)).fma(p, b + b).fma(p, a);
-            [value, slope * L::splat(self.inverse)]
-        }
+        let c = unsafe { L::gather4(self.pieces.as_ptr().cast(), index.as_ptr()) };
+        cubic(c, p, self.knots.inverse)
     }
 
     /// The same function with `x` and values scaled: `f₂(x) = value · f(x / length)`.
     pub fn scaled(&self, length: f64, value: f64) -> Spline {
         Spline {
             pieces: self.pieces.iter().map(|p| p.map(|c| c * value)).collect(),
-            inverse: self.inverse / length,
-            ..*self
+            knots: Knots {
+                inverse: self.knots.inverse / length,
+                ..self.knots
+            },
         }
     }
 
     pub fn bytes(&self) -> usize {
         32 * self.pieces.len()
+    }
+}
+
+/// Two functions on the same knots, side by side: one look-up for both.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Twin {
+    pieces: Vec<[[f64; 4]; 2]>,
+    knots: Knots,
+}
+
+impl Twin {
+    /// # Panics
+    /// If the knots differ.
+    pub fn new(first: &Spline, second: &Spline) -> Twin {
+        assert!(first.knots == second.knots, "twins share their knots");
+        Twin {
+            pieces: first
+                .pieces
+                .iter()
+                .zip(&second.pieces)
+                .map(|(a, b)| [*a, *b])
+                .collect(),
+            knots: first.knots,
+        }
+    }
+
+    /// One of the two as a table of its own.
+    pub fn part(&self, n: usize) -> Spline {
+        Spline {
+            pieces: self.pieces.iter().map(|p| p[n]).collect(),
+            knots: self.knots,
+        }
+    }
+
+    /// Coefficients of both local cubics, the part of a step, and 1/step.
+    pub fn piece(&self, x: f64) -> ([[f64; 4]; 2], f64, f64) {
+        let (m, p) = self.knots.place(x);
+        (self.pieces[m as usize], p, self.knots.inverse)
+    }
+
+    /// Values and slopes of both in all lanes.
+    #[inline(always)]
+    pub fn lanes<L: Lane>(&self, x: L) -> [[L; 2]; 2] {
+        let (m, p) = self.knots.place(x);
+        let index = indices(m, 2);
+        // SAFETY: every index is below the number of pieces
+        unsafe {
+            let base: *const f64 = self.pieces.as_ptr().cast();
+            let a = L::gather4(base, index.as_ptr());
+            let b = L::gather4(base.add(4), index.as_ptr());
+            [
+                cubic(a, p, self.knots.inverse),
+                cubic(b, p, self.knots.inverse),
+            ]
+        }
+    }
+
+    /// Values and slopes of one of the two in all lanes.
+    #[inline(always)]
+    pub fn lanes_of<L: Lane>(&self, n: usize, x: L) -> [L; 2] {
+        let (m, p) = self.knots.place(x);
+        let index = indices(m, 2);
+        // SAFETY: every index is below the number of pieces
+        unsafe {
+            let base: *const f64 = self.pieces.as_ptr().cast();
+            cubic(
+                L::gather4(base.add(4 * n), index.as_ptr()),
+                p,
+                self.knots.inverse,
+            )
+        }
+    }
+
+    pub fn bytes(&self) -> usize {
+        64 * self.pieces.len()
     }
 }
 
@@ -145,7 +244,7 @@ mod tests {
         let spline = Spline::new(0.3, 0.1, &values, false);
         for k in 0..300 {
             let x = 0.5 + 0.011 * k as f64;
-            let [v, d, ..] = spline.at(x);
+            let [v, d] = spline.at(x);
             assert_eq!(
                 spline.lanes(x).map(|y| (y * 1e12).round()),
                 [v, d].map(|y| (y * 1e12).round())

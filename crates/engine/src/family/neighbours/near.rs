@@ -9,7 +9,6 @@ use crate::body::{Body, Field};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
-use rayon::prelude::*;
 
 /// Tiles per block of work.
 const BLOCK: usize = 32;
@@ -90,7 +89,7 @@ impl<const D: usize> NearList<D> {
                 return false;
             }
         }
-        self.build(body, u);
+        self.build(body, u, simd);
         true
     }
 
@@ -137,7 +136,7 @@ impl<const D: usize> NearList<D> {
         self.order.len().div_ceil(TILE) * TILE
     }
 
-    fn build(&mut self, body: &Body<D>, u: &Field<D>) {
+    fn build(&mut self, body: &Body<D>, u: &Field<D>, simd: Simd) {
         // positions, wrapped into the box
         let own = body.points();
         let mut atoms: Vec<(u32, [f64; 4], [f64; 4])> = Vec::with_capacity(own);
@@ -184,41 +183,17 @@ impl<const D: usize> NearList<D> {
             self.blocks.iter_mut().for_each(|b| *b = Block::default());
         }
         let sorted = cells.sort(&self.position, self.order.len(), self.first_ghost());
-        let (position, own) = (&self.position, self.order.len());
-        let (square, dummy) = (self.reach * self.reach, (self.position.len() - 1) as u32);
-        self.blocks
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(b, block)| {
-                block.lines.clear();
-                block.ends.clear();
-                let mut rows: [Vec<u32>; TILE] = Default::default();
-                for t in b * BLOCK..((b + 1) * BLOCK).min(own.div_ceil(TILE)) {
-                    for (l, row) in rows.iter_mut().enumerate() {
-                        row.clear();
-                        let i = t * TILE + l;
-                        if i < own {
-                            cells.near(&position[i], &sorted, |first, last| {
-                                near::<D>(
-                                    row,
-                                    &sorted.position[first..last],
-                                    &sorted.atom[first..last],
-                                    &position[i],
-                                    i as u32,
-                                    square,
-                                );
-                            });
-                        }
-                    }
-                    let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
-                    for n in 0..longest {
-                        block.lines.push(std::array::from_fn(|l| {
-                            rows[l].get(n).copied().unwrap_or(dummy)
-                        }));
-                    }
-                    block.ends.push(block.lines.len() as u32);
-                }
-            });
+        let mut blocks = std::mem::take(&mut self.blocks);
+        let kernel = Find {
+            cells: &cells,
+            sorted: &sorted,
+            position: &self.position,
+            own: self.order.len(),
+            square: self.reach * self.reach,
+            blocks: Shared(blocks.as_mut_ptr()),
+        };
+        for_each_block(simd, &kernel, &mut vec![(); blocks.len()]);
+        self.blocks = blocks;
         self.valid = !nan;
         self.builds += 1;
     }
@@ -309,24 +284,83 @@ impl<const D: usize> NearList<D> {
     }
 }
 
-/// Append the atoms of a run that are within reach of `x`, itself left out.
-#[inline(always)]
-fn near<const D: usize>(
-    row: &mut Vec<u32>,
-    run: &[[f64; D]],
-    atoms: &[u32],
-    x: &[f64; 4],
-    own: u32,
+/// Makes the lists of a block of tiles.
+struct Find<'a, const D: usize> {
+    cells: &'a Cells<D>,
+    sorted: &'a Sorted<D>,
+    position: &'a [[f64; 4]],
+    own: usize,
     square: f64,
-) {
-    for (y, &j) in run.iter().zip(atoms) {
-        let mut q = 0.0;
+    blocks: Shared<Block>,
+}
+
+impl<const D: usize> Find<'_, D> {
+    /// The atoms within reach of atom `i`, itself left out; returns how many.
+    #[inline(always)]
+    fn row<L: Lane>(&self, i: usize, row: &mut Vec<u32>) {
+        row.clear();
+        let x = &self.position[i];
+        let mut center = [L::splat(0.0); D];
         for a in 0..D {
-            let d = y[a] - x[a];
-            q += d * d;
+            center[a] = L::splat(x[a]);
         }
-        if q < square && j != own {
-            row.push(j);
+        let (low, high) = self.cells.around(x);
+        for n in 0..Cells::rows(&low, &high) {
+            let (first, last) = self.cells.run(n, &low, &high, self.sorted);
+            row.reserve(last - first);
+            let mut k = first;
+            while k < last {
+                let mut q = L::splat(0.0);
+                for a in 0..D {
+                    // SAFETY: there is room for a tile after the last atom
+                    let d = unsafe { L::load(self.sorted.position[a].as_ptr().add(k)) } - center[a];
+                    q = d.fma(d, q);
+                }
+                let mut near = L::bits(q.lt(L::splat(self.square)));
+                if last - k < TILE {
+                    near &= (1 << (last - k)) - 1;
+                }
+                while near != 0 {
+                    let j = self.sorted.atom[k + near.trailing_zeros() as usize];
+                    if j as usize != i {
+                        row.push(j);
+                    }
+                    near &= near - 1;
+                }
+                k += TILE;
+            }
+        }
+    }
+}
+
+impl<const D: usize> Kernel for Find<'_, D> {
+    type Out = ();
+    #[inline(always)]
+    fn block<L: Lane>(&self, b: usize) {
+        // SAFETY: blocks are disjoint
+        let block = unsafe { &mut *self.blocks.at(b) };
+        block.lines.clear();
+        block.ends.clear();
+        let dummy = (self.position.len() - 1) as u32;
+        let mut rows: [Vec<u32>; TILE] = Default::default();
+        for t in b * BLOCK..((b + 1) * BLOCK).min(self.own.div_ceil(TILE)) {
+            let mut longest = 0;
+            for l in 0..TILE {
+                let i = t * TILE + l;
+                rows[l].clear();
+                if i < self.own {
+                    self.row::<L>(i, &mut rows[l]);
+                }
+                longest = longest.max(rows[l].len());
+            }
+            let first = block.lines.len();
+            block.lines.resize(first + longest, [dummy; TILE]);
+            for (l, row) in rows.iter().enumerate() {
+                for (line, j) in block.lines[first..].iter_mut().zip(row) {
+                    line[l] = *j;
+                }
+            }
+            block.ends.push(block.lines.len() as u32);
         }
     }
 }
@@ -342,7 +376,8 @@ struct Cells<const D: usize> {
 struct Sorted<const D: usize> {
     start: Vec<u32>,
     atom: Vec<u32>,
-    position: Vec<[f64; D]>,
+    /// With room to read a whole tile at the end.
+    position: [Vec<f64>; D],
 }
 
 impl<const D: usize> Cells<D> {
@@ -404,11 +439,14 @@ impl<const D: usize> Cells<D> {
         }
         let total = start.last().copied().unwrap_or(0) as usize;
         let mut next = start.clone();
-        let (mut atom, mut sorted) = (vec![0; total], vec![[0.0; D]; total]);
+        let mut atom = vec![0; total];
+        let mut sorted: [Vec<f64>; D] = std::array::from_fn(|_| vec![0.0; total + TILE]);
         for (n, y) in there() {
             let k = &mut next[self.of(y)];
             atom[*k as usize] = n as u32;
-            sorted[*k as usize] = std::array::from_fn(|a| y[a]);
+            for a in 0..D {
+                sorted[a][*k as usize] = y[a];
+            }
             *k += 1;
         }
         Sorted {
@@ -418,31 +456,50 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// Runs of sorted atoms that cover everything within reach of `y`: one per row of cells along x.
+    /// The lowest and highest cells that are within reach of `y`.
     #[inline(always)]
-    fn near(&self, y: &[f64; 4], sorted: &Sorted<D>, mut visit: impl FnMut(usize, usize)) {
-        let mut low = [0; D];
-        let mut high = [0; D];
+    fn around(&self, y: &[f64; 4]) -> ([usize; D], [usize; D]) {
+        let (mut low, mut high) = ([0; D], [0; D]);
         for a in 0..D {
             let c = self.along(y, a);
             (low[a], high[a]) = (c.saturating_sub(PER), (c + PER).min(self.count[a] - 1));
         }
-        let rows: usize = (1..D).map(|a| high[a] - low[a] + 1).product();
-        for n in 0..rows {
-            let (mut rest, mut row) = (n, 0);
-            let mut at = [0; D];
-            for a in 1..D {
-                let width = high[a] - low[a] + 1;
-                at[a] = low[a] + rest % width;
-                rest /= width;
-            }
-            for a in (1..D).rev() {
-                row = (row + at[a]) * self.count[a - 1];
-            }
-            let first = sorted.start[row + low[0]] as usize;
-            let last = sorted.start[row + high[0] + 1] as usize;
-            visit(first, last);
+        (low, high)
+    }
+
+    /// Rows of cells along x in a box of cells.
+    #[inline(always)]
+    fn rows(low: &[usize; D], high: &[usize; D]) -> usize {
+        let mut rows = 1;
+        for a in 1..D {
+            rows *= high[a] - low[a] + 1;
         }
+        rows
+    }
+
+    /// Sorted atoms of row `n` of a box of cells.
+    #[inline(always)]
+    fn run(
+        &self,
+        n: usize,
+        low: &[usize; D],
+        high: &[usize; D],
+        sorted: &Sorted<D>,
+    ) -> (usize, usize) {
+        let (mut rest, mut row) = (n, 0);
+        let mut at = [0; D];
+        for a in 1..D {
+            let width = high[a] - low[a] + 1;
+            at[a] = low[a] + rest % width;
+            rest /= width;
+        }
+        for a in (1..D).rev() {
+            row = (row + at[a]) * self.count[a - 1];
+        }
+        (
+            sorted.start[row + low[0]] as usize,
+            sorted.start[row + high[0] + 1] as usize,
+        )
     }
 }
 

@@ -164,11 +164,12 @@ impl<const D: usize, P: Potential> View<'_, D, P> {
     /// `dφ/dq + (F′_i + F′_j) df/dq`, 0 beyond the cut-off.
     #[inline(always)]
     fn pull<L: Lane>(&self, q: L, slopes: L) -> L {
-        let mut pull = self.potential.pair(Dual::variable(q)).slope;
-        if P::EMBEDDED {
-            let f = self.potential.density(Dual::variable(q)).slope;
-            pull = f.fma(slopes, pull);
-        }
+        let pull = if P::EMBEDDED {
+            let [pair, density] = self.potential.both(Dual::variable(q));
+            density.slope.fma(slopes, pair.slope)
+        } else {
+            self.potential.pair(Dual::variable(q)).slope
+        };
         pull.zero_if(q.ge(L::splat(self.limit)))
     }
 }

@@ -30,6 +30,12 @@ pub trait Potential: Clone + Send + Sync + 'static {
         N::constant(0.0)
     }
 
+    /// φ and f, where both are wanted and share work.
+    #[inline(always)]
+    fn both<N: Number>(&self, q: N) -> [N; 2] {
+        [self.pair(q), self.density(q)]
+    }
+
     /// Embedding energy F (energy) of the density ρ.
     fn embedding<N: Number>(&self, _density: N) -> N {
         N::constant(0.0)
@@ -105,6 +111,10 @@ impl<P: Potential> Potential for Arc<P> {
     #[inline(always)]
     fn density<N: Number>(&self, q: N) -> N {
         (**self).density(q)
+    }
+    #[inline(always)]
+    fn both<N: Number>(&self, q: N) -> [N; 2] {
+        (**self).both(q)
     }
     #[inline(always)]
     fn embedding<N: Number>(&self, density: N) -> N {

@@ -2,15 +2,14 @@
 
 use super::Potential;
 use crate::law::number::Number;
-use crate::law::spline::Spline;
+use crate::law::spline::{Spline, Twin};
 
 /// F(ρ), f(r) and r φ(r) as piecewise cubics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tabulated {
     embedding: Spline,
-    density: Spline,
-    /// r φ (energy · length).
-    pair: Spline,
+    /// f and r φ (energy · length).
+    bonds: Twin,
     cutoff: f64,
 }
 
@@ -27,8 +26,10 @@ impl Tabulated {
     ) -> Tabulated {
         Tabulated {
             embedding: Spline::new(0.0, density_step, embedding, true),
-            density: Spline::new(0.0, step, density, false),
-            pair: Spline::new(0.0, step, pair, false),
+            bonds: Twin::new(
+                &Spline::new(0.0, step, density, false),
+                &Spline::new(0.0, step, pair, false),
+            ),
             cutoff,
         }
     }
@@ -37,8 +38,10 @@ impl Tabulated {
     pub fn scaled(&self, length: f64, energy: f64) -> Tabulated {
         Tabulated {
             embedding: self.embedding.scaled(1.0, energy),
-            density: self.density.scaled(length, 1.0),
-            pair: self.pair.scaled(length, energy * length),
+            bonds: Twin::new(
+                &self.bonds.part(0).scaled(length, 1.0),
+                &self.bonds.part(1).scaled(length, energy * length),
+            ),
             cutoff: self.cutoff * length,
         }
     }
@@ -54,12 +57,19 @@ impl Potential for Tabulated {
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {
         let r = q.sqrt();
-        r.table(&self.pair) * r.recip()
+        r.of_twin(&self.bonds, 1) * r.recip()
     }
 
     #[inline(always)]
     fn density<N: Number>(&self, q: N) -> N {
-        q.sqrt().table(&self.density)
+        q.sqrt().of_twin(&self.bonds, 0)
+    }
+
+    #[inline(always)]
+    fn both<N: Number>(&self, q: N) -> [N; 2] {
+        let r = q.sqrt();
+        let [density, pair] = r.twin(&self.bonds);
+        [pair * r.recip(), density]
     }
 
     #[inline(always)]
