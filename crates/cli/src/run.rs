@@ -6,8 +6,8 @@ use crate::failure::{Failure, say};
 use crate::progress::Terminal;
 use crate::script;
 use peridyne::run::SnapshotOptions;
-use peridyne_io::deck::{Deck, FieldName, UnitSystem};
-use peridyne_io::drive::{DriveError, Plan, default_dir, drive};
+use peridyne_io::deck::{Deck, Dim, FieldName, UnitSystem};
+use peridyne_io::drive::{AtomsPlan, DriveError, Plan, default_dir, drive};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
@@ -73,14 +73,19 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     match result {
         Ok(report) => {
             say(&format!(
-                "done: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments",
+                "done: {} steps in {:.2} s{}{}",
                 report.steps,
                 report.seconds_stepping,
                 report.ns_per_bond_step.map_or(String::new(), |ns| format!(
                     ", {ns:.2} ns per bond and step"
                 )),
-                report.broken_directed_bonds,
-                report.fragments.unwrap_or(0),
+                match report.fragments {
+                    Some(fragments) => format!(
+                        ", {} directed bonds broken, {fragments} fragments",
+                        report.broken_directed_bonds
+                    ),
+                    None => String::new(),
+                },
             ));
             if plan.series.picture.is_some() {
                 say(&format!(
@@ -133,6 +138,22 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         },
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),
+        atoms: deck.spec.potential.as_ref().map(|_| {
+            let (temperature_unit, pressure_unit) = match deck.units {
+                UnitSystem::Si => ("K", "Pa"),
+                UnitSystem::Metal => ("K", "bar"),
+                UnitSystem::Lj | UnitSystem::None => ("", ""),
+            };
+            AtomsPlan {
+                boltzmann: deck.boltzmann(),
+                temperature_unit: temperature_unit.to_string(),
+                pressure_scale: 1.0 / deck.units.plain_factor(Dim::PRESSURE),
+                pressure_unit: pressure_unit.to_string(),
+                trajectory: output.trajectory.clone(),
+                species: deck.species.clone().unwrap_or_else(|| "X".into()),
+                periodic: deck.spec.periodic,
+            }
+        }),
         title,
         threads,
     }

@@ -7,8 +7,10 @@ use peridyne::error::RunError;
 use peridyne::observe::Ledger;
 use peridyne::run::{Simulation, SnapshotOptions};
 
+use crate::read::{Atoms, Species};
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::run_json::{self, EnergyReport, RunReport, Status};
+use crate::write::trajectory::{Format, Trajectory};
 use crate::write::{Series, SeriesOptions, WriteError};
 
 /// What to do and what to write.
@@ -30,6 +32,84 @@ pub struct Plan {
     pub time_unit: String,
     pub energy_unit: String,
     pub threads: usize,
+    /// What atoms have besides.
+    pub atoms: Option<AtomsPlan>,
+}
+
+/// Temperature, pressure and trajectory of atoms.
+#[derive(Debug, Clone)]
+pub struct AtomsPlan {
+    /// k_B (energy / temperature).
+    pub boltzmann: f64,
+    pub temperature_unit: String,
+    /// How many of it a computed pressure of 1 is.
+    pub pressure_scale: f64,
+    pub pressure_unit: String,
+    pub trajectory: Option<(PathBuf, Format)>,
+    pub species: String,
+    /// Periods, where there are any (length).
+    pub periodic: [Option<f64>; 3],
+}
+
+impl AtomsPlan {
+    /// Temperature (D N − D degrees of freedom) and pressure: `(2 E_kin + Σ r·f) / (D V)`.
+    fn thermo(&self, sim: &mut dyn Simulation, kinetic: f64) -> [f64; 2] {
+        let (d, n, mut volume) = {
+            let info = sim.info();
+            (info.dimension, info.points, info.volume)
+        };
+        let periods: Vec<f64> = self.periodic[..d].iter().filter_map(|p| *p).collect();
+        if periods.len() == d {
+            volume = periods.iter().product::<f64>() * sim.info().section;
+        }
+        let virial: f64 = sim.virial()[..d].iter().sum();
+        let free = (d as u64 * n.saturating_sub(1).max(1)) as f64;
+        [
+            2.0 * kinetic / (free * self.boltzmann),
+            (2.0 * kinetic + virial) / (d as f64 * volume) * self.pressure_scale,
+        ]
+    }
+
+    fn frame(&self, sim: &mut dyn Simulation) -> Atoms {
+        let n = sim.info().points as usize;
+        let (x, u) = (sim.reference(), sim.displacements());
+        let volume = sim.volumes();
+        let position: Vec<[f64; 3]> = x
+            .iter()
+            .zip(&u)
+            .map(|(x, u)| std::array::from_fn(|a| x[a] + u[a]))
+            .collect();
+        let force = sim.force_densities();
+        let force = force.iter().zip(&volume).map(|(f, v)| f.map(|f| f * v));
+        let [mut low, mut high] = Atoms::bounds(&position);
+        for a in 0..3 {
+            if let Some(p) = self.periodic[a] {
+                (low[a], high[a]) = (0.0, p);
+            }
+        }
+        Atoms {
+            species: vec![Species {
+                name: self.species.clone(),
+                mass: None,
+            }],
+            kind: vec![0; n],
+            velocity: Some(sim.velocities()),
+            force: Some(force.collect()),
+            energy: Some(
+                sim.energy_density()
+                    .iter()
+                    .zip(&volume)
+                    .map(|(e, v)| e * v)
+                    .collect(),
+            ),
+            position,
+            low,
+            high,
+            periodic: self.periodic.map(|p| p.is_some()),
+            step: Some(sim.step_number()),
+            time: Some(sim.time()),
+        }
+    }
 }
 
 /// Listens to a run.
@@ -67,6 +147,14 @@ pub fn drive(
     columns.extend(ledger_columns(&plan.energy_unit));
     columns.push(Column::new("residual", &plan.energy_unit));
     columns.push(Column::new("broken_directed_bonds", ""));
+    if let Some(atoms) = &plan.atoms {
+        columns.push(Column::new("temperature", &atoms.temperature_unit));
+        columns.push(Column::new("pressure", &atoms.pressure_unit));
+    }
+    let mut trajectory = match plan.atoms.as_ref().and_then(|a| a.trajectory.as_ref()) {
+        Some((path, format)) => Some(Trajectory::create(&plan.dir.join(path), *format)?),
+        None => None,
+    };
     let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
     sim.start(true);
     let mut stepping = Duration::ZERO;
@@ -96,8 +184,16 @@ pub fn drive(
             row.extend(ledger_values(&ledger));
             row.push(ledger.residual());
             row.push(sim.broken() as f64);
+            if let Some(atoms) = &plan.atoms {
+                row.extend(atoms.thermo(sim, ledger.kinetic));
+            }
             history.push(sim.step_number(), &row)?;
             progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());
+        }
+        if let (Some(trajectory), Some(atoms)) = (&mut trajectory, &plan.atoms)
+            && (n == 0 || last || plan.every.is_some_and(|e| n % e == 0))
+        {
+            trajectory.push(&atoms.frame(sim))?;
         }
         if !last
             && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
@@ -133,7 +229,7 @@ pub fn drive(
         ),
         peak_memory_bytes: run_json::peak_memory_bytes(),
         broken_directed_bonds: sim.broken(),
-        fragments: Some(sim.fragments()),
+        fragments: plan.atoms.is_none().then(|| sim.fragments()),
         threads: plan.threads,
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),

@@ -260,6 +260,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     if let Some(thermal) = spec.thermal {
         model.heat(thermal);
     }
+    if let BodySpec::Cloud(cloud) = &spec.body
+        && !cloud.velocity.is_empty()
+    {
+        model.set_velocities(&cloud.velocity);
+    }
     initial(spec, &mut model)?;
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;

@@ -149,6 +149,8 @@ pub struct Cloud {
     pub density: Vec<f64>,
     /// `[N]` marks, or empty: all 0.
     pub mark: Vec<i32>,
+    /// `[N]` velocities at the start, or empty: 0. Given after thermal ones, before `initial`.
+    pub velocity: Vec<[f64; 3]>,
     /// Names of marks (physical groups, element sets): `(mark, name)`.
     pub names: Vec<(i32, String)>,
     /// Typical distance of nearest neighbours (length): volume scaling and contact use it. `None`: the cube root

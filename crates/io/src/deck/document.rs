@@ -350,8 +350,11 @@ pub struct Output {
     pub dump: Option<String>,
     /// Steps between rows of history.csv; a hundredth of the run when left out.
     pub history: Option<At<u64>>,
-    /// PNG of the damage at the end; true when left out.
+    /// PNG of the damage at the end; when left out, true, and false for atoms.
     pub picture: Option<bool>,
+    /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
+    /// LAMMPS dump.
+    pub trajectory: Option<At<String>>,
 }
 
 macro_rules! names {

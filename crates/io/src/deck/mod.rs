@@ -22,6 +22,7 @@ pub use error::DeckError;
 pub use schema::schema;
 pub use units::{Dim, UnitSystem};
 
+use crate::write::trajectory::Format;
 use document::Document;
 use lower::Files;
 use peridyne::error::BuildError;
@@ -36,6 +37,8 @@ use std::path::{Path, PathBuf};
 pub struct Deck {
     pub spec: Spec,
     pub output: OutputSpec,
+    /// Name of the atoms, where a file says it.
+    pub species: Option<String>,
     pub units: UnitSystem,
     /// Threads asked for.
     pub threads: Option<usize>,
@@ -63,6 +66,8 @@ pub struct OutputSpec {
     pub history: Option<u64>,
     /// PNG of the damage at the end.
     pub picture: bool,
+    /// File of all frames of atoms.
+    pub trajectory: Option<(PathBuf, Format)>,
 }
 
 impl Deck {
@@ -86,11 +91,17 @@ impl Deck {
         Ok(Deck {
             spec: lowered.spec,
             output: lowered.output,
+            species: lowered.species,
             units: document.units.map(|u| u.value).unwrap_or_default(),
             threads: lowered.threads,
             duration: lowered.duration,
             source,
         })
+    }
+
+    /// Boltzmann's constant (energy per kelvin; 1 in reduced and no units, where temperatures are energies).
+    pub fn boltzmann(&self) -> f64 {
+        lower::boltzmann(self.units)
     }
 
     /// Steps of the run once the time step is known.

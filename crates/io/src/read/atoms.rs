@@ -61,7 +61,7 @@ impl Atoms {
     }
 
     /// The smallest box around the atoms.
-    pub(super) fn bounds(position: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    pub fn bounds(position: &[[f64; 3]]) -> [[f64; 3]; 2] {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for x in position {
             for a in 0..3 {

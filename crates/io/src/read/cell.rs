@@ -90,6 +90,7 @@ pub(super) fn points(
     names.retain(|(mark, _)| cloud.mark.contains(mark));
     cloud.names = names;
     Ok(Sourced {
+        atoms: None,
         cloud,
         dimension: Some(dimension),
         lines: sources,

@@ -58,6 +58,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         .collect::<Result<_, _>>()
         .map_err(|_| error(name, None, "atom types above 2147483647 cannot be marks"))?;
     Ok(Sourced {
+        atoms: None,
         cloud: Cloud {
             position: (0..n).map(|i| atoms.position(i)).collect(),
             volume: each(&atoms, &atoms.volume),

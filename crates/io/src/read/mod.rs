@@ -30,6 +30,21 @@ pub struct Points {
     pub cloud: Cloud,
     /// Dimension of a mesh's cells; `None` where the file does not say.
     pub dimension: Option<usize>,
+    /// What files of atoms say besides.
+    pub atoms: Option<AtomsFile>,
+}
+
+/// Box and mass of a file of atoms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AtomsFile {
+    /// Lengths of the box.
+    pub cell: [f64; 3],
+    /// Periodic axes, where the file says it.
+    pub periodic: Option<[bool; 3]>,
+    /// Mass of the atoms, where the file says it.
+    pub mass: Option<f64>,
+    /// Names of the kinds of atoms that occur.
+    pub species: Vec<String>,
 }
 
 /// What is wrong in a file of points.
@@ -42,10 +57,13 @@ pub struct ReadError {
     pub message: String,
 }
 
-const EXTENSIONS: [&str; 8] = ["inp", "msh", "data", "lmp", "txt", "dat", "xyz", "csv"];
+const EXTENSIONS: [&str; 9] = [
+    "inp", "msh", "data", "lmp", "txt", "dat", "xyz", "csv", "extxyz",
+];
 
-/// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS), and plain text (`.txt`, `.xyz`, `.csv`
-/// with blanks, `.dat`).
+/// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), extended XYZ
+/// (`.extxyz`, and `.xyz` whose second line says so; the last frame), and plain text (`.txt`, `.xyz`, `.csv` with blanks,
+/// `.dat`).
 ///
 /// # Errors
 /// The file cannot be read, is of another kind, truncated, has NaN, cells without volume, or points that coincide.
@@ -63,7 +81,7 @@ pub fn points(path: &Path) -> Result<Points, ReadError> {
     };
     if !EXTENSIONS.contains(&extension.as_str()) {
         return Err(error(format!(
-            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh or .data"
+            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .data or .extxyz"
         )));
     }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
@@ -74,7 +92,14 @@ pub fn points(path: &Path) -> Result<Points, ReadError> {
 
 /// The same from a text; `extension` decides the format.
 pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadError> {
+    let second = text.lines().nth(1).unwrap_or("");
+    let extended = second.contains("Lattice=") || second.contains("Properties=");
     let points = match extension {
+        "extxyz" => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
+        "xyz" if extended => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
+        "data" | "lmp" if lammps::file(text, name)?.style == crate::lammps::Style::Atomic => {
+            sourced(data::parse_data(text, name)?, true, name)?
+        }
         "inp" => abaqus::parse(text, name)?,
         "msh" => gmsh::parse(text, name)?,
         "data" | "lmp" => lammps::parse(text, name)?,
@@ -101,6 +126,45 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
     Ok(Points {
         cloud: points.cloud,
         dimension: points.dimension,
+        atoms: points.atoms,
+    })
+}
+
+/// Atoms as points: each has its part of the box as volume. LAMMPS does not say which axes are periodic.
+fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError> {
+    let error = |message: String| ReadError {
+        file: name.into(),
+        line: None,
+        message,
+    };
+    let n = atoms.len();
+    if n == 0 {
+        return Err(error("the file has no atoms".into()));
+    }
+    let cell: [f64; 3] = std::array::from_fn(|a| atoms.high[a] - atoms.low[a]);
+    let used: std::collections::BTreeSet<u32> = atoms.kind.iter().copied().collect();
+    let kinds = || used.iter().map(|k| &atoms.species[*k as usize]);
+    let mass = match used.len() {
+        1 => kinds().next().and_then(|s| s.mass),
+        _ => None,
+    };
+    let volume = cell.iter().filter(|c| **c > 0.0).product::<f64>() / n as f64;
+    Ok(Sourced {
+        atoms: Some(AtomsFile {
+            cell,
+            periodic: (!lammps).then_some(atoms.periodic),
+            mass,
+            species: kinds().map(|s| s.name.clone()).collect(),
+        }),
+        cloud: Cloud {
+            volume: vec![volume; n],
+            mark: atoms.kind.iter().map(|k| *k as i32 + 1).collect(),
+            velocity: atoms.velocity.unwrap_or_default(),
+            position: atoms.position,
+            ..Cloud::default()
+        },
+        dimension: None,
+        lines: vec![],
     })
 }
 
@@ -109,6 +173,7 @@ struct Sourced {
     cloud: Cloud,
     dimension: Option<usize>,
     lines: Vec<usize>,
+    atoms: Option<AtomsFile>,
 }
 
 #[cfg(test)]

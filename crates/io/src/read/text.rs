@@ -56,6 +56,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         });
     }
     Ok(Sourced {
+        atoms: None,
         cloud,
         dimension: None,
         lines: sources,

@@ -2,7 +2,7 @@
 
 use super::Files;
 use super::context::{Context, Result};
-use crate::deck::document::{EamForm, EndName, Law, Material, Thermal};
+use crate::deck::document::{Body, EamForm, EndName, Law, Material, Thermal};
 use crate::deck::units::{Dim, UnitSystem, short};
 use crate::deck::value::{At, Number, Written};
 use peridyne::family::stencil::Stencil;
@@ -26,6 +26,8 @@ const AVOGADRO: f64 = 6.02214076e23;
 /// A potential, and the mass of its atoms where its file says it.
 pub(super) struct AtomsPotential {
     pub spec: PotentialSpec,
+    /// Name of the atoms where its file says it.
+    pub element: Option<String>,
     pub mass: Option<f64>,
 }
 
@@ -112,6 +114,7 @@ pub(super) fn potential(
                         cutoff: f64::INFINITY,
                         end: End::Truncated,
                     },
+                    element: Some(file.elements[element].name.clone()),
                     mass: mass.map(|m| m * file.elements[element].mass),
                 }));
             }
@@ -123,6 +126,7 @@ pub(super) fn potential(
                         cutoff: f64::INFINITY,
                         end: End::Truncated,
                     },
+                    element: None,
                     mass: None,
                 }));
             }
@@ -138,10 +142,41 @@ pub(super) fn potential(
         }
         return Ok(Some(AtomsPotential {
             spec: PotentialSpec { form, cutoff, end },
+            element: None,
             mass: None,
         }));
     }
     Ok(None)
+}
+
+/// What a file of atoms means for the potential: it must be one kind of atom, whose mass the file may know.
+pub(super) fn of_file(
+    context: &Context,
+    body: &At<Body>,
+    potential: Option<&mut AtomsPotential>,
+) -> Result<()> {
+    let (Some(file), Some(written)) = (&context.atoms, &body.value.file) else {
+        return Ok(());
+    };
+    let Some(potential) = potential else {
+        return Err(context.error_with(
+            &written.span,
+            "the file is one of atoms, without volumes",
+            "give the material an interatomic potential, or take points with volumes (LAMMPS: atom_style peri)",
+        ));
+    };
+    if file.species.len() > 1 {
+        return Err(context.error(
+            &written.span,
+            format!(
+                "the file has {} kinds of atoms ({}); a potential knows one",
+                file.species.len(),
+                file.species.join(", ")
+            ),
+        ));
+    }
+    potential.mass = file.mass.or(potential.mass);
+    Ok(())
 }
 
 fn ended(
@@ -270,6 +305,15 @@ pub fn shells(kind: LatticeKind, limit: f64) -> Vec<(f64, f64)> {
     counts.into_iter().map(shell).collect()
 }
 
+/// Boltzmann's constant in computed units.
+pub fn boltzmann(units: UnitSystem) -> f64 {
+    match units {
+        UnitSystem::Si => BOLTZMANN,
+        UnitSystem::Metal => BOLTZMANN / EV,
+        UnitSystem::Lj | UnitSystem::None => 1.0,
+    }
+}
+
 pub(super) fn thermal(context: &Context, thermal: &Thermal) -> Result<ThermalSpec> {
     let mut number = thermal.temperature.clone();
     if let Written::Text(text) = &number.value
@@ -279,13 +323,8 @@ pub(super) fn thermal(context: &Context, thermal: &Thermal) -> Result<ThermalSpe
         number.value = Written::Text(kelvin.trim().to_string());
     }
     let temperature = context.positive(&number, Dim::NUMBER, "the temperature")?;
-    let energy = match context.units {
-        UnitSystem::Si => BOLTZMANN * temperature,
-        UnitSystem::Metal => BOLTZMANN / EV * temperature,
-        UnitSystem::Lj | UnitSystem::None => temperature,
-    };
     Ok(ThermalSpec {
-        energy,
+        energy: boltzmann(context.units) * temperature,
         seed: thermal.seed,
     })
 }

@@ -51,6 +51,7 @@ pub(super) fn body(
         ),
         _ => {
             let points = files.read(context, written)?;
+            context.atoms = points.atoms;
             (Some(points.cloud), points.dimension)
         }
     };
@@ -91,6 +92,13 @@ pub(super) fn body(
                 let power = if natural == Some(2) { 2 } else { 3 };
                 cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
                 cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
+                if let Some(atoms) = &mut context.atoms {
+                    atoms.cell = atoms.cell.map(|c| c * unit);
+                }
+            }
+            if let Some(atoms) = &mut context.atoms {
+                let mass = context.units.plain_factor(Dim::MASS);
+                atoms.mass = atoms.mass.map(|m| m * mass);
             }
             Ok(BodySpec::Cloud(cloud))
         }
@@ -336,6 +344,13 @@ pub(super) fn periods(
 ) -> Result<[Option<f64>; 3]> {
     let mut out = [None; 3];
     let Some(written) = written else {
+        if let Some(file) = &context.atoms
+            && let Some(periodic) = file.periodic
+        {
+            out = std::array::from_fn(|a| {
+                (a < context.dimension && periodic[a]).then_some(file.cell[a])
+            });
+        }
         return Ok(out);
     };
     let mut wanted: Vec<(usize, Range<usize>, Option<f64>)> = Vec::new();
@@ -410,13 +425,15 @@ pub(super) fn periods(
                 ]);
                 length
             }
-            _ => period.ok_or_else(|| {
-                context.error_with(
-                    &span,
-                    "points from a file do not say their period",
-                    format!("write periodic = {{ {axis} = \"50 mm\" }}"),
-                )
-            })?,
+            _ => period
+                .or(context.atoms.as_ref().map(|f| f.cell[a]))
+                .ok_or_else(|| {
+                    context.error_with(
+                        &span,
+                        "points from a file do not say their period",
+                        format!("write periodic = {{ {axis} = \"50 mm\" }}"),
+                    )
+                })?,
         });
     }
     Ok(out)

@@ -4,6 +4,7 @@ use crate::deck::error::{DeckError, nearest};
 use crate::deck::source::Source;
 use crate::deck::units::{self, Dim, UnitSystem};
 use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
+use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,6 +15,8 @@ pub(super) struct Context<'a> {
     pub source: &'a Source,
     pub units: UnitSystem,
     pub dimension: usize,
+    /// What the body's file says, if it is one of atoms; in the units of computation.
+    pub atoms: Option<AtomsFile>,
     /// Value in plain numbers of the deck, and dimension if it was written with a unit.
     constants: BTreeMap<String, (f64, Option<Dim>)>,
 }
@@ -34,6 +37,7 @@ impl<'a> Context<'a> {
             source,
             units,
             dimension: 3,
+            atoms: None,
             constants: BTreeMap::new(),
         };
         // constants may use each other in any order; each round settles at least one, or the first error is real

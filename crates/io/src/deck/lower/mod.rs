@@ -7,6 +7,7 @@ mod material;
 mod motion;
 mod schedule;
 
+pub(super) use atoms::boltzmann;
 pub(super) use schedule::steps;
 
 use super::OutputSpec;
@@ -40,6 +41,7 @@ impl Files<'_> {
             return Ok(Points {
                 cloud: Cloud::default(),
                 dimension: None,
+                atoms: None,
             });
         };
         let path = self.folder.join(&file.value);
@@ -59,6 +61,8 @@ impl Files<'_> {
 
 pub(super) struct Lowered {
     pub spec: Spec,
+    /// Name of the atoms, where a file says it.
+    pub species: Option<String>,
     pub output: OutputSpec,
     pub threads: Option<usize>,
     pub duration: Option<f64>,
@@ -84,7 +88,8 @@ pub(super) fn lower(
         &mut body,
     )?;
     let mut sets = body::sets(&context, &document.sets, &body)?;
-    let potential = atoms::potential(&context, &document.material, &body, files)?;
+    let mut potential = atoms::potential(&context, &document.material, &body, files)?;
+    atoms::of_file(&context, &document.body, potential.as_mut())?;
     let materials = material::materials(
         &context,
         &document.material,
@@ -139,7 +144,7 @@ pub(super) fn lower(
                 ));
             }
         },
-        potential: potential.map(|p| p.spec),
+        potential: potential.as_ref().map(|p| p.spec.clone()),
         thermal: document
             .thermal
             .as_ref()
@@ -181,8 +186,14 @@ pub(super) fn lower(
         sets,
         materials,
     };
-    let output = schedule::output(&context, &document.output)?;
+    let species = potential.and_then(|p| p.element);
+    let output = schedule::output(&context, &document.output, spec.potential.is_some())?;
+    let of_body = context
+        .atoms
+        .as_ref()
+        .and_then(|a| a.species.first().cloned());
     Ok(Lowered {
+        species: species.or(of_body.filter(|s| s.parse::<u32>().is_err())),
         spec,
         output,
         threads: run.threads,

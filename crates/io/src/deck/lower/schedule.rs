@@ -5,6 +5,7 @@ use crate::deck::OutputSpec;
 use crate::deck::document::{FieldName, Output, Run, Safety};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
+use crate::write::trajectory::Format;
 use peridyne::spec::{Schedule, TimeStep};
 
 pub(super) struct RunSpec {
@@ -102,7 +103,7 @@ pub(in crate::deck) fn steps(duration: f64, time_step: f64) -> u64 {
     (duration / time_step - 1e-6).ceil().max(1.0) as u64
 }
 
-pub(super) fn output(context: &Context, written: &Output) -> Result<OutputSpec> {
+pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result<OutputSpec> {
     let positive = |number: &Option<At<u64>>, what: &str| match number {
         Some(n) if n.value == 0 => Err(context.error_with(
             &n.span,
@@ -120,6 +121,29 @@ pub(super) fn output(context: &Context, written: &Output) -> Result<OutputSpec> 
         FieldName::Mark,
         FieldName::Id,
     ];
+    let trajectory = match &written.trajectory {
+        None => None,
+        Some(name) if !atoms => {
+            return Err(context.error_with(
+                &name.span,
+                "a trajectory is one of atoms",
+                "points have VTU series and dumps: output.vtu, output.dump",
+            ));
+        }
+        Some(name) if name.value.ends_with(".extxyz") || name.value.ends_with(".xyz") => {
+            Some((name.value.clone().into(), Format::Extxyz))
+        }
+        Some(name) if name.value.ends_with(".lammpstrj") || name.value.ends_with(".dump") => {
+            Some((name.value.clone().into(), Format::Dump))
+        }
+        Some(name) => {
+            return Err(context.error_with(
+                &name.span,
+                format!("unknown kind of trajectory {:?}", name.value),
+                "name it trajectory.extxyz or trajectory.lammpstrj",
+            ));
+        }
+    };
     Ok(OutputSpec {
         dir: written.dir.clone().map(Into::into),
         every: positive(&written.every, "every")?,
@@ -128,6 +152,7 @@ pub(super) fn output(context: &Context, written: &Output) -> Result<OutputSpec> 
         bonds: written.bonds,
         dump: written.dump.clone().map(Into::into),
         history: positive(&written.history, "history")?,
-        picture: written.picture.unwrap_or(true),
+        picture: written.picture.unwrap_or(!atoms),
+        trajectory,
     })
 }

@@ -156,6 +156,7 @@ fn cloud(setup: &Setup, marked: bool) -> Result<BodySpec, HostError> {
         }
     }
     Ok(BodySpec::Cloud(Cloud {
+        velocity: vec![],
         position,
         volume: (0..n).map(|i| atoms.volume.get(i)).collect(),
         density: match same(&atoms.density) {

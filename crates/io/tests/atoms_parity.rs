@@ -1,0 +1,143 @@
+//! Atoms of `verify/lammps/atoms`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
+
+use peridyne::run::{Options, build};
+use peridyne_io::deck::Deck;
+use std::path::{Path, PathBuf};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../verify/lammps/atoms")
+}
+
+/// Rows of numbers between lines of `#`.
+fn golden(name: &str) -> Vec<Vec<Vec<f64>>> {
+    let text = std::fs::read_to_string(folder().join(format!("{name}.golden"))).unwrap();
+    let mut parts = vec![];
+    for line in text.lines() {
+        if line.starts_with('#') {
+            parts.push(vec![]);
+        } else {
+            let row = line.split_whitespace().map(|w| w.parse().unwrap());
+            parts.last_mut().unwrap().push(row.collect());
+        }
+    }
+    parts
+}
+
+/// What LAMMPS takes for 1 g/mol in eV ps²/Å² and for 1 eV/Å³ in bar.
+const LAMMPS_MASS: f64 = 1.0364269e-4;
+const LAMMPS_BAR: f64 = 1.6021765e6;
+
+fn compare(name: &str, law: &str, extra: &str, mass: f64, pressure: f64) {
+    let text = format!(
+        "periodic = [\"x\", \"y\", \"z\"]\nbody.file = \"{name}.data\"\n{extra}\nmaterial.law = {law}\n"
+    );
+    let file = folder().join("deck.toml");
+    let mut deck =
+        Deck::parse(&text, file.to_str().unwrap(), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    // the same mass to the last digit
+    let volume = match &deck.spec.body {
+        peridyne::spec::BodySpec::Cloud(c) => c.volume[0],
+        _ => panic!(),
+    };
+    deck.spec.materials[0].density = mass / volume;
+    let mut sim = build(&deck.spec, Options::default()).unwrap();
+    let golden = golden(name);
+    sim.start(true);
+    let first = &golden[0][0];
+    let n = sim.info().points as f64;
+    let energy = sim.ledger().unwrap().strain;
+    assert!(
+        ((energy - first[0]) / n).abs() < 1e-10,
+        "{name}: energy {energy} is not {}",
+        first[0]
+    );
+    // kinetic part and virial, over the box
+    let (v, volumes) = (sim.velocities(), sim.volumes());
+    let box_volume: f64 = volumes.iter().sum();
+    let virial = sim.virial();
+    for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+        .into_iter()
+        .enumerate()
+    {
+        let kinetic: f64 = v.iter().map(|v| mass * v[a] * v[b]).sum();
+        let p = (kinetic + virial[k]) / box_volume * pressure;
+        let scale = first[1].abs().max(first[2].abs());
+        assert!(
+            (p - first[1 + k]).abs() < 1e-9 * scale,
+            "{name}: pressure {k}: {p} is not {}",
+            first[1 + k]
+        );
+    }
+    let forces = sim.force_densities();
+    let largest = golden[1]
+        .iter()
+        .flatten()
+        .fold(0.0f64, |m, f| m.max(f.abs()));
+    for (i, exact) in golden[1].iter().enumerate() {
+        for a in 0..3 {
+            let f = forces[i][a] * volumes[i];
+            assert!(
+                (f - exact[a]).abs() < 1e-9 * largest,
+                "{name}: force on {i}: {f} is not {}",
+                exact[a]
+            );
+        }
+    }
+    for _ in 0..100 {
+        sim.step().unwrap();
+    }
+    let ledger = sim.ledger().unwrap();
+    for (what, found, exact) in [
+        ("energy", ledger.strain, golden[2][0][0]),
+        ("kinetic energy", ledger.kinetic, golden[2][0][1]),
+    ] {
+        assert!(
+            ((found - exact) / n).abs() < 1e-9,
+            "{name}: {what} after 100 steps: {found} is not {exact}"
+        );
+    }
+    let (x, u) = (sim.reference(), sim.displacements());
+    for (i, exact) in golden[3].iter().enumerate() {
+        for a in 0..3 {
+            let y = x[i][a] + u[i][a];
+            assert!(
+                (y - exact[a]).abs() < 1e-9,
+                "{name}: atom {i}: {y} is not {}",
+                exact[a]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_lennard_jones_crystal_is_that_of_lammps() {
+    compare(
+        "lj_crystal",
+        "{ lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5 } }",
+        "units = \"lj\"\nrun = { steps = 100, time_step = 0.003 }",
+        1.0,
+        1.0,
+    );
+}
+
+#[test]
+fn a_lennard_jones_liquid_is_that_of_lammps() {
+    compare(
+        "lj_liquid",
+        "{ lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5, end = \"shifted\" } }",
+        "units = \"lj\"\nrun = { steps = 100, time_step = 0.003 }",
+        1.0,
+        1.0,
+    );
+}
+
+#[test]
+fn a_copper_block_is_that_of_lammps() {
+    compare(
+        "copper",
+        "{ eam = { file = \"copper.eam.alloy\" } }",
+        "units = \"metal\"\nrun = { steps = 100, time_step = 0.002 }",
+        63.546 * LAMMPS_MASS,
+        LAMMPS_BAR,
+    );
+}
