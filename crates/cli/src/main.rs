@@ -5,8 +5,10 @@ mod deck;
 mod failure;
 mod laws;
 mod progress;
+mod reproduce;
 mod run;
 mod script;
+mod upscale;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -27,6 +29,10 @@ enum Verb {
     Run(run::RunArguments),
     /// Say what a deck would run: points, bonds, moduli this cloud really has, stable step, memory, warnings.
     Check(check::CheckArguments),
+    /// From atoms (or fine points) to coarse peridynamic points: decks of both, and an error card.
+    Upscale(upscale::UpscaleArguments),
+    /// Run the experiments of the papers and compare with what was published.
+    Reproduce(reproduce::ReproduceArguments),
     /// List the laws, lattices and influence functions with their parameters.
     Laws,
     /// Print the JSON schema of decks, for editors.
@@ -62,6 +68,8 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().verb {
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
+        Verb::Upscale(arguments) => upscale::upscale(&arguments),
+        Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),
         Verb::Schema => print_schema(),
     };

@@ -7,6 +7,7 @@
 //! | which time step is stable? | [`stability`] |
 //! | how stiff is it? | [`lattice_elastic`]; of a finite body [`elastic`] |
 //! | which differential equation is it? | [`gradient`], exactly by [`exact`] |
+//! | what is the coarse model with the same dynamics, and how far does it agree? | [`upscale`] |
 //! | is one model an upscaling of another, to which order? | [`upscaling`] |
 //! | with which order do errors fall? | [`convergence`] |
 
@@ -26,4 +27,5 @@ pub mod lattice_elastic;
 pub mod moments;
 pub mod stability;
 pub mod stiffness;
+pub mod upscale;
 pub mod upscaling;

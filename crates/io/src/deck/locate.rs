@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Keys of one material; a table under `material` with none of them holds named materials.
-const MATERIAL: [&str; 4] = ["set", "density", "law", "fracture"];
+const MATERIAL: [&str; 5] = ["set", "density", "mass", "law", "fracture"];
 
 /// Name that the material of `[material]` gets.
 const UNNAMED: &str = "material";

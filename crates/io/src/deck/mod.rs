@@ -11,6 +11,7 @@ mod lower;
 mod schema;
 mod source;
 mod units;
+pub mod upscaled;
 mod value;
 
 #[cfg(test)]

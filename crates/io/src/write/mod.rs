@@ -1,6 +1,7 @@
 //! Writers: each turns snapshots or numbers into one format, atomically, and does nothing else.
 
 pub mod atomic;
+pub mod card;
 pub mod data;
 pub mod dump;
 pub mod extxyz;

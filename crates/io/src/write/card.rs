@@ -1,0 +1,242 @@
+//! The error card of an upscaling: `card.json`, `card.md`, pictures of dispersion and energy.
+
+use super::atomic::{WriteError, write_file};
+use super::plot::Plot;
+use peridyne_theory::upscale::card::{Card, Side};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Measured by running both models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// `‖u_coarse − u_fine‖ / ‖u_fine‖` at the coarse points, at the end.
+    pub error: f64,
+    /// Largest displacement of the fine model at those points (length).
+    pub largest: f64,
+    pub points: usize,
+    /// Seconds of stepping.
+    pub seconds: [f64; 2],
+    pub steps: [u64; 2],
+}
+
+fn side(s: &Side) -> Value {
+    json!({
+        "spacing": s.spacing,
+        "bonds_per_point": s.bonds,
+        "points_per_volume": s.points,
+        "stable_step": s.stable_step,
+        "reference_pressure": s.pressure,
+        "reference_energy_density": s.energy,
+        "stiffness": s.stiffness,
+        "zener_ratio": s.anisotropy,
+        "unstable_waves": s.unstable,
+    })
+}
+
+fn json(card: &Card, measured: Option<&Measured>) -> Value {
+    json!({
+        "factor": card.factor,
+        "dimension": card.dimension,
+        "kept": card.rule.describe(),
+        "fine": side(&card.fine),
+        "coarse": side(&card.coarse),
+        "energies": card.energies.iter().map(|e| json!({
+            "mode": e.mode, "strain": e.strain, "fine": e.fine, "coarse": e.coarse,
+        })).collect::<Vec<_>>(),
+        "gradient_coefficients": card.gradients.iter().map(|g| json!({
+            "derivative": g.order, "fine": g.fine, "coarse": g.coarse,
+        })).collect::<Vec<_>>(),
+        "dispersion": card.dispersion.iter().map(|d| json!({
+            "direction": d.direction,
+            "wave_number": d.wave,
+            "fine": d.fine,
+            "coarse": d.coarse,
+            "wavelength_below_which_the_error_exceeds": d.wavelengths.iter().map(|(t, l)| json!({
+                "error": t, "wavelength": l,
+            })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "predicted_cost_ratio": card.cost,
+        "measured": measured.map(|m| json!({
+            "displacement_error": m.error,
+            "largest_displacement": m.largest,
+            "points_compared": m.points,
+            "seconds": m.seconds,
+            "steps": m.steps,
+            "speed_up": m.seconds[0] / m.seconds[1],
+        })),
+        "notes": card.notes,
+    })
+}
+
+fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
+    let mut t = String::new();
+    let h = card.coarse.spacing / card.fine.spacing;
+    let _ = writeln!(
+        t,
+        "# Error card: spacing h = {h} a\n\n{}.\n",
+        card.rule.describe()
+    );
+    if card.notes.is_empty() {
+        t += "Nothing speaks against this upscaling.\n";
+    }
+    for note in &card.notes {
+        let _ = writeln!(t, "- {note}");
+    }
+    t += "\n| | fine | coarse |\n|---|---:|---:|\n";
+    let mut row = |name: &str, f: f64, c: f64| {
+        let _ = writeln!(t, "| {name} | {f:.6e} | {c:.6e} |");
+    };
+    row(
+        &format!("spacing ({length})"),
+        card.fine.spacing,
+        card.coarse.spacing,
+    );
+    row(
+        "bonds of a point",
+        card.fine.bonds as f64,
+        card.coarse.bonds as f64,
+    );
+    row(
+        "stable step",
+        card.fine.stable_step,
+        card.coarse.stable_step,
+    );
+    row(
+        "pressure of the reference",
+        card.fine.pressure,
+        card.coarse.pressure,
+    );
+    let n = card.fine.stiffness.len();
+    for (i, j) in [(0, 0), (0, 1), (n - 1, n - 1)] {
+        if n > 1 || (i, j) == (0, 0) {
+            row(
+                &format!("C{}{}", i + 1, j + 1),
+                card.fine.stiffness[i][j],
+                card.coarse.stiffness[i][j],
+            );
+        }
+        if n == 1 {
+            break;
+        }
+    }
+    if let (Some(f), Some(c)) = (card.fine.anisotropy, card.coarse.anisotropy) {
+        row("Zener's ratio", f, c);
+    }
+    for g in &card.gradients {
+        row(
+            &format!("gradient coefficient of ∂^{}", g.order),
+            g.fine,
+            g.coarse,
+        );
+    }
+    let _ = writeln!(
+        t,
+        "\nPredicted cost (points × bonds × steps, both at their stable step): 1 : {:.1}.\n",
+        card.cost
+    );
+    t += "| direction | error | waves shorter than |\n|---|---:|---:|\n";
+    for d in &card.dispersion {
+        for (tolerance, wavelength) in &d.wavelengths {
+            let text = wavelength.map_or("none".into(), |l| {
+                format!("{l:.4e} ({:.1} h)", l / card.coarse.spacing)
+            });
+            let _ = writeln!(t, "| {} | {} % | {text} |", d.direction, 100.0 * tolerance);
+        }
+    }
+    t += "\n| strain | mode | energy density, fine | coarse | difference |\n|---:|---|---:|---:|---:|\n";
+    for e in &card.energies {
+        let _ = writeln!(
+            t,
+            "| {} | {} | {:.6e} | {:.6e} | {:.2e} |",
+            e.strain,
+            e.mode,
+            e.fine,
+            e.coarse,
+            (e.coarse - e.fine) / e.fine
+        );
+    }
+    if let Some(m) = measured {
+        let _ = writeln!(
+            t,
+            "\nBoth were run: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {:.4e}).",
+            m.steps[0],
+            m.steps[1],
+            m.seconds[0],
+            m.seconds[1],
+            m.seconds[0] / m.seconds[1],
+            m.points,
+            100.0 * m.error,
+            m.largest
+        );
+    }
+    t += "\n![dispersion](dispersion.png)\n\n![energy](energy.png)\n";
+    t
+}
+
+/// Writes the card into `dir`; `length` is the unit of lengths.
+///
+/// # Errors
+/// The first file that could not be written.
+pub fn write(
+    dir: &Path,
+    card: &Card,
+    length: &str,
+    measured: Option<&Measured>,
+) -> Result<Vec<PathBuf>, WriteError> {
+    let mut files = vec![dir.join("card.json"), dir.join("card.md")];
+    write_file(&files[0], |w| {
+        Ok(serde_json::to_writer_pretty(w, &json(card, measured))?)
+    })?;
+    write_file(&files[1], |w| {
+        w.write_all(markdown(card, length, measured).as_bytes())
+    })?;
+    let mut plot = Plot::new(format!("Dispersion, h = {} a", card.factor))
+        .x("wave number", &per(length))
+        .y("frequency ω", "");
+    for d in &card.dispersion {
+        let top = |rows: &[Vec<f64>]| -> Vec<f64> {
+            rows.iter()
+                .map(|r| r.last().copied().unwrap_or(f64::NAN))
+                .collect()
+        };
+        plot = plot
+            .line(&format!("fine, {}", d.direction), &d.wave, &top(&d.fine))
+            .dashed(
+                &format!("coarse, {}", d.direction),
+                &d.wave,
+                &top(&d.coarse),
+            );
+    }
+    files.extend(plot.save(dir, "dispersion")?);
+    let mut plot = Plot::new("Energy density under homogeneous strain")
+        .x("strain", "")
+        .y("energy density", "");
+    for mode in ["isotropic", "uniaxial", "shear"] {
+        let rows = || card.energies.iter().filter(|e| e.mode == mode);
+        let strain: Vec<f64> = rows().map(|e| e.strain).collect();
+        if strain.is_empty() {
+            continue;
+        }
+        let fine: Vec<f64> = rows().map(|e| e.fine).collect();
+        let coarse: Vec<f64> = rows().map(|e| e.coarse).collect();
+        plot = plot.line(&format!("{mode}, fine"), &strain, &fine).points(
+            &format!("{mode}, coarse"),
+            &strain,
+            &coarse,
+        );
+    }
+    if !card.energies.is_empty() {
+        files.extend(plot.save(dir, "energy")?);
+    }
+    Ok(files)
+}
+
+fn per(length: &str) -> String {
+    if length.is_empty() {
+        String::new()
+    } else {
+        format!("1/{length}")
+    }
+}

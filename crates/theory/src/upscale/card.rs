@@ -1,0 +1,362 @@
+//! The error card of an upscaling: what both models say of the same crystal, side by side.
+
+use super::{Rule, UpscaleError, crystal, lattice};
+use crate::crystal::Crystal;
+use peridyne::run::{Options, build};
+use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec, Spec, TimeStep};
+use std::f64::consts::PI;
+
+/// One of the two models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Side {
+    pub spacing: f64,
+    /// Bonds of a point.
+    pub bonds: usize,
+    /// Points per volume.
+    pub points: f64,
+    /// Largest stable step (time).
+    pub stable_step: f64,
+    /// Pressure of the reference (energy / volume); 0 for solids.
+    pub pressure: f64,
+    /// Energy density of the reference (energy / volume); 0 for solids.
+    pub energy: f64,
+    /// Stiffness in Voigt's notation, with the first D(D+1)/2 rows and columns (energy / volume).
+    pub stiffness: Vec<Vec<f64>>,
+    /// Zener's ratio 2 c44/(c11 − c12) of cubic crystals.
+    pub anisotropy: Option<f64>,
+    /// Slowest growing wave that does not oscillate but grows: its part of all waves, if there is one.
+    pub unstable: Option<f64>,
+}
+
+/// Energy density under a strain, less that of the reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyRow {
+    pub mode: &'static str,
+    pub strain: f64,
+    pub fine: f64,
+    pub coarse: f64,
+}
+
+/// A gradient coefficient of longitudinal waves along x: `ρ ü = Σ c_k ∂^k u`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GradientRow {
+    pub order: usize,
+    pub fine: f64,
+    pub coarse: f64,
+}
+
+/// Frequencies of all branches along a direction, from long waves to the coarse model's shortest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dispersion {
+    pub direction: String,
+    /// Wave numbers (1 / length).
+    pub wave: Vec<f64>,
+    /// `[wave][branch]` (1 / time); NaN where a wave grows.
+    pub fine: Vec<Vec<f64>>,
+    pub coarse: Vec<Vec<f64>>,
+    /// Tolerance and the wavelength below which frequencies differ by more; `None`: nowhere.
+    pub wavelengths: Vec<(f64, Option<f64>)>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Card {
+    pub factor: u32,
+    pub dimension: usize,
+    pub rule: Rule,
+    pub fine: Side,
+    pub coarse: Side,
+    pub energies: Vec<EnergyRow>,
+    pub gradients: Vec<GradientRow>,
+    pub dispersion: Vec<Dispersion>,
+    /// Points × bonds × steps of the fine model over those of the coarse, both at their stable steps.
+    pub cost: f64,
+    /// Where the upscaling is not valid, in words.
+    pub notes: Vec<String>,
+}
+
+/// Tolerances for which wavelengths are given.
+const TOLERANCES: [f64; 2] = [0.01, 0.05];
+const STRAINS: [f64; 7] = [-0.02, -0.01, -0.005, 0.005, 0.01, 0.02, 0.05];
+const WAVES: usize = 200;
+
+/// Compare a model with its upscaling.
+pub fn card(fine: &Spec, coarse: &Spec, factor: u32, rule: Rule) -> Result<Card, UpscaleError> {
+    match fine.dimension {
+        1 => card_in::<1>(fine, coarse, factor, rule),
+        2 => card_in::<2>(fine, coarse, factor, rule),
+        _ => card_in::<3>(fine, coarse, factor, rule),
+    }
+}
+
+fn card_in<const D: usize>(
+    fine: &Spec,
+    coarse: &Spec,
+    factor: u32,
+    rule: Rule,
+) -> Result<Card, UpscaleError> {
+    let mut notes = vec![];
+    let (a, a_reference) = crystal::<D>(fine)?;
+    let (b, b_reference) = crystal::<D>(coarse)?;
+    let left = side(fine, &a, a_reference)?;
+    let right = side(coarse, &b, b_reference)?;
+    if let Some(r) = a_reference {
+        let scale = left.stiffness[0][0].abs();
+        if r.pressure.abs() > 1e-6 * scale {
+            notes.push(format!(
+                "The reference is under a pressure of {:.6e}, {:.2} % of c11: ends and surfaces must be held, and constants contain it.",
+                r.pressure,
+                100.0 * r.pressure / scale
+            ));
+        }
+    }
+    for (name, side) in [("fine", &left), ("coarse", &right)] {
+        if let Some(part) = side.unstable {
+            notes.push(format!(
+                "The reference state of the {name} model is unstable: {:.1} % of all waves grow. Nothing that follows from it can be trusted.",
+                100.0 * part
+            ));
+        }
+    }
+    if rule == Rule::Horizon && right.bonds <= 2 * D {
+        notes.push(
+            "Only nearest neighbours are left: h is as large as the horizon, and the nonlocality of the model is lost.".into(),
+        );
+    }
+    if rule == Rule::Reduced {
+        notes.push("The length scale of Lennard-Jones is the spacing: shocks and their oscillations change with h.".into());
+    }
+    if rule == Rule::Shells {
+        notes.push("Neighbours are those of the reference: beyond a compression of a tenth some that would enter are missing; bonds never change partners (no diffusion, melting, slip).".into());
+    }
+    let energies = energies(fine, coarse, &mut notes);
+    let directions: Vec<(String, [f64; D])> = match D {
+        1 => vec![("x".into(), [1.0; D])],
+        2 => vec![
+            ("[10]".into(), unit(&[1.0, 0.0])),
+            ("[11]".into(), unit(&[1.0, 1.0])),
+        ],
+        _ => vec![
+            ("[100]".into(), unit(&[1.0, 0.0, 0.0])),
+            ("[110]".into(), unit(&[1.0, 1.0, 0.0])),
+            ("[111]".into(), unit(&[1.0, 1.0, 1.0])),
+        ],
+    };
+    let (kind, spacing) = lattice(coarse)?;
+    let end = PI / (spacing * kind.nearest());
+    let dispersion = directions
+        .iter()
+        .map(|(name, n)| waves(name, *n, &a, &b, end))
+        .collect();
+    let gradients = match (
+        a.gradient_coefficients(directions[0].1, 3),
+        b.gradient_coefficients(directions[0].1, 3),
+    ) {
+        (Some(x), Some(y)) => x
+            .iter()
+            .zip(&y)
+            .enumerate()
+            .map(|(p, (x, y))| GradientRow {
+                order: 2 * p + 2,
+                fine: x[0][0] / fine.section,
+                coarse: y[0][0] / fine.section,
+            })
+            .collect(),
+        _ => vec![],
+    };
+    let cost = |s: &Side| s.points * s.bonds as f64 / s.stable_step;
+    Ok(Card {
+        factor,
+        dimension: D,
+        rule,
+        cost: cost(&left) / cost(&right),
+        fine: left,
+        coarse: right,
+        energies,
+        gradients,
+        dispersion,
+        notes,
+    })
+}
+
+fn unit<const D: usize>(v: &[f64]) -> [f64; D] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    std::array::from_fn(|a| v[a] / length)
+}
+
+fn side<const D: usize>(
+    spec: &Spec,
+    crystal: &Crystal<D>,
+    reference: Option<crate::crystal::Reference>,
+) -> Result<Side, UpscaleError> {
+    let (kind, spacing) = lattice(spec)?;
+    let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
+    let stiffness = crystal
+        .elastic_constants()
+        .unwrap_or_else(|| crystal.rigid_elastic_constants());
+    let n = D * (D + 1) / 2;
+    Ok(Side {
+        spacing,
+        bonds: crystal.bonds.len() / crystal.basis.len(),
+        points: 1.0 / volume,
+        stable_step: crystal.largest(if D == 3 { 8 } else { 32 }).time_step(),
+        pressure: reference.map_or(0.0, |r| r.pressure / spec.section),
+        energy: reference.map_or(0.0, |r| r.energy / volume),
+        stiffness: (0..n)
+            .map(|i| (0..n).map(|j| stiffness.c[i][j] / spec.section).collect())
+            .collect(),
+        anisotropy: if D == 1 {
+            None
+        } else {
+            stiffness.cubic(1e-6).map(|c| c.zener())
+        },
+        unstable: crystal
+            .instability(if D == 3 { 8 } else { 64 })
+            .map(|i| i.part),
+    })
+}
+
+/// Energies of a periodic block on fixed neighbours under homogeneous strains.
+fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRow> {
+    let d = fine.dimension;
+    let blocks = [fine, coarse].map(|spec| {
+        block(spec).and_then(|s| {
+            let options = Options {
+                trust_time_step: true,
+                ..Options::default()
+            };
+            build(&s, options).ok()
+        })
+    });
+    let [Some(a), Some(b)] = &blocks else {
+        notes.push(
+            "Energies under strain are left out: no periodic block holds the neighbours.".into(),
+        );
+        return vec![];
+    };
+    let mut modes: Vec<(&'static str, [[f64; 3]; 3])> = vec![];
+    let mut isotropic = [[0.0; 3]; 3];
+    for (x, row) in isotropic.iter_mut().enumerate().take(d) {
+        row[x] = 1.0;
+    }
+    modes.push(("isotropic", isotropic));
+    if d > 1 {
+        let (mut uniaxial, mut shear) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        uniaxial[0][0] = 1.0;
+        (shear[0][1], shear[1][0]) = (0.5, 0.5);
+        modes.push(("uniaxial", uniaxial));
+        modes.push(("shear", shear));
+    }
+    let [rest_a, rest_b] = [a, b].map(|s| s.energy_under_strain([[0.0; 3]; 3])[0]);
+    let mut rows = vec![];
+    for (mode, shape) in modes {
+        for strain in STRAINS {
+            let tensor = shape.map(|row| row.map(|x| strain * x));
+            let at = |s: &Box<dyn peridyne::run::Simulation>| s.energy_under_strain(tensor)[0];
+            let (fine, coarse) = (at(a) - rest_a, at(b) - rest_b);
+            if !(fine.is_finite() && coarse.is_finite()) {
+                notes.push(format!(
+                    "Under a {mode} strain of {strain} the energy has no value (ρ_h ≤ 0)."
+                ));
+                continue;
+            }
+            rows.push(EnergyRow {
+                mode,
+                strain,
+                fine,
+                coarse,
+            });
+        }
+    }
+    rows
+}
+
+/// A periodic block of the spec's lattice that its family fits into, on fixed neighbours.
+fn block(spec: &Spec) -> Option<Spec> {
+    let (kind, spacing) = lattice(spec).ok()?;
+    let d = kind.dimension();
+    let horizon = match (&spec.potential, spec.family) {
+        (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => {
+            Horizon::Length(super::REACH * p.apply(super::CutOff))
+        }
+        _ => spec.horizon,
+    };
+    let length = match horizon {
+        Horizon::Ratio(m) => f64::from(m) * spacing,
+        Horizon::Length(d) => d,
+    };
+    let cells = (length / spacing).ceil() as usize + 1;
+    let count = cells.pow(d as u32) * kind.basis().len();
+    if count > 200_000 {
+        return None;
+    }
+    let mut quarters = Vec::with_capacity(count);
+    for i in 0..cells.pow(d as u32) {
+        let cell: [usize; 3] = std::array::from_fn(|a| {
+            if a < d {
+                i / cells.pow(a as u32) % cells
+            } else {
+                0
+            }
+        });
+        for b in kind.basis() {
+            quarters.push(std::array::from_fn(|a| 4 * cell[a] as i32 + b[a]));
+        }
+    }
+    let law: LawSpec = spec.materials[0].law;
+    let body = BodySpec::Sites {
+        kind,
+        spacing,
+        origin: [0.0; 3],
+        quarters,
+        volume: None,
+    };
+    let mut block = Spec::new(d, body, spec.materials[0].density, law);
+    block.plane = spec.plane;
+    block.section = spec.section;
+    block.potential = spec.potential.clone();
+    block.horizon = horizon;
+    block.influence = spec.influence;
+    block.volume_scaling = spec.volume_scaling;
+    block.calibration = spec.calibration;
+    block.family = FamilyChoice::Stencil;
+    block.schedule.time_step = TimeStep::Fixed(1.0);
+    block.periodic =
+        std::array::from_fn(|a| (a < d).then(|| spacing * kind.edges()[a] * cells as f64));
+    Some(block)
+}
+
+fn waves<const D: usize>(
+    name: &str,
+    n: [f64; D],
+    a: &Crystal<D>,
+    b: &Crystal<D>,
+    end: f64,
+) -> Dispersion {
+    // the acoustic branches: of several sites per cell the lowest
+    let branches = |c: &Crystal<D>, k: f64| -> Vec<f64> {
+        let squares = c.squares(n.map(|x| k * x));
+        squares.iter().take(D).map(|s| s.sqrt()).collect()
+    };
+    let wave: Vec<f64> = (1..=WAVES).map(|i| end * i as f64 / WAVES as f64).collect();
+    let fine: Vec<Vec<f64>> = wave.iter().map(|k| branches(a, *k)).collect();
+    let coarse: Vec<Vec<f64>> = wave.iter().map(|k| branches(b, *k)).collect();
+    let wavelengths = TOLERANCES
+        .iter()
+        .map(|t| {
+            let apart = |(x, y): (&Vec<f64>, &Vec<f64>)| {
+                x.iter()
+                    .zip(y)
+                    .any(|(x, y)| !((x - y).abs() <= t * y.abs().max(x.abs())))
+            };
+            let first = fine.iter().zip(&coarse).position(apart);
+            (*t, first.map(|i| 2.0 * PI / wave[i]))
+        })
+        .collect();
+    Dispersion {
+        direction: name.to_string(),
+        wave,
+        fine,
+        coarse,
+        wavelengths,
+    }
+}

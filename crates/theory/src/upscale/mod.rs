@@ -1,0 +1,302 @@
+//! Atoms or fine points to coarse points with the same dynamics: a specification in, a specification out.
+//!
+//! | law | what is kept | what changes |
+//! |---|---|---|
+//! | springs, pmb, lps, eam-like on a lattice | horizon δ, moduli | m_ratio = N/n (seleson2009 (A.2), seleson2014 (4.10)) |
+//! | Lennard-Jones on fixed neighbours, without cut-off | σ̄, ε̄, reach | M = N/n (seleson2009 (5.3)) |
+//! | any other potential | energy density under every homogeneous strain, number of shells | lengths times n, energies times n^D (seleson2014 (3.3)) |
+
+pub mod card;
+
+use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
+use peridyne::family::stencil::Stencil;
+use peridyne::law::potential::cut::End;
+use peridyne::law::potential::mei::Mei;
+use peridyne::law::potential::{Form, Potential, PotentialSpec, Visitor};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec, Schedule, Spec, TimeStep};
+use std::sync::Arc;
+
+/// How many cut-offs of reference neighbours an upscaled potential keeps: those that a compression of a tenth brings in.
+pub const REACH: f64 = 1.1;
+
+/// Why a model has no upscaling.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum UpscaleError {
+    #[error("the factor is {0}: expected a whole number of 2 or more")]
+    Factor(u32),
+    #[error("only a lattice body can be upscaled: its coarse points are lattice points, too")]
+    NoLattice,
+    #[error("a body with several materials is not upscaled: one law has one upscaling")]
+    SeveralMaterials,
+    #[error("{what} {number} is not divisible by the factor {factor}: choose one of {choices}")]
+    NotDivisible {
+        what: &'static str,
+        number: u32,
+        factor: u32,
+        choices: String,
+    },
+    #[error(
+        "the coarse spacing {spacing:e} is beyond the horizon {horizon:e}: points would be alone; the largest factor is {most}"
+    )]
+    BeyondHorizon {
+        spacing: f64,
+        horizon: f64,
+        most: u32,
+    },
+    #[error(transparent)]
+    Crystal(#[from] CrystalError),
+}
+
+/// What an upscaling keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rule {
+    /// The horizon and the moduli.
+    Horizon,
+    /// Reduced σ̄ and ε̄ of Lennard-Jones chains, and the reach.
+    Reduced,
+    /// Energy density and number of shells.
+    Shells,
+}
+
+impl Rule {
+    pub fn describe(self) -> &'static str {
+        match self {
+            Rule::Horizon => "horizon and moduli are kept, the number of neighbours falls",
+            Rule::Reduced => {
+                "reduced constants and reach of Lennard-Jones are kept, the number of neighbours falls (seleson2009 (5.3))"
+            }
+            Rule::Shells => {
+                "energy density under every homogeneous strain and the number of shells are kept, the length scale grows with the spacing (seleson2014 (3.3), (3.4))"
+            }
+        }
+    }
+}
+
+/// Lattice and spacing of a body.
+pub fn lattice(spec: &Spec) -> Result<(LatticeKind, f64), UpscaleError> {
+    match &spec.body {
+        BodySpec::Lattice {
+            kind,
+            spacing,
+            perturb: None,
+            ..
+        }
+        | BodySpec::Sites { kind, spacing, .. } => Ok((*kind, *spacing)),
+        _ => Err(UpscaleError::NoLattice),
+    }
+}
+
+fn current(spec: &Spec) -> bool {
+    spec.potential.is_some() && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
+}
+
+/// Divisors of n from 2 on.
+fn divisors(n: u32) -> String {
+    let all: Vec<String> = (2..=n)
+        .filter(|d| n.is_multiple_of(*d))
+        .map(|d| d.to_string())
+        .collect();
+    if all.is_empty() {
+        "none".into()
+    } else {
+        all.join(", ")
+    }
+}
+
+/// Σ over neighbours of (distance/spacing)^−p.
+fn lattice_sum(stencil: &Stencil, p: i32) -> f64 {
+    let all = &stencil.offsets[0];
+    all.iter()
+        .map(|o| (o.squared as f64 / 16.0).powf(-0.5 * f64::from(p)))
+        .sum()
+}
+
+/// The model at `factor` times the spacing.
+pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
+    if factor < 2 {
+        return Err(UpscaleError::Factor(factor));
+    }
+    let (kind, fine) = lattice(spec)?;
+    if spec.materials.len() != 1 {
+        return Err(UpscaleError::SeveralMaterials);
+    }
+    let n = f64::from(factor);
+    let mut coarse = spec.clone();
+    match &mut coarse.body {
+        BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => *spacing *= n,
+        BodySpec::Cloud(_) => return Err(UpscaleError::NoLattice),
+    }
+    coarse.family = FamilyChoice::Stencil;
+    let divided = |horizon: Horizon| -> Result<Horizon, UpscaleError> {
+        match horizon {
+            Horizon::Ratio(m) if m.is_multiple_of(factor) => Ok(Horizon::Ratio(m / factor)),
+            Horizon::Ratio(m) => Err(UpscaleError::NotDivisible {
+                what: "the number of neighbours N =",
+                number: m,
+                factor,
+                choices: divisors(m),
+            }),
+            Horizon::Length(d) if d < fine * n * kind.nearest() => {
+                Err(UpscaleError::BeyondHorizon {
+                    spacing: fine * n * kind.nearest(),
+                    horizon: d,
+                    most: (d / (fine * kind.nearest())) as u32,
+                })
+            }
+            length => Ok(length),
+        }
+    };
+    let rule = match (&spec.potential, spec.materials[0].law) {
+        (Some(potential), LawSpec::Atoms) => {
+            let fixed = !current(spec) && potential.cutoff.is_infinite();
+            match &potential.form {
+                Form::LennardJones(lj) if fixed => {
+                    coarse.horizon = divided(spec.horizon)?;
+                    let sums = |spacing: f64, horizon| {
+                        let stencil = Stencil::new(kind, spacing, horizon);
+                        (lattice_sum(&stencil, 6), lattice_sum(&stencil, 12))
+                    };
+                    let (a6, a12) = sums(fine, spec.horizon);
+                    let (b6, b12) = sums(fine * n, coarse.horizon);
+                    let mut lj = *lj;
+                    lj.sigma *= n * ((b6 / b12) / (a6 / a12)).powf(1.0 / 6.0);
+                    lj.epsilon *=
+                        n.powi(kind.dimension() as i32) * (b12 / (b6 * b6)) / (a12 / (a6 * a6));
+                    coarse.potential = Some(PotentialSpec {
+                        form: Form::LennardJones(lj),
+                        ..potential.clone()
+                    });
+                    Rule::Reduced
+                }
+                _ => {
+                    coarse.potential = Some(scaled(potential, n, n.powi(kind.dimension() as i32)));
+                    coarse.horizon = match (current(spec), spec.horizon) {
+                        (true, _) => Horizon::Length(REACH * n * potential.apply(CutOff)),
+                        (false, Horizon::Length(d)) => Horizon::Length(n * d),
+                        (false, ratio) => ratio,
+                    };
+                    Rule::Shells
+                }
+            }
+        }
+        _ => {
+            coarse.horizon = divided(spec.horizon)?;
+            Rule::Horizon
+        }
+    };
+    coarse.schedule = Schedule {
+        steps: spec.schedule.steps.div_ceil(u64::from(factor)),
+        time_step: match spec.schedule.time_step {
+            TimeStep::Fixed(dt) => TimeStep::Fixed(dt * n),
+            fraction => fraction,
+        },
+        ..spec.schedule
+    };
+    Ok((coarse, rule))
+}
+
+struct CutOff;
+
+impl Visitor for CutOff {
+    type Out = f64;
+    fn visit<P: Potential>(self, potential: P) -> f64 {
+        potential.cutoff()
+    }
+}
+
+/// A potential with lengths times `length` and energies times `energy`.
+pub fn scaled(potential: &PotentialSpec, length: f64, energy: f64) -> PotentialSpec {
+    let form = match &potential.form {
+        Form::LennardJones(p) => {
+            let mut p = *p;
+            p.sigma *= length;
+            p.epsilon *= energy;
+            Form::LennardJones(p)
+        }
+        Form::Morse(p) => {
+            let mut p = *p;
+            p.depth *= energy;
+            p.alpha /= length;
+            p.distance *= length;
+            Form::Morse(p)
+        }
+        Form::Buckingham(p) => {
+            let mut p = *p;
+            p.strength *= energy;
+            p.range *= length;
+            p.dispersion *= energy * length.powi(6);
+            Form::Buckingham(p)
+        }
+        Form::Mei(p) => {
+            let mut s = p.spec().clone();
+            s.cohesive *= energy;
+            s.pair *= energy;
+            for l in [
+                &mut s.pair_length,
+                &mut s.density_length,
+                &mut s.near,
+                &mut s.cutoff,
+                &mut s.nearest,
+            ] {
+                *l *= length;
+            }
+            Form::Mei(Box::new(Mei::new(s)))
+        }
+        Form::Tabulated(p) => Form::Tabulated(Arc::new(p.scaled(length, energy))),
+    };
+    PotentialSpec {
+        form,
+        cutoff: potential.cutoff * length,
+        end: match potential.end {
+            End::Smooth(near) => End::Smooth(near * length),
+            other => other,
+        },
+    }
+}
+
+struct OfPotential<const D: usize> {
+    kind: LatticeKind,
+    spacing: f64,
+    mass: f64,
+    reach: Reach,
+}
+
+impl<const D: usize> Visitor for OfPotential<D> {
+    type Out = Result<(Crystal<D>, Reference), CrystalError>;
+    fn visit<P: Potential>(self, potential: P) -> Self::Out {
+        Crystal::of_potential(&potential, self.kind, self.spacing, self.mass, self.reach)
+    }
+}
+
+/// The perfect crystal of a lattice spec about its reference; of atoms also what that reference is.
+pub fn crystal<const D: usize>(
+    spec: &Spec,
+) -> Result<(Crystal<D>, Option<Reference>), UpscaleError> {
+    let (kind, spacing) = lattice(spec)?;
+    let density = spec.materials[0].density;
+    match &spec.potential {
+        Some(potential) => {
+            let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
+            let (crystal, reference) = potential.apply(OfPotential::<D> {
+                kind,
+                spacing,
+                mass: density * volume,
+                reach: match current(spec) {
+                    true => Reach::Cutoff,
+                    false => Reach::Horizon(spec.horizon),
+                },
+            })?;
+            Ok((crystal, Some(reference)))
+        }
+        None => {
+            let mut solid = LatticeSolid::new(kind, spacing, spec.horizon);
+            solid.section = spec.section;
+            solid.density = density;
+            solid.influence = spec.influence;
+            solid.volume_scaling = spec.volume_scaling;
+            let crystal = solid.of_law(spec.materials[0].law, spec.plane, spec.calibration)?;
+            Ok((crystal, None))
+        }
+    }
+}
