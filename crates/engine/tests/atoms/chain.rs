@@ -88,6 +88,44 @@ fn springs_conserve_the_energy_of_the_scheme() {
     assert!(wobble > 1e-3, "{wobble}: the test says nothing");
 }
 
+/// A square pulse on a fine chain: in one step points go further than the spacing, through their neighbours.
+#[test]
+fn springs_go_further_than_their_spacing() {
+    let n = 401;
+    let mut spec = springs(n, 20);
+    spec.schedule.time_step = TimeStep::Fixed(6.0);
+    let mut sim = build(&spec, Options::default()).unwrap();
+    let u: Vec<_> = (0..n)
+        .map(|i| [if (150..=250).contains(&i) { 50.0 } else { 0.0 }, 0.0, 0.0])
+        .collect();
+    sim.set_displacements(&u);
+    sim.start(true);
+    for _ in 0..50 {
+        sim.step().unwrap();
+    }
+    let moved = sim.displacements().iter().map(|u| u[0]).sum::<f64>();
+    assert!((moved / (50.0 * 101.0) - 1.0).abs() < 1e-12, "{moved}");
+    sim.set_time_step(60.0);
+    let error = (0..400).find_map(|_| sim.step().err());
+    assert!(
+        matches!(error, Some(RunError::NotFinite { .. })),
+        "{error:?}"
+    );
+}
+
+/// The stability limit of a long chain is measured on a part of it, which must hold whole families.
+#[test]
+fn the_limit_of_a_long_chain_of_large_families_is_measured() {
+    for m in [1u32, 20, 100] {
+        let spec = springs(20_001, m);
+        let limit = build(&spec, Options::default()).unwrap().info().stable_step;
+        let top = (1..=4000)
+            .map(|k| omega(m, std::f64::consts::PI * f64::from(k) / 4000.0))
+            .fold(0.0, f64::max);
+        assert!((limit * top / 2.0 - 1.0).abs() < 0.02, "{m}: {limit} {}", 2.0 / top);
+    }
+}
+
 /// Linear springs in one dimension are the bond-based solid while no bond turns over.
 #[test]
 fn springs_are_pmb_where_nothing_turns_over() {
