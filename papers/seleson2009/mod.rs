@@ -1,11 +1,36 @@
 //! Seleson, Parks, Gunzburger, Lehoucq, "Peridynamics as an upscaling of molecular dynamics", Multiscale Model. Simul. 8 (2009).
 
 mod chain;
+mod deck;
+#[path = "figure-4-3/mod.rs"]
+mod figure_4_3;
+#[path = "figure-4-4/mod.rs"]
+mod figure_4_4;
+#[path = "figure-4-5/mod.rs"]
+mod figure_4_5;
+#[path = "figure-4-6/mod.rs"]
+mod figure_4_6;
+mod modes;
+mod motion;
 #[path = "table-4-1/mod.rs"]
 mod table_4_1;
 
 use crate::Experiment;
 
+/// What the results of all figures here depend on.
+const SHARED: &str = concat!(
+    include_str!("chain.rs"),
+    include_str!("deck.rs"),
+    include_str!("modes.rs"),
+    include_str!("motion.rs"),
+);
+
 pub fn all() -> Vec<&'static dyn Experiment> {
-    vec![&table_4_1::Table41]
+    vec![
+        &figure_4_3::Figure43,
+        &figure_4_4::Figure44,
+        &figure_4_5::Figure45,
+        &figure_4_6::Figure46,
+        &table_4_1::Table41,
+    ]
 }
