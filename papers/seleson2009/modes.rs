@@ -56,8 +56,8 @@ pub fn difference(chain: &Chain, dt: f64, steps: u64, u0: &[f64], run: &[f64]) -
     let at: Vec<usize> = (0..97).map(|i| (n / 5 + i * (3 * n / 5) / 97).min(n - 1)).collect();
     let exact = displacements(chain, dt, steps, u0, &at);
     let difference = exact.iter().zip(&at).map(|(e, j)| (e - run[*j]).abs());
-    // not `f64::max`: it would lose what is not a number
-    difference.fold(0.0, |m, d| if d <= m { m } else { d })
+    // what is not a number stays
+    difference.fold(0.0, |m, d| if m.is_nan() || d <= m { m } else { d })
 }
 
 #[cfg(test)]

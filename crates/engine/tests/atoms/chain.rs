@@ -291,6 +291,21 @@ fn atoms_that_cross_stop_the_run_and_the_state_before_stays() {
     assert!(sim.velocities().iter().all(|v| v[0].is_finite()));
 }
 
+/// A point that would jump is noticed wherever it is: all others are in blocks of their own and stand still.
+#[test]
+fn one_jump_in_a_long_chain_stops_the_run() {
+    for at in [5, 700, 1500, 2990] {
+        let mut sim = build(&lj_chain(3000, 1.0, 4), Options::default()).unwrap();
+        let mut u = vec![[0.0; 3]; 3000];
+        u[at][0] = 0.8;
+        sim.set_displacements(&u);
+        sim.start(true);
+        let error = sim.step().expect_err("the jump was not noticed");
+        assert!(matches!(error, RunError::TooFast { step: 1, .. }), "{at}: {error}");
+        assert_eq!(sim.displacements()[at][0], 0.8);
+    }
+}
+
 /// An initial state that is crossed already is named before a step.
 #[test]
 fn a_crossed_beginning_is_named() {
