@@ -53,7 +53,9 @@ pub fn displacements(chain: &Chain, dt: f64, steps: u64, u0: &[f64], at: &[usize
 /// Largest difference between a run and its closed form, at points spread over the chain.
 pub fn difference(chain: &Chain, dt: f64, steps: u64, u0: &[f64], run: &[f64]) -> f64 {
     let n = u0.len();
-    let at: Vec<usize> = (0..97).map(|i| (n / 5 + i * (3 * n / 5) / 97).min(n - 1)).collect();
+    let at: Vec<usize> = (0..97)
+        .map(|i| (n / 5 + i * (3 * n / 5) / 97).min(n - 1))
+        .collect();
     let exact = displacements(chain, dt, steps, u0, &at);
     let difference = exact.iter().zip(&at).map(|(e, j)| (e - run[*j]).abs());
     // what is not a number stays
@@ -75,7 +77,9 @@ mod tests {
             k1: 3.0,
         };
         let (n, dt) = (60usize, chain.time_step(0.85));
-        let u0: Vec<f64> = (0..n).map(|j| if (20..29).contains(&j) { 1.0 } else { 0.0 }).collect();
+        let u0: Vec<f64> = (0..n)
+            .map(|j| if (20..29).contains(&j) { 1.0 } else { 0.0 })
+            .collect();
         let force = |u: &[f64], i: usize| -> f64 {
             (1..=3)
                 .map(|j| {
@@ -88,7 +92,9 @@ mod tests {
         let mut before = u0.clone();
         let mut now: Vec<f64> = (0..n).map(|i| u0[i] + 0.5 * accelerated(&u0, i)).collect();
         for _ in 1..40 {
-            let next = (0..n).map(|i| 2.0 * now[i] - before[i] + accelerated(&now, i)).collect();
+            let next = (0..n)
+                .map(|i| 2.0 * now[i] - before[i] + accelerated(&now, i))
+                .collect();
             before = std::mem::replace(&mut now, next);
         }
         let at: Vec<usize> = (0..n).collect();

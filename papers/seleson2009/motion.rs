@@ -136,7 +136,9 @@ pub fn run(
         let sim = deck::model(&deck)?;
         let steps = deck.spec.schedule.steps;
         let Horizon::Ratio(neighbours) = deck.spec.horizon else {
-            return Err(Failure::new(format!("{name}: write the horizon as m_ratio")));
+            return Err(Failure::new(format!(
+                "{name}: write the horizon as m_ratio"
+            )));
         };
         let wanted = wanted(steps, sim.info().time_step);
         let motion = record(neighbours, sim, steps, &wanted)
@@ -240,7 +242,13 @@ impl Motion {
     /// The step or the beginning was not recorded.
     pub fn off_closed_form(&self, step: u64) -> Result<f64, Failure> {
         let [u0, u] = [&self.profile(0)?.u, &self.profile(step)?.u];
-        Ok(modes::difference(&self.chain(), self.time_step, step, u0, u))
+        Ok(modes::difference(
+            &self.chain(),
+            self.time_step,
+            step,
+            u0,
+            u,
+        ))
     }
 
     /// Displacements at a recorded step.

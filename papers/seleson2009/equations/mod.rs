@@ -75,7 +75,10 @@ fn springs(found: &mut Findings) -> Result<(), Failure> {
     let (near, off) = (far(1000), far(2000));
     let rest = |c: &[Q], p: usize| (c[p].clone() - nonlocal[p].clone()).value().abs();
     let halves = [1, 2].map(|p| rest(&near, p) / rest(&off, p));
-    found.number("4.2-limit", halves.iter().map(|h| (h - 2.0).abs()).fold(0.0, f64::max));
+    found.number(
+        "4.2-limit",
+        halves.iter().map(|h| (h - 2.0).abs()).fold(0.0, f64::max),
+    );
     found.text("4.2-finite", fractions(&springs_excess(20, 3)));
     found.text("4.4", fractions(&nonlocal[..3]));
     found.text("4.4-next", nonlocal[3].to_string());
@@ -87,16 +90,16 @@ fn springs(found: &mut Findings) -> Result<(), Failure> {
         format!("a = 10⁻⁶: {}", fractions(&small)),
         small[0] == one() && small[1..].iter().all(|c| c.value() < 1e-12),
     );
-    let series = |c: &[Q]| {
-        dispersion_series(c).ok_or_else(|| Failure::new("long waves have no speed"))
-    };
+    let series =
+        |c: &[Q]| dispersion_series(c).ok_or_else(|| Failure::new("long waves have no speed"));
     let [_, root] = series(&md)?;
     found.text("4.8", fractions(&root.0[..3]));
     let [square, root] = series(&nonlocal)?;
     found.text("4.9", fractions(&root.0[..3]));
     found.text("4.9-square", fractions(&square.0[..3]));
     // K(N) = 2 K1/(N (N+1)): the same long waves for every N
-    let same = (1..=40).all(|n| LinearChain::springs(one(), q(1, 3), n).coefficients(1)[0] == one());
+    let same =
+        (1..=40).all(|n| LinearChain::springs(one(), q(1, 3), n).coefficients(1)[0] == one());
     found.holds("a-1", format!("c₂ = K1 for N = 1 … 40: {same}"), same);
     Ok(())
 }
@@ -131,7 +134,8 @@ fn upscaling_of_springs(found: &mut Findings) -> String {
     let md = Expansion::linear(&md);
     let same = compare(&md, &limit, 0.0);
     found.text("upscaling-limits", verdict(&same));
-    let chain = |n: i64, spacing: Q| LinearChain::springs(q(1, 1), spacing, n as usize).expansion(4);
+    let chain =
+        |n: i64, spacing: Q| LinearChain::springs(q(1, 1), spacing, n as usize).expansion(4);
     let resolved = compare(&chain(20, q(1, 4)), &chain(10, q(1, 2)), 0.0);
     found.text("upscaling-finite", verdict(&resolved));
     let local = compare(&chain(1, q(1, 4)), &chain(20, q(1, 4)), 0.0);
@@ -163,7 +167,8 @@ fn lennard_jones(found: &mut Findings) -> String {
         terms = print.iter().map(|p| p.terms().count()).sum();
         routes &= inner::expansion(&chain, 3) == derived;
         // (5.3) with M = N and Δx = a
-        upscaled &= PowerLawChain::lennard_jones_upscaled(e, s6, a.clone(), n).expansion(3) == derived;
+        upscaled &=
+            PowerLawChain::lennard_jones_upscaled(e, s6, a.clone(), n).expansion(3) == derived;
     }
     found.holds(
         "5.2",
@@ -189,7 +194,11 @@ fn lennard_jones(found: &mut Findings) -> String {
     found.number("a-5", pull.into_iter().fold(0.0, f64::max));
     let md = paper(1, 4);
     let mut text = String::from("## Lennard-Jones, σ̄⁶ = ½, ε̄ = 1\n\n");
-    for (key, n, m) in [("upscaling-n-1", 1, 4), ("upscaling-n-2", 2, 2), ("upscaling-n-4", 4, 1)] {
+    for (key, n, m) in [
+        ("upscaling-n-1", 1, 4),
+        ("upscaling-n-2", 2, 2),
+        ("upscaling-n-4", 4, 1),
+    ] {
         let c = compare(&md, &paper(n, m), 0.0);
         found.text(key, verdict(&c));
         let differ: Vec<String> = c
@@ -239,7 +248,8 @@ fn dispersion(context: &Context, found: &mut Findings) -> Result<(), Failure> {
     found.number("4.9-order", (rest(0.8) / rest(0.4)).log2());
     let chain = |n: usize| LinearChain::springs(1.0, horizon / n as f64, n);
     let apart = |n: usize| {
-        let ratio = waves.map(|k| chain(n).frequency(k, 1.0).unwrap_or(f64::NAN) / exact.frequency(k) - 1.0);
+        let ratio = waves
+            .map(|k| chain(n).frequency(k, 1.0).unwrap_or(f64::NAN) / exact.frequency(k) - 1.0);
         ratio.iter().map(|r| r.abs()).fold(0.0, f64::max)
     };
     found.holds(
@@ -262,14 +272,31 @@ fn dispersion(context: &Context, found: &mut Findings) -> Result<(), Failure> {
             .collect()
     };
     let columns = [
-        ("PD, exact: √(4 Cin(kδ))/δ", k.iter().map(|k| exact.frequency(*k)).collect()),
+        (
+            "PD, exact: √(4 Cin(kδ))/δ",
+            k.iter().map(|k| exact.frequency(*k)).collect(),
+        ),
         ("MD: Δx = 0.25, N = 20", of(20, 0.25)),
         ("coarse PD: Δx = 0.5, N = 10", of(10, 0.5)),
         ("N = 1, Δx = 0.25", of(1, 0.25)),
         ("CCM: ω = k", k.clone()),
-        ("(4.9)", k.iter().map(|k| if *k < 0.7 { series(k * horizon) } else { f64::NAN }).collect::<Vec<f64>>()),
+        (
+            "(4.9)",
+            k.iter()
+                .map(|k| {
+                    if *k < 0.7 {
+                        series(k * horizon)
+                    } else {
+                        f64::NAN
+                    }
+                })
+                .collect::<Vec<f64>>(),
+        ),
     ];
-    let mut plot = Plot::new("Dispersion of springs with δ = 5").x("k", "").y("ω", "").y_range(0.0, 1.6);
+    let mut plot = Plot::new("Dispersion of springs with δ = 5")
+        .x("k", "")
+        .y("ω", "")
+        .y_range(0.0, 1.6);
     let mut table = Table::new().column("k", "", k.clone());
     for (label, omega) in columns {
         plot = match label {
@@ -289,7 +316,10 @@ fn dispersion(context: &Context, found: &mut Findings) -> Result<(), Failure> {
 fn derived() -> String {
     let mut text = String::from("# Derived equations\n\n## Springs\n\n");
     let list = |c: &[Q]| -> String {
-        let terms = c.iter().enumerate().map(|(p, c)| format!("{c} L^{} y({})", 2 * p, 2 * p + 2));
+        let terms = c
+            .iter()
+            .enumerate()
+            .map(|(p, c)| format!("{c} L^{} y({})", 2 * p, 2 * p + 2));
         terms.collect::<Vec<_>>().join(" + ")
     };
     let c = springs_continuum(q(1, 1), q(1, 1), 6);

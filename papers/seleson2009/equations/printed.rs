@@ -32,9 +32,8 @@ fn brace(n: i64) -> [JetPolynomial<Q>; 3] {
         term(-b4 * q(1, 12), 3, &[3, 1]),
         term(b5 * q(1, 32), 4, &[5]),
     ];
-    let sum = |terms: &[JetPolynomial<Q>]| {
-        terms.iter().fold(JetPolynomial::zero(), |s, t| s.add(t))
-    };
+    let sum =
+        |terms: &[JetPolynomial<Q>]| terms.iter().fold(JetPolynomial::zero(), |s, t| s.add(t));
     [second, sum(&fourth), sum(&sixth)]
 }
 

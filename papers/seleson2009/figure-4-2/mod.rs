@@ -78,7 +78,10 @@ impl Experiment for Figure42 {
         let weaker: Vec<f64> = CURVE.map(|n| bound(n) / (HORIZON / n as f64)).to_vec();
         found.holds(
             "weaker-than-cfl",
-            format!("(4.12) over the straight line: {:.3} at N = 2, {:.1} at N = 500", weaker[1], weaker[12]),
+            format!(
+                "(4.12) over the straight line: {:.3} at N = 2, {:.1} at N = 500",
+                weaker[1], weaker[12]
+            ),
             weaker[1..].iter().all(|r| *r > 1.0) && weaker.is_sorted(),
         );
         let ratio: Vec<f64> = runs.iter().zip(&seen).map(|(n, l)| l / bound(*n)).collect();
@@ -111,7 +114,10 @@ impl Experiment for Figure42 {
             format!("from {:.4} to {:.4}", ratio[0], ratio[ratio.len() - 1]),
             ratio.is_sorted() && ratio.iter().all(|r| *r < std::f64::consts::SQRT_2),
         );
-        let off = runs.iter().zip(&seen).map(|(n, l)| (l / sharp(*n) - 1.0).abs());
+        let off = runs
+            .iter()
+            .zip(&seen)
+            .map(|(n, l)| (l / sharp(*n) - 1.0).abs());
         found.number("observed-is-sharp", off.fold(0.0, f64::max));
         found.number("sharp-local", sharp(1) / bound(1));
 
@@ -120,22 +126,40 @@ impl Experiment for Figure42 {
         let plot = Plot::new("Stable step, δ = 5")
             .x("Δx", "")
             .y("Δt", "")
-            .series("(4.12)", &spacing, &CURVE.map(bound), Stroke::Solid, Mark::Disc)
+            .series(
+                "(4.12)",
+                &spacing,
+                &CURVE.map(bound),
+                Stroke::Solid,
+                Mark::Disc,
+            )
             .dashed("linear, Δt = Δx", &spacing, &spacing)
             .series("observed", &at, &seen, Stroke::Dashed, Mark::Diamond)
-            .series("sharp: 2/max ω", &spacing, &CURVE.map(sharp), Stroke::Dotted, Mark::None);
-        found.picture(plot.save(&context.out, "stable-step")?);
-        found.picture(plot.log_x().log_y().save(&context.out, "stable-step-log")?);
+            .series(
+                "sharp: 2/max ω",
+                &spacing,
+                &CURVE.map(sharp),
+                Stroke::Dotted,
+                Mark::None,
+            );
+        let linear = plot.clone().x_range(0.0, HORIZON).y_range(0.0, 7.5);
+        found.picture(linear.save(&context.out, "stable-step")?);
+        let log = plot.log_x().log_y();
+        found.picture(log.save(&context.out, "stable-step-log")?);
         let path = context.out.join("stable-step.csv");
         Table::new()
             .column("N", "", CURVE.map(|n| n as f64))
             .column("spacing", "", spacing)
             .column("bound (4.12)", "", CURVE.map(bound))
             .column("sharp limit", "", CURVE.map(sharp))
-            .column("observed", "", CURVE.map(|n| {
-                let run = runs.iter().position(|m| *m == n);
-                run.map_or(f64::NAN, |k| seen[k])
-            }))
+            .column(
+                "observed",
+                "",
+                CURVE.map(|n| {
+                    let run = runs.iter().position(|m| *m == n);
+                    run.map_or(f64::NAN, |k| seen[k])
+                }),
+            )
             .save(&path)?;
         found.file(path);
         Ok(found)
@@ -156,7 +180,11 @@ fn border(n: usize, bound: f64) -> Result<f64, Failure> {
         sim.set_time(0, 0.0);
         sim.start(true);
         let runs = (0..steps).all(|_| sim.step().is_ok());
-        let largest = sim.displacements().iter().map(|u| u[0].abs()).fold(0.0, f64::max);
+        let largest = sim
+            .displacements()
+            .iter()
+            .map(|u| u[0].abs())
+            .fold(0.0, f64::max);
         runs && largest < BOUNDED
     };
     let interval = [0.99 * bound, 1.45 * bound];

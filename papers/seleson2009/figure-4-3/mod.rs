@@ -54,18 +54,28 @@ impl Experiment for Figure43 {
     fn run(&self, context: &Context) -> Result<Findings, Failure> {
         let mut runs: Vec<Motion> = vec![];
         for (name, _) in RUNS {
-            let motion = run(context, DECK, name, name, &smaller(context, name), |steps, dt| Wanted {
-                columns: 1000,
-                rows: 400,
-                profiles: vec![0, (APART / dt).round() as u64, steps],
-                energies: 40,
-            })?;
+            let motion = run(
+                context,
+                DECK,
+                name,
+                name,
+                &smaller(context, name),
+                |steps, dt| Wanted {
+                    columns: 1000,
+                    rows: 400,
+                    profiles: vec![0, (APART / dt).round() as u64, steps],
+                    energies: 40,
+                },
+            )?;
             runs.push(motion);
         }
         let mut found = Findings::new();
         let mut pulses = vec![];
         for (motion, (name, label)) in runs.iter().zip(RUNS) {
-            let title = format!("{label}: {} points, N = {}", motion.points, motion.neighbours);
+            let title = format!(
+                "{label}: {} points, N = {}",
+                motion.points, motion.neighbours
+            );
             let map = motion.image.map(&title, CONTRAST);
             found.picture(map.save(&context.out, &format!("density-{name}"))?);
             let pulse = |step| -> Result<RightPulse, Failure> {
@@ -102,7 +112,10 @@ impl Experiment for Figure43 {
         let off = off.fold(0.0, f64::max);
         found.holds(
             "ccm-does-not-disperse",
-            format!("largest distance from d'Alembert's solution at t = {:.2}: {off:.2e}", ccm.time),
+            format!(
+                "largest distance from d'Alembert's solution at t = {:.2}: {off:.2e}",
+                ccm.time
+            ),
             off < 0.05,
         );
         let spread = |k: usize| {
@@ -133,7 +146,11 @@ impl Experiment for Figure43 {
             (0..4)
                 .map(|k| {
                     let height = pulses[k][1].height;
-                    format!("{}: crest {height:.3}, behind t by {:.2}", RUNS[k].1, lag(k))
+                    format!(
+                        "{}: crest {height:.3}, behind t by {:.2}",
+                        RUNS[k].1,
+                        lag(k)
+                    )
                 })
                 .collect::<Vec<_>>()
                 .join("; "),
@@ -146,7 +163,10 @@ impl Experiment for Figure43 {
         found.number("closed-form", closed);
         let drift = runs.iter().map(|m| m.drift(|e| e.invariant()));
         found.number("invariant", drift.fold(0.0, f64::max));
-        let wobble = runs.iter().map(|m| m.drift(|e| e.total())).fold(0.0, f64::max);
+        let wobble = runs
+            .iter()
+            .map(|m| m.drift(|e| e.total()))
+            .fold(0.0, f64::max);
         found.holds(
             "energy-wobbles",
             format!("KE + PE changes by up to {:.1} %", 100.0 * wobble),
@@ -166,8 +186,16 @@ impl Experiment for Figure43 {
             .column("width at t = 50", "", column(&|k| pulses[k][0].width))
             .column("width at the end", "", column(&|k| pulses[k][1].width))
             .column("crest at the end", "", column(&|k| pulses[k][1].crest))
-            .column("change of KE + PE", "", column(&|k| runs[k].drift(|e| e.total())))
-            .column("change of the invariant", "", column(&|k| runs[k].drift(|e| e.invariant())))
+            .column(
+                "change of KE + PE",
+                "",
+                column(&|k| runs[k].drift(|e| e.total())),
+            )
+            .column(
+                "change of the invariant",
+                "",
+                column(&|k| runs[k].drift(|e| e.invariant())),
+            )
             .save(&path)?;
         found.file(path);
         Ok(found)

@@ -59,7 +59,9 @@ impl Experiment for Figure45 {
                     .collect(),
                 energies: 60,
             })?;
-            let map = motion.image.map(&format!("MD: 1001 points, {label}"), CONTRAST);
+            let map = motion
+                .image
+                .map(&format!("MD: 1001 points, {label}"), CONTRAST);
             found.picture(map.save(&context.out, &format!("density-{name}"))?);
             let profile = motion.profile(motion.nearest(TIME))?;
             let title = format!("MD: 1001 points, {label}, t = {:.2}", profile.time);
@@ -108,11 +110,20 @@ impl Experiment for Figure45 {
         );
         let low = runs
             .iter()
-            .map(|m| Ok(m.profile(m.nearest(TIME))?.u.iter().copied().fold(0.0, f64::min)))
+            .map(|m| {
+                Ok(m.profile(m.nearest(TIME))?
+                    .u
+                    .iter()
+                    .copied()
+                    .fold(0.0, f64::min))
+            })
             .collect::<Result<Vec<f64>, Failure>>()?;
         found.holds(
             "waves-behind",
-            format!("lowest displacement: N = 1 {:.3}, N = 5 {:.3}", low[0], low[1]),
+            format!(
+                "lowest displacement: N = 1 {:.3}, N = 5 {:.3}",
+                low[0], low[1]
+            ),
             low[1] < 2.0 * low[0] && low[0] < -0.01,
         );
         let mut closed = 0.0f64;

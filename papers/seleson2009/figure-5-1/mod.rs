@@ -3,9 +3,9 @@
 use peridyne::error::RunError;
 
 use super::SHARED;
+use super::deck;
 use super::lennard_jones::Paper;
 use super::motion::{Motion, Wanted, record, run};
-use super::deck;
 use crate::{Context, Experiment, Failure, Findings};
 
 const DECK: &str = include_str!("deck.toml");
@@ -58,7 +58,10 @@ impl Experiment for Figure51 {
                 profiles: vec![0, steps / 100, steps],
                 energies: 0,
             })?;
-            let title = format!("{label}: {} points, N = {}", motion.points, motion.neighbours);
+            let title = format!(
+                "{label}: {} points, N = {}",
+                motion.points, motion.neighbours
+            );
             if name == "md" {
                 let map = motion.image.map(&title, CONTRAST);
                 found.picture(map.save(&context.out, "density-md")?);
@@ -76,10 +79,17 @@ impl Experiment for Figure51 {
             .map(|m| format!("{} and {}", m.points, m.neighbours))
             .collect();
         found.text("points", counts.join(", "));
-        let same = md.profiles.iter().zip(&fine.profiles).all(|(a, b)| a.u == b.u);
+        let same = md
+            .profiles
+            .iter()
+            .zip(&fine.profiles)
+            .all(|(a, b)| a.u == b.u);
         found.holds(
             "pd-is-md-at-one-resolution",
-            format!("displacements at {} steps: the same bits: {same}", md.profiles.len()),
+            format!(
+                "displacements at {} steps: the same bits: {same}",
+                md.profiles.len()
+            ),
             same,
         );
         // (5.3) as it is printed, in a stepper of its own
@@ -99,7 +109,10 @@ impl Experiment for Figure51 {
         found.number("equation-5-3", off);
         // the shock: steepest front in the half that runs to the right
         let slope = |m: &Motion, u: &[f64]| {
-            let steep = u.windows(2).skip(u.len() / 2).map(|w| (w[0] - w[1]) / m.spacing);
+            let steep = u
+                .windows(2)
+                .skip(u.len() / 2)
+                .map(|w| (w[0] - w[1]) / m.spacing);
             steep.fold(0.0, f64::max)
         };
         let start = slope(md, &md.profile(0)?.u) / 2.0;
@@ -110,15 +123,25 @@ impl Experiment for Figure51 {
             format!("largest compression of the right pulse: {start:.4} as it starts, {steepest:.4} at the end, at x = {front:.0}"),
             steepest > 1.5 * start && front > CORNER.0[0],
         );
-        let waves: Vec<f64> = ends.iter().zip(&runs).map(|(u, m)| wavelength(u, m.spacing)).collect();
+        let waves: Vec<f64> = ends
+            .iter()
+            .zip(&runs)
+            .map(|(u, m)| wavelength(u, m.spacing))
+            .collect();
         found.holds(
             "resolution-changes-the-front",
-            format!("distance of the two foremost waves: {:.2}, {:.2}, {:.2} for Δx = 1, 2, 4", waves[1], waves[2], waves[3]),
+            format!(
+                "distance of the two foremost waves: {:.2}, {:.2}, {:.2} for Δx = 1, 2, 4",
+                waves[1], waves[2], waves[3]
+            ),
             waves[2] > 1.3 * waves[1] && waves[3] > 1.3 * waves[2],
         );
         let smooth = |k: usize| {
             let every = (runs[k].spacing / md.spacing).round() as usize;
-            let apart = ends[k].iter().enumerate().map(|(j, u)| (u - ends[0][j * every]).abs());
+            let apart = ends[k]
+                .iter()
+                .enumerate()
+                .map(|(j, u)| (u - ends[0][j * every]).abs());
             apart.fold(0.0, f64::max)
         };
         let displacement = ends[0].iter().copied().fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! Fig. 5.2: kinetic, potential and total energy of the Lennard-Jones chain and of its coarse peridynamics.
 
-use peridyne_io::write::plot::Plot;
+use peridyne_io::write::plot::{Mark, Plot, Stroke};
 use peridyne_io::write::table::Table;
 
 use super::SHARED;
@@ -61,10 +61,21 @@ impl Experiment for Figure52 {
         let kinetic: Vec<Vec<f64>> = (0..3).map(|k| series(k, |e| e.kinetic)).collect();
         // above the reference state, which is the binding energy
         let potential: Vec<Vec<f64>> = (0..3)
-            .map(|k| series(k, |e| e.potential).iter().map(|p| p - rest[k]).collect())
+            .map(|k| {
+                series(k, |e| e.potential)
+                    .iter()
+                    .map(|p| p - rest[k])
+                    .collect()
+            })
             .collect();
         let total: Vec<Vec<f64>> = (0..3)
-            .map(|k| kinetic[k].iter().zip(&potential[k]).map(|(a, b)| a + b).collect())
+            .map(|k| {
+                kinetic[k]
+                    .iter()
+                    .zip(&potential[k])
+                    .map(|(a, b)| a + b)
+                    .collect()
+            })
             .collect();
         let t = series(0, |e| e.time);
 
@@ -90,14 +101,22 @@ impl Experiment for Figure52 {
             difference.fold(0.0, f64::max) / scale
         };
         let text = |of: &[Vec<f64>]| {
-            format!("Δx = 2 {:.2} %, Δx = 4 {:.2} %", 100.0 * apart(&of[1], &of[0]), 100.0 * apart(&of[2], &of[0]))
+            format!(
+                "Δx = 2 {:.2} %, Δx = 4 {:.2} %",
+                100.0 * apart(&of[1], &of[0]),
+                100.0 * apart(&of[2], &of[0])
+            )
         };
         for (key, of) in [
             ("kinetic-agrees", &kinetic),
             ("potential-agrees", &potential),
             ("total-agrees", &total),
         ] {
-            found.holds(key, text(of), apart(&of[1], &of[0]) < 0.02 && apart(&of[2], &of[0]) < 0.05);
+            found.holds(
+                key,
+                text(of),
+                apart(&of[1], &of[0]) < 0.02 && apart(&of[2], &of[0]) < 0.05,
+            );
         }
         let share = kinetic[0][t.len() - 1] / scale;
         found.holds(
@@ -108,7 +127,11 @@ impl Experiment for Figure52 {
 
         for (name, title, of) in [
             ("kinetic", "Kinetic energy", &kinetic),
-            ("potential", "Potential energy above the reference state", &potential),
+            (
+                "potential",
+                "Potential energy above the reference state",
+                &potential,
+            ),
             ("total", "Total energy above the reference state", &total),
         ] {
             let plot = Plot::new(title).x("t", "").y("energy", "");
@@ -116,7 +139,7 @@ impl Experiment for Figure52 {
             let plot = plot
                 .line(RUNS[0].1, &t, &of[0])
                 .dashed(RUNS[1].1, &t, &of[1])
-                .dashed(RUNS[2].1, &t, &of[2]);
+                .series(RUNS[2].1, &t, &of[2], Stroke::Dotted, Mark::None);
             found.picture(plot.save(&context.out, name)?);
         }
         let path = context.out.join("energies.csv");
@@ -124,7 +147,11 @@ impl Experiment for Figure52 {
         for (k, (_, label)) in RUNS.iter().enumerate() {
             table = table
                 .column(&format!("{label}: kinetic"), "", kinetic[k].clone())
-                .column(&format!("{label}: potential above rest"), "", potential[k].clone())
+                .column(
+                    &format!("{label}: potential above rest"),
+                    "",
+                    potential[k].clone(),
+                )
                 .column(&format!("{label}: total above rest"), "", total[k].clone())
                 .column(&format!("{label}: total"), "", series(k, Energies::total));
         }
@@ -145,6 +172,8 @@ fn at_rest(m: &Motion) -> (f64, f64) {
         4.0 * epsilon * (s6 * s6 - s6)
     };
     let bulk = (1..=n).map(bond).sum::<f64>() / m.spacing;
-    let whole = (1..=n).map(|j| (m.points as f64 - f64::from(j)) * bond(j)).sum();
+    let whole = (1..=n)
+        .map(|j| (m.points as f64 - f64::from(j)) * bond(j))
+        .sum();
     (bulk, whole)
 }

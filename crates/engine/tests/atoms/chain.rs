@@ -122,7 +122,11 @@ fn the_limit_of_a_long_chain_of_large_families_is_measured() {
         let top = (1..=4000)
             .map(|k| omega(m, std::f64::consts::PI * f64::from(k) / 4000.0))
             .fold(0.0, f64::max);
-        assert!((limit * top / 2.0 - 1.0).abs() < 0.02, "{m}: {limit} {}", 2.0 / top);
+        assert!(
+            (limit * top / 2.0 - 1.0).abs() < 0.02,
+            "{m}: {limit} {}",
+            2.0 / top
+        );
     }
 }
 
@@ -301,7 +305,10 @@ fn one_jump_in_a_long_chain_stops_the_run() {
         sim.set_displacements(&u);
         sim.start(true);
         let error = sim.step().expect_err("the jump was not noticed");
-        assert!(matches!(error, RunError::TooFast { step: 1, .. }), "{at}: {error}");
+        assert!(
+            matches!(error, RunError::TooFast { step: 1, .. }),
+            "{at}: {error}"
+        );
         assert_eq!(sim.displacements()[at][0], 0.8);
     }
 }
