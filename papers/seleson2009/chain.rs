@@ -37,6 +37,16 @@ impl Chain {
         safety * (self.density / (self.stiffness() * harmonic)).sqrt() * self.spacing
     }
 
+    /// Changes of a deck that make its chain this one, with the step of (4.13) until `end`.
+    pub fn changes(&self, safety: f64, end: f64) -> Vec<(&'static str, String)> {
+        vec![
+            ("constants.intervals", (self.points - 1).to_string()),
+            ("constants.N", self.neighbours.to_string()),
+            ("constants.dt", format!("{:?}", self.time_step(safety))),
+            ("run.steps", self.steps(safety, end).to_string()),
+        ]
+    }
+
     /// Whole steps until `end`.
     pub fn steps(&self, safety: f64, end: f64) -> u32 {
         (end / self.time_step(safety)).floor() as u32

@@ -162,9 +162,7 @@ fn an_unknown_name_tells_the_closest_and_all() {
     );
     let text = told("zzz");
     assert!(
-        text.starts_with(
-            "there is no experiment `zzz`: There are seleson2009, seleson2009/table-4-1"
-        ),
+        text.starts_with("there is no experiment `zzz`: There are seleson2009, seleson2009/"),
         "{text}"
     );
     assert!(!select(&all(), Some("seleson2009/")).unwrap().is_empty());

@@ -51,10 +51,10 @@ impl Verlet {
             limit: limit * limit,
         };
         for_each_block(self.simd, &kernel, &mut self.fastest);
-        // not `f64::max`: it would lose what is not a number
+        // what is not a number stays, whatever the blocks after it say
         self.fastest
             .iter()
-            .fold(0.0, |m, x| if *x <= m { m } else { *x })
+            .fold(0.0, |m, x| if m.is_nan() || *x <= m { m } else { *x })
     }
 
     /// The waiting half kick.

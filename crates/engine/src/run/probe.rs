@@ -11,6 +11,8 @@ use crate::spec::Spec;
 const LARGE: usize = 20_000;
 /// Cells per axis of that block: eight horizons of the usual family; the spectrum's top no longer changes.
 const BLOCK: usize = 24;
+/// Cells per neighbour on one side, where families are larger than that.
+const PER_REACH: usize = 8;
 
 /// Largest stable step of velocity Verlet (time); ∞ if nothing resists.
 ///
@@ -24,8 +26,14 @@ pub(super) fn stable_step<const D: usize>(
 ) -> Result<f64, BuildError> {
     let lambda = match &body.layout {
         Layout::Grid(grid) if body.points() > LARGE => {
+            let reach = recipe.stencil.as_ref().map_or(1, |s| s.reach);
+            // in the plane and in space a block of many large families would cost more than the run
+            let block = match D {
+                1 => BLOCK.max(PER_REACH * reach),
+                _ => BLOCK,
+            };
             let extent: [usize; D] =
-                std::array::from_fn(|a| (grid.cells[a] - 2 * grid.halo[a]).min(BLOCK));
+                std::array::from_fn(|a| (grid.cells[a] - 2 * grid.halo[a]).min(block));
             let basis = grid.lattice.kind.basis();
             let mut quarters = vec![];
             for i in 0..extent.iter().product::<usize>() {
@@ -40,7 +48,6 @@ pub(super) fn stable_step<const D: usize>(
                 }));
             }
             let periodic = std::array::from_fn(|a| body.period[a].is_some());
-            let reach = recipe.stencil.as_ref().map_or(1, |s| s.reach);
             let mut block = Body::<D>::on_lattice(
                 grid.lattice,
                 &quarters,

@@ -88,6 +88,48 @@ fn springs_conserve_the_energy_of_the_scheme() {
     assert!(wobble > 1e-3, "{wobble}: the test says nothing");
 }
 
+/// A square pulse on a fine chain: in one step points go further than the spacing, through their neighbours.
+#[test]
+fn springs_go_further_than_their_spacing() {
+    let n = 401;
+    let mut spec = springs(n, 20);
+    spec.schedule.time_step = TimeStep::Fixed(6.0);
+    let mut sim = build(&spec, Options::default()).unwrap();
+    let u: Vec<_> = (0..n)
+        .map(|i| [if (150..=250).contains(&i) { 50.0 } else { 0.0 }, 0.0, 0.0])
+        .collect();
+    sim.set_displacements(&u);
+    sim.start(true);
+    for _ in 0..50 {
+        sim.step().unwrap();
+    }
+    let moved = sim.displacements().iter().map(|u| u[0]).sum::<f64>();
+    assert!((moved / (50.0 * 101.0) - 1.0).abs() < 1e-12, "{moved}");
+    sim.set_time_step(60.0);
+    let error = (0..400).find_map(|_| sim.step().err());
+    assert!(
+        matches!(error, Some(RunError::NotFinite { .. })),
+        "{error:?}"
+    );
+}
+
+/// The stability limit of a long chain is measured on a part of it, which must hold whole families.
+#[test]
+fn the_limit_of_a_long_chain_of_large_families_is_measured() {
+    for m in [1u32, 20, 100] {
+        let spec = springs(20_001, m);
+        let limit = build(&spec, Options::default()).unwrap().info().stable_step;
+        let top = (1..=4000)
+            .map(|k| omega(m, std::f64::consts::PI * f64::from(k) / 4000.0))
+            .fold(0.0, f64::max);
+        assert!(
+            (limit * top / 2.0 - 1.0).abs() < 0.02,
+            "{m}: {limit} {}",
+            2.0 / top
+        );
+    }
+}
+
 /// Linear springs in one dimension are the bond-based solid while no bond turns over.
 #[test]
 fn springs_are_pmb_where_nothing_turns_over() {
@@ -251,6 +293,24 @@ fn atoms_that_cross_stop_the_run_and_the_state_before_stays() {
     let ordered = (1..100).all(|i| 1.0 + u[i][0] - u[i - 1][0] > 0.0);
     assert!(ordered && u.iter().all(|u| u[0].is_finite()));
     assert!(sim.velocities().iter().all(|v| v[0].is_finite()));
+}
+
+/// A point that would jump is noticed wherever it is: all others are in blocks of their own and stand still.
+#[test]
+fn one_jump_in_a_long_chain_stops_the_run() {
+    for at in [5, 700, 1500, 2990] {
+        let mut sim = build(&lj_chain(3000, 1.0, 4), Options::default()).unwrap();
+        let mut u = vec![[0.0; 3]; 3000];
+        u[at][0] = 0.8;
+        sim.set_displacements(&u);
+        sim.start(true);
+        let error = sim.step().expect_err("the jump was not noticed");
+        assert!(
+            matches!(error, RunError::TooFast { step: 1, .. }),
+            "{at}: {error}"
+        );
+        assert_eq!(sim.displacements()[at][0], 0.8);
+    }
 }
 
 /// An initial state that is crossed already is named before a step.
