@@ -70,9 +70,10 @@ fn all(arguments: &UpscaleArguments, fine: &Deck) -> Result<(), Failure> {
         let mut measured = None;
         if arguments.run {
             if reference.is_none() {
-                reference = Some(run(&out.join("fine.toml"))?);
+                reference = Some(run(&out.join("fine.toml"), None)?);
             }
-            let coarse = run(&dir.join("coarse.toml"))?;
+            let until = reference.as_ref().map(|fine| fine.time);
+            let coarse = run(&dir.join("coarse.toml"), until)?;
             measured = reference.as_ref().map(|fine| compare(fine, &coarse));
         }
         let length = match fine.units {
@@ -134,17 +135,23 @@ struct Ran {
     reference: Vec<[f64; 3]>,
     displacement: Vec<[f64; 3]>,
     spacing: f64,
+    time: f64,
     seconds: f64,
     steps: u64,
 }
 
-fn run(path: &Path) -> Result<Ran, Failure> {
+/// Runs a deck to its end, or to the time `until` with its own or a slightly shorter step.
+fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|e| Failure::Run(format!("{name}: {e}")))?;
     let deck = Deck::parse(&text, &name, &[]).map_err(|e| Failure::Input(e.into()))?;
     let mut sim = build(&deck.spec, Options::default())
         .map_err(|e| Failure::Input(deck.explain(&e).into()))?;
-    let steps = deck.steps(sim.info().time_step);
+    let mut steps = deck.steps(sim.info().time_step);
+    if let Some(until) = until.or(deck.duration) {
+        steps = (until / sim.info().time_step - 1e-6).ceil().max(1.0) as u64;
+        sim.set_time_step(until / steps as f64);
+    }
     say(&format!(
         "running {name}: {} points, {} bonds, {steps} steps of {:.4e}",
         sim.info().points,
@@ -168,6 +175,7 @@ fn run(path: &Path) -> Result<Ran, Failure> {
         reference: sim.reference(),
         displacement: sim.displacements(),
         spacing: sim.info().spacing,
+        time: sim.time(),
         seconds,
         steps,
     })

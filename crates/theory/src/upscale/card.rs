@@ -99,13 +99,13 @@ fn card_in<const D: usize>(
     let (b, b_reference) = crystal::<D>(coarse)?;
     let left = side(fine, &a, a_reference)?;
     let right = side(coarse, &b, b_reference)?;
-    if let Some(r) = a_reference {
+    if a_reference.is_some() {
         let scale = left.stiffness[0][0].abs();
-        if r.pressure.abs() > 1e-6 * scale {
+        if left.pressure.abs() > 1e-4 * scale {
             notes.push(format!(
                 "The reference is under a pressure of {:.6e}, {:.2} % of c11: ends and surfaces must be held, and constants contain it.",
-                r.pressure,
-                100.0 * r.pressure / scale
+                left.pressure,
+                100.0 * left.pressure / scale
             ));
         }
     }
