@@ -345,13 +345,7 @@ run = { steps = 60, time_step = { safety = 0.7 } }
     #[test]
     fn a_state_that_does_not_fit_is_left_alone() {
         let dir = tempfile::tempdir().unwrap();
-        run(
-            &context(dir.path(), "a"),
-            "p",
-            sim().as_mut(),
-            plan(10, 10),
-        )
-        .unwrap();
+        run(&context(dir.path(), "a"), "p", sim().as_mut(), plan(10, 10)).unwrap();
         let path = dir.path().join(".parts/p.state");
         let told = |inputs: &str| load(&path, inputs, sim().as_mut()).unwrap_err().to_string();
         assert!(load(&path, "a", sim().as_mut()).is_ok());

@@ -36,7 +36,11 @@ fn image(wave: &Wave, [xs, ts]: [[f64; 2]; 2], bar: [f64; 2], title: &str) -> Ma
     let x = |k: Option<&usize>| k.map_or(0.0, |j| wave.x[*j]);
     let t = |k: Option<&usize>| k.map_or(0.0, |k| wave.time[*k]);
     Map::new(title)
-        .x("x", "", edges(x(columns.first()), x(columns.last()), wave.h))
+        .x(
+            "x",
+            "",
+            edges(x(columns.first()), x(columns.last()), wave.h),
+        )
         .y("t", "", edges(t(rows.first()), t(rows.last()), dt))
         .value("1/(dy/dx)", "")
         .between(bar[0], bar[1])
@@ -95,7 +99,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         worst < 1e-9,
     );
     let said = literal()?;
-    found.holds("literal", said.clone(), said.contains("electron density at atom"));
+    found.holds(
+        "literal",
+        said.clone(),
+        said.contains("electron density at atom"),
+    );
     let front = [&md, &ncm[0], &ncm[1]].map(|wave| {
         let density = wave.density(wave.steps());
         let peak = |j: &usize| density[*j] > density[j - 1] && density[*j] > density[j + 1];
@@ -112,12 +120,18 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let [a, b, c] = front;
     found.holds(
         "preserved",
-        format!("the right front is at x = {}, {}, {} at T", a[0], b[0], c[0]),
+        format!(
+            "the right front is at x = {}, {}, {} at T",
+            a[0], b[0], c[0]
+        ),
         (b[0] - a[0]).abs() < 10.0 && (c[0] - a[0]).abs() < 10.0,
     );
     found.holds(
         "oscillations",
-        format!("distance of the last two maxima behind the right front: {}, {}, {} for h = a, 2a, 4a", a[1], b[1], c[1]),
+        format!(
+            "distance of the last two maxima behind the right front: {}, {}, {} for h = a, 2a, 4a",
+            a[1], b[1], c[1]
+        ),
         b[1] > 1.3 * a[1] && c[1] > 1.3 * b[1],
     );
     Ok(found)

@@ -1,6 +1,6 @@
 //! Fig. 2: initial displacement, displacement at the end, energies over time.
 
-use peridyne_io::write::plot::{Plot};
+use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 
 use super::chain::{Family, Wave};
@@ -59,7 +59,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         Table::new()
             .column("time", "", wave.time.clone())
             .column("kinetic energy", "", wave.kinetic.clone())
-            .column("strain energy", "", wave.strain.iter().map(|s| s - wave.at_rest))
+            .column(
+                "strain energy",
+                "",
+                wave.strain.iter().map(|s| s - wave.at_rest),
+            )
             .column("total energy", "", wave.total())
             .save(&path)?;
         found.file(path);
@@ -82,17 +86,25 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     }
     let drift = |wave: &Wave| {
         let total = wave.total();
-        total.iter().map(|e| (e / total[0] - 1.0).abs()).fold(0.0, f64::max)
+        total
+            .iter()
+            .map(|e| (e / total[0] - 1.0).abs())
+            .fold(0.0, f64::max)
     };
     let drifts: Vec<f64> = waves.iter().map(drift).collect();
     found.holds(
         "conserved",
-        format!("largest change of the total: {:.1e} of it", drifts.iter().copied().fold(0.0, f64::max)),
+        format!(
+            "largest change of the total: {:.1e} of it",
+            drifts.iter().copied().fold(0.0, f64::max)
+        ),
         drifts.iter().all(|d| *d < 0.01),
     );
     let spread = |of: &dyn Fn(&Wave) -> f64| {
         let all = [of(&waves[0]), of(&waves[1]), of(&waves[2])];
-        all.iter().map(|x| (x / all[0] - 1.0).abs()).fold(0.0, f64::max)
+        all.iter()
+            .map(|x| (x / all[0] - 1.0).abs())
+            .fold(0.0, f64::max)
     };
     let kinetic = spread(&|w| w.kinetic[w.steps()]);
     let total = spread(&|w| w.total()[0]);
@@ -101,7 +113,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         format!("kinetic energy at T within {kinetic:.1e}, total energy within {total:.1e}"),
         kinetic < 0.01 && total < 0.01,
     );
-    let exchange = md.kinetic.iter().zip(&md.strain).map(|(k, s)| k + s - md.strain[0]);
+    let exchange = md
+        .kinetic
+        .iter()
+        .zip(&md.strain)
+        .map(|(k, s)| k + s - md.strain[0]);
     let exchange = exchange.map(f64::abs).fold(0.0, f64::max) / md.kinetic[md.steps()];
     found.holds(
         "complementary",

@@ -15,7 +15,7 @@ experiment!(
 );
 
 fn run(context: &Context) -> Result<Findings, Failure> {
-    let plate = Plate::new(context, 2, Step::NearLimit);
+    let plate = Plate::new(context, 2, Step::Hundred);
     let mut sim = plate.model(false)?;
     sim.start(false);
     let (x, u): (Vec<f64>, Vec<f64>) = (sim.reference().iter())
@@ -42,11 +42,18 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let reference = sim.reference();
     let outside = reference.iter().zip(sim.displacements());
     let outside = outside.filter(|(x, _)| x[0].hypot(x[1]) >= 0.2);
-    found.number("outside", outside.map(|(_, u)| u[0].abs().max(u[1].abs())).fold(0.0, f64::max));
+    found.number(
+        "outside",
+        outside
+            .map(|(_, u)| u[0].abs().max(u[1].abs()))
+            .fold(0.0, f64::max),
+    );
     // rise is s¹¹ times what is not 0 there
     found.number("order", (rise(2e-4) / rise(1e-4)).log2());
     let points = x.iter().zip(&u).filter(|(x, _)| **x > 0.0);
-    let worst = points.map(|(x, u)| (u - pulse(*x, 0.0, 0.2, 1e-4)).abs()).fold(0.0, f64::max);
+    let worst = points
+        .map(|(x, u)| (u - pulse(*x, 0.0, 0.2, 1e-4)).abs())
+        .fold(0.0, f64::max);
     found.number("points", worst);
     Ok(found)
 }

@@ -7,7 +7,11 @@ experiment!(
     Figure4PaperStep,
     "figure-4-paper-step",
     "The plate of Figs. 4 and 5 with the paper's time steps",
-    ["../plate.rs", "../figure-4/plate.toml", "../../checkpoint.rs"],
+    [
+        "../plate.rs",
+        "../figure-4/plate.toml",
+        "../../checkpoint.rs"
+    ],
     long
 );
 
@@ -19,7 +23,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut differences = vec![];
     for &mesh in meshes.iter().rev() {
         let wave = Plate::new(context, mesh, Step::Paper).run(context)?;
-        let near = Plate::new(context, mesh, Step::NearLimit).run(context)?;
+        let near = Plate::new(context, mesh, Step::Hundred).run(context)?;
         differences.push(near.difference(&wave));
         steps.push(format!(
             "h = {mesh}a: {} and {} steps differ by {:.3} %",

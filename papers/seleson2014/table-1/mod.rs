@@ -1,12 +1,12 @@
 //! Table 1: the constants of the embedded-atom chain, and what they imply.
 
-use peridyne::law::potential::{Form, Potential, PotentialSpec};
 use peridyne::law::potential::mei::Mei;
+use peridyne::law::potential::{Form, Potential, PotentialSpec};
 use peridyne::space::lattice::LatticeKind;
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
-use peridyne_theory::crystal::potential::{Reach, Reference};
 use peridyne_theory::crystal::Crystal;
+use peridyne_theory::crystal::potential::{Reach, Reference};
 
 use super::chain::{DECK, Family, parsed};
 use super::deck;
@@ -29,25 +29,41 @@ fn mei(potential: Option<&PotentialSpec>) -> Result<&Mei, Failure> {
 /// The uniform chain of a spacing.
 fn uniform(mei: &Mei, spacing: f64) -> Result<Reference, Failure> {
     let chain = Crystal::<1>::of_potential(mei, LatticeKind::Chain, spacing, 1.0, Reach::Cutoff);
-    chain
-        .map(|c| c.1)
-        .map_err(|e| Failure::new(e.to_string()))
+    chain.map(|c| c.1).map_err(|e| Failure::new(e.to_string()))
 }
 
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let mut models = vec![];
     for h in [1.0, 2.0, 4.0] {
-        models.push((h, mei(parsed(h, Family::Chain)?.spec.potential.as_ref())?.clone()));
+        models.push((
+            h,
+            mei(parsed(h, Family::Chain)?.spec.potential.as_ref())?.clone(),
+        ));
     }
     let (_, md) = &models[0];
     let s = md.spec();
-    let names = ["E_c", "φ_e", "α", "β", "γ", "λ", "f_e/ρ_e", "r_n/a", "r_c/a"];
+    let names = [
+        "E_c", "φ_e", "α", "β", "γ", "λ", "f_e/ρ_e", "r_n/a", "r_c/a",
+    ];
     let values = [
-        s.cohesive, s.pair, s.alpha, s.beta, s.gamma, s.lambda, s.density_scale, s.near, s.cutoff,
+        s.cohesive,
+        s.pair,
+        s.alpha,
+        s.beta,
+        s.gamma,
+        s.lambda,
+        s.density_scale,
+        s.near,
+        s.cutoff,
     ];
     let c = (0..6).map(|l| (format!("c_{l}"), s.density[l]));
-    let rows: Vec<(String, f64)> = names.map(String::from).into_iter().zip(values).chain(c).collect();
+    let rows: Vec<(String, f64)> = names
+        .map(String::from)
+        .into_iter()
+        .zip(values)
+        .chain(c)
+        .collect();
     let path = context.out.join("constants.csv");
     Table::new()
         .text("constant", rows.iter().map(|r| r.0.clone()))
@@ -94,7 +110,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let rest = uniform(md, 1.0)?;
     found.holds(
         "pressure",
-        format!("pressure {:.4}, host density {:.5} ρ_e", rest.pressure, rest.density),
+        format!(
+            "pressure {:.4}, host density {:.5} ρ_e",
+            rest.pressure, rest.density
+        ),
         rest.pressure > 1.0 && rest.density > 0.0,
     );
     // σ = 2 in f, too: the first stretch below 1 at which there is no density
@@ -102,12 +121,16 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let literal = deck(DECK, "chain.toml", &set)?;
     let literal = mei(literal.spec.potential.as_ref())?.clone();
     let density = |x: f64| -> f64 {
-        (1..=5).map(|m| 2.0 * literal.density((x * f64::from(m)).powi(2))).sum()
+        (1..=5)
+            .map(|m| 2.0 * literal.density((x * f64::from(m)).powi(2)))
+            .sum()
     };
     let [at_rest, compressed] = [density(1.0), density(1.0 / 1.15)];
     found.holds(
         "literal",
-        format!("ρ_h/ρ_e is {at_rest:.4} at rest and {compressed:.4} compressed as the pulse compresses"),
+        format!(
+            "ρ_h/ρ_e is {at_rest:.4} at rest and {compressed:.4} compressed as the pulse compresses"
+        ),
         compressed < 0.0,
     );
     Ok(found)

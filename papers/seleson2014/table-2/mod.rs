@@ -17,7 +17,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let runs = if context.small { 1 } else { 15 };
     let mut found = Findings::new();
     let mut rows = vec![];
-    for (h, family) in [(1.0, Family::Now), (2.0, Family::Chain), (4.0, Family::Chain)] {
+    for (h, family) in [
+        (1.0, Family::Now),
+        (2.0, Family::Chain),
+        (4.0, Family::Chain),
+    ] {
         let deck = parsed(h, family)?;
         let points = model(&deck, false)?.info().points as f64;
         let steps = deck.spec.schedule.steps as f64;
@@ -33,7 +37,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         .column("steps", "", column(2))
         .column("total time", "s", column(3))
         .column("speedup", "", rows.iter().map(|r| rows[0][3] / r[3]))
-        .column("speedup by points and steps", "", rows.iter().map(|r| work(&rows[0]) / work(r)))
+        .column(
+            "speedup by points and steps",
+            "",
+            rows.iter().map(|r| work(&rows[0]) / work(r)),
+        )
         .save(&path)?;
     found.file(path);
     for (row, name) in rows.iter().zip(["md", "2", "4"]) {

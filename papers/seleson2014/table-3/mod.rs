@@ -15,7 +15,11 @@ experiment!(
     Table3,
     "table-3",
     "Constants of the structured embedded-atom model",
-    ["../plate.rs", "../figure-4/plate.toml", "../figure-6/cube.toml"]
+    [
+        "../plate.rs",
+        "../figure-4/plate.toml",
+        "../figure-6/cube.toml"
+    ]
 );
 
 /// k̄ and c̄ of a deck's law.
@@ -98,10 +102,15 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         ),
         speed * sum.sqrt() * plate::T < A,
     );
-    let limit = crystal.largest(if context.small { 10 } else { 24 }).time_step();
+    let limit = crystal
+        .largest(if context.small { 10 } else { 24 })
+        .time_step();
     found.holds(
         "limit",
-        format!("stable below {limit:.3e} s: {:.0} times Δt0", limit / 1.25e-9),
+        format!(
+            "far from edges stable below {limit:.3e} s: {:.0} times Δt0",
+            limit / 1.25e-9
+        ),
         limit / 1.25e-9 > 100.0,
     );
     Ok(found)

@@ -58,7 +58,8 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.holds(
         "edges",
         format!("{}, {}, {} with the edges", exact[0], exact[1], exact[2]),
-        all.iter().all(|c| c.bonds < c.points * c.family && c.bonds * 100 > c.points * c.family * 97),
+        all.iter()
+            .all(|c| c.bonds < c.points * c.family && c.bonds * 100 > c.points * c.family * 97),
     );
     // distances are roots of whole numbers
     let fits = |square: u32| {
@@ -91,12 +92,20 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         times.push(seconds);
         bytes.push(held);
     }
-    let totals: Vec<f64> = times.iter().zip(&all).map(|(t, c)| t * c.steps as f64).collect();
+    let totals: Vec<f64> = times
+        .iter()
+        .zip(&all)
+        .map(|(t, c)| t * c.steps as f64)
+        .collect();
     let path = context.out.join("costs.csv");
     Table::new()
         .text("model", ["MD, NCM (h = a)", "NCM (h = 2a)", "NCM (h = 4a)"])
         .column("points", "", all.iter().map(|c| c.points as f64))
-        .column("bonds of full families", "", all.iter().map(|c| (c.points * c.family) as f64))
+        .column(
+            "bonds of full families",
+            "",
+            all.iter().map(|c| (c.points * c.family) as f64),
+        )
         .column("directed bonds", "", all.iter().map(|c| c.bonds as f64))
         .column("steps", "", all.iter().map(|c| c.steps as f64))
         .column("memory", "MB", bytes.iter().map(|b| b / 1e6))
