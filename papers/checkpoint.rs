@@ -77,10 +77,10 @@ pub fn run(
         sim.step().map_err(|e| Failure::new(e.to_string()))?;
         record.seconds += begin.elapsed().as_secs_f64();
         let step = sim.step_number();
-        if step % plan.row == 0 || step == plan.steps {
+        if step.is_multiple_of(plan.row) || step == plan.steps {
             record.rows.push(row(sim)?);
         }
-        if plan.part > 0 && (step % plan.part == 0 || step == plan.steps) {
+        if plan.part > 0 && (step.is_multiple_of(plan.part) || step == plan.steps) {
             create_directory(&folder)?;
             save(&path, &context.inputs, sim, &record)?;
             context.say(&format!(

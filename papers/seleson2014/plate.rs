@@ -245,10 +245,20 @@ pub fn curves(out: &std::path::Path, waves: &[Wave], found: &mut Findings) -> Re
         let kinetic: Vec<f64> = wave.rows.iter().map(|r| r.kinetic).collect();
         let strain: Vec<f64> = wave.rows.iter().map(|r| r.strain).collect();
         let total: Vec<f64> = wave.rows.iter().map(|r| r.kinetic + r.strain).collect();
-        energies = energies
-            .line(&format!("kinetic, {name}"), &time, &kinetic)
-            .line(&format!("strain, {name}"), &time, &strain)
-            .line(&format!("total, {name}"), &time, &total);
+        // the coarsest lies over the finest; what is between would hide both
+        let columns = [
+            ("kinetic", &kinetic),
+            ("strain", &strain),
+            ("total", &total),
+        ];
+        for (what, values) in columns {
+            let label = format!("{what}, {name}");
+            if wave.mesh == waves[0].mesh {
+                energies = energies.line(&label, &time, values);
+            } else if wave.mesh == 4 {
+                energies = energies.dashed(&label, &time, values);
+            }
+        }
         let path = out.join(format!("energies-{}.csv", wave.mesh));
         Table::new()
             .column("time", "s", time)

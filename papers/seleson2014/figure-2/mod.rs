@@ -38,12 +38,22 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut plot = Plot::new("Energies (of the strain: change since the chain at rest)")
         .x("t", "")
         .y("energy", "");
-    for (name, wave) in names.iter().zip(&waves) {
+    for (k, (name, wave)) in names.iter().zip(&waves).enumerate() {
         let strain: Vec<f64> = wave.strain.iter().map(|s| s - wave.at_rest).collect();
-        plot = plot
-            .line(&format!("kinetic, {name}"), &wave.time, &wave.kinetic)
-            .line(&format!("strain, {name}"), &wave.time, &strain)
-            .line(&format!("total, {name}"), &wave.time, &wave.total());
+        let columns = [
+            ("kinetic", &wave.kinetic),
+            ("strain", &strain),
+            ("total", &wave.total()),
+        ];
+        // the coarsest lies over the atoms; what is between would hide both
+        for (what, values) in columns {
+            let label = format!("{what}, {name}");
+            plot = match k {
+                0 => plot.line(&label, &wave.time, values),
+                1 => plot,
+                _ => plot.dashed(&label, &wave.time, values),
+            };
+        }
     }
     found.picture(plot.save(out, "energies")?);
 

@@ -13,17 +13,17 @@ experiment!(
 );
 
 fn run(context: &Context) -> Result<Findings, Failure> {
-    // Δt grows with h
-    let points = if context.small { 20 } else { 200 };
-    let steps = u64::from(50 * points);
+    // of the small variant, steps are longer: 20 points across leave little between the wave and the grid
+    let (points, steps, longer, part) = match context.small {
+        true => (20, 300, 3, 100),
+        false => (200, 10_000, 100, 500),
+    };
     let wave = Cube {
         points,
         steps,
-        part: 500,
+        part,
     };
     let wave = wave.run(context)?;
-    // 20 points across leave little between the wave and the grid
-    let longer = if context.small { 10 } else { 100 };
     let near = Cube {
         points,
         steps: steps / longer,

@@ -110,9 +110,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let mut noise = Noise(7 + dimension as u64);
         let mut u = vec![[0.0; 3]; bonds.len()];
         for x in &mut u {
-            for a in 0..dimension {
-                x[a] = 0.02 * noise.next();
-            }
+            x[..dimension].fill_with(|| 0.02 * noise.next());
         }
         let d = |name: &str| format!("{name}-{dimension}d");
         let inverse = |r: f64| 1.0 / r;
