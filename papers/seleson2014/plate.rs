@@ -84,7 +84,7 @@ impl Plate {
         let steps = self.steps();
         let plan = Plan {
             steps,
-            row: (steps / 100).max(1),
+            row: (steps / if self.small { 10 } else { 50 }).max(1),
             part: match self.step {
                 Step::Limit | Step::Hundred => 0,
                 Step::Paper => 500,
