@@ -69,7 +69,8 @@ fn run(context: &Context) -> Result<Findings, Failure> {
                 "12a against 12.1a at h = a: displacements differ by {:.2} %",
                 100.0 * d
             ),
-            d < 0.02,
+            // as much as the coarse meshes are allowed
+            d < 0.1,
         );
         let limit = Plate::new(context, 1, Step::Limit).run(context)?;
         let d = limit.difference(&waves[0]);
