@@ -35,6 +35,10 @@ pub trait Experiment: Sync {
     fn readme(&self) -> &'static str;
     /// Texts that the result depends on: `include_str!("mod.rs")`, decks. A finished figure is run again when one changes.
     fn sources(&self) -> &'static [&'static str];
+    /// Takes hours: the full variant runs only when it is asked for by its whole name.
+    fn long(&self) -> bool {
+        false
+    }
     /// Computes, and writes data and pictures into [`Context::out`].
     ///
     /// # Errors

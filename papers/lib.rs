@@ -4,12 +4,14 @@
 //! Adding one: a folder `PAPER/FIGURE/` with `mod.rs` (an [`Experiment`]), `claims.toml`, `README.md`, and one line in
 //! the paper's `mod.rs`.
 
+pub mod checkpoint;
 pub mod claim;
 pub mod experiment;
 mod page;
 pub mod profile;
 pub mod reproduce;
 mod seleson2009;
+mod seleson2014;
 
 pub use claim::{Claim, Kind};
 pub use experiment::{Context, Experiment, Failure, Findings};
@@ -17,5 +19,5 @@ pub use reproduce::{Options, Outcome, Report, reproduce};
 
 /// All experiments, in the order of the papers.
 pub fn all() -> Vec<&'static dyn Experiment> {
-    seleson2009::all()
+    [seleson2009::all(), seleson2014::all()].concat()
 }

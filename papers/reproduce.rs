@@ -129,7 +129,9 @@ pub fn reproduce_of(
     selection: Option<&str>,
     options: &Options,
 ) -> Result<Vec<Outcome>, Failure> {
-    let chosen = select(all, selection)?;
+    let mut chosen = select(all, selection)?;
+    let asked = selection.map(|s| s.trim_matches('/'));
+    chosen.retain(|e| options.small || !e.long() || asked == Some(&name(*e)));
     let mut outcomes = Vec::new();
     for e in chosen {
         (options.progress)(&format!("{}: {}", name(e), e.title()));

@@ -23,6 +23,7 @@ struct Counted {
     /// Fails after the part this many times.
     failures: AtomicUsize,
     value: f64,
+    long: bool,
 }
 
 impl Counted {
@@ -33,6 +34,7 @@ impl Counted {
             parts: AtomicUsize::new(0),
             failures: AtomicUsize::new(failures),
             value,
+            long: false,
         }
     }
 
@@ -62,6 +64,9 @@ impl Experiment for Counted {
     }
     fn sources(&self) -> &'static [&'static str] {
         &["v1"]
+    }
+    fn long(&self) -> bool {
+        self.long
     }
     fn run(&self, context: &Context) -> Result<Findings, Failure> {
         self.runs.fetch_add(1, Ordering::Relaxed);
@@ -147,6 +152,27 @@ fn a_run_that_is_cut_off_goes_on_and_others_are_run() {
         index.contains("figure-1/page.md") && index.contains("figure-2/page.md"),
         "{index}"
     );
+}
+
+#[test]
+fn what_takes_hours_is_asked_for_by_its_whole_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let long = Counted {
+        long: true,
+        ..Counted::new("figure-2", 42.0, 0)
+    };
+    let all: [&dyn Experiment; 2] = [&Counted::new("figure-1", 42.0, 0), &long];
+    let full = Options {
+        small: false,
+        ..options(dir.path())
+    };
+    let run = |name, options| reproduce_of(&all, name, options).unwrap().len();
+    assert_eq!(run(None, &full), 1);
+    assert_eq!(run(Some("author2001"), &full), 1);
+    assert_eq!(long.counts(), (0, 0));
+    assert_eq!(run(Some("author2001/figure-2"), &full), 1);
+    assert_eq!(long.counts(), (1, 1));
+    assert_eq!(run(None, &options(dir.path())), 2);
 }
 
 #[test]

@@ -1,0 +1,138 @@
+//! Fig. 1: the mass density over space and time, by atoms and by upscaled models.
+
+use peridyne_io::write::plot::{ColorMap, Map};
+use peridyne_io::write::table::Table;
+
+use super::chain::{DECK, Family, Wave};
+use super::{deck, model};
+use crate::{Context, Failure, Findings};
+
+experiment!(
+    Figure1,
+    "figure-1",
+    "Mass density of the embedded-atom wave",
+    ["../chain.rs", "chain.toml"]
+);
+
+/// The corner that is shown larger: ranges of x and t.
+const CORNER: [[f64; 2]; 2] = [[850.0, 1000.0], [84.0, 120.0]];
+
+/// Draws rows and columns of a wave's density within ranges of x and t.
+fn image(wave: &Wave, [xs, ts]: [[f64; 2]; 2], bar: [f64; 2], title: &str) -> Map {
+    let inside = |v: f64, r: [f64; 2]| r[0] - 1e-9 <= v && v <= r[1] + 1e-9;
+    let n = wave.x.len();
+    let columns: Vec<usize> = (1..n - 1).filter(|j| inside(wave.x[*j], xs)).collect();
+    let rows: Vec<usize> = (0..wave.time.len())
+        .filter(|k| inside(wave.time[*k], ts))
+        .collect();
+    let mut values = Vec::with_capacity(rows.len() * columns.len());
+    for &k in &rows {
+        let density = wave.density(k);
+        values.extend(columns.iter().map(|j| density[j - 1]));
+    }
+    // cells reach half a step beyond their middles
+    let edges = |first: f64, last: f64, step: f64| [first - 0.5 * step, last + 0.5 * step];
+    let dt = wave.time[1] - wave.time[0];
+    let x = |k: Option<&usize>| k.map_or(0.0, |j| wave.x[*j]);
+    let t = |k: Option<&usize>| k.map_or(0.0, |k| wave.time[*k]);
+    Map::new(title)
+        .x(
+            "x",
+            "",
+            edges(x(columns.first()), x(columns.last()), wave.h),
+        )
+        .y("t", "", edges(t(rows.first()), t(rows.last()), dt))
+        .value("1/(dy/dx)", "")
+        .between(bar[0], bar[1])
+        .colors(ColorMap::Diverging)
+        .y_down()
+        .grid(columns.len(), &values)
+}
+
+/// What stops the run with the single length scale as printed, σ = 2 in f, too.
+fn literal() -> Result<String, Failure> {
+    let set = [("material.law.eam_form.density_length", "2".to_string())];
+    let mut sim = model(&deck(DECK, "chain.toml", &set)?, false)?;
+    sim.start(true);
+    Ok(match sim.ledger() {
+        Err(error) => error.to_string(),
+        Ok(_) => "nothing".into(),
+    })
+}
+
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let md = Wave::run(1.0, Family::Now)?;
+    let fine = Wave::run(1.0, Family::Chain)?;
+    let ncm = [
+        Wave::run(2.0, Family::Chain)?,
+        Wave::run(4.0, Family::Chain)?,
+    ];
+    let mut found = Findings::new();
+    let out = &context.out;
+    let all = [
+        ("b-md", "MD, 1001 atoms", &md),
+        ("c-ncm-1", "NCM, h = a, 1001 points", &fine),
+        ("d-ncm-2", "NCM, h = 2a, 501 points", &ncm[0]),
+        ("e-ncm-4", "NCM, h = 4a, 251 points", &ncm[1]),
+    ];
+    let bar = [0.85, 1.15];
+    let whole = [[0.0, 1000.0], [0.0, 120.0]];
+    found.picture(image(&md, whole, bar, "MD, 1001 atoms").save(out, "a-md")?);
+    for (name, title, wave) in all {
+        found.picture(image(wave, CORNER, bar, title).save(out, name)?);
+        let path = out.join(format!("{name}.csv"));
+        let density = wave.density(wave.steps());
+        Table::new()
+            .column("x", "", wave.x[1..wave.x.len() - 1].to_vec())
+            .column("density at T", "", density)
+            .save(&path)?;
+        found.file(path);
+    }
+
+    let worst = (md.u.iter().zip(&fine.u))
+        .flat_map(|(a, b)| a.iter().zip(b))
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    found.holds(
+        "same-resolution",
+        format!("displacements of all times differ by {worst:.1e} at most, of 7"),
+        worst < 1e-9,
+    );
+    let said = literal()?;
+    found.holds(
+        "literal",
+        said.clone(),
+        said.contains("electron density at atom"),
+    );
+    let front = [&md, &ncm[0], &ncm[1]].map(|wave| {
+        let density = wave.density(wave.steps());
+        let peak = |j: &usize| density[*j] > density[j - 1] && density[*j] > density[j + 1];
+        let high = |j: &usize| density[*j] > 1.02;
+        let peaks: Vec<f64> = (1..density.len() - 1)
+            .filter(peak)
+            .filter(high)
+            .map(|j| wave.x[j + 1])
+            .collect();
+        let place = peaks.last().copied().unwrap_or(f64::NAN);
+        let before = peaks.iter().rev().nth(1).copied().unwrap_or(f64::NAN);
+        [place, place - before]
+    });
+    let [a, b, c] = front;
+    found.holds(
+        "preserved",
+        format!(
+            "the right front is at x = {}, {}, {} at T",
+            a[0], b[0], c[0]
+        ),
+        (b[0] - a[0]).abs() < 10.0 && (c[0] - a[0]).abs() < 10.0,
+    );
+    found.holds(
+        "oscillations",
+        format!(
+            "distance of the last two maxima behind the right front: {}, {}, {} for h = a, 2a, 4a",
+            a[1], b[1], c[1]
+        ),
+        b[1] > 1.3 * a[1] && c[1] > 1.3 * b[1],
+    );
+    Ok(found)
+}

@@ -1,0 +1,63 @@
+//! Fig. 5: radial displacements along the x axis at the final time, and energies over time.
+
+use crate::seleson2014::plate::{MESHES, Plate, Step, Wave, curves};
+use crate::{Context, Failure, Findings};
+
+experiment!(
+    Figure5,
+    "figure-5",
+    "Radial displacements and energies of the plate",
+    ["../plate.rs", "../figure-4/plate.toml"]
+);
+
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let mut waves = vec![];
+    for mesh in MESHES {
+        context.say(&format!("plate with h = {mesh}a"));
+        waves.push(Plate::new(context, mesh, Step::Hundred).run(context)?);
+    }
+    let mut found = Findings::new();
+    curves(&context.out, &waves, &mut found)?;
+    judge(&waves, &mut found);
+    Ok(found)
+}
+
+/// What the figure shows, as numbers.
+pub fn judge(waves: &[Wave], found: &mut Findings) {
+    let heights: Vec<f64> = waves.iter().map(|w| w.crest()[1]).collect();
+    let worst = heights.iter().map(|h| (h / heights[0] - 1.0).abs());
+    let worst = worst.fold(0.0, f64::max);
+    found.holds(
+        "radial",
+        format!(
+            "the largest is {:.4e} m at h = a, others within {:.2} %",
+            heights[0],
+            100.0 * worst
+        ),
+        worst < 0.1,
+    );
+    let drift = waves.iter().map(Wave::drift).fold(0.0, f64::max);
+    found.holds(
+        "conserved",
+        format!("the total changes by {drift:.1e} of it at most"),
+        drift < 0.02,
+    );
+    let last = |w: &Wave| {
+        w.rows
+            .last()
+            .map_or([f64::NAN; 2], |r| [r.kinetic, r.strain])
+    };
+    let reference = waves.first().map_or([f64::NAN; 2], last);
+    let spread = |k: usize| {
+        let all = waves
+            .iter()
+            .map(|w| (last(w)[k] / reference[k] - 1.0).abs());
+        100.0 * all.fold(0.0, f64::max)
+    };
+    let [kinetic, strain] = [spread(0), spread(1)];
+    found.holds(
+        "preserved",
+        format!("at T: kinetic energy within {kinetic:.1} %, strain energy within {strain:.1} %"),
+        kinetic < 10.0 && strain < 10.0,
+    );
+}
