@@ -4,31 +4,17 @@ use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
 use crate::family::stencil::Stencil;
-use crate::law::potential::{Potential, PotentialSpec, Visitor, bulk::bulk};
+use crate::law::potential::{PotentialSpec, bulk::bulk};
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{Horizon, Spec, ThermalSpec};
-
-struct CutOff;
-
-impl Visitor for CutOff {
-    type Out = f64;
-    fn visit<P: Potential>(self, potential: P) -> f64 {
-        potential.cutoff()
-    }
-}
-
-/// Distance beyond which a potential says nothing (length).
-pub(super) fn cutoff(potential: &PotentialSpec) -> f64 {
-    potential.apply(CutOff)
-}
 
 /// A potential on current neighbours needs a cut-off, and periods of at least two of them.
 pub(super) fn check_box(
     potential: &PotentialSpec,
     period: &[Option<f64>],
 ) -> Result<(), BuildError> {
-    let cutoff = cutoff(potential);
+    let cutoff = potential.cut_off();
     if !(cutoff > 0.0 && cutoff.is_finite()) {
         return Err(BuildError::new(
             "potential.cutoff",
@@ -60,7 +46,7 @@ pub(super) fn crystal(
     spacing: f64,
 ) -> Result<Option<String>, BuildError> {
     let horizon = match (current_neighbours(spec), spec.horizon) {
-        (true, _) => Horizon::Length(cutoff(potential)),
+        (true, _) => Horizon::Length(potential.cut_off()),
         (false, h) => h,
     };
     let length = match horizon {

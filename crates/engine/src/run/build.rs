@@ -64,7 +64,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         && current_neighbours(spec)
     {
         atoms::check_box(potential, &body.period)?;
-        horizon = atoms::cutoff(potential);
+        horizon = potential.cut_off();
     }
     let cell = cell(spec, &body);
     let from_modulus = |m: &MaterialSpec| {

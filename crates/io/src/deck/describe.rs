@@ -3,8 +3,8 @@
 use super::units::{Dim, UnitSystem};
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, Criterion, Horizon, IndenterMotion, LawSpec, MaterialSpec, Plane, PmbStiffness, Spec,
-    TimeStep,
+    BodySpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec, MaterialSpec, Plane,
+    PmbStiffness, Spec, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -37,12 +37,32 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),
     };
-    lines.push(format!(
-        "horizon    {horizon}, influence {:?}, volume scaling {}, constants {:?}",
-        spec.influence,
-        if spec.volume_scaling { "on" } else { "off" },
-        spec.calibration
-    ));
+    lines.push(match &spec.potential {
+        Some(potential) => {
+            let cutoff = potential.cut_off();
+            let current = matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours);
+            format!(
+                "potential  {}, {}, {}",
+                potential.name(),
+                if cutoff.is_finite() {
+                    format!("cut-off {}", units.write(cutoff, Dim::LENGTH))
+                } else {
+                    "without cut-off".into()
+                },
+                if current {
+                    "between atoms that are near now".into()
+                } else {
+                    format!("on fixed neighbours within {horizon}")
+                }
+            )
+        }
+        None => format!(
+            "horizon    {horizon}, influence {:?}, volume scaling {}, constants {:?}",
+            spec.influence,
+            if spec.volume_scaling { "on" } else { "off" },
+            spec.calibration
+        ),
+    });
     for (axis, period) in ["x", "y", "z"].iter().zip(spec.periodic) {
         if let Some(period) = period {
             lines.push(format!(

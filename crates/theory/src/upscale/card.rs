@@ -276,7 +276,7 @@ fn block(spec: &Spec) -> Option<Spec> {
     let d = kind.dimension();
     let horizon = match (&spec.potential, spec.family) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => {
-            Horizon::Length(super::REACH * p.apply(super::CutOff))
+            Horizon::Length(super::REACH * p.cut_off())
         }
         _ => spec.horizon,
     };

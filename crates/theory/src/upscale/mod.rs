@@ -172,7 +172,7 @@ pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
                 _ => {
                     coarse.potential = Some(scaled(potential, n, n.powi(kind.dimension() as i32)));
                     coarse.horizon = match (current(spec), spec.horizon) {
-                        (true, _) => Horizon::Length(REACH * n * potential.apply(CutOff)),
+                        (true, _) => Horizon::Length(REACH * n * potential.cut_off()),
                         (false, Horizon::Length(d)) => Horizon::Length(n * d),
                         (false, ratio) => ratio,
                     };
@@ -194,15 +194,6 @@ pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
         ..spec.schedule
     };
     Ok((coarse, rule))
-}
-
-struct CutOff;
-
-impl Visitor for CutOff {
-    type Out = f64;
-    fn visit<P: Potential>(self, potential: P) -> f64 {
-        potential.cutoff()
-    }
 }
 
 /// A potential with lengths times `length` and energies times `energy`.

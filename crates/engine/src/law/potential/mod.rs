@@ -85,6 +85,18 @@ impl PotentialSpec {
         }
     }
 
+    /// Distance beyond which it says nothing (length); ∞: none.
+    pub fn cut_off(&self) -> f64 {
+        struct CutOff;
+        impl Visitor for CutOff {
+            type Out = f64;
+            fn visit<P: Potential>(self, potential: P) -> f64 {
+                potential.cutoff()
+            }
+        }
+        self.apply(CutOff)
+    }
+
     /// The only match on the form.
     pub fn apply<V: Visitor>(&self, visitor: V) -> V::Out {
         use cut::Cut;
