@@ -20,6 +20,8 @@ fn main() {
     }
     let e = |s: &str| Expression::parse(s, &[]).unwrap();
     let spec = Spec {
+        potential: None,
+        thermal: None,
         title: "impact".into(),
         dimension: 3,
         plane: Plane::Stress,
