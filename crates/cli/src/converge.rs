@@ -232,12 +232,10 @@ fn finish(
     let mut notes = vec![];
     let smallest = levels
         .iter()
-        .filter_map(|l| match exact.is_empty() {
-            true => l.difference,
-            false => l.error.map(|e| e[0]),
-        })
+        .filter_map(|l| l.error.map(|e| e[0]))
         .fold(f64::INFINITY, f64::min);
-    if time_error > 0.1 * smallest {
+    // between levels the time error of the common step drops out
+    if !exact.is_empty() && time_error > 0.1 * smallest {
         notes.push(format!(
             "The time error of the finest level, {time_error:.2e}, is more than a tenth of the smallest error, {smallest:.2e}: take more --substeps."
         ));
@@ -299,8 +297,13 @@ fn report(f: &Finished) -> String {
     t += &line("errors", &f.errors);
     t += &line("differences of neighbours", &f.differences);
     t += &format!(
-        "\ntime error of the finest level: {:.2e} (from a step twice as long)",
-        f.time_error
+        "\ntime error of the finest level: {:.2e} (from a step twice as long){}",
+        f.time_error,
+        if f.exact.is_empty() {
+            "; it is common to all levels and drops out"
+        } else {
+            ""
+        }
     );
     match f.order() {
         Some(o) => {

@@ -204,7 +204,19 @@ mod tests {
         let values: Vec<f64> = (0..20).map(|m| (0.3 * m as f64).sin()).collect();
         let table = Spline::new(0.5, 0.1, &values, false);
         let d = Jet::<6>::variable(1.237).table(&table).derivatives();
-        let expected = table.at(1.237);
+        let all = |x: f64| {
+            let ([c, b, a, v], p, i) = table.piece(x);
+            [
+                ((c * p + b) * p + a) * p + v,
+                ((3.0 * c * p + 2.0 * b) * p + a) * i,
+                (6.0 * c * p + 2.0 * b) * i * i,
+                6.0 * c * i * i * i,
+            ]
+        };
+        let expected = all(1.237);
+        let [value, slope] = table.at(1.237);
+        close(d[0], value);
+        close(d[1], slope);
         for n in 0..4 {
             close(d[n], expected[n]);
         }
@@ -212,7 +224,7 @@ mod tests {
         // chain rule: table(x²)
         let x = Jet::<3>::variable(1.1);
         let d = (x * x).table(&table).derivatives();
-        let [_, first, second, _] = table.at(1.21);
+        let [_, first, second, _] = all(1.21);
         close(d[1], 2.2 * first);
         close(d[2], 4.84 * second + 2.0 * first);
     }

@@ -87,7 +87,11 @@ fn plot(f: &Finished, length: &str) -> Plot {
     let (x, y) = series(&|l| l.difference);
     plot = plot.series("to the next level", &x, &y, Stroke::Solid, Mark::Square);
     if let Some(o) = f.order() {
-        let x: Vec<f64> = f.levels.iter().map(|l| l.length(f.kind)).collect();
+        // many points: the legend keeps away from them
+        let ends = [&f.levels[0], &f.levels[f.levels.len() - 1]].map(|l| l.length(f.kind));
+        let x: Vec<f64> = (0..=60)
+            .map(|n| ends[0] * (ends[1] / ends[0]).powf(f64::from(n) / 60.0))
+            .collect();
         let y: Vec<f64> = x.iter().map(|h| o.constant * h.powf(o.fitted)).collect();
         plot = plot.dashed(&format!("order {:.2}", o.fitted), &x, &y);
     }

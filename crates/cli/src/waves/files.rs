@@ -111,16 +111,19 @@ fn dispersion(found: &Found) -> Plot {
         }
     }
     let count = s.path.first().map_or(0, |r| r.branches.len());
+    let each = |b: usize, f: &dyn Fn(&Branch) -> f64| -> Vec<f64> {
+        s.path.iter().map(|r| f(&r.branches[b])).collect()
+    };
     for b in 0..count {
-        let each = |f: &dyn Fn(&Branch) -> f64| -> Vec<f64> {
-            s.path.iter().map(|r| f(&r.branches[b])).collect()
-        };
-        plot = plot.line(&format!("branch {}", b + 1), &x, &each(&Branch::signed));
-        let verlet = each(&|b| b.verlet.unwrap_or(f64::NAN));
-        if verlet.iter().any(|w| w.is_finite()) {
-            let label = if b == 0 { "with the deck's step" } else { "" };
-            plot = plot.dashed(label, &x, &verlet);
-        }
+        plot = plot.line(&format!("branch {}", b + 1), &x, &each(b, &Branch::signed));
+    }
+    for b in 0..count {
+        let verlet = each(b, &|b| b.verlet.unwrap_or(f64::NAN));
+        plot = plot.dashed(
+            &format!("branch {}, with the deck's step", b + 1),
+            &x,
+            &verlet,
+        );
     }
     plot
 }

@@ -6,9 +6,6 @@ use peridyne_theory::stiffness::{Stiffness, components};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-/// The largest ω Δt at which velocity Verlet still has a frequency.
-const LIMIT: f64 = 2.0;
-
 pub fn text(found: &Found) -> String {
     let s = &found.survey;
     let units = found.deck.units;
@@ -54,7 +51,8 @@ pub fn text(found: &Found) -> String {
                     (Some(p), Some(g)) => format!(
                         "{} (group {})",
                         write(p, Dim::VELOCITY),
-                        write(g, Dim::VELOCITY)
+                        // standing waves move to round-off only
+                        write(if g.abs() < 1e-9 * p { 0.0 } else { g }, Dim::VELOCITY)
                     ),
                     (Some(p), None) => write(p, Dim::VELOCITY),
                     _ => "grows".into(),
@@ -74,6 +72,21 @@ pub fn text(found: &Found) -> String {
     t
 }
 
+/// Components in units of 2π/a.
+fn reduced(wave: &[f64], spacing: f64) -> String {
+    let each: Vec<String> = wave
+        .iter()
+        // + 0.0: no negative zeros
+        .map(|k| {
+            format!(
+                "{:.4}",
+                (k * spacing / (2.0 * PI) * 1e4).round() / 1e4 + 0.0
+            )
+        })
+        .collect();
+    each.join(", ")
+}
+
 fn stability(t: &mut String, found: &Found) {
     let s = &found.survey;
     let time = |v: f64| found.deck.units.write(v, Dim::TIME);
@@ -87,31 +100,23 @@ fn stability(t: &mut String, found: &Found) {
             100.0 * s.unstable_part
         );
         for g in &s.growing {
-            let wave: Vec<String> = g
-                .wave
-                .iter()
-                .map(|k| format!("{:.4}", k * s.spacing / (2.0 * PI)))
-                .collect();
+            let wave = reduced(&g.wave, s.spacing);
             let _ = writeln!(
                 t,
                 "    {} k = ({}) 2π/a, e-fold in {}",
                 g.name.unwrap_or("worst:"),
-                wave.join(", "),
+                wave,
                 time(1.0 / g.rate)
             );
         }
     }
-    let wave: Vec<String> = s
-        .largest_wave
-        .iter()
-        .map(|k| format!("{:.4}", k * s.spacing / (2.0 * PI)))
-        .collect();
+    let wave = reduced(&s.largest_wave, s.spacing);
     let _ = writeln!(t, "  bound                 {}", time(s.bound));
     let _ = writeln!(
         t,
         "  sharp limit 2/ω_max   {}, at k = ({}) 2π/a",
         time(s.sharp),
-        wave.join(", ")
+        wave
     );
     if let Some(estimate) = found.estimate {
         let _ = writeln!(t, "  estimate of the run   {}", time(estimate));
@@ -125,7 +130,8 @@ fn stability(t: &mut String, found: &Found) {
         if ratio > 1.0 { ": UNSTABLE" } else { "" }
     );
     if ratio <= 1.0 && ratio > 0.0 {
-        let x = 0.5 * LIMIT * ratio;
+        // half of ω_max Δt
+        let x = ratio;
         let _ = writeln!(
             t,
             "  its velocity Verlet raises the highest frequency by {:.3} %",
