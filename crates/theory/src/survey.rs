@@ -174,7 +174,7 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleErro
         }
         growing.push(Growing {
             name: None,
-            wave: worst.wave.to_vec(),
+            wave: nearest_to_centre(&crystal, worst.wave).to_vec(),
             rate: worst.growth,
         });
     }
@@ -192,7 +192,7 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleErro
         growing,
         bound: crystal.bound(),
         largest: limit.squared,
-        largest_wave: limit.wave.to_vec(),
+        largest_wave: nearest_to_centre(&crystal, limit.wave).to_vec(),
         sharp: limit.time_step(),
         relaxed: relaxed.is_some(),
         stiffness: per_section(relaxed.unwrap_or_else(|| crystal.rigid_elastic_constants())),
@@ -240,6 +240,28 @@ fn scaled<const D: usize>(v: &[f64; 3], by: f64) -> [f64; D] {
 
 fn size<const D: usize>(v: &[f64; D]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The same wave by the vector nearest to Γ: in the first zone.
+fn nearest_to_centre<const D: usize>(crystal: &Crystal<D>, wave: [f64; D]) -> [f64; D] {
+    let b = crystal.reciprocal();
+    let mut best = wave;
+    loop {
+        let from = best;
+        for code in 0..3usize.pow(D as u32) {
+            let n: [f64; D] =
+                std::array::from_fn(|i| (code / 3usize.pow(i as u32) % 3) as f64 - 1.0);
+            let moved: [f64; D] =
+                std::array::from_fn(|a| from[a] + (0..D).map(|i| n[i] * b[i][a]).sum::<f64>());
+            // on the border of the zone the vector given stays
+            if size(&moved) < size(&best) * (1.0 - 1e-9) {
+                best = moved;
+            }
+        }
+        if best == from {
+            return best;
+        }
+    }
 }
 
 /// All branches of a wave vector; ω² within round-off of 0 is 0.
@@ -406,6 +428,19 @@ mod tests {
         let fast = survey(&spec(LatticeKind::Chain, law, 1), 0.26).unwrap();
         assert_eq!(fast.path.last().unwrap().branches[0].verlet, None);
         assert!(fast.path[1].branches[0].verlet.is_some());
+    }
+
+    #[test]
+    fn waves_are_named_by_the_vector_of_the_first_zone() {
+        let body = LatticeSolid::new(LatticeKind::Fcc, 2.0, Horizon::Ratio(1));
+        let crystal = body.bond_based::<3>(1.0).unwrap();
+        // 2π/a (1, 1, 0) is X: less b = 2π/a (1, 1, −1) and its like
+        let x = nearest_to_centre(&crystal, [PI, PI, 0.0]);
+        assert!((size(&x) - PI).abs() < 1e-12, "{x:?}");
+        let k = [0.1, -0.2, 0.3];
+        let far: [f64; 3] = std::array::from_fn(|a| k[a] + 2.0 * PI * [2.0, -1.0, 0.0][a]);
+        let near = nearest_to_centre(&crystal, far);
+        assert!((0..3).all(|a| (near[a] - k[a]).abs() < 1e-12), "{near:?}");
     }
 
     #[test]

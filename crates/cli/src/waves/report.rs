@@ -32,6 +32,9 @@ pub fn text(found: &Found) -> String {
     if let Some(r) = &s.reference {
         let _ = write!(t, ", energy per atom {}", write(r.energy, Dim::ENERGY));
     }
+    if found.deck.spec.thermal.is_some() {
+        t += "\n          the lattice at rest: without the deck's temperature";
+    }
     t += "\n\nwaves along\n";
     for d in &s.directions {
         let speeds: Vec<String> = d
@@ -148,6 +151,11 @@ fn table(t: &mut String, name: &str, s: &Stiffness, pressure: &dyn Fn(f64) -> St
     }
     match s.cubic(1e-9) {
         Some(c) => {
+            // pair laws have none but for round-off
+            let cauchy = match c.cauchy().abs() < 1e-12 * c.c11.abs() {
+                true => 0.0,
+                false => c.cauchy(),
+            };
             let _ = writeln!(
                 t,
                 "  {name}: c11 = {}, c12 = {}, c44 = {}; bulk {}, Zener's ratio {:.6}, c12 − c44 = {}",
@@ -156,7 +164,7 @@ fn table(t: &mut String, name: &str, s: &Stiffness, pressure: &dyn Fn(f64) -> St
                 pressure(c.c44),
                 pressure(c.bulk(d)),
                 c.zener(),
-                pressure(c.cauchy())
+                pressure(cauchy)
             );
         }
         None => {
