@@ -80,16 +80,25 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
         (Kind::DeltaM, Horizon::Ratio(m)) => Horizon::Ratio((f64::from(m) * root).round() as u32),
         (Kind::DeltaM, Horizon::Length(d)) => Horizon::Length(d / root),
     };
-    let edges = lattice.edges();
-    let periodic = spec.periodic.map(|p| p.is_some());
-    let region = whole_cells(
-        region,
-        *origin,
-        edges.map(|e| e * spacing),
-        periodic,
-        f64::from(factor),
-        spec.dimension,
-    )?;
+    let (low, _) = region.bounds();
+    let cells = Cells {
+        origin: *origin,
+        edge: lattice.edges().map(|e| e * spacing),
+        clip: std::array::from_fn(|a| spec.periodic[a].map(|p| low[a] + p)),
+        factor: f64::from(factor),
+        dimension: spec.dimension,
+    };
+    let region = match region {
+        Region::Block { .. } => cells.whole(region)?,
+        other => {
+            let mut clipped = [false; 3];
+            let region = cells.finer(other, &mut clipped);
+            if (0..3).any(|a| spec.periodic[a].is_some() && !clipped[a]) {
+                return Err(RefineError::Periodic);
+            }
+            region
+        }
+    };
     let mut fine = spec.clone();
     fine.body = BodySpec::Lattice {
         kind: *lattice,
@@ -102,39 +111,68 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
     Ok(fine)
 }
 
-/// A block of whole cells keeps its extent, up to just below the next cell; other ends stay where they are.
-fn whole_cells(
-    region: &Region,
+/// The coarse cells of a body.
+struct Cells {
     origin: [f64; 3],
     edge: [f64; 3],
-    periodic: [bool; 3],
+    /// Where the next period begins; decks end blocks an eighth of a cell before.
+    clip: [Option<f64>; 3],
     factor: f64,
     dimension: usize,
-) -> Result<Region, RefineError> {
-    let Region::Block { mut low, mut high } = region.clone() else {
-        return match periodic.contains(&true) {
-            true => Err(RefineError::Periodic),
-            false => Ok(region.clone()),
+}
+
+impl Cells {
+    /// A block of whole cells keeps its extent, up to just below the next cell; other ends stay where they are.
+    fn whole(&self, region: &Region) -> Result<Region, RefineError> {
+        let Region::Block { mut low, mut high } = region.clone() else {
+            return Ok(region.clone());
         };
-    };
-    for a in 0..dimension {
-        let (from, to) = (
-            (low[a] - origin[a]) / edge[a],
-            (high[a] - origin[a]) / edge[a],
-        );
-        let eighth = |x: f64| ((x + 0.125) - (x + 0.125).round()).abs() < 1e-9;
-        // blocks written as `cells` begin an eighth of a cell before the first and end as much before the next
-        if periodic[a] || (eighth(from) && eighth(to)) {
-            if !(from.is_finite() && to.is_finite()) {
-                return Err(RefineError::Periodic);
+        for a in 0..self.dimension {
+            let edge = self.edge[a];
+            let cells = |x: f64| (x - self.origin[a]) / edge;
+            let (from, to) = (cells(low[a]), cells(high[a]));
+            let eighth = |x: f64| ((x + 0.125) - (x + 0.125).round()).abs() < 1e-9;
+            // blocks written as `cells` begin an eighth of a cell before the first and end as much before the next
+            if self.clip[a].is_some() || (eighth(from) && eighth(to)) {
+                if !(from.is_finite() && to.is_finite()) {
+                    return Err(RefineError::Periodic);
+                }
+                let first = (from - 1e-9).ceil();
+                let next = (to + 1e-9).floor() + 1.0;
+                low[a] = self.origin[a] + edge * (first - 0.125 / self.factor);
+                high[a] = self.origin[a] + edge * (next - 0.125 / self.factor);
             }
-            let first = (from - 1e-9).ceil();
-            let next = (to + 1e-9).floor() + 1.0;
-            low[a] = origin[a] + edge[a] * (first - 0.125 / factor);
-            high[a] = origin[a] + edge[a] * (next - 0.125 / factor);
+        }
+        Ok(Region::Block { low, high })
+    }
+
+    /// Blocks that end a period end as much closer to the next as cells are smaller.
+    fn finer(&self, region: &Region, clipped: &mut [bool; 3]) -> Region {
+        let mut each = |parts: &[Region]| -> Vec<Region> {
+            parts.iter().map(|r| self.finer(r, clipped)).collect()
+        };
+        match region {
+            Region::Block { low, high } => {
+                let mut high = *high;
+                for a in 0..self.dimension {
+                    let Some(next) = self.clip[a] else { continue };
+                    let eighth = self.edge[a] / 8.0;
+                    if (high[a] - (next - eighth)).abs() < 1e-6 * eighth {
+                        high[a] = next - eighth / self.factor;
+                        clipped[a] = true;
+                    }
+                }
+                Region::Block { low: *low, high }
+            }
+            Region::Union(parts) => Region::Union(each(parts)),
+            Region::Intersection(parts) => Region::Intersection(each(parts)),
+            Region::Difference(from, minus) => {
+                let minus = each(minus);
+                Region::Difference(Box::new(self.finer(from, clipped)), minus)
+            }
+            other => other.clone(),
         }
     }
-    Ok(Region::Block { low, high })
 }
 
 #[cfg(test)]
@@ -205,6 +243,26 @@ mod tests {
             let last = (high / spacing).floor();
             assert_eq!([first, last, spacing], [0.0, 31.0, 0.125]);
         }
+    }
+
+    #[test]
+    fn periods_of_decks_are_cut_just_below_the_next() {
+        let mut spec = bar(0.0, 4.0, true);
+        spec.periodic[0] = Some(4.0);
+        let BodySpec::Lattice { region, .. } = &mut spec.body else {
+            panic!("no lattice")
+        };
+        let mut cut = region.clone();
+        if let Region::Block { high, .. } = &mut cut {
+            high[0] = 4.0 - 0.0625;
+        }
+        *region = Region::Intersection(vec![region.clone(), cut]);
+        let fine = refine(&spec, Kind::Delta, 2).unwrap();
+        let BodySpec::Lattice { region, .. } = fine.body else {
+            panic!("no lattice")
+        };
+        let inside = (0..40).filter(|n| region.contains(&[0.125 * f64::from(*n), 0.0, 0.0]));
+        assert_eq!(inside.count(), 32);
     }
 
     #[test]
