@@ -240,6 +240,14 @@ fn finish(
             "The time error of the finest level, {time_error:.2e}, is more than a tenth of the smallest error, {smallest:.2e}: take more --substeps."
         ));
     }
+    if let (false, Some(e), Some(d)) = (exact.is_empty(), &errors, &differences)
+        && d.fitted > e.fitted + 0.5
+    {
+        notes.push(format!(
+            "The levels draw together with order {:.2}, towards another solution than the exact one: at fixed δ the nonlocal one, at fixed m that of the lattice's own stiffness (`peridyne waves` tells it).",
+            d.fitted
+        ));
+    }
     let pairs: Vec<[f64; 2]> = levels.iter().map(|l| [l.horizon, l.spacing]).collect();
     if Kind::of(&pairs) != Some(kind) {
         notes.push(format!(

@@ -99,7 +99,11 @@ fn the_spacing_shrinks_to_the_nonlocal_solution_with_order_one() {
 
 #[test]
 fn the_nonlocal_model_stays_away_from_the_local_solution() {
-    let (found, _) = study(&["--study", "m", "--exact", LOCAL]);
+    let (found, said) = study(&["--study", "m", "--exact", LOCAL]);
+    assert!(
+        said.contains("another solution than the exact one"),
+        "{said}"
+    );
     assert!(number(&found, "/order_of_errors/fitted") < 0.3);
     assert_ne!(found["order_of_errors"]["verdict"], "converges");
     // and yet its levels draw together
