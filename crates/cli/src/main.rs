@@ -1,6 +1,7 @@
 //! The peridyne program.
 
 mod check;
+mod converge;
 mod deck;
 mod failure;
 mod laws;
@@ -9,6 +10,7 @@ mod reproduce;
 mod run;
 mod script;
 mod upscale;
+mod waves;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -31,6 +33,10 @@ enum Verb {
     Check(check::CheckArguments),
     /// From atoms (or fine points) to coarse peridynamic points: decks of both, and an error card.
     Upscale(upscale::UpscaleArguments),
+    /// Waves of a lattice deck: dispersion, stability, elastic constants, gradient coefficients.
+    Waves(waves::WavesArguments),
+    /// Refine a lattice deck level by level, and fit the order with which its error falls.
+    Converge(converge::ConvergeArguments),
     /// Run the experiments of the papers and compare with what was published.
     Reproduce(reproduce::ReproduceArguments),
     /// List the laws, lattices and influence functions with their parameters.
@@ -69,6 +75,8 @@ fn main() -> ExitCode {
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
         Verb::Upscale(arguments) => upscale::upscale(&arguments),
+        Verb::Waves(arguments) => waves::waves(&arguments),
+        Verb::Converge(arguments) => converge::converge(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),
         Verb::Schema => print_schema(),

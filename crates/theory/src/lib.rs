@@ -9,7 +9,8 @@
 //! | which differential equation is it? | [`gradient`], exactly by [`exact`] |
 //! | what is the coarse model with the same dynamics, and how far does it agree? | [`upscale`] |
 //! | is one model an upscaling of another, to which order? | [`upscaling`] |
-//! | with which order do errors fall? | [`convergence`] |
+//! | all of that of one lattice, for a report | [`survey`] |
+//! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
 
 // tensors are indexed by components
 #![allow(clippy::needless_range_loop)]
@@ -25,7 +26,9 @@ pub mod gradient;
 pub mod jet;
 pub mod lattice_elastic;
 pub mod moments;
+pub mod refine;
 pub mod stability;
 pub mod stiffness;
+pub mod survey;
 pub mod upscale;
 pub mod upscaling;

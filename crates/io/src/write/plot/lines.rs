@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::super::picture::image::{Align, Color, INK, WHITE};
+use super::super::picture::image::{Align, Color, GREY, INK, WHITE};
 use super::axis::Scale;
 use super::canvas::{Drawing, Outline, Shape};
 use super::frame::{Frame, TICK, axes};
@@ -82,6 +82,8 @@ pub struct Plot {
     series: Vec<Series>,
     log: [bool; 2],
     range: [Option<[f64; 2]>; 2],
+    /// Values of x with names.
+    named: Vec<(f64, String)>,
     size: [f64; 2],
 }
 
@@ -93,6 +95,7 @@ impl Plot {
             series: Vec::new(),
             log: [false; 2],
             range: [None; 2],
+            named: Vec::new(),
             size: [760.0, 480.0],
         }
     }
@@ -132,6 +135,13 @@ impl Plot {
     #[must_use]
     pub fn y_range(mut self, low: f64, high: f64) -> Plot {
         self.range[1] = Some([low, high]);
+        self
+    }
+
+    /// A line from bottom to top at this x, with a name above.
+    #[must_use]
+    pub fn name_x(mut self, x: f64, name: &str) -> Plot {
+        self.named.push((x, name.to_string()));
         self
     }
 
@@ -212,6 +222,14 @@ impl Plot {
             false,
             24.0,
         );
+        for (x, name) in &self.named {
+            let top = frame.place([*x, scales[1].high]);
+            let bottom = frame.place([*x, scales[1].low]);
+            if frame.holds(top) {
+                drawing.segment(top, bottom, 1.0, GREY);
+                drawing.text([top[0], top[1] - 5.0], name, TICK, Align::Center, INK);
+            }
+        }
         for (k, s) in self.series.iter().enumerate() {
             self.draw_series(&mut drawing, &frame, s, COLORS[k % COLORS.len()]);
         }

@@ -1,0 +1,109 @@
+//! `peridyne waves`: what waves a lattice deck carries, and how stiff and stable it is.
+
+mod files;
+mod report;
+
+use crate::Input;
+use crate::deck;
+use crate::failure::{Failure, say};
+use crate::run::with_threads;
+use peridyne::spec::TimeStep;
+use peridyne_io::deck::{Deck, UnitSystem};
+use peridyne_theory::survey::{Survey, survey};
+use peridyne_theory::upscale::{UpscaleError, lattice};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub struct WavesArguments {
+    /// Deck of one material on a lattice.
+    #[command(flatten)]
+    pub input: Input,
+    /// Folder for the results; `out/<name of the deck>-waves` if not given.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print the JSON of the results instead of a report.
+    #[arg(long)]
+    pub json: bool,
+    /// Threads; all cores if not given.
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+/// A survey with what the deck says about it.
+struct Found<'a> {
+    deck: &'a Deck,
+    survey: Survey,
+    /// The program's own estimate of the stability limit, if the step comes from it.
+    estimate: Option<f64>,
+}
+
+/// Names of units in tables: length, time.
+fn units(system: UnitSystem) -> [&'static str; 2] {
+    match system {
+        UnitSystem::Si => ["m", "s"],
+        UnitSystem::Metal => ["Å", "ps"],
+        UnitSystem::Lj | UnitSystem::None => ["", ""],
+    }
+}
+
+pub fn waves(arguments: &WavesArguments) -> Result<(), Failure> {
+    if !deck::is_deck(&arguments.input) {
+        return Err(Failure::input(
+            "waves takes a deck (.toml) with a lattice body; `peridyne check` reads LAMMPS scripts",
+        ));
+    }
+    let deck = deck::read(&arguments.input)?;
+    with_threads(arguments.threads, |_| all(arguments, &deck))
+}
+
+fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
+    let told = |e: UpscaleError| Failure::input(format!("{}: {}", deck.file(), explained(&e)));
+    lattice(&deck.spec).map_err(told)?;
+    if deck.spec.materials.len() != 1 {
+        return Err(told(UpscaleError::SeveralMaterials));
+    }
+    let (time_step, estimate) = match deck.spec.schedule.time_step {
+        TimeStep::Fixed(dt) => (dt, None),
+        TimeStep::Fraction(_) => {
+            let mut trusting = deck.clone();
+            trusting.spec.schedule.force_unstable = true;
+            let sim = deck::model(&trusting, &arguments.input)?;
+            (sim.info().time_step, Some(sim.info().stable_step))
+        }
+    };
+    let found = Found {
+        survey: survey(&deck.spec, time_step).map_err(told)?,
+        deck,
+        estimate,
+    };
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let name = arguments.input.file.file_stem();
+        let name = name.map_or("deck".into(), |n| n.to_string_lossy());
+        Path::new("out").join(format!("{name}-waves"))
+    });
+    let json = files::json(&found);
+    let written = files::write(&out, &found, &json).map_err(|e| Failure::Run(e.to_string()))?;
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Run(e.to_string()))?;
+        say(&text);
+    } else {
+        say(&report::text(&found));
+        let names: Vec<String> = written.iter().map(|p| p.display().to_string()).collect();
+        say(&format!("written   {}", names.join("\n          ")));
+    }
+    Ok(())
+}
+
+/// What to do instead.
+fn explained(error: &UpscaleError) -> String {
+    match error {
+        UpscaleError::NoLattice => "plane waves are those of an endless lattice, and this body is a cloud, a mesh or a \
+             perturbed lattice: give it as `lattice` with `spacing`; `peridyne check` tells stiffness and stable step of \
+             any body"
+            .into(),
+        UpscaleError::SeveralMaterials => "a body with several materials carries no plane waves: write a deck with one \
+             of them, and one for each other"
+            .into(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,230 @@
+//! The survey as text.
+
+use super::Found;
+use peridyne_io::deck::Dim;
+use peridyne_theory::stiffness::{Stiffness, components};
+use std::f64::consts::PI;
+use std::fmt::Write;
+
+pub fn text(found: &Found) -> String {
+    let s = &found.survey;
+    let units = found.deck.units;
+    let write = |v: f64, d: Dim| units.write(v, d);
+    let mut t = String::new();
+    // writing to a String does not fail
+    let _ = writeln!(
+        t,
+        "lattice   {} of {}, {} bonds per point, density {}",
+        s.kind.name(),
+        write(s.spacing, Dim::LENGTH),
+        s.bonds,
+        write(s.density, Dim::DENSITY)
+    );
+    let pressure = match s.pressure.abs() <= 1e-12 * s.stiffness.c[0][0].abs() {
+        true => "without stress".to_string(),
+        false => format!(
+            "under a pressure of {} ({:.3} % of c11)",
+            write(s.pressure, Dim::PRESSURE),
+            100.0 * s.pressure / s.stiffness.c[0][0]
+        ),
+    };
+    let _ = write!(t, "reference {pressure}");
+    if let Some(r) = &s.reference {
+        let _ = write!(t, ", energy per atom {}", write(r.energy, Dim::ENERGY));
+    }
+    if found.deck.spec.thermal.is_some() {
+        t += "\n          the lattice at rest: without the deck's temperature";
+    }
+    t += "\n\nwaves along\n";
+    for d in &s.directions {
+        let speeds: Vec<String> = d
+            .sound
+            .iter()
+            .map(|v| v.map_or("grows".into(), |v| write(v, Dim::VELOCITY)))
+            .collect();
+        let _ = writeln!(t, "  {}  long waves {}", d.name, speeds.join(", "));
+        for part in [0.25, 0.5, 1.0] {
+            let n = ((d.rows.len() as f64 * part) as usize).clamp(1, d.rows.len()) - 1;
+            let row = &d.rows[n];
+            let wavelength = 2.0 * PI / row.distance;
+            let each: Vec<String> = row
+                .branches
+                .iter()
+                .map(|b| match (b.phase, b.group) {
+                    (Some(p), Some(g)) => format!(
+                        "{} (group {})",
+                        write(p, Dim::VELOCITY),
+                        // standing waves move to round-off only
+                        write(if g.abs() < 1e-9 * p { 0.0 } else { g }, Dim::VELOCITY)
+                    ),
+                    (Some(p), None) => write(p, Dim::VELOCITY),
+                    _ => "grows".into(),
+                })
+                .collect();
+            let _ = writeln!(
+                t,
+                "       wavelength {:.2} spacings: {}",
+                wavelength / s.spacing,
+                each.join(", ")
+            );
+        }
+    }
+    stability(&mut t, found);
+    elastic(&mut t, found);
+    gradients(&mut t, found);
+    t
+}
+
+/// Components in units of 2π/a.
+fn reduced(wave: &[f64], spacing: f64) -> String {
+    let each: Vec<String> = wave
+        .iter()
+        // + 0.0: no negative zeros
+        .map(|k| {
+            format!(
+                "{:.4}",
+                (k * spacing / (2.0 * PI) * 1e4).round() / 1e4 + 0.0
+            )
+        })
+        .collect();
+    each.join(", ")
+}
+
+fn stability(t: &mut String, found: &Found) {
+    let s = &found.survey;
+    let time = |v: f64| found.deck.units.write(v, Dim::TIME);
+    *t += "\nstability\n";
+    if s.growing.is_empty() {
+        *t += "  all waves of the zone oscillate\n";
+    } else {
+        let _ = writeln!(
+            t,
+            "  UNSTABLE: {:.2} % of all waves of the zone grow",
+            100.0 * s.unstable_part
+        );
+        for g in &s.growing {
+            let wave = reduced(&g.wave, s.spacing);
+            let _ = writeln!(
+                t,
+                "    {} k = ({}) 2π/a, e-fold in {}",
+                g.name.unwrap_or("worst:"),
+                wave,
+                time(1.0 / g.rate)
+            );
+        }
+    }
+    let wave = reduced(&s.largest_wave, s.spacing);
+    let _ = writeln!(t, "  bound                 {}", time(s.bound));
+    let _ = writeln!(
+        t,
+        "  sharp limit 2/ω_max   {}, at k = ({}) 2π/a",
+        time(s.sharp),
+        wave
+    );
+    if let Some(estimate) = found.estimate {
+        let _ = writeln!(t, "  estimate of the run   {}", time(estimate));
+    }
+    let ratio = s.time_step / s.sharp;
+    let _ = writeln!(
+        t,
+        "  step of the deck      {}, {:.4} of the sharp limit{}",
+        time(s.time_step),
+        ratio,
+        if ratio > 1.0 { ": UNSTABLE" } else { "" }
+    );
+    if ratio <= 1.0 && ratio > 0.0 {
+        // half of ω_max Δt
+        let x = ratio;
+        let _ = writeln!(
+            t,
+            "  its velocity Verlet raises the highest frequency by {:.3} %",
+            100.0 * (x.asin() / x - 1.0)
+        );
+    }
+}
+
+fn table(t: &mut String, name: &str, s: &Stiffness, pressure: &dyn Fn(f64) -> String) {
+    let d = s.dimension;
+    if d == 1 {
+        let _ = writeln!(t, "  {name}: E = {}", pressure(s.c[0][0]));
+        return;
+    }
+    match s.cubic(1e-9) {
+        Some(c) => {
+            // pair laws have none but for round-off
+            let cauchy = match c.cauchy().abs() < 1e-12 * c.c11.abs() {
+                true => 0.0,
+                false => c.cauchy(),
+            };
+            let _ = writeln!(
+                t,
+                "  {name}: c11 = {}, c12 = {}, c44 = {}; bulk {}, Zener's ratio {:.6}, c12 − c44 = {}",
+                pressure(c.c11),
+                pressure(c.c12),
+                pressure(c.c44),
+                pressure(c.bulk(d)),
+                c.zener(),
+                pressure(cauchy)
+            );
+        }
+        None => {
+            let _ = writeln!(t, "  {name}:");
+            for row in s.c.iter().take(components(d)) {
+                let row: Vec<String> = row
+                    .iter()
+                    .take(components(d))
+                    .map(|c| pressure(*c))
+                    .collect();
+                let _ = writeln!(t, "    {}", row.join("  "));
+            }
+        }
+    }
+}
+
+fn elastic(t: &mut String, found: &Found) {
+    let s = &found.survey;
+    let pressure = |v: f64| found.deck.units.write(v, Dim::PRESSURE);
+    *t += "\nelastic constants\n";
+    let name = if s.relaxed {
+        "lattice"
+    } else {
+        "lattice, sites held"
+    };
+    table(t, name, &s.stiffness, &pressure);
+    let stressed = s.pressure.abs() > 1e-12 * s.stiffness.c[0][0].abs();
+    if let (true, Some(b)) = (stressed, &s.stress_strain) {
+        table(t, "stress against strain under this pressure", b, &pressure);
+    }
+    if let Some(c) = &s.continuum {
+        table(t, "continuum asked for", c, &pressure);
+        let (a, b) = (s.stiffness.c[0][0], c.c[0][0]);
+        let _ = writeln!(t, "  lattice over continuum, c11: {:.6}", a / b);
+    }
+}
+
+fn gradients(t: &mut String, found: &Found) {
+    let s = &found.survey;
+    if s.directions.iter().all(|d| d.gradients.is_empty()) {
+        *t += "\nno gradient coefficients: the cell has several sites";
+        return;
+    }
+    *t += "\ngradient coefficients of longitudinal waves, ρ ü = Σ c ∂ⁿu, as c/c₂ in powers of the spacing\n";
+    for d in &s.directions {
+        let c = d.longitudinal();
+        let first = c.first().copied().unwrap_or(f64::NAN);
+        let each: Vec<String> = c
+            .iter()
+            .enumerate()
+            .map(|(p, c)| match p {
+                0 => format!("∂²: {}", found.deck.units.write(*c, Dim::PRESSURE)),
+                _ => format!(
+                    "∂^{}: {:.8} a^{}",
+                    2 * p + 2,
+                    c / first / s.spacing.powi(2 * p as i32),
+                    2 * p
+                ),
+            })
+            .collect();
+        let _ = writeln!(t, "  {}  {}", d.name, each.join(", "));
+    }
+}

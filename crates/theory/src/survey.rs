@@ -1,0 +1,467 @@
+//! Everything that the linear model of a lattice says, for reports: waves along the path of the Brillouin zone and along
+//! symmetry directions, stability, elastic constants, gradient coefficients. Per volume of the three-dimensional body.
+
+use crate::asked::asked;
+use crate::crystal::{Crystal, LatticeSolid, Reference};
+use crate::dispersion::verlet_frequency;
+use crate::dispersion::zone::{SpecialPoint, path, special_points};
+use crate::gradient::linear::LinearChain;
+use crate::lattice_elastic::continuum;
+use crate::stability::Limit;
+use crate::stiffness::Stiffness;
+use crate::upscale::{UpscaleError, crystal, lattice};
+use peridyne::law::micromodulus::Moments;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::{LawSpec, Moduli, Spec};
+use std::f64::consts::PI;
+
+/// One wave of one branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Branch {
+    /// ω² (1 / time²)
+    pub squared: f64,
+    /// Of velocity Verlet at the step asked about; `None`: the wave grows, or so does its error.
+    pub verlet: Option<f64>,
+    /// ω/k; `None` at k = 0 and where the wave grows.
+    pub phase: Option<f64>,
+    /// Component of ∂ω/∂k along the line; `None` at ω² ≤ 0.
+    pub group: Option<f64>,
+}
+
+impl Branch {
+    /// ω, or −√−ω² of a wave that grows.
+    pub fn signed(&self) -> f64 {
+        self.squared.abs().sqrt().copysign(self.squared)
+    }
+}
+
+/// A wave vector with its waves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Along the path (1 / length).
+    pub distance: f64,
+    pub wave: [f64; 3],
+    pub name: Option<&'static str>,
+    /// By rising ω².
+    pub branches: Vec<Branch>,
+}
+
+/// Long waves along a symmetry direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Direction {
+    /// As `Γ–X`.
+    pub name: String,
+    pub unit: Vec<f64>,
+    /// Speeds of long waves, rising; `None` where they grow.
+    pub sound: Vec<Option<f64>>,
+    /// From long waves to the end of the line.
+    pub rows: Vec<Row>,
+    /// `[p][a][b]` of `ρ ü_a = Σ_p c_p[a][b] (n·∇)^{2p+2} u_b`; empty with several sites per cell.
+    pub gradients: Vec<Vec<Vec<f64>>>,
+}
+
+impl Direction {
+    /// Of longitudinal waves, `n·c_p·n`.
+    pub fn longitudinal(&self) -> Vec<f64> {
+        let n = &self.unit;
+        let of = |c: &Vec<Vec<f64>>| -> f64 {
+            (0..n.len())
+                .flat_map(|a| (0..n.len()).map(move |b| (a, b)))
+                .map(|(a, b)| n[a] * c[a][b] * n[b])
+                .sum()
+        };
+        self.gradients.iter().map(of).collect()
+    }
+}
+
+/// A wave that does not oscillate but grows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Growing {
+    /// Name, if it is a special point; else of the worst wave of the zone.
+    pub name: Option<&'static str>,
+    pub wave: Vec<f64>,
+    /// √−ω² (1 / time).
+    pub rate: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Survey {
+    pub dimension: usize,
+    pub kind: LatticeKind,
+    pub spacing: f64,
+    pub density: f64,
+    pub bonds: usize,
+    pub sites: usize,
+    pub time_step: f64,
+    pub path: Vec<Row>,
+    pub directions: Vec<Direction>,
+    /// Part of all waves of the zone that grow.
+    pub unstable_part: f64,
+    pub growing: Vec<Growing>,
+    /// A step below which nothing can blow up.
+    pub bound: f64,
+    /// The shortest wave's frequency squared, and where it is.
+    pub largest: f64,
+    pub largest_wave: Vec<f64>,
+    /// `2/ω_max`
+    pub sharp: f64,
+    /// Sites relaxed, or rigid if they are unstable against each other.
+    pub stiffness: Stiffness,
+    pub relaxed: bool,
+    /// Stress against strain, under pressure.
+    pub stress_strain: Option<Stiffness>,
+    pub asked: Option<Moduli>,
+    pub continuum: Option<Stiffness>,
+    pub pressure: f64,
+    /// Largest net force on a site.
+    pub residual: f64,
+    pub reference: Option<Reference>,
+}
+
+/// Steps along each line of the path.
+const STEPS: usize = 80;
+/// Gradient coefficients per direction.
+const TERMS: usize = 4;
+
+/// What waves a lattice spec carries, with steps of `time_step`.
+pub fn survey(spec: &Spec, time_step: f64) -> Result<Survey, UpscaleError> {
+    if spec.materials.len() != 1 {
+        return Err(UpscaleError::SeveralMaterials);
+    }
+    match spec.dimension {
+        1 => survey_in::<1>(spec, time_step),
+        2 => survey_in::<2>(spec, time_step),
+        _ => survey_in::<3>(spec, time_step),
+    }
+}
+
+fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleError> {
+    let (kind, spacing) = lattice(spec)?;
+    let (crystal, reference) = crystal::<D>(spec)?;
+    let points = special_points(kind);
+    let per_axis = grid(&crystal, spacing);
+    let limit = largest(&crystal, spec, per_axis);
+    let scale = limit.squared.abs();
+    let relaxed = crystal.elastic_constants();
+    let section = spec.section;
+    let per_section = |mut s: Stiffness| {
+        s.c.iter_mut().flatten().for_each(|c| *c /= section);
+        s
+    };
+    let moments = {
+        let mut solid = LatticeSolid::new(kind, spacing, spec.horizon);
+        solid.section = section;
+        Moments::continuum(D, solid.delta(), section, spec.influence)
+    };
+    let law = match spec.materials[0].law {
+        LawSpec::Springs(s) => LawSpec::Pmb(s),
+        law => law,
+    };
+    let asked = asked(&law, D, spec.plane, moments);
+    let instability = crystal.instability(per_axis);
+    let mut growing: Vec<Growing> = vec![];
+    if let Some(worst) = &instability {
+        for p in &points {
+            let wave: [f64; D] = scaled(&p.wave, 2.0 * PI / spacing);
+            let squared = crystal.squares(wave)[0];
+            if squared < -1e-10 * scale && growing.iter().all(|g| g.name != Some(p.name)) {
+                growing.push(Growing {
+                    name: Some(p.name),
+                    wave: wave.to_vec(),
+                    rate: (-squared).sqrt(),
+                });
+            }
+        }
+        growing.push(Growing {
+            name: None,
+            wave: nearest_to_centre(&crystal, worst.wave).to_vec(),
+            rate: worst.growth,
+        });
+    }
+    Ok(Survey {
+        dimension: D,
+        kind,
+        spacing,
+        density: crystal.density() / section,
+        bonds: crystal.bonds.len() / crystal.basis.len(),
+        sites: crystal.basis.len(),
+        time_step: dt,
+        path: along_path(&crystal, &points, spacing, dt, scale),
+        directions: directions(&crystal, &points, spacing, dt, scale, section),
+        unstable_part: instability.map_or(0.0, |i| i.part),
+        growing,
+        bound: crystal.bound(),
+        largest: limit.squared,
+        largest_wave: nearest_to_centre(&crystal, limit.wave).to_vec(),
+        sharp: limit.time_step(),
+        relaxed: relaxed.is_some(),
+        stiffness: per_section(relaxed.unwrap_or_else(|| crystal.rigid_elastic_constants())),
+        stress_strain: crystal.stress_strain().map(per_section),
+        continuum: asked.map(|m| continuum(D, spec.plane, m)),
+        asked,
+        pressure: crystal.pressure() / section,
+        residual: crystal.residual(),
+        reference,
+    })
+}
+
+/// Points along a reciprocal vector that show every wave of bonds that span many cells.
+fn grid<const D: usize>(crystal: &Crystal<D>, spacing: f64) -> usize {
+    let far = crystal.bonds.iter().map(|b| b.length()).fold(0.0, f64::max) / spacing;
+    let reach = far.ceil() as usize;
+    match D {
+        1 => (32 * reach).max(64),
+        2 => (4 * reach).clamp(24, 64),
+        _ => (2 * reach + 4).clamp(8, 16),
+    }
+}
+
+/// In 1-D to round-off, by the chain.
+fn largest<const D: usize>(crystal: &Crystal<D>, spec: &Spec, per_axis: usize) -> Limit<D> {
+    let chain = (D == 1)
+        .then(|| self::crystal::<1>(spec).ok())
+        .flatten()
+        .and_then(|(c, _)| LinearChain::of_crystal(&c));
+    match chain {
+        Some(chain) => {
+            let limit = chain.largest(crystal.density());
+            Limit {
+                squared: limit.squared,
+                wave: [limit.wave[0]; D],
+            }
+        }
+        None => crystal.largest(per_axis),
+    }
+}
+
+fn scaled<const D: usize>(v: &[f64; 3], by: f64) -> [f64; D] {
+    std::array::from_fn(|a| v[a] * by)
+}
+
+fn size<const D: usize>(v: &[f64; D]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The same wave by the vector nearest to Γ: in the first zone.
+fn nearest_to_centre<const D: usize>(crystal: &Crystal<D>, wave: [f64; D]) -> [f64; D] {
+    let b = crystal.reciprocal();
+    let mut best = wave;
+    loop {
+        let from = best;
+        for code in 0..3usize.pow(D as u32) {
+            let n: [f64; D] =
+                std::array::from_fn(|i| (code / 3usize.pow(i as u32) % 3) as f64 - 1.0);
+            let moved: [f64; D] =
+                std::array::from_fn(|a| from[a] + (0..D).map(|i| n[i] * b[i][a]).sum::<f64>());
+            // on the border of the zone the vector given stays
+            if size(&moved) < size(&best) * (1.0 - 1e-9) {
+                best = moved;
+            }
+        }
+        if best == from {
+            return best;
+        }
+    }
+}
+
+/// All branches of a wave vector; ω² within round-off of 0 is 0.
+fn branches<const D: usize>(
+    crystal: &Crystal<D>,
+    wave: [f64; D],
+    line: [f64; D],
+    dt: f64,
+    scale: f64,
+) -> Vec<Branch> {
+    let k = size(&wave);
+    let rows = crystal.slopes_along(wave, line).into_iter();
+    rows.map(|[squared, slope]| {
+        let squared = if squared.abs() <= 1e-13 * scale {
+            0.0
+        } else {
+            squared
+        };
+        let omega = (squared >= 0.0).then(|| squared.sqrt());
+        Branch {
+            squared,
+            verlet: omega.and_then(|w| verlet_frequency(w, dt)),
+            phase: omega.filter(|_| k > 0.0).map(|w| w / k),
+            group: omega.filter(|w| *w > 0.0).map(|w| slope / (2.0 * w)),
+        }
+    })
+    .collect()
+}
+
+fn row<const D: usize>(distance: f64, wave: [f64; D], name: Option<&'static str>) -> Row {
+    Row {
+        distance,
+        wave: std::array::from_fn(|a| if a < D { wave[a] } else { 0.0 }),
+        name,
+        branches: vec![],
+    }
+}
+
+fn along_path<const D: usize>(
+    crystal: &Crystal<D>,
+    points: &[SpecialPoint],
+    spacing: f64,
+    dt: f64,
+    scale: f64,
+) -> Vec<Row> {
+    let stations = path::<D>(points, spacing, STEPS);
+    let line = |n: usize| -> [f64; D] {
+        // a corner belongs to the line that ends there
+        let (a, b) = if n == 0 { (0, 1) } else { (n - 1, n) };
+        let v: [f64; D] = std::array::from_fn(|i| stations[b].wave[i] - stations[a].wave[i]);
+        let length = size(&v);
+        v.map(|x| x / length)
+    };
+    (0..stations.len())
+        .map(|n| {
+            let s = &stations[n];
+            Row {
+                branches: branches(crystal, s.wave, line(n), dt, scale),
+                ..row(s.distance, s.wave, s.name)
+            }
+        })
+        .collect()
+}
+
+/// The lines of the path that start or end at Γ.
+fn directions<const D: usize>(
+    crystal: &Crystal<D>,
+    points: &[SpecialPoint],
+    spacing: f64,
+    dt: f64,
+    scale: f64,
+    section: f64,
+) -> Vec<Direction> {
+    let ends = points.windows(2).filter_map(|pair| {
+        if pair[0].name == "Γ" {
+            Some(pair[1])
+        } else {
+            (pair[1].name == "Γ").then_some(pair[0])
+        }
+    });
+    ends.map(|end| {
+        let wave: [f64; D] = scaled(&end.wave, 2.0 * PI / spacing);
+        let length = size(&wave);
+        let unit = wave.map(|x| x / length);
+        let sound = crystal.sound(unit).unwrap_or_default();
+        let top = sound.iter().map(|s| s.abs()).fold(0.0, f64::max);
+        let rows = (1..=STEPS).map(|n| {
+            let k = length * n as f64 / STEPS as f64;
+            let wave = unit.map(|x| x * k);
+            Row {
+                branches: branches(crystal, wave, unit, dt, scale),
+                ..row(k, wave, (n == STEPS).then_some(end.name))
+            }
+        });
+        let gradients = crystal
+            .gradient_coefficients(unit, TERMS)
+            .unwrap_or_default();
+        Direction {
+            name: format!("Γ–{}", end.name),
+            unit: unit.to_vec(),
+            sound: sound
+                .iter()
+                .map(|s| (*s >= -1e-12 * top).then(|| s.max(0.0).sqrt()))
+                .collect(),
+            rows: rows.collect(),
+            gradients: gradients
+                .iter()
+                .map(|c| {
+                    c.iter()
+                        .map(|r| r.iter().map(|x| x / section).collect())
+                        .collect()
+                })
+                .collect(),
+        }
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use peridyne::space::region::Region;
+    use peridyne::spec::{BodySpec, Horizon, PmbStiffness};
+
+    fn spec(kind: LatticeKind, law: LawSpec, m: u32) -> Spec {
+        let mut spec = Spec::new(
+            kind.dimension(),
+            BodySpec::Lattice {
+                kind,
+                spacing: 0.5,
+                origin: [0.0; 3],
+                region: Region::Everything,
+                perturb: None,
+            },
+            2.0,
+            law,
+        );
+        spec.horizon = Horizon::Ratio(m);
+        spec.section = 0.3;
+        spec
+    }
+
+    #[test]
+    fn springs_of_one_neighbour_are_the_textbook_chain() {
+        let law = LawSpec::Springs(PmbStiffness::Young(8.0));
+        let found = survey(&spec(LatticeKind::Chain, law, 1), 0.2).unwrap();
+        // c = 2, ω_max = 2c/a = 8; at the edge sin(ω Δt/2) = ω Δt/2 of the wave
+        assert!((found.sharp - 0.25).abs() < 1e-14);
+        let edge = found.path.last().unwrap();
+        assert_eq!(edge.name, Some("X"));
+        let b = edge.branches[0];
+        assert!((b.signed() - 8.0).abs() < 1e-12);
+        assert!((b.verlet.unwrap() - 10.0 * 0.8f64.asin()).abs() < 1e-10);
+        assert!(b.group.unwrap().abs() < 1e-7);
+        let x = &found.directions[0];
+        assert!((x.sound[0].unwrap() - 2.0).abs() < 1e-13);
+        // ρ ü = E u'' + E a²/12 u''''
+        let c = x.longitudinal();
+        assert!((c[0] - 8.0).abs() < 1e-12 && (c[1] - 8.0 * 0.25 / 12.0).abs() < 1e-12);
+        assert!((found.stiffness.c[0][0] - 8.0).abs() < 1e-12);
+        assert!((found.continuum.unwrap().c[0][0] - 8.0).abs() < 1e-12);
+        assert!(found.growing.is_empty());
+        // beyond the limit the shortest waves have no frequency
+        let fast = survey(&spec(LatticeKind::Chain, law, 1), 0.26).unwrap();
+        assert_eq!(fast.path.last().unwrap().branches[0].verlet, None);
+        assert!(fast.path[1].branches[0].verlet.is_some());
+    }
+
+    #[test]
+    fn waves_are_named_by_the_vector_of_the_first_zone() {
+        let body = LatticeSolid::new(LatticeKind::Fcc, 2.0, Horizon::Ratio(1));
+        let crystal = body.bond_based::<3>(1.0).unwrap();
+        // 2π/a (1, 1, 0) is X: less b = 2π/a (1, 1, −1) and its like
+        let x = nearest_to_centre(&crystal, [PI, PI, 0.0]);
+        assert!((size(&x) - PI).abs() < 1e-12, "{x:?}");
+        let k = [0.1, -0.2, 0.3];
+        let far: [f64; 3] = std::array::from_fn(|a| k[a] + 2.0 * PI * [2.0, -1.0, 0.0][a]);
+        let near = nearest_to_centre(&crystal, far);
+        assert!((0..3).all(|a| (near[a] - k[a]).abs() < 1e-12), "{near:?}");
+    }
+
+    #[test]
+    fn directions_are_the_lines_from_the_centre() {
+        let law = LawSpec::Lps(Moduli {
+            young: 3.0,
+            poisson: 0.3,
+        });
+        let found = survey(&spec(LatticeKind::Square, law, 3), 0.01).unwrap();
+        let names: Vec<&str> = found.directions.iter().map(|d| d.name.as_str()).collect();
+        assert_eq!(names, ["Γ–X", "Γ–M"]);
+        assert!(found.bound <= found.sharp * (1.0 + 1e-9));
+        for d in &found.directions {
+            // long waves: group and phase velocity are the speed of sound
+            for (b, v) in d.rows[0].branches.iter().zip(&d.sound) {
+                let v = v.unwrap();
+                assert!((b.phase.unwrap() / v - 1.0).abs() < 0.01);
+                assert!((b.group.unwrap() / v - 1.0).abs() < 0.02);
+            }
+        }
+        let c11 = found.directions[0].longitudinal()[0];
+        assert!((c11 / found.stiffness.c[0][0] - 1.0).abs() < 1e-12);
+    }
+}
