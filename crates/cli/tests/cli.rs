@@ -255,10 +255,13 @@ fn an_unstable_run_stops_with_1_and_keeps_its_last_good_state() {
 fn every_good_deck_runs() {
     for path in decks("good") {
         let dir = TempDir::new().unwrap();
-        let short = if std::fs::read_to_string(&path).unwrap().contains("duration") {
-            "run.duration=0.7 us"
-        } else {
-            "run.steps=5"
+        let text = std::fs::read_to_string(&path).unwrap();
+        let units = |name: &str| text.contains(&format!("units = \"{name}\""));
+        let short = match text.contains("duration") {
+            true if units("none") => "run.duration=0.01",
+            true if units("metal") => "run.duration=0.01 ps",
+            true => "run.duration=0.7 us",
+            false => "run.steps=5",
         };
         good(run(&path, dir.path(), &["--set", short]));
         assert!(report(dir.path())["steps"].as_u64().unwrap() > 0);
