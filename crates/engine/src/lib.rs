@@ -25,3 +25,4 @@ pub mod run;
 mod samples;
 pub mod space;
 pub mod spec;
+pub mod statics;
