@@ -59,7 +59,7 @@ pub fn headline(sim: &dyn Simulation) -> String {
     let i = sim.info();
     let bytes = i.bytes as f64;
     let mut text = format!(
-        "points    {} in {} dimensions, spacing {:.6e}, mass {:.6e}\nbonds     {} directed, {} to {} per point (mean {:.2}), {}\nhorizon   {:.9e}\nstep      {:.6e}, stable up to {:.6e}\nmemory    {:.1} MB, {:.0} bytes per point\nlanes     {}",
+        "points    {} in {} dimensions, spacing {:.6e}, mass {:.6e}\nbonds     {} directed, {} to {} per point (mean {:.2}), {}\nhorizon   {:.9e}{}\nmemory    {:.1} MB, {:.0} bytes per point\nlanes     {}",
         i.points,
         i.dimension,
         i.spacing,
@@ -70,8 +70,13 @@ pub fn headline(sim: &dyn Simulation) -> String {
         i.family.1,
         i.family_kind,
         i.horizon,
-        i.time_step,
-        i.stable_step,
+        match sim.solved() {
+            Some(_) => String::new(),
+            None => format!(
+                "\nstep      {:.6e}, stable up to {:.6e}",
+                i.time_step, i.stable_step
+            ),
+        },
         bytes / 1e6,
         bytes / i.points.max(1) as f64,
         i.simd,

@@ -9,6 +9,7 @@ mod progress;
 mod reproduce;
 mod run;
 mod script;
+mod side_by_side;
 mod upscale;
 mod waves;
 

@@ -7,7 +7,7 @@ use crate::progress::Terminal;
 use crate::script;
 use peridyne::run::SnapshotOptions;
 use peridyne_io::deck::{Deck, Dim, FieldName, UnitSystem};
-use peridyne_io::drive::{AtomsPlan, DriveError, Plan, default_dir, drive};
+use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
@@ -95,9 +95,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
             }
             Ok(())
         }
-        Err(e @ (DriveError::Run { .. } | DriveError::Write(_))) => {
-            Err(Failure::Run(e.to_string()))
-        }
+        Err(e) => Err(Failure::Run(e.to_string())),
     }
 }
 
@@ -119,6 +117,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         dir,
         steps,
         every: output.every,
+        modes: deck.modes,
         history: output.history.unwrap_or((steps / 200).max(1)),
         series: SeriesOptions {
             points: output.vtu,

@@ -21,6 +21,7 @@ fn main() {
     let e = |s: &str| Expression::parse(s, &[]).unwrap();
     let spec = Spec {
         potential: None,
+        micromoduli: None,
         thermal: None,
         title: "impact".into(),
         dimension: 3,
@@ -79,6 +80,7 @@ fn main() {
             steps,
             time_step: TimeStep::Fixed(1e-7),
             force_unstable: false,
+            statics: None,
         },
     };
     let t = std::time::Instant::now();

@@ -56,6 +56,13 @@ pub enum RunError {
         position: [f64; 3],
         density: f64,
     },
+    #[error("increment {step}: {error}{}", position.map_or(String::new(), |x| format!(" at ({:.6e}, {:.6e}, {:.6e})", x[0], x[1], x[2])))]
+    Equilibrium {
+        step: u64,
+        /// Where, if it is one place.
+        position: Option<[f64; 3]>,
+        error: crate::statics::SolveError,
+    },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
     #[error(

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peridyne::error::RunError;
-use peridyne::observe::Ledger;
+use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::{Simulation, SnapshotOptions};
+use peridyne::statics::SolveError;
 
 use crate::read::{Atoms, Species};
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::run_json::{self, EnergyReport, RunReport, Status};
+use crate::write::table::Table;
 use crate::write::trajectory::{Format, Trajectory};
 use crate::write::{Series, SeriesOptions, WriteError};
 
@@ -26,6 +28,8 @@ pub struct Plan {
     pub every: Option<u64>,
     /// Steps between rows of `history.csv`.
     pub history: u64,
+    /// Modes of vibration about the last state.
+    pub modes: usize,
     pub series: SeriesOptions,
     pub snapshot: SnapshotOptions,
     /// Units of time and energy, for headers.
@@ -131,6 +135,8 @@ pub enum DriveError {
         step: u64,
         dir: PathBuf,
     },
+    #[error("the modes were not found: {error}\nthe last state is in {}", dir.display())]
+    Modes { error: SolveError, dir: PathBuf },
 }
 
 /// Run and write. On a [`RunError`] the last good state is written like a last frame and `run.json` says why.
@@ -147,6 +153,10 @@ pub fn drive(
     columns.extend(ledger_columns(&plan.energy_unit));
     columns.push(Column::new("residual", &plan.energy_unit));
     columns.push(Column::new("broken_directed_bonds", ""));
+    if sim.solved().is_some() {
+        columns.push(Column::new("iterations", ""));
+        columns.push(Column::new("solver_residual", ""));
+    }
     if let Some(atoms) = &plan.atoms {
         columns.push(Column::new("temperature", &atoms.temperature_unit));
         columns.push(Column::new("pressure", &atoms.pressure_unit));
@@ -184,6 +194,9 @@ pub fn drive(
             row.extend(ledger_values(&ledger));
             row.push(ledger.residual());
             row.push(sim.broken() as f64);
+            if let Some(solved) = sim.solved() {
+                row.extend([solved.iterations as f64, solved.residual]);
+            }
             if let Some(atoms) = &plan.atoms {
                 row.extend(atoms.thermo(sim, ledger.kinetic));
             }
@@ -206,6 +219,9 @@ pub fn drive(
     series.write(&snapshot)?;
     series.finish(&snapshot)?;
     history.finish()?;
+    if plan.modes > 0 && stopped.is_none() {
+        write_modes(sim, plan, &snapshot)?;
+    }
     let status = match &stopped {
         None => Status::Done,
         Some(error) => Status::Stopped(error.to_string()),
@@ -244,6 +260,47 @@ pub fn drive(
             dir: plan.dir.to_path_buf(),
         }),
     }
+}
+
+/// `modes.csv`, and the shapes as `points_<mode>.vtu` and `points.pvd` in the folder `modes`, frequencies in place of times.
+fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Result<(), DriveError> {
+    let modes = sim.modes(plan.modes).map_err(|error| DriveError::Modes {
+        error,
+        dir: plan.dir.clone(),
+    })?;
+    let numbers: Vec<f64> = (1..=modes.len()).map(|n| n as f64).collect();
+    let per_time = |power: &str| match plan.time_unit.as_str() {
+        "" => String::new(),
+        unit => format!("1/{unit}{power}"),
+    };
+    Table::new()
+        .column("mode", "", numbers)
+        .column(
+            "frequency",
+            &per_time(""),
+            modes.iter().map(|m| m.frequency),
+        )
+        .column(
+            "angular frequency squared",
+            &per_time("²"),
+            modes.iter().map(|m| m.square),
+        )
+        .save(&plan.dir.join("modes.csv"))?;
+    let options = SeriesOptions {
+        picture: None,
+        dump: None,
+        bonds: false,
+        points: true,
+    };
+    let mut series = Series::new(plan.dir.join("modes"), options)?;
+    for (n, mode) in modes.into_iter().enumerate() {
+        let mut shape = state.clone();
+        shape.step = n as u64 + 1;
+        shape.time = mode.frequency;
+        shape.displacement = mode.shape;
+        series.write(&shape)?;
+    }
+    Ok(())
 }
 
 /// The folder a deck's results go to if nobody says otherwise: `out/<deck name>`.

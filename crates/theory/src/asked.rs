@@ -51,7 +51,8 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
             LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Springs(_)
-            | LawSpec::Atoms,
+            | LawSpec::Atoms
+            | LawSpec::Micromoduli,
             ..,
         ) => None,
     }

@@ -63,6 +63,7 @@ fn case(
     }
     let spec = Spec {
         potential: None,
+        micromoduli: None,
         thermal: None,
         title: String::new(),
         dimension: d,
@@ -99,6 +100,7 @@ fn case(
             steps: 0,
             time_step: TimeStep::Fraction(0.5),
             force_unstable: true,
+            statics: None,
         },
     };
     let mut solid = LatticeSolid::new(kind, H, Horizon::Ratio(ratio));

@@ -46,17 +46,31 @@ impl<const D: usize> Constraint<D> {
         }
     }
 
-    /// Put the points where they belong at the start of a run.
-    pub fn start(&mut self, u: &mut Field<D>, v: &mut Field<D>, t: f64, dt: f64) {
-        for (k, &s) in self.slots.iter().enumerate() {
-            let i = s as usize;
-            for a in (0..D).filter(|a| self.program.acts(*a)) {
-                if self.kind == Prescribed::Displacement {
-                    u[a][i] = self.program.at(a, k, &self.points[k], t);
+    /// Slots, and which of their components are held.
+    pub fn holds(&self) -> impl Iterator<Item = (usize, [bool; D])> {
+        let held = std::array::from_fn(|a| self.program.acts(a));
+        self.slots.iter().map(move |s| (*s as usize, held))
+    }
+
+    pub fn is_velocity(&self) -> bool {
+        self.kind == Prescribed::Velocity
+    }
+
+    /// Displacements as prescribed at time `t`.
+    pub fn place(&self, u: &mut Field<D>, t: f64) {
+        if self.kind == Prescribed::Displacement {
+            for (k, &s) in self.slots.iter().enumerate() {
+                for a in (0..D).filter(|a| self.program.acts(*a)) {
+                    u[a][s as usize] = self.program.at(a, k, &self.points[k], t);
                 }
-                v[a][i] = self.velocity(a, k, t, dt);
             }
         }
+    }
+
+    /// Put the points where they belong at the start of a run.
+    pub fn start(&mut self, u: &mut Field<D>, v: &mut Field<D>, t: f64, dt: f64) {
+        self.place(u, t);
+        self.settle(v, t, dt);
     }
 
     /// Remember the state of the whole step that begins at `t`, and let the coming pass carry the points: no force,

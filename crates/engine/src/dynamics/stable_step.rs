@@ -19,6 +19,15 @@ pub fn largest_eigenvalue<const D: usize>(
         .iter()
         .map(|&s| body.volume.at(s as usize) * body.density.at(s as usize))
         .collect();
+    largest_ratio(body, interaction, &mass)
+}
+
+/// The same with a mass for every point, in order of ids.
+pub fn largest_ratio<const D: usize>(
+    body: &Body<D>,
+    interaction: &mut dyn Interaction<D>,
+    mass: &[f64],
+) -> f64 {
     // every point in motion, no symmetry: a fixed low-discrepancy start
     let mut w: Vec<[f64; D]> = (0..body.points())
         .map(|i| {
@@ -29,7 +38,7 @@ pub fn largest_eigenvalue<const D: usize>(
         .collect();
     let norm = |w: &[[f64; D]]| -> f64 {
         w.iter()
-            .zip(&mass)
+            .zip(mass)
             .map(|(w, m)| m * w.iter().map(|c| c * c).sum::<f64>())
             .sum::<f64>()
             .sqrt()
@@ -44,11 +53,11 @@ pub fn largest_eigenvalue<const D: usize>(
     interaction.forces(body, &u, &mut rest, Sweep::Hold, None);
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for _ in 0..STEPS.min(D * body.points()) {
-        let mut next = product(body, interaction, &w, &mut u, &mut f, &rest);
+        let mut next = product(body, interaction, mass, &w, &mut u, &mut f, &rest);
         let alpha: f64 = next
             .iter()
             .zip(&w)
-            .zip(&mass)
+            .zip(mass)
             .map(|((n, w), m)| m * (0..D).map(|a| n[a] * w[a]).sum::<f64>())
             .sum();
         let beta = betas.last().copied().unwrap_or(0.0);
@@ -74,6 +83,7 @@ pub fn largest_eigenvalue<const D: usize>(
 fn product<const D: usize>(
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
+    mass: &[f64],
     w: &[[f64; D]],
     u: &mut Field<D>,
     f: &mut Field<D>,
@@ -92,9 +102,11 @@ fn product<const D: usize>(
     interaction.forces(body, u, f, Sweep::Hold, None);
     body.slots
         .iter()
-        .map(|&s| {
+        .zip(mass)
+        .map(|(&s, mass)| {
             let s = s as usize;
-            std::array::from_fn(|a| (rest[a][s] - f[a][s]) / (small * body.density.at(s)))
+            let scale = body.volume.at(s) / (small * mass);
+            std::array::from_fn(|a| (rest[a][s] - f[a][s]) * scale)
         })
         .collect()
 }

@@ -219,12 +219,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
     }
 
-    fn tangents(
-        &mut self,
-        body: &Body<D>,
-        _: &Field<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    ) {
+    fn tangents(&mut self, body: &Body<D>, _: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         self.links.each_directed(body, &mut |i, j, k, sub| {
             visit(BondTangent::direct(i, j.original, self.stiffness[sub][k]))
         });

@@ -7,6 +7,7 @@ pub mod contact;
 mod history;
 pub mod linear;
 pub mod list;
+pub mod micromoduli;
 pub mod stencil;
 pub mod tangent;
 pub mod weight;
@@ -197,12 +198,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Every directed bond that is whole with its tangent at `u`, images of which are fresh, in order of slots. Repulsion inside
     /// the family is left out. The scalars' gains are in [`Interaction::gain`] afterwards.
-    fn tangents(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    );
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>));
 
     /// `∂p_i / ∂(Σ share)` of a slot, since the last call of [`Interaction::tangents`].
     fn gain(&self, _slot: usize) -> f64 {

@@ -6,8 +6,8 @@ mod kernel;
 
 use super::bond::critical_stretch;
 use super::{
-    BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
-    Toughness,
+    BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion,
+    Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Column, Field, Layout, field, zeros};
 use crate::execute::blocks::{Shared, for_each_block};
@@ -258,12 +258,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
     }
 
-    fn tangents(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    ) {
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         if W::SHARES {
             // the pressures of this state
             self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
@@ -296,7 +291,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn gain(&self, slot: usize) -> f64 {
-        if W::SHARES { self.pressure_factor(slot) } else { 0.0 }
+        if W::SHARES {
+            self.pressure_factor(slot)
+        } else {
+            0.0
+        }
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

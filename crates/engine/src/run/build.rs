@@ -2,6 +2,7 @@
 
 use super::atoms;
 use super::calibration::cloud_moments;
+use super::equilibrium::StaticState;
 use super::model::Model;
 use super::probe;
 use super::recipe::{Laws, Recipe};
@@ -152,7 +153,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             body.spacing
         )));
     }
-    let stable_step = if options.trust_time_step {
+    let stable_step = if options.trust_time_step || spec.schedule.statics.is_some() {
         f64::INFINITY
     } else {
         probe::stable_step(&recipe, &body, interaction.as_mut(), spec)?
@@ -255,6 +256,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         past_work: [0.0; 3],
         initial_energy: None,
         fault: None,
+        statics: None,
     };
     model.info.bytes = model.bytes();
     if let Some(thermal) = spec.thermal {
@@ -269,5 +271,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.sets = sets;
+    if let Some(statics) = spec.schedule.statics {
+        if spec.schedule.steps > 0 {
+            model.check_statics(statics)?;
+        }
+        model.statics = Some(StaticState::new(statics));
+    }
     Ok(model)
 }

@@ -16,7 +16,7 @@ impl<const D: usize> Model<D> {
     ) -> Result<(Vec<Load<D>>, Vec<Constraint<D>>), BuildError> {
         let (mut loads, mut constraints) = (vec![], vec![]);
         for (n, c) in conditions.iter().enumerate() {
-            let (slots, points) = self.members(&c.set, sets).map_err(|e| BuildError {
+            let (slots, points) = self.slots_of(&c.set, sets).map_err(|e| BuildError {
                 path: format!("conditions[{n}].set"),
                 ..e
             })?;

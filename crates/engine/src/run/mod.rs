@@ -5,6 +5,7 @@ mod atoms;
 mod build;
 mod calibration;
 mod conditions;
+mod equilibrium;
 mod model;
 mod probe;
 mod recipe;
@@ -19,6 +20,7 @@ use crate::condition::driven::{Drive, Reaction};
 use crate::error::{BuildError, RunError};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
+use crate::statics::{AnyLinearBody, SolveError, Solved};
 
 /// What a model is, for headers and reports.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -88,6 +90,17 @@ pub struct Families {
     pub foreign: Vec<bool>,
 }
 
+/// A mode of vibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModeShape {
+    /// `ω²` (1 / time²): round-off of 0 for rigid motions; negative: the state is unstable.
+    pub square: f64,
+    /// Cycles per time.
+    pub frequency: f64,
+    /// `[N]` displacement, scaled so that `Σ mass φ² = 1`.
+    pub shape: Vec<Point>,
+}
+
 /// A running model of any dimension, law and family. All arrays are in order of point id.
 pub trait Simulation: Send {
     fn info(&self) -> &Info;
@@ -122,6 +135,8 @@ pub trait Simulation: Send {
     /// Force densities of the last sweep.
     fn force_densities(&self) -> Vec<Point>;
     fn reference(&self) -> Vec<Point>;
+    /// Ids of the points of a named set; `"all"` always exists.
+    fn members(&self, set: &str) -> Option<Vec<u32>>;
     fn volumes(&self) -> Vec<f64>;
     fn densities(&self) -> Vec<f64>;
     fn damage(&self) -> Vec<f64>;
@@ -172,6 +187,16 @@ pub trait Simulation: Send {
     fn drive(&mut self, index: usize, value: &Drive) -> bool;
     /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
     fn reaction(&self, index: usize) -> Reaction;
+    /// The linear body about the displacements of now: stiffness block by block, without contact and loads.
+    fn linear_body(&mut self) -> AnyLinearBody;
+    /// What the solver did in the last increment; `None`: steps are steps in time.
+    fn solved(&self) -> Option<Solved>;
+    /// The lowest modes of vibration about the state of now, held where displacements are prescribed, lowest first.
+    ///
+    /// # Errors
+    /// Those of the factorisation.
+    fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError>;
+
     /// Points that no step moves; they keep their velocity. Replaces those of the last call.
     fn set_still(&mut self, ids: &[u32]);
 }

@@ -1,8 +1,9 @@
 //! The running model: state, forces, motion and accounts.
 
 use super::accounts::ledger_base;
+use super::equilibrium::StaticState;
 use super::recipe::{Laws, Recipe};
-use super::{Families, Info, PointField, Simulation, SnapshotOptions};
+use super::{Families, Info, ModeShape, PointField, Simulation, SnapshotOptions};
 use crate::body::{Body, Field, Layout};
 use crate::condition::constraint::Constraint;
 use crate::condition::driven::{Drive, Driven, Reaction};
@@ -17,6 +18,7 @@ use crate::interaction::{BondState, Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
 use crate::spec::{ConditionSpec, IndenterSpec};
+use crate::statics::{AnyLinearBody, SolveError, Solved};
 
 /// A model in D dimensions.
 pub struct Model<const D: usize> {
@@ -57,6 +59,8 @@ pub struct Model<const D: usize> {
     pub(super) initial_energy: Option<f64>,
     /// The last forces mean nothing.
     pub(super) fault: Option<Fault>,
+    /// Steps are increments of load.
+    pub(super) statics: Option<StaticState<D>>,
 }
 
 impl<const D: usize> Model<D> {
@@ -76,10 +80,18 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    /// All forces at the current displacements; `dt` is 0 at the start of a run.
-    fn forces(&mut self, bonds: bool, dt: f64) {
+    /// All forces at the current displacements, no bond breaking.
+    pub(super) fn forces_held(&mut self) {
         self.refresh_images();
-        let t = self.time();
+        let (body, u) = (&self.body, &self.u);
+        self.interaction
+            .forces(body, u, &mut self.f, Sweep::Hold, None);
+        self.other_forces(0.0);
+    }
+
+    /// All forces at the current displacements; `dt` is 0 at the start of a run.
+    pub(super) fn forces(&mut self, bonds: bool, dt: f64) {
+        self.refresh_images();
         let mut watched = self.watched.take();
         watched = std::mem::take(&mut self.watch).then(|| watched.unwrap_or_default());
         self.virial = std::mem::take(&mut self.watch_virial).then(|| match bonds {
@@ -107,6 +119,16 @@ impl<const D: usize> Model<D> {
             }
         }
         self.watched = watched;
+        self.other_forces(dt);
+        if let Some(mut virial) = self.virial {
+            self.add_virial_of_contact(&mut virial);
+            self.virial = Some(virial);
+        }
+    }
+
+    /// Forces of contact, indenters and loads, on top of those of bonds.
+    fn other_forces(&mut self, dt: f64) {
+        let t = self.time();
         if let Some(contact) = &mut self.contact {
             let (body, interaction) = (&self.body, &self.interaction);
             contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
@@ -115,10 +137,6 @@ impl<const D: usize> Model<D> {
             if let Some(watched) = &mut self.watched {
                 contact.add_energy_density(body, &self.u, &mut watched.repulsion);
             }
-        }
-        if let Some(mut virial) = self.virial {
-            self.add_virial_of_contact(&mut virial);
-            self.virial = Some(virial);
         }
         for indenter in &mut self.indenters {
             indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
@@ -157,7 +175,7 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    fn by_id<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
+    pub(super) fn by_id<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
         self.body.slots.iter().map(|&s| value(s as usize)).collect()
     }
 
@@ -174,7 +192,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Slots and reference positions of a set.
-    pub(super) fn members(
+    pub(super) fn slots_of(
         &self,
         set: &str,
         sets: &[(String, Vec<u32>)],
@@ -203,17 +221,24 @@ impl<const D: usize> Simulation for Model<D> {
     fn start(&mut self, bonds: bool) {
         self.finish();
         let (t, dt) = (self.time(), self.dt);
-        for c in &mut self.constraints {
-            c.start(&mut self.u, &mut self.v, t, dt);
-        }
         self.look_again();
-        self.forces(bonds, 0.0);
+        if self.statics.is_some() {
+            self.unloaded();
+        } else {
+            for c in &mut self.constraints {
+                c.start(&mut self.u, &mut self.v, t, dt);
+            }
+            self.forces(bonds, 0.0);
+        }
         // energy that came in from outside counts as initial
         let now = self.energy_now();
         self.initial_energy = Some(ledger_base(&now));
     }
 
     fn step(&mut self) -> Result<(), RunError> {
+        if self.statics.is_some() {
+            return self.increment();
+        }
         let (t, dt) = (self.time(), self.dt);
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
@@ -221,7 +246,7 @@ impl<const D: usize> Simulation for Model<D> {
         self.still.begin(&mut self.v, &mut self.f, !self.pending);
         // linear springs may go through each other: they know no distance that is too far for a step
         let limit = match self.recipe.laws {
-            Laws::Springs(_) => f64::INFINITY,
+            Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
             _ => self.body.spacing,
         };
         let fastest = self.verlet.advance(
@@ -387,6 +412,14 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn reference(&self) -> Vec<Point> {
         self.by_id(|i| self.body.position(i))
+    }
+
+    fn members(&self, set: &str) -> Option<Vec<u32>> {
+        if set == "all" {
+            return Some((0..self.body.points() as u32).collect());
+        }
+        let named = self.sets.iter().find(|(name, _)| name == set);
+        named.map(|(_, ids)| ids.clone())
     }
 
     fn volumes(&self) -> Vec<f64> {
@@ -619,6 +652,26 @@ impl<const D: usize> Simulation for Model<D> {
         self.driven
             .get(index)
             .map_or_else(Reaction::default, Driven::reaction)
+    }
+
+    fn linear_body(&mut self) -> AnyLinearBody {
+        AnyLinearBody::new(self.linear_now()).expect("there are three dimensions")
+    }
+
+    fn solved(&self) -> Option<Solved> {
+        self.statics.as_ref().map(|s| s.solved)
+    }
+
+    fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
+        let found = self.lowest_modes(count)?;
+        Ok(found
+            .iter()
+            .map(|m| ModeShape {
+                square: m.square,
+                frequency: m.frequency(),
+                shape: Self::padded(&m.shape),
+            })
+            .collect())
     }
 
     fn set_still(&mut self, ids: &[u32]) {

@@ -11,6 +11,7 @@ use crate::interaction::atoms::current::CurrentAtoms;
 use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::interaction::linear::LinearInteraction;
 use crate::interaction::list::{ListInteraction, ListParts};
+use crate::interaction::micromoduli::MicromoduliInteraction;
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
@@ -20,6 +21,8 @@ use crate::law::potential::{Potential, PotentialSpec, Visitor};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
 use crate::law::solid::eam_like::{EamLike, Solid};
 use crate::spec::{Calibration, Criterion, Influence, LawSpec, MaterialSpec, PmbStiffness, Spec};
+use crate::statics::AnyLinearBody;
+use std::sync::Arc;
 
 /// Constants of all materials.
 #[derive(Debug, Clone)]
@@ -29,6 +32,8 @@ pub(super) enum Laws {
     /// Micromodulus of linear springs.
     Springs(f64),
     Atoms(PotentialSpec),
+    /// Of the points in order of their ids.
+    Micromoduli(Arc<AnyLinearBody>),
 }
 
 pub(super) struct Recipe {
@@ -67,6 +72,7 @@ impl Recipe {
         let mut solid = vec![];
         let mut springs = vec![];
         let mut atoms = vec![];
+        let mut given = None;
         let mut repulsive: f64 = 0.0;
         for (n, m) in spec.materials.iter().enumerate() {
             solid.extend(Solid::of_law(D, spec.plane, m.law));
@@ -77,13 +83,16 @@ impl Recipe {
                 ));
             }
             let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
-            let plain = matches!(m.law, LawSpec::Springs(_) | LawSpec::Atoms);
+            let plain = matches!(
+                m.law,
+                LawSpec::Springs(_) | LawSpec::Atoms | LawSpec::Micromoduli
+            );
             if plain
                 && (m.fracture.is_some() || spec.contact.is_some() || !spec.precracks.is_empty())
             {
                 return Err(BuildError::new(
                     at(n, "law"),
-                    "springs and potentials have no bonds that break and no contact of their own",
+                    "springs, micromoduli and potentials have no bonds that break and no contact of their own",
                 )
                 .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
             }
@@ -116,6 +125,13 @@ impl Recipe {
                     atoms.push(potential.clone());
                     (1.0, 0.0)
                 }
+                LawSpec::Micromoduli => {
+                    let Some(body) = &spec.micromoduli else {
+                        return Err(BuildError::new(at(n, "law"), "the spec has no micromoduli"));
+                    };
+                    given = Some(body.clone());
+                    (1.0, 0.0)
+                }
             };
             if !(value > 0.0 && value.is_finite()) {
                 return Err(
@@ -130,6 +146,7 @@ impl Recipe {
             &solid.is_empty(),
             &springs.is_empty(),
             &atoms.is_empty(),
+            &given.is_none(),
         ];
         match kinds.iter().filter(|none| !**none).count() {
             0 => return Err(BuildError::new("materials", "the body has no material")),
@@ -150,6 +167,8 @@ impl Recipe {
         }
         let laws = if let Some(potential) = atoms.pop() {
             Laws::Atoms(potential)
+        } else if let Some(body) = given {
+            Laws::Micromoduli(body)
         } else if let Some(c) = springs.pop() {
             Laws::Springs(c)
         } else if solid.is_empty() {
@@ -217,6 +236,28 @@ impl Recipe {
                     std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
                 };
                 Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
+            }
+            Laws::Micromoduli(linear) => {
+                let Some(linear) = (**linear).clone().of::<D>() else {
+                    let found = linear.dimension();
+                    return Err(BuildError::new(
+                        "micromoduli",
+                        format!("the micromoduli are those of a {found}-D body, this one has {D}"),
+                    ));
+                };
+                if linear.points() != body.points() {
+                    return Err(BuildError::new(
+                        "micromoduli",
+                        format!(
+                            "there are micromoduli of {} points, the body has {}",
+                            linear.points(),
+                            body.points()
+                        ),
+                    ));
+                }
+                Ok(Box::new(MicromoduliInteraction::new(
+                    body, &linear, self.simd,
+                )))
             }
             Laws::Atoms(potential) => match (&body.layout, &self.stencil) {
                 (Layout::Grid(_), Some(_)) => {

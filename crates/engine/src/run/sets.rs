@@ -133,7 +133,7 @@ pub(super) fn assign_materials<const D: usize>(
 pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Result<(), BuildError> {
     for (n, init) in spec.initial.iter().enumerate() {
         let sets = std::mem::take(&mut model.sets);
-        let members = model.members(&init.set, &sets).map_err(|e| BuildError {
+        let members = model.slots_of(&init.set, &sets).map_err(|e| BuildError {
             path: format!("initial[{n}].set"),
             ..e
         });

@@ -36,7 +36,7 @@ impl<const D: usize> Model<D> {
             let material = self.body.material_of(i);
             match &recipe.laws {
                 Laws::Bond(c) => [c[material], 0.0],
-                Laws::Springs(_) | Laws::Atoms(_) => [0.0; 2],
+                Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => [0.0; 2],
                 Laws::Solid(s) => {
                     let (s, b) = (&s[material], self.interaction.point_field(1, i));
                     // P = n κ θ / m
@@ -70,7 +70,7 @@ impl<const D: usize> Model<D> {
                             let law = BondBasedMixed { rule: recipe.rule };
                             law.pull(law.constant(r0, r0.recip(), weight), g, fi, fj)
                         }
-                        Laws::Springs(_) | Laws::Atoms(_) => 0.0,
+                        Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => 0.0,
                         Laws::Solid(_) => EamLike { ratio: 0.0 }.pull(weight, g, fi, fj),
                     };
                 }

@@ -6,6 +6,8 @@ use crate::expression::Expression;
 pub use crate::law::potential::PotentialSpec;
 use crate::space::lattice::LatticeKind;
 use crate::space::region::Region;
+use crate::statics::{AnyLinearBody, LinearBody};
+use std::sync::Arc;
 
 /// Everything a run is.
 #[derive(Debug, Clone)]
@@ -25,6 +27,8 @@ pub struct Spec {
     pub materials: Vec<MaterialSpec>,
     /// Interatomic potential of materials whose law is [`LawSpec::Atoms`].
     pub potential: Option<PotentialSpec>,
+    /// Micromoduli of materials whose law is [`LawSpec::Micromoduli`], in order of the points of a cloud.
+    pub micromoduli: Option<Arc<AnyLinearBody>>,
     /// How bonds between unlike materials get their stiffness.
     pub interface: InterfaceRule,
     pub horizon: Horizon,
@@ -67,6 +71,7 @@ impl Spec {
                 fracture: None,
             }],
             potential: None,
+            micromoduli: None,
             interface: InterfaceRule::Series,
             horizon: Horizon::Ratio(1),
             volume_scaling: false,
@@ -84,8 +89,29 @@ impl Spec {
                 steps: 0,
                 time_step: TimeStep::Fraction(0.8),
                 force_unstable: false,
+                statics: None,
             },
         }
+    }
+}
+
+impl Spec {
+    /// A linear body that can be run.
+    pub fn of_linear<const D: usize>(body: &LinearBody<D>) -> Spec {
+        let pad = |x: &[f64; D]| std::array::from_fn(|a| if a < D { x[a] } else { 0.0 });
+        let cloud = Cloud {
+            position: body.position.iter().map(pad).collect(),
+            volume: body.volume.clone(),
+            density: body.density.clone(),
+            ..Cloud::default()
+        };
+        let mut spec = Spec::new(D, BodySpec::Cloud(cloud), 1.0, LawSpec::Micromoduli);
+        spec.horizon = Horizon::Length(body.range() * (1.0 + 1e-9));
+        for a in 0..D {
+            spec.periodic[a] = body.period[a];
+        }
+        spec.micromoduli = AnyLinearBody::new(body.clone()).map(Arc::new);
+        spec
     }
 }
 
@@ -204,6 +230,8 @@ pub enum LawSpec {
     /// The potential of [`Spec::potential`]: on the lattice's fixed neighbours (family `Stencil`), or between atoms that
     /// are near now (`Neighbours`, or `Auto`).
     Atoms,
+    /// The blocks of [`Spec::micromoduli`].
+    Micromoduli,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -421,6 +449,50 @@ pub struct Schedule {
     pub time_step: TimeStep,
     /// Run even if the step is above the stability limit.
     pub force_unstable: bool,
+    /// Every step is an increment of load that ends in equilibrium; `time_step` is what t grows by.
+    pub statics: Option<Statics>,
+}
+
+/// How equilibrium is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statics {
+    pub method: Method,
+    pub solver: Solver,
+    /// Residual force over loads and reactions.
+    pub tolerance: f64,
+    /// Of conjugate gradients or relaxation, per solution.
+    pub most_iterations: usize,
+}
+
+impl Default for Statics {
+    /// The linear solution to 1e-10.
+    fn default() -> Self {
+        Statics {
+            method: Method::Linear,
+            solver: Solver::Auto,
+            tolerance: 1e-10,
+            most_iterations: 100_000,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The equations linear about the reference.
+    Linear,
+    /// Newton's method: large deformation.
+    Newton,
+    /// Adaptive dynamic relaxation: contact, and what Newton's method does not find.
+    Relaxation,
+}
+
+/// How linear equations are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solver {
+    /// Factors where they are small, else conjugate gradients.
+    Auto,
+    Direct,
+    ConjugateGradients,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -42,12 +42,16 @@ pub fn linear_body<const D: usize>(
             .collect(),
     };
     let points: Vec<usize> = (0..n).collect();
-    let parts: Vec<Part<D>> = points.par_chunks(CHUNK).map(|chunk| rows.part(chunk)).collect();
+    let parts: Vec<Part<D>> = points
+        .par_chunks(CHUNK)
+        .map(|chunk| rows.part(chunk))
+        .collect();
     let at = |s: u32| {
         let x = body.position(s as usize);
         std::array::from_fn(|a| x[a])
     };
-    let per_point = |v: &crate::body::Values| body.slots.iter().map(|s| v.at(*s as usize)).collect();
+    let per_point =
+        |v: &crate::body::Values| body.slots.iter().map(|s| v.at(*s as usize)).collect();
     let mut made = LinearBody {
         position: body.slots.iter().map(|s| at(*s)).collect(),
         volume: per_point(&body.volume),

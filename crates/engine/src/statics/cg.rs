@@ -3,7 +3,7 @@
 use super::operator::LinearOperator;
 use super::support::Support;
 use super::vectors::{add, add_to_multiple, dot, norm};
-use super::{Solved, SolveError};
+use super::{SolveError, Solved};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,16 +1,16 @@
 //! Direct solution of the equations of a linear body: banded in one dimension, sparse (faer) otherwise.
 
+use super::SolveError;
 use super::banded::Banded;
 use super::linear_body::LinearBody;
 use super::support::Support;
-use super::SolveError;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, Lu};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 
 /// Asymmetry (see `Soundness`) up to which a body counts as symmetric.
-const SYMMETRIC: f64 = 1e-10;
+pub const SYMMETRIC: f64 = 1e-10;
 /// Widest band that is solved as one.
 const BAND: usize = 128;
 

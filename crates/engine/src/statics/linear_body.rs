@@ -3,6 +3,8 @@
 //! Force density at i: `L_i = Σ_j C_ij (u_j − u_i)` (silling2010, section 4, with `C_ij` the volume of j included).
 //! State-based laws fit too: their rows reach two horizons.
 
+use std::any::Any;
+
 /// Points, and which of them talk to which.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearBody<const D: usize> {
@@ -22,6 +24,73 @@ pub struct LinearBody<const D: usize> {
     pub block: Vec<[[f64; D]; D]>,
 }
 
+/// A linear body of any dimension.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnyLinearBody {
+    One(LinearBody<1>),
+    Two(LinearBody<2>),
+    Three(LinearBody<3>),
+}
+
+impl AnyLinearBody {
+    /// `None`: a dimension that there is not.
+    pub fn new<const D: usize>(body: LinearBody<D>) -> Option<Self> {
+        let mut body: Box<dyn Any> = Box::new(body);
+        let made = match D {
+            1 => Self::One(std::mem::replace(
+                body.downcast_mut()?,
+                LinearBody::nothing(),
+            )),
+            2 => Self::Two(std::mem::replace(
+                body.downcast_mut()?,
+                LinearBody::nothing(),
+            )),
+            _ => Self::Three(std::mem::replace(
+                body.downcast_mut()?,
+                LinearBody::nothing(),
+            )),
+        };
+        Some(made)
+    }
+
+    /// Longest bond that acts (length).
+    pub fn range(&self) -> f64 {
+        match self {
+            Self::One(b) => b.range(),
+            Self::Two(b) => b.range(),
+            Self::Three(b) => b.range(),
+        }
+    }
+
+    /// Period per axis.
+    pub fn period(&self) -> [Option<f64>; 3] {
+        let padded = |p: &[Option<f64>]| std::array::from_fn(|a| p.get(a).copied().flatten());
+        match self {
+            Self::One(b) => padded(&b.period),
+            Self::Two(b) => padded(&b.period),
+            Self::Three(b) => padded(&b.period),
+        }
+    }
+
+    pub fn dimension(&self) -> usize {
+        match self {
+            Self::One(_) => 1,
+            Self::Two(_) => 2,
+            Self::Three(_) => 3,
+        }
+    }
+
+    /// The body, if it has D dimensions.
+    pub fn of<const D: usize>(self) -> Option<LinearBody<D>> {
+        let body: Box<dyn Any> = match self {
+            Self::One(b) => Box::new(b),
+            Self::Two(b) => Box::new(b),
+            Self::Three(b) => Box::new(b),
+        };
+        body.downcast().ok().map(|b| *b)
+    }
+}
+
 /// How far a body is from what an elastic one must be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Soundness {
@@ -37,6 +106,19 @@ fn largest<const D: usize>(c: &[[f64; D]; D]) -> f64 {
 }
 
 impl<const D: usize> LinearBody<D> {
+    /// Without points.
+    pub fn nothing() -> Self {
+        LinearBody {
+            position: vec![],
+            volume: vec![],
+            density: vec![],
+            period: [None; D],
+            start: vec![0],
+            partner: vec![],
+            block: vec![],
+        }
+    }
+
     pub fn points(&self) -> usize {
         self.position.len()
     }

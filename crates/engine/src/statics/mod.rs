@@ -5,7 +5,7 @@
 //! | which linear body is a law about a state? | [`assemble`], [`linear_body`] |
 //! | what does it do to a displacement, with or without a matrix? | [`operator`] |
 //! | is it held? | [`support`] |
-//! | where is it in equilibrium? | [`direct`] ([`banded`] in 1-D), [`cg`] |
+//! | where is it in equilibrium? | [`direct`] ([`banded`] in 1-D), [`cg`]; of any law [`relaxation`] |
 //! | how does it vibrate? | [`modes`] |
 
 pub mod assemble;
@@ -15,14 +15,16 @@ pub mod direct;
 pub mod linear_body;
 pub mod modes;
 pub mod operator;
+pub mod relaxation;
 pub mod support;
 mod vectors;
 
 pub use assemble::linear_body;
-pub use direct::Direct;
-pub use linear_body::{LinearBody, Soundness};
+pub use direct::{Direct, SYMMETRIC};
+pub use linear_body::{AnyLinearBody, LinearBody, Soundness};
 pub use operator::{Assembled, LinearOperator, Swept};
 pub use support::{Loose, Support};
+pub use vectors::norm;
 
 /// What a solver did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -40,7 +42,9 @@ pub enum SolveError {
     #[error("nothing holds the body: {} of the part of {} points around point {} is free", .0.motion, .0.points, .0.point)]
     Loose(Loose),
     /// A motion around this point that gives energy back.
-    #[error("the operator is not positive definite: some motion around point {point} meets no resistance")]
+    #[error(
+        "the operator is not positive definite: some motion around point {point} meets no resistance"
+    )]
     Indefinite { point: usize },
     #[error("the equations are singular")]
     Singular,
@@ -48,12 +52,16 @@ pub enum SolveError {
     TooLarge,
     #[error("the body is not symmetric ({asymmetry:.1e}): conjugate gradients do not solve it")]
     NotSymmetric { asymmetry: f64 },
-    #[error("after {iterations} iterations the residual is {residual:.1e} of that of the start, not {tolerance:.1e}")]
+    #[error(
+        "after {iterations} iterations the residual is {residual:.1e} of that of the start, not {tolerance:.1e}"
+    )]
     NotConverged {
         iterations: usize,
         residual: f64,
         tolerance: f64,
     },
+    #[error("bonds still break after {rounds} rounds of one increment: the body falls apart")]
+    StillBreaking { rounds: usize },
     #[error("a force or displacement is not a number")]
     NotFinite,
 }

@@ -1,9 +1,9 @@
 //! Lowest modes of vibration: `K φ = ω² M φ`, by Lanczos on the inverse.
 
+use super::SolveError;
 use super::direct::Direct;
 use super::linear_body::LinearBody;
 use super::support::Support;
-use super::SolveError;
 use super::vectors::{add, dot};
 use faer::{Mat, Side};
 
@@ -55,7 +55,11 @@ pub fn lowest<const D: usize>(
     };
     // every point in motion, no symmetry
     let mut q: Vec<[f64; D]> = (0..body.points())
-        .map(|i| std::array::from_fn(|a| ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5))
+        .map(|i| {
+            std::array::from_fn(|a| {
+                ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5
+            })
+        })
         .collect();
     support.mask(&mut q);
     let mut basis: Vec<Vec<[f64; D]>> = vec![];
@@ -72,7 +76,10 @@ pub fn lowest<const D: usize>(
             mq = times_mass(&q);
         }
         let norm = dot(&q, &mq).sqrt();
-        let scale = alpha.iter().copied().fold(0.0f64, |m, a: f64| m.max(a.abs()));
+        let scale = alpha
+            .iter()
+            .copied()
+            .fold(0.0f64, |m, a: f64| m.max(a.abs()));
         if !(norm > 1e-13 * scale) {
             break;
         }
@@ -118,7 +125,8 @@ pub fn lowest<const D: usize>(
             .map(|i| {
                 let f = body.force(&shape, i);
                 let free = (0..D).filter(|a| support.free[i][*a]);
-                free.map(|a| (body.volume[i] * f[a] + square * m[i][a]).powi(2) / mass[i]).sum::<f64>()
+                free.map(|a| (body.volume[i] * f[a] + square * m[i][a]).powi(2) / mass[i])
+                    .sum::<f64>()
             })
             .sum::<f64>()
             .sqrt();
@@ -136,5 +144,7 @@ pub fn lowest<const D: usize>(
 }
 
 fn largest<const D: usize>(c: &[[f64; D]; D]) -> f64 {
-    c.iter().map(|row| row.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max)
+    c.iter()
+        .map(|row| row.iter().map(|x| x.abs()).sum())
+        .fold(0.0, f64::max)
 }

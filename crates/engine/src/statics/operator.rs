@@ -109,13 +109,14 @@ impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
     fn diagonal(&mut self) -> Vec<[[f64; D]; D]> {
         let body = self.body;
         let mut sum = vec![[[0.0; D]; D]; body.len];
-        self.interaction.tangents(body, &body.at_rest(), &mut |bond| {
-            for a in 0..D {
-                for b in 0..D {
-                    sum[bond.i][a][b] += body.volume.at(bond.i) * bond.stiffness[a][b];
+        self.interaction
+            .tangents(body, &body.at_rest(), &mut |bond| {
+                for a in 0..D {
+                    for b in 0..D {
+                        sum[bond.i][a][b] += body.volume.at(bond.i) * bond.stiffness[a][b];
+                    }
                 }
-            }
-        });
+            });
         body.slots.iter().map(|s| sum[*s as usize]).collect()
     }
 }

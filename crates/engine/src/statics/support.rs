@@ -18,7 +18,11 @@ pub struct Loose {
     pub motion: &'static str,
 }
 
-const TRANSLATIONS: [&str; 3] = ["translation along x", "translation along y", "translation along z"];
+const TRANSLATIONS: [&str; 3] = [
+    "translation along x",
+    "translation along y",
+    "translation along z",
+];
 
 impl<const D: usize> Support<D> {
     pub fn none(points: usize) -> Self {
@@ -78,8 +82,13 @@ impl<const D: usize> Support<D> {
             .fold(0.0, f64::max)
             .sqrt();
         // a motion, as its component `a` at point i
-        let mut motions: Vec<(&'static str, [usize; 2])> = (0..D).map(|a| (TRANSLATIONS[a], [a, a])).collect();
-        let planes = [("rotation about z", [0, 1]), ("rotation about x", [1, 2]), ("rotation about y", [2, 0])];
+        let mut motions: Vec<(&'static str, [usize; 2])> =
+            (0..D).map(|a| (TRANSLATIONS[a], [a, a])).collect();
+        let planes = [
+            ("rotation about z", [0, 1]),
+            ("rotation about x", [1, 2]),
+            ("rotation about y", [2, 0]),
+        ];
         for (name, [m, n]) in planes.into_iter().take(D * (D - 1) / 2) {
             // about the line through all points nothing turns: a bar in the plane still turns about its centre
             let turns = members
@@ -114,9 +123,8 @@ impl<const D: usize> Support<D> {
         let null = (0..count).filter(|k| values[*k] < 1e-12 * top);
         let mut loose: Vec<Loose> = null
             .filter_map(|k| {
-                let strongest = (0..count).max_by(|p, q| {
-                    vectors[(*p, k)].abs().total_cmp(&vectors[(*q, k)].abs())
-                })?;
+                let strongest = (0..count)
+                    .max_by(|p, q| vectors[(*p, k)].abs().total_cmp(&vectors[(*q, k)].abs()))?;
                 Some(Loose {
                     points: members.len(),
                     point: members[0],
@@ -134,7 +142,10 @@ impl<const D: usize> Support<D> {
 mod tests {
     use super::*;
 
-    fn loose<const D: usize>(held: &[(usize, usize)], period: [Option<f64>; D]) -> Vec<&'static str> {
+    fn loose<const D: usize>(
+        held: &[(usize, usize)],
+        period: [Option<f64>; D],
+    ) -> Vec<&'static str> {
         // corners of a cube (square, segment)
         let position: Vec<[f64; D]> = (0..1 << D)
             .map(|i| std::array::from_fn(|a| f64::from(i >> a & 1)))
@@ -152,10 +163,16 @@ mod tests {
     fn motions_that_nothing_holds_are_named() {
         assert_eq!(loose::<1>(&[], [None]), ["translation along x"]);
         assert!(loose::<1>(&[(1, 0)], [None]).is_empty());
-        assert_eq!(loose::<2>(&[(0, 0), (0, 1)], [None; 2]), ["rotation about z"]);
+        assert_eq!(
+            loose::<2>(&[(0, 0), (0, 1)], [None; 2]),
+            ["rotation about z"]
+        );
         assert!(loose::<2>(&[(0, 0), (0, 1), (1, 1)], [None; 2]).is_empty());
         // rollers on one side
-        assert_eq!(loose::<2>(&[(0, 0), (2, 0)], [None; 2]), ["translation along y"]);
+        assert_eq!(
+            loose::<2>(&[(0, 0), (2, 0)], [None; 2]),
+            ["translation along y"]
+        );
         // nothing turns where an axis is periodic
         assert!(loose::<2>(&[(0, 0), (0, 1)], [Some(2.0), None]).is_empty());
         let pins = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2)];

@@ -9,9 +9,14 @@ const CHUNK: usize = 4096;
 pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
     let part = |(x, y): (&[[f64; D]], &[[f64; D]])| -> f64 {
         let both = x.iter().zip(y);
-        both.map(|(x, y)| (0..D).map(|a| x[a] * y[a]).sum::<f64>()).sum()
+        both.map(|(x, y)| (0..D).map(|a| x[a] * y[a]).sum::<f64>())
+            .sum()
     };
-    let parts: Vec<f64> = x.par_chunks(CHUNK).zip(y.par_chunks(CHUNK)).map(part).collect();
+    let parts: Vec<f64> = x
+        .par_chunks(CHUNK)
+        .zip(y.par_chunks(CHUNK))
+        .map(part)
+        .collect();
     parts.iter().sum()
 }
 

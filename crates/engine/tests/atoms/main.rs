@@ -3,3 +3,4 @@
 mod chain;
 mod crystal;
 mod sample;
+mod tangents;

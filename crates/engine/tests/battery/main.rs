@@ -11,6 +11,7 @@ mod motion;
 mod repeat;
 mod sample;
 mod stability;
+mod tangents;
 mod waves;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -166,6 +166,7 @@ impl Case {
         };
         Spec {
             potential: None,
+            micromoduli: None,
             thermal: None,
             title: self.name(),
             dimension: d,
@@ -214,6 +215,7 @@ impl Case {
                 steps: 0,
                 time_step: TimeStep::Fraction(0.5),
                 force_unstable: true,
+                statics: None,
             },
         }
     }

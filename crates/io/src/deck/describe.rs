@@ -3,8 +3,8 @@
 use super::units::{Dim, UnitSystem};
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec, MaterialSpec, Plane,
-    PmbStiffness, Spec, TimeStep,
+    BodySpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec, MaterialSpec, Method,
+    Plane, PmbStiffness, Spec, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -102,6 +102,18 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         spec.conditions.len(),
         spec.precracks.len()
     ));
+    if let Some(statics) = &spec.schedule.statics {
+        let method = match statics.method {
+            Method::Linear => "linear equations about the reference",
+            Method::Newton => "Newton's method",
+            Method::Relaxation => "adaptive dynamic relaxation",
+        };
+        lines.push(format!(
+            "statics    {} increments of load, {method}, tolerance {:e}",
+            spec.schedule.steps, statics.tolerance
+        ));
+        return lines.join("\n");
+    }
     let step = match spec.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
         TimeStep::Fraction(fraction) => format!("{fraction} of the stability limit"),
@@ -172,6 +184,7 @@ fn material(m: &MaterialSpec, units: UnitSystem) -> String {
             format!("linear springs, c = {}", units.write(c, Dim::MICROMODULUS))
         }
         LawSpec::Atoms => "atoms".to_string(),
+        LawSpec::Micromoduli => "given micromoduli".to_string(),
         LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(e)),
         LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(k)),
         LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => {

@@ -64,7 +64,10 @@ pub struct Document {
     pub condition: Vec<At<Condition>>,
     #[serde(default)]
     pub indenter: Vec<At<Indenter>>,
-    pub run: At<Run>,
+    /// Motion in time; instead of statics.
+    pub run: Option<At<Run>>,
+    /// Equilibrium under conditions that grow with t; instead of run.
+    pub statics: Option<At<Statics>>,
     #[serde(default)]
     pub output: Output,
 }
@@ -81,7 +84,7 @@ pub struct Body {
     pub region: Option<At<Shape>>,
     /// Whole cells along each axis from the origin on, instead of a region.
     pub cells: Option<At<Vec<At<u32>>>>,
-    /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), or LAMMPS data of `atom_style peri` (.data, .lmp: volume
+    /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), a linear body with its micromoduli (.npz), or LAMMPS data of `atom_style peri` (.data, .lmp: volume
     /// and density of each point, the atom type as mark), relative to the deck.
     pub file: Option<At<String>>,
     /// What one unit of the file's coordinates is; the deck's unit of length when left out. Densities of a file are in
@@ -173,6 +176,8 @@ pub enum Law {
     EamLike(EamLike),
     /// Linear springs, the bond-based law linearised about the reference: one of young, bulk, micromodulus.
     Springs(Elastic),
+    /// The blocks of the body's file (.npz).
+    Micromoduli,
     LennardJones(LennardJones),
     Morse(Morse),
     Buckingham(Buckingham),
@@ -324,6 +329,40 @@ pub struct Run {
     #[serde(default)]
     pub force_unstable: bool,
     pub threads: Option<At<usize>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Statics {
+    /// linear (about the reference) when left out; newton for large deformation, relaxation for contact.
+    pub method: Option<MethodName>,
+    /// auto when left out: factors of small systems, conjugate gradients of large ones.
+    pub solver: Option<SolverName>,
+    /// Increments of load while t goes from 0 to 1; 1 when left out, and 0 looks at modes only.
+    pub increments: Option<At<u64>>,
+    /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
+    pub tolerance: Option<Number>,
+    /// Iterations of conjugate gradients or of relaxation; 100,000 when left out.
+    pub iterations: Option<At<usize>>,
+    /// So many lowest modes of vibration about the last state; modes.csv and modes.pvd.
+    pub modes: Option<At<usize>>,
+    pub threads: Option<At<usize>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MethodName {
+    Linear,
+    Newton,
+    Relaxation,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverName {
+    Auto,
+    Direct,
+    Cg,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

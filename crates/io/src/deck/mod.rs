@@ -3,6 +3,7 @@
 //! A mistake is a [`DeckError`] that names file, line and what to write instead. A [`BuildError`] of the engine
 //! finds its way back to the deck through [`Deck::explain`].
 
+pub mod coarsened;
 mod describe;
 mod document;
 mod error;
@@ -45,6 +46,8 @@ pub struct Deck {
     pub threads: Option<usize>,
     /// Duration asked for where the step is estimated: `spec.schedule.steps` is then 0, and [`Deck::steps`] has it.
     pub duration: Option<f64>,
+    /// Modes of vibration asked for.
+    pub modes: usize,
     source: Source,
 }
 
@@ -96,6 +99,7 @@ impl Deck {
             units: document.units.map(|u| u.value).unwrap_or_default(),
             threads: lowered.threads,
             duration: lowered.duration,
+            modes: lowered.modes,
             source,
         })
     }

@@ -17,7 +17,7 @@ pub struct Rewritten {
     pub notes: Vec<String>,
 }
 
-fn table(deck: &Deck) -> Result<Table, String> {
+pub(super) fn table(deck: &Deck) -> Result<Table, String> {
     let tree = deck.source.tree().map_err(|e| e.to_string())?;
     Table::deserialize(toml::de::Deserializer::from(tree)).map_err(|e| e.to_string())
 }

@@ -1,5 +1,5 @@
 //! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), atoms
-//! ([`extxyz`], [`dump`], [`data`]), and tables of potentials ([`eam`]).
+//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), and tables of potentials ([`eam`]).
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count;
 //! second-order cells are taken by their corners.
@@ -13,6 +13,7 @@ pub mod eam;
 pub mod extxyz;
 mod gmsh;
 mod lammps;
+mod linear;
 mod lines;
 mod stream;
 mod text;
@@ -20,8 +21,10 @@ mod text;
 pub use atoms::{Atoms, Frame, Species};
 
 use peridyne::spec::Cloud;
+use peridyne::statics::AnyLinearBody;
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Points of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +35,8 @@ pub struct Points {
     pub dimension: Option<usize>,
     /// What files of atoms say besides.
     pub atoms: Option<AtomsFile>,
+    /// Of a linear body.
+    pub micromoduli: Option<Arc<AnyLinearBody>>,
 }
 
 /// Box and mass of a file of atoms.
@@ -57,8 +62,8 @@ pub struct ReadError {
     pub message: String,
 }
 
-const EXTENSIONS: [&str; 9] = [
-    "inp", "msh", "data", "lmp", "txt", "dat", "xyz", "csv", "extxyz",
+const EXTENSIONS: [&str; 10] = [
+    "npz", "inp", "msh", "data", "lmp", "txt", "dat", "xyz", "csv", "extxyz",
 ];
 
 /// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), extended XYZ
@@ -81,8 +86,11 @@ pub fn points(path: &Path) -> Result<Points, ReadError> {
     };
     if !EXTENSIONS.contains(&extension.as_str()) {
         return Err(error(format!(
-            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .data or .extxyz"
+            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .data, .extxyz or .npz"
         )));
+    }
+    if extension == "npz" {
+        return linear::read(path);
     }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     let text = String::from_utf8(bytes)
@@ -127,6 +135,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
         cloud: points.cloud,
         dimension: points.dimension,
         atoms: points.atoms,
+        micromoduli: None,
     })
 }
 

@@ -7,6 +7,7 @@ pub mod dump;
 pub mod extxyz;
 pub mod fields;
 pub mod history;
+pub mod linear;
 pub mod picture;
 pub mod plot;
 pub mod pvd;

@@ -335,12 +335,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         self.clone().sums(body, u, strain, &body.volume);
     }
 
-    fn tangents(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    ) {
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         self.ready(body, u);
         let at = self.list.positions();
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
@@ -371,7 +366,10 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
                 }
             }
         }
-        self.curvature = density.iter().map(|d| curvature(&self.potential, *d)).collect();
+        self.curvature = density
+            .iter()
+            .map(|d| curvature(&self.potential, *d))
+            .collect();
     }
 
     fn gain(&self, slot: usize) -> f64 {

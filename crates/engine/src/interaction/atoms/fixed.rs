@@ -8,7 +8,9 @@ use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::Links;
 use crate::interaction::tangent::curvature;
-use crate::interaction::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally, add_virial};
+use crate::interaction::{
+    BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally, add_virial,
+};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 
@@ -352,12 +354,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
     }
 
-    fn tangents(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    ) {
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         if P::EMBEDDED {
             self.embed(body, u);
         }
@@ -381,7 +378,10 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
                 2.0 / self.volume,
             ));
         });
-        self.curvature = density.iter().map(|d| curvature(&self.potential, *d)).collect();
+        self.curvature = density
+            .iter()
+            .map(|d| curvature(&self.potential, *d))
+            .collect();
     }
 
     fn gain(&self, slot: usize) -> f64 {

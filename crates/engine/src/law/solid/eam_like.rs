@@ -90,7 +90,7 @@ impl Solid {
                 kappa: volume / 3.0,
                 beta: 0.5 * pair,
             }),
-            LawSpec::Pmb(_) | LawSpec::Springs(_) | LawSpec::Atoms => None,
+            LawSpec::Pmb(_) | LawSpec::Springs(_) | LawSpec::Atoms | LawSpec::Micromoduli => None,
         }
     }
 

@@ -52,6 +52,7 @@ pub(super) fn body(
         _ => {
             let points = files.read(context, written)?;
             context.atoms = points.atoms;
+            context.micromoduli = points.micromoduli;
             (Some(points.cloud), points.dimension)
         }
     };
@@ -84,7 +85,18 @@ pub(super) fn body(
             if let Some(spacing) = &written.spacing {
                 cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
             }
-            let density = context.units.plain_factor(Dim::DENSITY);
+            if context.micromoduli.is_some()
+                && let Some(unit) = &written.file_unit
+            {
+                return Err(context.error(
+                    &unit.span,
+                    "a linear body is in the units of its deck: file_unit cannot change its micromoduli",
+                ));
+            }
+            let density = match context.micromoduli {
+                Some(_) => 1.0,
+                None => context.units.plain_factor(Dim::DENSITY),
+            };
             cloud.density.iter_mut().for_each(|d| *d *= density);
             if let Some(unit) = &written.file_unit {
                 let unit = context.positive(unit, Dim::LENGTH, "the unit of the file")?;
@@ -344,6 +356,9 @@ pub(super) fn periods(
 ) -> Result<[Option<f64>; 3]> {
     let mut out = [None; 3];
     let Some(written) = written else {
+        if let Some(linear) = &context.micromoduli {
+            return Ok(linear.period());
+        }
         if let Some(file) = &context.atoms
             && let Some(periodic) = file.periodic
         {

@@ -6,8 +6,10 @@ use crate::deck::units::{self, Dim, UnitSystem};
 use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
 use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
+use peridyne::statics::AnyLinearBody;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 pub(super) type Result<T> = std::result::Result<T, DeckError>;
 
@@ -17,6 +19,8 @@ pub(super) struct Context<'a> {
     pub dimension: usize,
     /// What the body's file says, if it is one of atoms; in the units of computation.
     pub atoms: Option<AtomsFile>,
+    /// Of the body's file.
+    pub micromoduli: Option<Arc<AnyLinearBody>>,
     /// Value in plain numbers of the deck, and dimension if it was written with a unit.
     constants: BTreeMap<String, (f64, Option<Dim>)>,
 }
@@ -38,6 +42,7 @@ impl<'a> Context<'a> {
             units,
             dimension: 3,
             atoms: None,
+            micromoduli: None,
             constants: BTreeMap::new(),
         };
         // constants may use each other in any order; each round settles at least one, or the first error is real

@@ -165,6 +165,12 @@ fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
         | Law::Buckingham(_)
         | Law::Eam(_)
         | Law::EamForm(_) => Ok(LawSpec::Atoms),
+        Law::Micromoduli if context.micromoduli.is_some() => Ok(LawSpec::Micromoduli),
+        Law::Micromoduli => Err(context.error_with(
+            &law.span,
+            "there are no micromoduli: the body is no linear body from a file",
+            "write body = { file = \"coarse.npz\" }, as `peridyne coarsen` makes it",
+        )),
         Law::EamLike(e) => Ok(LawSpec::EamLike {
             pair: pressure(&e.pair, "the stiffness of the pairs")?,
             volume: context.finite(&e.volume, Dim::PRESSURE)?,

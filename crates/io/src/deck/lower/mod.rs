@@ -42,6 +42,7 @@ impl Files<'_> {
                 cloud: Cloud::default(),
                 dimension: None,
                 atoms: None,
+                micromoduli: None,
             });
         };
         let path = self.folder.join(&file.value);
@@ -66,6 +67,7 @@ pub(super) struct Lowered {
     pub output: OutputSpec,
     pub threads: Option<usize>,
     pub duration: Option<f64>,
+    pub modes: usize,
 }
 
 pub(super) fn lower(
@@ -123,7 +125,7 @@ pub(super) fn lower(
     {
         cloud.volume.iter_mut().for_each(|area| *area *= section);
     }
-    let run = schedule::schedule(&context, &document.run)?;
+    let run = schedule::schedule(&context, document)?;
     let spec = Spec {
         title: document.title.clone().unwrap_or_default(),
         dimension: context.dimension,
@@ -136,6 +138,9 @@ pub(super) fn lower(
             Some(written) => horizon(&context, written, &body)?,
             // the cut-off takes its place
             None if current => Horizon::Ratio(1),
+            None if let Some(linear) = &context.micromoduli => {
+                Horizon::Length(linear.range() * (1.0 + 1e-9))
+            }
             None => {
                 return Err(context.error_with(
                     &document.body.span,
@@ -145,6 +150,7 @@ pub(super) fn lower(
             }
         },
         potential: potential.as_ref().map(|p| p.spec.clone()),
+        micromoduli: context.micromoduli.clone(),
         thermal: document
             .thermal
             .as_ref()
@@ -198,6 +204,7 @@ pub(super) fn lower(
         output,
         threads: run.threads,
         duration: run.duration,
+        modes: run.modes,
     })
 }
 

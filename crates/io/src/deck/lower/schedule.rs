@@ -2,20 +2,99 @@
 
 use super::context::{Context, Result};
 use crate::deck::OutputSpec;
-use crate::deck::document::{FieldName, Output, Run, Safety};
+use crate::deck::document::{
+    Document, FieldName, MethodName, Output, Run, Safety, SolverName, Statics,
+};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
 use crate::write::trajectory::Format;
-use peridyne::spec::{Schedule, TimeStep};
+use peridyne::spec::{Method, Schedule, Solver, TimeStep};
 
 pub(super) struct RunSpec {
     pub schedule: Schedule,
     pub threads: Option<usize>,
     /// Set when the steps follow from the estimated step only.
     pub duration: Option<f64>,
+    /// Modes of vibration asked for.
+    pub modes: usize,
 }
 
-pub(super) fn schedule(context: &Context, run: &At<Run>) -> Result<RunSpec> {
+pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec> {
+    match (&document.run, &document.statics) {
+        (Some(run), None) => motion(context, run),
+        (None, Some(written)) => statics(context, written),
+        (Some(_), Some(written)) => Err(context.error_with(
+            &written.span,
+            "the deck has [run] and [statics]: motion in time, or equilibrium",
+            "remove one of them",
+        )),
+        (None, None) => Err(context.error_with(
+            &(0..0),
+            "the deck does not say what to do",
+            "add [run] with steps or a duration, or [statics] for equilibrium",
+        )),
+    }
+}
+
+fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
+    let written = &written.value;
+    let method = match written.method {
+        None | Some(MethodName::Linear) => Method::Linear,
+        Some(MethodName::Newton) => Method::Newton,
+        Some(MethodName::Relaxation) => Method::Relaxation,
+    };
+    let tolerance = match &written.tolerance {
+        Some(number) => context.positive(number, Dim::NUMBER, "the tolerance")?,
+        None => match method {
+            Method::Linear => 1e-10,
+            Method::Newton => 1e-8,
+            Method::Relaxation => 1e-6,
+        },
+    };
+    let increments = written.increments.as_ref().map_or(1, |n| n.value);
+    let modes = written.modes.as_ref().map_or(0, |n| n.value);
+    if increments == 0 && modes == 0 {
+        let span = written.increments.as_ref().map_or(0..0, |n| n.span.clone());
+        return Err(context.error_with(
+            &span,
+            "without increments and modes there is nothing to do",
+            "write increments = 1, or modes = 6",
+        ));
+    }
+    Ok(RunSpec {
+        schedule: Schedule {
+            steps: increments,
+            time_step: TimeStep::Fixed(1.0 / increments.max(1) as f64),
+            force_unstable: false,
+            statics: Some(peridyne::spec::Statics {
+                method,
+                solver: match written.solver {
+                    None | Some(SolverName::Auto) => Solver::Auto,
+                    Some(SolverName::Direct) => Solver::Direct,
+                    Some(SolverName::Cg) => Solver::ConjugateGradients,
+                },
+                tolerance,
+                most_iterations: written.iterations.as_ref().map_or(100_000, |n| n.value),
+            }),
+        },
+        threads: threads(context, &written.threads)?,
+        duration: None,
+        modes,
+    })
+}
+
+fn threads(context: &Context, written: &Option<At<usize>>) -> Result<Option<usize>> {
+    match written {
+        Some(threads) if threads.value == 0 => Err(context.error_with(
+            &threads.span,
+            "a run needs a thread",
+            "leave threads out to use all cores",
+        )),
+        other => Ok(other.as_ref().map(|t| t.value)),
+    }
+}
+
+fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
     let written = &run.value;
     let time_step = match &written.time_step {
         None => TimeStep::Fraction(0.8),
@@ -77,24 +156,17 @@ pub(super) fn schedule(context: &Context, run: &At<Run>) -> Result<RunSpec> {
         (None, Some((duration, _)), TimeStep::Fraction(_)) => (0, Some(duration)),
         (None, None, _) => return Err(context.error(&run.span, "run needs one of steps, duration")),
     };
-    if let Some(threads) = &written.threads
-        && threads.value == 0
-    {
-        return Err(context.error_with(
-            &threads.span,
-            "a run needs a thread",
-            "leave threads out to use all cores",
-        ));
-    }
     let schedule = Schedule {
         steps,
         time_step,
         force_unstable: written.force_unstable,
+        statics: None,
     };
     Ok(RunSpec {
         schedule,
-        threads: written.threads.as_ref().map(|t| t.value),
+        threads: threads(context, &written.threads)?,
         duration,
+        modes: 0,
     })
 }
 

@@ -61,6 +61,7 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
     };
     Ok(Spec {
         potential: None,
+        micromoduli: None,
         thermal: None,
         title: setup.title.clone(),
         dimension: setup.dimension,
@@ -90,6 +91,7 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
             time_step: TimeStep::Fixed(setup.time_step),
             // LAMMPS runs any step; a warning is given at the start of the run
             force_unstable: true,
+            statics: None,
         },
     })
 }

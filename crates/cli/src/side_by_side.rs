@@ -1,0 +1,106 @@
+//! A deck and those that were made of it, run one after the other and compared at the points that both have.
+
+use crate::failure::{Failure, say};
+use peridyne::run::{Options, build};
+use peridyne_io::deck::Deck;
+use peridyne_io::deck::upscaled::Rewritten;
+use peridyne_io::write::atomic::{create_directory, write_file};
+use peridyne_io::write::card::Measured;
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// Writes a deck and the files that it names.
+pub fn save(dir: &Path, name: &str, deck: &Rewritten) -> Result<(), Failure> {
+    let failed = |e: &dyn std::fmt::Display| Failure::Run(e.to_string());
+    create_directory(dir).map_err(|e| failed(&e))?;
+    for (from, to) in &deck.files {
+        let bytes =
+            std::fs::read(from).map_err(|e| Failure::input(format!("{}: {e}", from.display())))?;
+        write_file(&dir.join(to), |w| w.write_all(&bytes)).map_err(|e| failed(&e))?;
+    }
+    write_file(&dir.join(name), |w| w.write_all(deck.text.as_bytes())).map_err(|e| failed(&e))
+}
+
+/// The end of a run.
+pub struct Ran {
+    pub reference: Vec<[f64; 3]>,
+    pub displacement: Vec<[f64; 3]>,
+    pub spacing: f64,
+    pub time: f64,
+    pub seconds: f64,
+    pub steps: u64,
+}
+
+/// Runs a deck to its end, or to the time `until` with its own or a slightly shorter step.
+pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|e| Failure::Run(format!("{name}: {e}")))?;
+    let deck = Deck::parse(&text, &name, &[]).map_err(|e| Failure::Input(e.into()))?;
+    let mut sim = build(&deck.spec, Options::default())
+        .map_err(|e| Failure::Input(deck.explain(&e).into()))?;
+    let mut steps = deck.steps(sim.info().time_step);
+    if let Some(until) = until.or(deck.duration)
+        && deck.spec.schedule.statics.is_none()
+    {
+        steps = (until / sim.info().time_step - 1e-6).ceil().max(1.0) as u64;
+        sim.set_time_step(until / steps as f64);
+    }
+    say(&format!(
+        "running {name}: {} points, {} bonds, {steps} steps of {:.4e}",
+        sim.info().points,
+        sim.info().directed_bonds,
+        sim.info().time_step
+    ));
+    sim.start(true);
+    let began = Instant::now();
+    for n in 0..steps {
+        sim.step()
+            .map_err(|e| Failure::Run(format!("{name}: {e}")))?;
+        if n % 256 == 0 {
+            sim.ledger()
+                .map_err(|e| Failure::Run(format!("{name}: {e}")))?;
+        }
+    }
+    let seconds = began.elapsed().as_secs_f64();
+    sim.ledger()
+        .map_err(|e| Failure::Run(format!("{name}: {e}")))?;
+    Ok(Ran {
+        reference: sim.reference(),
+        displacement: sim.displacements(),
+        spacing: sim.info().spacing,
+        time: sim.time(),
+        seconds,
+        steps,
+    })
+}
+
+/// At the points that both have.
+pub fn compare(fine: &Ran, coarse: &Ran) -> Measured {
+    let key = |x: &[f64; 3]| x.map(|c| (c / (0.1 * fine.spacing)).round() as i64);
+    let places: HashMap<[i64; 3], usize> = fine
+        .reference
+        .iter()
+        .enumerate()
+        .map(|(i, x)| (key(x), i))
+        .collect();
+    let (mut difference, mut size, mut largest, mut points) = (0.0, 0.0, 0.0f64, 0);
+    for (x, u) in coarse.reference.iter().zip(&coarse.displacement) {
+        if let Some(&i) = places.get(&key(x)) {
+            let v = &fine.displacement[i];
+            let square: f64 = v.iter().map(|c| c * c).sum();
+            difference += u.iter().zip(v).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+            size += square;
+            largest = largest.max(square.sqrt());
+            points += 1;
+        }
+    }
+    Measured {
+        error: (difference / size).sqrt(),
+        largest,
+        points,
+        seconds: [fine.seconds, coarse.seconds],
+        steps: [fine.steps, coarse.steps],
+    }
+}

@@ -1,0 +1,232 @@
+//! Given micromoduli: `f_i = Σ_j C_ij (u_j − u_i)`, a block for every directed bond. Coarsened bodies, composites, defects.
+
+use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, add_virial};
+use crate::body::{Body, Field};
+use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::lane::Lane;
+use crate::execute::simd::{Kernel, Simd};
+use crate::statics::LinearBody;
+
+/// Rows per block of work.
+const BLOCK: usize = 256;
+
+/// Micromoduli of a cloud.
+pub struct MicromoduliInteraction<const D: usize> {
+    simd: Simd,
+    /// `[rows]` slots, ascending.
+    slots: Vec<u32>,
+    /// Row of every slot.
+    row: Vec<u32>,
+    start: Vec<usize>,
+    /// Partners' slots.
+    partner: Vec<u32>,
+    block: Vec<[[f64; D]; D]>,
+    /// `[partners]` reference vectors (length).
+    xi: Vec<[f64; D]>,
+    sums: Vec<f64>,
+}
+
+impl<const D: usize> MicromoduliInteraction<D> {
+    /// `linear` in order of the ids of `body`.
+    pub fn new(body: &Body<D>, linear: &LinearBody<D>, simd: Simd) -> Self {
+        let mut ids: Vec<usize> = (0..body.points()).collect();
+        ids.sort_by_key(|id| body.slots[*id]);
+        let mut made = MicromoduliInteraction {
+            simd,
+            slots: ids.iter().map(|id| body.slots[*id]).collect(),
+            row: vec![0; body.len],
+            start: vec![0],
+            partner: Vec::with_capacity(linear.partner.len()),
+            block: Vec::with_capacity(linear.partner.len()),
+            xi: Vec::with_capacity(linear.partner.len()),
+            sums: vec![0.0; ids.len().div_ceil(BLOCK)],
+        };
+        for (row, &id) in ids.iter().enumerate() {
+            made.row[body.slots[id] as usize] = row as u32;
+            let (partners, blocks) = linear.row(id);
+            for (&j, block) in partners.iter().zip(blocks) {
+                made.partner.push(body.slots[j as usize]);
+                made.block.push(*block);
+                made.xi.push(linear.xi(id, j as usize));
+            }
+            made.start.push(made.partner.len());
+        }
+        made
+    }
+
+    fn bonds(&self, row: usize) -> impl Iterator<Item = (usize, &[[f64; D]; D], &[f64; D])> {
+        let bonds = self.start[row]..self.start[row + 1];
+        bonds.map(|k| (self.partner[k] as usize, &self.block[k], &self.xi[k]))
+    }
+
+    /// Force density on a row's point, and the energy density of its bonds.
+    #[inline(always)]
+    fn pull(&self, u: &Field<D>, row: usize) -> ([f64; D], f64) {
+        let i = self.slots[row] as usize;
+        let (mut f, mut energy) = ([0.0; D], 0.0);
+        for (j, c, _) in self.bonds(row) {
+            let mut eta = [0.0; D];
+            for a in 0..D {
+                eta[a] = u[a][j] - u[a][i];
+            }
+            for a in 0..D {
+                let mut pull = 0.0;
+                for b in 0..D {
+                    pull += c[a][b] * eta[b];
+                }
+                f[a] += pull;
+                energy += 0.25 * pull * eta[a];
+            }
+        }
+        (f, energy)
+    }
+
+    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared, sums: &mut [f64]) {
+        let kernel = Energies {
+            law: self,
+            body,
+            u,
+            out,
+        };
+        for_each_block(self.simd, &kernel, sums);
+    }
+}
+
+fn rows(block: usize, all: usize) -> std::ops::Range<usize> {
+    block * BLOCK..((block + 1) * BLOCK).min(all)
+}
+
+struct Forces<'a, const D: usize> {
+    law: &'a MicromoduliInteraction<D>,
+    u: &'a Field<D>,
+    f: [Shared; D],
+}
+
+impl<const D: usize> Kernel for Forces<'_, D> {
+    type Out = f64;
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> f64 {
+        for row in rows(block, self.law.slots.len()) {
+            let (f, _) = self.law.pull(self.u, row);
+            for a in 0..D {
+                // SAFETY: every slot belongs to one row
+                unsafe { *self.f[a].at(self.law.slots[row] as usize) = f[a] };
+            }
+        }
+        0.0
+    }
+}
+
+struct Energies<'a, const D: usize> {
+    law: &'a MicromoduliInteraction<D>,
+    body: &'a Body<D>,
+    u: &'a Field<D>,
+    /// Energy density per slot, if asked for.
+    out: Shared,
+}
+
+impl<const D: usize> Kernel for Energies<'_, D> {
+    type Out = f64;
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> f64 {
+        let mut sum = 0.0;
+        for row in rows(block, self.law.slots.len()) {
+            let (_, energy) = self.law.pull(self.u, row);
+            let slot = self.law.slots[row] as usize;
+            if !self.out.0.is_null() {
+                // SAFETY: every slot belongs to one row
+                unsafe { *self.out.at(slot) = energy };
+            }
+            sum += energy * self.body.volume.at(slot);
+        }
+        sum
+    }
+}
+
+impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
+    fn family(&self) -> &'static str {
+        "list"
+    }
+
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        _: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        if let Some(seen) = seen {
+            self.observe(body, u, seen);
+        }
+        let mut sums = std::mem::take(&mut self.sums);
+        let kernel = Forces {
+            law: self,
+            u,
+            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+        };
+        for_each_block(self.simd, &kernel, &mut sums);
+        self.sums = sums;
+        Tally::default()
+    }
+
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let mut sums = std::mem::take(&mut self.sums);
+        self.energies(body, u, Shared::NULL, &mut sums);
+        let total = sums.iter().sum();
+        self.sums = sums;
+        [total, 0.0]
+    }
+
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        out.zeros(body.len);
+        let strain = Shared(out.strain.as_mut_ptr());
+        self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
+    }
+
+    fn tangents(&mut self, _: &Body<D>, _: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        for (row, &slot) in self.slots.iter().enumerate() {
+            for (j, c, _) in self.bonds(row) {
+                visit(BondTangent::direct(slot as usize, j, *c));
+            }
+        }
+    }
+
+    fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        for (row, &slot) in self.slots.iter().enumerate() {
+            let i = slot as usize;
+            for (j, _, xi) in self.bonds(row).filter(|(j, ..)| i < *j) {
+                visit(i, j, *xi, BondState::Whole);
+            }
+        }
+    }
+
+    /// Of the linear forces, along the reference distances.
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        let mut sum = [0.0; 6];
+        for (row, &slot) in self.slots.iter().enumerate() {
+            let i = slot as usize;
+            for (j, c, xi) in self.bonds(row) {
+                let pull: [f64; D] =
+                    std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
+                add_virial(&mut sum, &pull, xi, -0.5 * body.volume.at(i));
+            }
+        }
+        Some(sum)
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.partner.len() as u64
+    }
+
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
+        let row = self.row[slot] as usize;
+        self.start[row + 1] - self.start[row]
+    }
+
+    fn bytes(&self) -> usize {
+        4 * (self.slots.len() + self.row.len() + self.partner.len())
+            + 8 * self.start.len()
+            + 8 * D * (D + 1) * self.block.len()
+    }
+}

@@ -1,0 +1,110 @@
+//! The linear body of every law is the derivative of its forces, about any state, and what it must be mechanically.
+
+use super::sample::{Case, H, cases};
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::Point;
+use peridyne::spec::{FamilyChoice, Spec, TimeStep};
+
+/// A fixed sequence of numbers in ±1.
+fn noise(k: usize) -> f64 {
+    2.0 * ((k as f64 + 1.0) * 0.618_033_988_749_894_9).fract() - 1.0
+}
+
+fn field(n: usize, d: usize, size: f64, seed: usize) -> Vec<Point> {
+    let at = |i: usize, a: usize| {
+        if a < d {
+            size * noise(seed + 3 * i + a)
+        } else {
+            0.0
+        }
+    };
+    (0..n).map(|i| std::array::from_fn(|a| at(i, a))).collect()
+}
+
+fn model(spec: &Spec) -> Box<dyn Simulation> {
+    let mut spec = spec.clone();
+    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    let options = Options {
+        trust_time_step: true,
+        ..Options::default()
+    };
+    build(&spec, options).unwrap()
+}
+
+/// Largest difference of linear and differenced forces, over the largest; about the state `u`.
+fn apart<const D: usize>(model: &mut dyn Simulation, u: &[Point]) -> f64 {
+    model.set_displacements(u);
+    let body = model.linear_body().of::<D>().unwrap();
+    let n = u.len();
+    let change = field(n, D, H, 17);
+    let linear: Vec<[f64; D]> = change
+        .iter()
+        .map(|c| std::array::from_fn(|a| c[a]))
+        .collect();
+    let step = 1e-4;
+    let mut at = |s: f64| {
+        let moved: Vec<Point> = u
+            .iter()
+            .zip(&change)
+            .map(|(u, c)| std::array::from_fn(|a| u[a] + s * step * c[a]))
+            .collect();
+        model.forces_under(&moved)
+    };
+    // Richardson: fourth order
+    let f = [-2.0, -1.0, 1.0, 2.0].map(|s| at(s));
+    let (mut worst, mut most) = (0.0f64, 0.0f64);
+    for i in 0..n {
+        let exact = body.force(&linear, i);
+        for a in 0..D {
+            let slope =
+                (8.0 * (f[2][i][a] - f[1][i][a]) - (f[3][i][a] - f[0][i][a])) / (12.0 * step);
+            worst = worst.max((slope - exact[a]).abs());
+            most = most.max(exact[a].abs());
+        }
+    }
+    worst / most
+}
+
+fn check<const D: usize>(name: &str, spec: &Spec) {
+    let mut m = model(spec);
+    let n = m.info().points as usize;
+    for u in [field(n, D, 0.0, 0), field(n, D, 0.05 * H, 5)] {
+        let error = apart::<D>(m.as_mut(), &u);
+        assert!(error < 2e-9, "{name}: {error:e}");
+    }
+    m.set_displacements(&field(n, D, 0.0, 0));
+    let body = m.linear_body().of::<D>().unwrap();
+    let sound = body.soundness();
+    assert!(sound.asymmetry < 1e-12, "{name}: {sound:?}");
+    if spec.periodic[0].is_none() {
+        assert!(sound.rotation < 1e-12, "{name}: {sound:?}");
+    }
+    // a state-based law reaches two families, others one
+    assert!(body.range() <= 2.0 * m.info().horizon * (1.0 + 1e-12));
+}
+
+fn both(case: &Case, spec: &Spec) {
+    let name = case.name();
+    match case.d() {
+        1 => check::<1>(&name, spec),
+        2 => check::<2>(&name, spec),
+        _ => check::<3>(&name, spec),
+    }
+}
+
+#[test]
+fn linear_bodies_are_derivatives_of_forces() {
+    for case in cases() {
+        both(&case, &case.spec());
+    }
+}
+
+#[test]
+fn linear_bodies_of_periodic_ones_and_of_lists() {
+    for case in cases().iter().step_by(5) {
+        both(case, &case.periodic());
+        let mut list = case.spec();
+        list.family = FamilyChoice::List;
+        both(case, &list);
+    }
+}

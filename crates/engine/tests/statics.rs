@@ -1,0 +1,287 @@
+//! Equilibrium and vibration against closed forms, and one method against the others.
+
+use peridyne::expression::Expression;
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::spec::*;
+
+fn number(x: f64) -> Option<Expression> {
+    Some(Expression::parse(&format!("{x:e}"), &[]).unwrap())
+}
+
+fn text(e: &str) -> Option<Expression> {
+    Some(Expression::parse(e, &[]).unwrap())
+}
+
+/// A block of whole spacings from 0 to `size` (in spacings of 1), its low and high ends along x as sets.
+fn block(size: [f64; 3], d: usize, law: LawSpec) -> Spec {
+    let kind = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][d - 1];
+    let body = BodySpec::Lattice {
+        kind,
+        spacing: 1.0,
+        origin: [0.0; 3],
+        region: Region::Block {
+            low: [0.0; 3],
+            high: std::array::from_fn(|a| if a < d { size[a] } else { 0.0 }),
+        },
+        perturb: None,
+    };
+    let mut spec = Spec::new(d, body, 1.0, law);
+    let end = |name: &str, sign: f64, x: f64| SetSpec {
+        name: name.into(),
+        members: Members::Region(Region::HalfSpace {
+            point: [x, 0.0, 0.0],
+            normal: [sign, 0.0, 0.0],
+        }),
+    };
+    spec.sets = vec![end("low", 1.0, 0.1), end("high", -1.0, size[0] - 0.1)];
+    spec.schedule = Schedule {
+        steps: 1,
+        time_step: TimeStep::Fixed(1.0),
+        force_unstable: false,
+        statics: Some(Statics::default()),
+    };
+    spec
+}
+
+fn hold(spec: &mut Spec, set: &str, u: [Option<Expression>; 3]) {
+    spec.conditions.push(ConditionSpec {
+        set: set.into(),
+        kind: ConditionKind::Displacement(u),
+    });
+}
+
+fn solved(spec: &Spec) -> Box<dyn Simulation> {
+    let mut sim = build(spec, Options::default()).unwrap();
+    sim.start(true);
+    for _ in 0..spec.schedule.steps {
+        sim.step().unwrap();
+    }
+    sim
+}
+
+fn with(spec: &Spec, method: Method, solver: Solver, tolerance: f64) -> Spec {
+    let mut spec = spec.clone();
+    spec.schedule.statics = Some(Statics {
+        method,
+        solver,
+        tolerance,
+        ..Statics::default()
+    });
+    spec
+}
+
+const SPRINGS: LawSpec = LawSpec::Springs(PmbStiffness::Micromodulus(1.0));
+
+#[test]
+fn springs_in_series_stretch_evenly() {
+    for solver in [Solver::Direct, Solver::ConjugateGradients] {
+        let mut spec = with(
+            &block([100.0, 0.0, 0.0], 1, SPRINGS),
+            Method::Linear,
+            solver,
+            1e-13,
+        );
+        hold(&mut spec, "low", [number(0.0), None, None]);
+        hold(&mut spec, "high", [number(0.5), None, None]);
+        let mut sim = solved(&spec);
+        for (x, u) in sim.reference().iter().zip(sim.displacements()) {
+            assert!((u[0] - 0.005 * x[0]).abs() < 1e-13, "{u:?} at {x:?}");
+        }
+        // c = 1, volumes 1: each of 100 springs holds ½ 0.005²
+        let ledger = sim.ledger().unwrap();
+        assert!((ledger.strain - 100.0 * 0.5 * 0.005f64.powi(2)).abs() < 1e-15);
+        assert!(ledger.residual().abs() < 1e-15, "{ledger:?}");
+    }
+}
+
+#[test]
+fn a_hanging_chain_is_a_parabola() {
+    let mut spec = block([50.0, 0.0, 0.0], 1, SPRINGS);
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    spec.conditions.push(ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::BodyForce([text("1e-6*t"), None, None]),
+    });
+    spec.schedule.steps = 4;
+    spec.schedule.time_step = TimeStep::Fixed(0.25);
+    let mut sim = solved(&spec);
+    // the k-th spring carries all points from k on
+    let mut exact = 0.0;
+    for (k, u) in sim.displacements().iter().enumerate().skip(1) {
+        exact += 1e-6 * (51.0 - k as f64);
+        assert!(
+            (u[0] - exact).abs() < 1e-12 * exact,
+            "{k}: {} {exact}",
+            u[0]
+        );
+    }
+    assert!(sim.ledger().unwrap().residual().abs() < 1e-12 * sim.ledger().unwrap().strain);
+    assert_eq!(sim.solved().unwrap().iterations, 1);
+}
+
+/// A clamped plate or block that is sheared and stretched.
+fn clamped(d: usize, law: LawSpec, size: f64) -> Spec {
+    let mut spec = block([9.0, 5.0, 4.0], d, law);
+    spec.horizon = Horizon::Ratio(2);
+    hold(&mut spec, "low", [number(0.0), number(0.0), number(0.0)]);
+    let wave = format!("{size}*(1+0.3*y)");
+    hold(&mut spec, "high", [number(2.0 * size), text(&wave), None]);
+    spec
+}
+
+#[test]
+fn methods_agree_where_strains_are_small() {
+    let lps = LawSpec::Lps(Moduli {
+        young: 3.0,
+        poisson: 0.2,
+    });
+    for d in [2, 3] {
+        for law in [LawSpec::Pmb(PmbStiffness::Young(2.0)), lps] {
+            let spec = clamped(d, law, 1e-9);
+            let reference =
+                solved(&with(&spec, Method::Linear, Solver::Direct, 1e-12)).displacements();
+            for (method, solver, tolerance, apart) in [
+                (Method::Linear, Solver::ConjugateGradients, 1e-12, 1e-9),
+                (Method::Newton, Solver::Direct, 1e-7, 1e-7),
+                (Method::Newton, Solver::ConjugateGradients, 1e-7, 1e-6),
+                (Method::Relaxation, Solver::Auto, 1e-7, 1e-5),
+            ] {
+                let sim = solved(&with(&spec, method, solver, tolerance));
+                for (u, r) in sim.displacements().iter().zip(&reference) {
+                    for a in 0..3 {
+                        assert!(
+                            (u[a] - r[a]).abs() < apart * 2e-9,
+                            "{d}-D {law:?} {method:?} {solver:?}: {u:?} {r:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn newton_and_relaxation_agree_where_strains_are_large() {
+    let spec = clamped(2, LawSpec::Pmb(PmbStiffness::Young(2.0)), 0.4);
+    let mut newton = solved(&with(&spec, Method::Newton, Solver::Auto, 1e-12));
+    let relaxed = solved(&with(&spec, Method::Relaxation, Solver::Auto, 1e-10));
+    let linear = solved(&with(&spec, Method::Linear, Solver::Auto, 1e-10));
+    let apart = |a: &dyn Simulation, b: &dyn Simulation| {
+        let pairs = a.displacements().into_iter().zip(b.displacements());
+        pairs
+            .flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()))
+            .fold(0.0, f64::max)
+    };
+    assert!(apart(newton.as_ref(), relaxed.as_ref()) < 1e-8);
+    assert!(apart(newton.as_ref(), linear.as_ref()) > 1e-3);
+    assert!(
+        linear
+            .info()
+            .warnings
+            .iter()
+            .any(|w| w.contains("method = \"newton\""))
+    );
+    // in equilibrium the energy is least: nothing moves it down
+    let energy = newton.ledger().unwrap().strain;
+    let mut u = newton.displacements();
+    u[25][1] += 1e-3;
+    newton.set_displacements(&u);
+    assert!(newton.ledger().unwrap().strain > energy);
+}
+
+#[test]
+fn modes_of_a_chain_are_the_closed_form() {
+    // held at one end, free at the other: ω_k = 2 sin((2k−1)π / (2(2n+1)))
+    let n = 40;
+    let mut spec = block([n as f64, 0.0, 0.0], 1, SPRINGS);
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    spec.schedule.steps = 0;
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let modes = sim.modes(6).unwrap();
+    for (k, mode) in modes.iter().enumerate() {
+        let angle = (2.0 * k as f64 + 1.0) * std::f64::consts::PI / (4.0 * n as f64 + 2.0);
+        let exact = 2.0 * angle.sin() / (2.0 * std::f64::consts::PI);
+        assert!(
+            (mode.frequency / exact - 1.0).abs() < 1e-10,
+            "{k}: {} {exact}",
+            mode.frequency
+        );
+        let norm: f64 = mode.shape.iter().map(|x| x[0] * x[0]).sum();
+        assert!((norm - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_free_block_has_six_rigid_modes() {
+    let mut spec = block([4.0, 3.0, 3.0], 3, LawSpec::Pmb(PmbStiffness::Young(2.0)));
+    spec.horizon = Horizon::Ratio(2);
+    spec.schedule.steps = 0;
+    let mut sim = build(&spec, Options::default()).unwrap();
+    let modes = sim.modes(8).unwrap();
+    let elastic = modes[6].square;
+    assert!(elastic > 1e-3, "{elastic}");
+    assert!(
+        modes[..6].iter().all(|m| m.square.abs() < 1e-9 * elastic),
+        "{:?}",
+        modes.iter().map(|m| m.square).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn a_body_that_is_not_held_is_refused_with_the_motion() {
+    let told = |spec: &Spec| build(spec, Options::default()).err().unwrap().to_string();
+    let mut spec = block([6.0, 4.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(2.0)));
+    assert!(told(&spec).contains("translation along"), "{}", told(&spec));
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    assert!(
+        told(&spec).contains("translation along y"),
+        "{}",
+        told(&spec)
+    );
+    spec.conditions.push(ConditionSpec {
+        set: "high".into(),
+        kind: ConditionKind::Velocity([None, number(0.0), None]),
+    });
+    assert!(told(&spec).contains("velocity"), "{}", told(&spec));
+}
+
+#[test]
+fn a_notched_plate_breaks_increment_by_increment() {
+    let mut spec = block([12.0, 12.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(2.0)));
+    spec.horizon = Horizon::Ratio(2);
+    spec.materials[0].fracture = Some(FractureSpec {
+        criterion: Criterion::Stretch(0.02),
+        alpha: 0.0,
+    });
+    spec.precracks.push(PrecrackSpec {
+        shape: CrackShape::Segment {
+            from: [5.5, -1.0, 0.0],
+            to: [5.5, 3.5, 0.0],
+        },
+        kind: CrackKind::Broken,
+    });
+    hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+    hold(&mut spec, "high", [text("0.3*t"), number(0.0), None]);
+    spec.schedule.steps = 6;
+    spec.schedule.time_step = TimeStep::Fixed(1.0 / 6.0);
+    for method in [Method::Newton, Method::Relaxation] {
+        let mut sim = build(&with(&spec, method, Solver::Auto, 1e-7), Options::default()).unwrap();
+        sim.start(true);
+        let mut broken = vec![sim.broken()];
+        for _ in 0..6 {
+            // when the plate has come apart the rest of it has nothing to hold it, and that is said
+            match sim.step() {
+                Ok(()) => broken.push(sim.broken()),
+                Err(e) => {
+                    assert!(e.to_string().contains("increment"), "{e}");
+                    break;
+                }
+            }
+        }
+        assert_eq!(broken[1], broken[0], "{method:?}");
+        assert!(broken.last() > broken.first(), "{method:?}: {broken:?}");
+    }
+}
