@@ -4,10 +4,7 @@ use super::SolveError;
 use super::banded::Banded;
 use super::linear_body::LinearBody;
 use super::support::Support;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Llt, Lu};
-use faer::sparse::{SparseColMat, Triplet};
-use faer::{Mat, Side};
+use peridyne_algebra::{FactorError, Factors as Sparse};
 
 /// Asymmetry (see `Soundness`) up to which a body counts as symmetric.
 pub const SYMMETRIC: f64 = 1e-10;
@@ -16,8 +13,7 @@ const BAND: usize = 128;
 
 enum Factors {
     Banded(Banded),
-    Symmetric(Llt<usize, f64>),
-    General(Lu<usize, f64>),
+    Sparse(Sparse),
 }
 
 /// A factored body on its free components.
@@ -74,25 +70,21 @@ impl<const D: usize> Direct<D> {
             let entry = |i: usize, j: usize| band[i * (width + 1) + i - j];
             Factors::Banded(Banded::factor(unknowns, width, entry).map_err(named)?)
         } else {
-            let mut triplets = vec![];
+            let mut entries = vec![];
             matrix.entries(|row, column, value| {
                 if !symmetric || column <= row {
-                    triplets.push(Triplet::new(row, column, value));
+                    entries.push((row, column, value));
                 }
             });
-            let a = SparseColMat::try_new_from_triplets(unknowns, unknowns, &triplets)
-                .map_err(|_| SolveError::TooLarge)?;
-            drop(triplets);
-            if symmetric {
-                Factors::Symmetric(a.sp_cholesky(Side::Lower).map_err(|e| match e {
-                    faer::sparse::linalg::LltError::Numeric(
-                        faer::linalg::cholesky::llt::factor::LltError::NonPositivePivot { index },
-                    ) => named(SolveError::Indefinite { point: index }),
-                    _ => SolveError::TooLarge,
-                })?)
-            } else {
-                Factors::General(a.sp_lu().map_err(|_| SolveError::Singular)?)
-            }
+            let made = match symmetric {
+                true => Sparse::symmetric(unknowns, &entries),
+                false => Sparse::general(unknowns, &entries),
+            };
+            Factors::Sparse(made.map_err(|e| match e {
+                FactorError::NotPositive { row } => named(SolveError::Indefinite { point: row }),
+                FactorError::Singular => SolveError::Singular,
+                FactorError::TooLarge => SolveError::TooLarge,
+            })?)
         };
         Ok(Direct {
             place,
@@ -113,19 +105,10 @@ impl<const D: usize> Direct<D> {
         }
         match &self.factors {
             Factors::Banded(f) => f.solve(&mut rhs),
-            Factors::Symmetric(f) => solved(f, &mut rhs),
-            Factors::General(f) => solved(f, &mut rhs),
+            Factors::Sparse(f) => f.solve(&mut rhs),
         }
         let of = |place: &[Option<usize>; D]| place.map(|n| n.map_or(0.0, |n| rhs[n]));
         self.place.iter().map(of).collect()
-    }
-}
-
-fn solved(factors: &impl Solve<f64>, rhs: &mut [f64]) {
-    let column = Mat::from_fn(rhs.len(), 1, |i, _| rhs[i]);
-    let x = factors.solve(&column);
-    for (i, r) in rhs.iter_mut().enumerate() {
-        *r = x[(i, 0)];
     }
 }
 

@@ -5,7 +5,7 @@ use super::direct::Direct;
 use super::linear_body::LinearBody;
 use super::support::Support;
 use super::vectors::{add, dot};
-use faer::{Mat, Side};
+use peridyne_algebra::symmetric_eigen;
 
 /// A mode of vibration.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,22 +95,17 @@ pub fn lowest<const D: usize>(
         images.push(mq);
     }
     let n = basis.len();
-    let mut t = Mat::<f64>::zeros(n, n);
-    for i in 0..n {
-        t[(i, i)] = alpha[i];
-        if i + 1 < n {
-            t[(i, i + 1)] = beta[i];
-            t[(i + 1, i)] = beta[i];
-        }
-    }
-    let eigen = t
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| SolveError::NotFinite)?;
+    let tridiagonal = |i: usize, j: usize| match i - j {
+        0 => alpha[i],
+        1 => beta[j],
+        _ => 0.0,
+    };
+    let (_, vectors) = symmetric_eigen(n, tridiagonal).ok_or(SolveError::NotFinite)?;
     let mut modes = vec![];
     for k in (n - count.min(n)..n).rev() {
         let mut shape = vec![[0.0; D]; body.points()];
         for (i, b) in basis.iter().enumerate() {
-            add(&mut shape, eigen.U()[(i, k)], b);
+            add(&mut shape, vectors[k][i], b);
         }
         // Rayleigh's quotient is better than the eigenvalue, above all for rigid motions
         let m = times_mass(&shape);

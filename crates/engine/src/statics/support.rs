@@ -1,6 +1,6 @@
 //! Where a body is held, and whether that holds it.
 
-use faer::{Mat, Side};
+use peridyne_algebra::symmetric_eigen;
 
 /// Which components of which points are free to move.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,26 +105,25 @@ impl<const D: usize> Support<D> {
             _ => 0.0,
         };
         let count = motions.len();
-        let mut gram = Mat::<f64>::zeros(count, count);
+        let mut gram = vec![0.0; count * count];
         for &i in members {
             for a in (0..D).filter(|a| !self.free[i][*a]) {
                 for (p, (_, p_axes)) in motions.iter().enumerate() {
                     for (q, (_, q_axes)) in motions.iter().enumerate() {
-                        gram[(p, q)] += value(*p_axes, i, a) * value(*q_axes, i, a);
+                        gram[p * count + q] += value(*p_axes, i, a) * value(*q_axes, i, a);
                     }
                 }
             }
         }
-        let Ok(eigen) = gram.self_adjoint_eigen(Side::Lower) else {
+        let Some((values, vectors)) = symmetric_eigen(count, |p, q| gram[p * count + q]) else {
             return vec![];
         };
-        let (values, vectors) = (eigen.S(), eigen.U());
-        let top = (0..count).map(|k| values[k]).fold(1.0, f64::max);
+        let top = values.iter().copied().fold(1.0, f64::max);
         let null = (0..count).filter(|k| values[*k] < 1e-12 * top);
         let mut loose: Vec<Loose> = null
             .filter_map(|k| {
                 let strongest = (0..count)
-                    .max_by(|p, q| vectors[(*p, k)].abs().total_cmp(&vectors[(*q, k)].abs()))?;
+                    .max_by(|p, q| vectors[k][*p].abs().total_cmp(&vectors[k][*q].abs()))?;
                 Some(Loose {
                     points: members.len(),
                     point: members[0],

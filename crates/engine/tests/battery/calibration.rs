@@ -34,7 +34,9 @@ fn lame(law: LawSpec, d: usize, plane: Plane) -> (f64, f64) {
         LawSpec::Pmb(PmbStiffness::Micromodulus(_)) => panic!("no modulus was asked for"),
         LawSpec::Lps(m) => from(m.young, m.poisson),
         LawSpec::LpsAsTyped { bulk, shear } => typed(bulk, shear),
-        LawSpec::Springs(_) | LawSpec::Atoms | LawSpec::Micromoduli => panic!("not a law of this battery"),
+        LawSpec::Springs(_) | LawSpec::Atoms | LawSpec::Micromoduli => {
+            panic!("not a law of this battery")
+        }
         LawSpec::EamLike { pair, volume } => {
             let g = pair / 30.0;
             typed(volume / 3.0 + 5.0 / 3.0 * g, g)

@@ -1,0 +1,137 @@
+//! Factors of sparse matrices and eigenvalues of small ones: faer behind a small face. A crate of its own, because faer is
+//! generic and slow to compile: here it is compiled once.
+
+use faer::linalg::cholesky::llt::factor::LltError as Pivot;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::LltError;
+use faer::sparse::linalg::solvers::{Llt, Lu};
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Mat, Side};
+
+/// Why there are no factors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum FactorError {
+    #[error("the pivot of row {row} is not positive")]
+    NotPositive { row: usize },
+    #[error("the matrix is singular")]
+    Singular,
+    #[error("the matrix does not fit into memory")]
+    TooLarge,
+}
+
+/// A factored sparse matrix.
+pub enum Factors {
+    Symmetric(Llt<usize, f64>),
+    General(Lu<usize, f64>),
+}
+
+fn matrix(
+    n: usize,
+    entries: &[(usize, usize, f64)],
+) -> Result<SparseColMat<usize, f64>, FactorError> {
+    let triplets: Vec<_> = entries
+        .iter()
+        .map(|(row, column, value)| Triplet::new(*row, *column, *value))
+        .collect();
+    SparseColMat::try_new_from_triplets(n, n, &triplets).map_err(|_| FactorError::TooLarge)
+}
+
+impl Factors {
+    /// LLᵀ of a symmetric matrix of n rows; `entries` are (row, column, value) of the lower triangle, equal places add up.
+    ///
+    /// # Errors
+    /// A pivot that is not positive, by its row (in an order that may be the solver's own); no memory.
+    pub fn symmetric(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
+        let factors = matrix(n, entries)?.sp_cholesky(Side::Lower);
+        factors.map(Factors::Symmetric).map_err(|e| match e {
+            LltError::Numeric(Pivot::NonPositivePivot { index }) => {
+                FactorError::NotPositive { row: index }
+            }
+            LltError::Generic(_) => FactorError::TooLarge,
+        })
+    }
+
+    /// LU of any matrix.
+    ///
+    /// # Errors
+    /// It is singular; no memory.
+    pub fn general(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
+        let factors = matrix(n, entries)?.sp_lu();
+        factors
+            .map(Factors::General)
+            .map_err(|_| FactorError::Singular)
+    }
+
+    /// The solution takes the place of the right-hand side.
+    pub fn solve(&self, rhs: &mut [f64]) {
+        let column = Mat::from_fn(rhs.len(), 1, |i, _| rhs[i]);
+        let x = match self {
+            Factors::Symmetric(f) => f.solve(&column),
+            Factors::General(f) => f.solve(&column),
+        };
+        for (i, r) in rhs.iter_mut().enumerate() {
+            *r = x[(i, 0)];
+        }
+    }
+}
+
+/// Eigenvalues, ascending, and eigenvectors (one after the other) of a dense symmetric matrix, of which the lower triangle is
+/// read; `None` if they are not found.
+pub fn symmetric_eigen(
+    n: usize,
+    entry: impl Fn(usize, usize) -> f64,
+) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let dense = Mat::from_fn(n, n, |i, j| if i >= j { entry(i, j) } else { 0.0 });
+    let eigen = dense.self_adjoint_eigen(Side::Lower).ok()?;
+    let values = (0..n).map(|k| eigen.S()[k]).collect();
+    let vector = |k: usize| (0..n).map(|i| eigen.U()[(i, k)]).collect();
+    Some((values, (0..n).map(vector).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LOWER: [(usize, usize, f64); 5] = [
+        (0, 0, 4.0),
+        (1, 0, 1.0),
+        (1, 1, 3.0),
+        (2, 1, -1.0),
+        (2, 2, 2.0),
+    ];
+
+    #[test]
+    fn factors_solve() {
+        let upper = LOWER.iter().filter(|e| e.0 != e.1).map(|e| (e.1, e.0, e.2));
+        let all: Vec<_> = LOWER.iter().copied().chain(upper).collect();
+        for factors in [
+            Factors::symmetric(3, &LOWER).unwrap(),
+            Factors::general(3, &all).unwrap(),
+        ] {
+            // of (1, 2, 3)
+            let mut x = vec![6.0, 4.0, 4.0];
+            factors.solve(&mut x);
+            for (x, exact) in x.iter().zip([1.0, 2.0, 3.0]) {
+                assert!((x - exact).abs() < 1e-14);
+            }
+        }
+        let refused = Factors::symmetric(2, &[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)]);
+        assert!(matches!(refused, Err(FactorError::NotPositive { .. })));
+    }
+
+    #[test]
+    fn eigenvalues_are_those_of_a_chain() {
+        let n = 9;
+        let entry = |i: usize, j: usize| match i - j {
+            0 => 2.0,
+            1 => -1.0,
+            _ => 0.0,
+        };
+        let (values, vectors) = symmetric_eigen(n, entry).unwrap();
+        for (k, value) in values.iter().enumerate() {
+            let angle = (k + 1) as f64 * std::f64::consts::PI / (n + 1) as f64;
+            assert!((value - 2.0 + 2.0 * angle.cos()).abs() < 1e-13);
+            assert!((vectors[k].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-13);
+        }
+    }
+}
