@@ -69,11 +69,8 @@ impl<const D: usize> NearList<D> {
         });
         let at = std::array::from_fn(|a| {
             let mut column = vec![0.0; sorted.item.len() + TILE];
-            for_each_piece(&mut column, |first, piece| {
-                for (x, n) in piece
-                    .iter_mut()
-                    .zip(&sorted.item[first.min(sorted.item.len())..])
-                {
+            for_each_piece(&mut column[..sorted.item.len()], |first, piece| {
+                for (x, n) in piece.iter_mut().zip(&sorted.item[first..]) {
                     *x = self.position[*n as usize][a];
                 }
             });

@@ -1,21 +1,22 @@
 use super::*;
+use crate::samples::Random;
 
-fn check<const D: usize>(n: usize, length: f64, periodic: bool) {
+/// So many atoms anywhere in a box.
+fn gas<const D: usize>(n: usize, length: f64, periodic: bool, random: &mut Random) -> Body<D> {
     let mut x = vec![];
-    let mut seed = 1u64;
-    let mut random = || {
-        seed = seed
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
     for _ in 0..n {
-        x.push(std::array::from_fn(|a| {
-            if a < D { length * random() } else { 0.0 }
+        x.push(std::array::from_fn(|a| match a < D {
+            true => 0.5 * length * (1.0 + random.next()),
+            false => 0.0,
         }));
     }
     let period = [periodic.then_some(length); D];
-    let body = Body::<D>::from_cloud(&x, &vec![1.0; n], &[], 0.1 * length, period).unwrap();
+    Body::<D>::from_cloud(&x, &vec![1.0; n], &[], 0.1 * length, period).unwrap()
+}
+
+fn check<const D: usize>(n: usize, length: f64, periodic: bool) {
+    let mut random = Random(1);
+    let body = gas::<D>(n, length, periodic, &mut random);
     let mut u = body.at_rest();
     let (cutoff, skin) = (0.21 * length, 0.05 * length);
     let mut list = NearList::new(&body, cutoff, skin);
@@ -67,7 +68,7 @@ fn check<const D: usize>(n: usize, length: f64, periodic: bool) {
         );
         for c in &mut u {
             for &s in &body.slots {
-                c[s as usize] += (random() - 0.5) * 0.04 * length * round as f64;
+                c[s as usize] += 0.02 * length * round as f64 * random.next();
             }
         }
     }
@@ -81,4 +82,39 @@ fn the_list_is_that_of_all_pairs() {
         check::<2>(150, 3.0, periodic);
         check::<3>(300, 5.0, periodic);
     }
+}
+
+/// Everything that a list holds after being made, moved and made again.
+fn trace(threads: usize) -> Vec<u64> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(|| {
+        let mut random = Random(2);
+        // many more atoms, and ghosts, than a thread takes at a time
+        let body = gas::<3>(20_000, 20.0, true, &mut random);
+        let mut u = body.at_rest();
+        let mut list = NearList::new(&body, 1.5, 0.2);
+        let mut bits = vec![];
+        for (length, anew) in [(0.0, true), (0.05, false), (3.0, true)] {
+            for c in &mut u {
+                for &s in &body.slots {
+                    c[s as usize] += length * random.next();
+                }
+            }
+            assert_eq!(list.update(&body, &u, Simd::detect()), anew);
+            assert!(list.ghosts.len() > 8000);
+            assert!(list.positions_at(&u, Simd::detect()).as_deref() == Some(list.positions()));
+            bits.extend(list.positions().iter().flatten().map(|x| x.to_bits()));
+            for (t, lines) in (0..list.blocks()).flat_map(|b| list.tiles(b)) {
+                bits.extend(list.slots(t).iter().map(|s| u64::from(*s)));
+                bits.extend(lines.iter().flatten().map(|j| u64::from(*j)));
+            }
+        }
+        bits
+    })
+}
+
+#[test]
+fn the_number_of_threads_does_not_show() {
+    let one = trace(1);
+    assert!(trace(2) == one && trace(5) == one);
 }
