@@ -316,7 +316,13 @@ fn one_jump_in_a_long_chain_stops_the_run() {
 /// An initial state that is crossed already is named before a step, wherever it is, and the first of several.
 #[test]
 fn a_crossed_beginning_is_named() {
-    for (points, at) in [(20, 7), (3000, 7), (3000, 1534), (3000, 1535), (3000, 2998)] {
+    for (points, at) in [
+        (20, 7usize),
+        (3000, 7),
+        (3000, 1534),
+        (3000, 1535),
+        (3000, 2998),
+    ] {
         let mut sim = build(&lj_chain(points, 1.0, 2), Options::default()).unwrap();
         let mut u = vec![[0.0; 3]; points];
         for i in at..points {
@@ -328,8 +334,8 @@ fn a_crossed_beginning_is_named() {
             sim.ledger().unwrap_err(),
             RunError::Crossing {
                 step: 0,
-                i: at + 1,
-                j: at + 2
+                i: at as u64 + 1,
+                j: at as u64 + 2
             }
         );
     }
