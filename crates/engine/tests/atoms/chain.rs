@@ -325,8 +325,8 @@ fn a_crossed_beginning_is_named() {
     ] {
         let mut sim = build(&lj_chain(points, 1.0, 2), Options::default()).unwrap();
         let mut u = vec![[0.0; 3]; points];
-        for i in at..points {
-            u[i][0] = if (i - at) % 2 == 0 { 1.5 } else { 0.0 };
+        for u in u[at..].iter_mut().step_by(2) {
+            u[0] = 1.5;
         }
         sim.set_displacements(&u);
         sim.start(true);
