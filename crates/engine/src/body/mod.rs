@@ -86,6 +86,12 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// The slot that a slot is, or is an image of.
+    pub fn originals(&self) -> impl Fn(usize) -> usize + use<D> {
+        let of: std::collections::HashMap<u32, u32> = self.images.iter().copied().collect();
+        move |slot| of.get(&(slot as u32)).map_or(slot, |o| *o as usize)
+    }
+
     /// A displacement field at rest: 0 on points, far away on absent sites.
     pub fn at_rest(&self) -> Field<D> {
         let mut u: Field<D> = field::filled(self.len, FAR * self.spacing);

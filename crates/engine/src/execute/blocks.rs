@@ -3,6 +3,7 @@
 
 use super::simd::{Kernel, Simd};
 use rayon::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Run `kernel` on every block and leave block `b`'s result in `out[b]`.
 pub fn for_each_block<K: Kernel>(simd: Simd, kernel: &K, out: &mut [K::Out]) {
@@ -14,6 +15,81 @@ pub fn for_each_block<K: Kernel>(simd: Simd, kernel: &K, out: &mut [K::Out]) {
         out.par_iter_mut()
             .enumerate()
             .for_each(|(b, o)| *o = simd.run(kernel, b));
+    }
+}
+
+/// Run `kernel`, which returns nothing, on so many blocks.
+pub fn run_blocks<K: Kernel<Out = ()>>(simd: Simd, kernel: &K, blocks: usize) {
+    // a vector of nothing takes no memory
+    for_each_block(simd, kernel, &mut vec![(); blocks]);
+}
+
+/// Room for a result per block, kept from sweep to sweep so that sweeps do not allocate.
+#[derive(Debug)]
+pub struct PerBlock<T> {
+    blocks: usize,
+    empty: T,
+    room: Mutex<Vec<T>>,
+}
+
+impl<T: Copy + Send> PerBlock<T> {
+    pub fn new(blocks: usize, empty: T) -> Self {
+        PerBlock {
+            blocks,
+            empty,
+            room: Mutex::new(vec![empty; blocks]),
+        }
+    }
+
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.blocks
+    }
+
+    fn room(&self) -> MutexGuard<'_, Vec<T>> {
+        self.room.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Run `kernel` on every block and fold its results, in the order of blocks.
+    pub fn fold<K: Kernel<Out = T>>(&self, simd: Simd, kernel: &K, add: impl Fn(&mut T, T)) -> T {
+        // taken, not held: a thread that waits for its blocks may be lent to a sweep that also wants the room
+        let mut room = std::mem::take(&mut *self.room());
+        room.resize(self.blocks, self.empty);
+        for_each_block(simd, kernel, &mut room);
+        let mut total = self.empty;
+        room.iter().for_each(|x| add(&mut total, *x));
+        *self.room() = room;
+        total
+    }
+}
+
+impl<const N: usize> PerBlock<[f64; N]> {
+    /// Room for `N` sums.
+    pub fn sums(blocks: usize) -> Self {
+        PerBlock::new(blocks, [0.0; N])
+    }
+
+    /// Run `kernel` on every block and add its results up, in the order of blocks.
+    pub fn sum<K: Kernel<Out = [f64; N]>>(&self, simd: Simd, kernel: &K) -> [f64; N] {
+        self.fold(simd, kernel, |total, block| {
+            for (t, x) in total.iter_mut().zip(block) {
+                *t += x;
+            }
+        })
+    }
+}
+
+/// Elements of an array that one thread takes at a time.
+const PIECE: usize = 2048;
+
+/// Change an array piece by piece, on threads: `change(n, piece)`, where `n` is the number of the piece's first element.
+pub fn for_each_piece<T: Send>(data: &mut [T], change: impl Fn(usize, &mut [T]) + Sync) {
+    if rayon::current_num_threads() == 1 || data.len() <= PIECE {
+        change(0, data);
+    } else {
+        data.par_chunks_mut(PIECE)
+            .enumerate()
+            .for_each(|(n, piece)| change(n * PIECE, piece));
     }
 }
 

@@ -1,9 +1,12 @@
 //! The bonds of a lattice body, for laws that remember nothing of them: offsets, and who is there.
 
 use super::stencil::Stencil;
-use crate::body::{Body, Grid, Layout};
-use crate::execute::lane::TILE;
-use std::collections::HashMap;
+use crate::body::{Body, Field, Grid, Layout};
+use crate::execute::lane::{Lane, TILE};
+use std::ops::Range;
+
+/// Tiles per block of work.
+const BLOCK: usize = 64;
 
 /// One bond of a stencil.
 #[derive(Debug, Clone, Copy)]
@@ -21,15 +24,6 @@ impl<const D: usize> Link<D> {
     pub fn partner(&self, grid: &Grid<D>, slot: usize) -> Option<usize> {
         grid.neighbour(slot, self.cell, self.to)
     }
-}
-
-/// The other end of a bond.
-#[derive(Debug, Clone, Copy)]
-pub struct Partner {
-    /// Where its numbers are: perhaps an image.
-    pub slot: usize,
-    /// The point.
-    pub original: usize,
 }
 
 /// All bonds of a lattice body.
@@ -105,11 +99,34 @@ impl<const D: usize> Links<D> {
         made
     }
 
-    /// Bits of the bonds of tile `n` (of `tiles`); `None` if all its points have all their partners.
     #[inline(always)]
-    pub fn bits(&self, n: usize, sublattice: usize) -> Option<&[u8]> {
+    fn bits(&self, n: usize, sublattice: usize) -> Option<&[u8]> {
         let begin = self.begin[n];
         (begin != WHOLE).then(|| &self.bits[begin as usize..][..self.links[sublattice].len()])
+    }
+
+    /// Blocks of work that the tiles make.
+    pub fn blocks(&self) -> usize {
+        self.tiles.len().div_ceil(BLOCK)
+    }
+
+    /// The tiles of block `b`.
+    pub fn block(&self, b: usize) -> Range<usize> {
+        b * BLOCK..((b + 1) * BLOCK).min(self.tiles.len())
+    }
+
+    /// Tile `n` (of `tiles`).
+    #[inline(always)]
+    pub fn tile(&self, grid: &Grid<D>, n: usize) -> Tile<'_, D> {
+        let t = self.tiles[n] as usize;
+        let sublattice = grid.tile_sublattice(t);
+        Tile {
+            first: grid.tile_slot(t),
+            sublattice,
+            owned: grid.owned[t],
+            links: &self.links[sublattice],
+            bits: self.bits(n, sublattice),
+        }
     }
 
     fn family(&self, grid: &Grid<D>, slot: usize) -> usize {
@@ -132,48 +149,31 @@ impl<const D: usize> Links<D> {
         }
     }
 
-    /// Every directed bond: slot i, the other end, number of the bond in its stencil, sublattice.
-    pub fn each_directed(
-        &self,
-        body: &Body<D>,
-        visit: &mut dyn FnMut(usize, Partner, usize, usize),
-    ) {
-        let Layout::Grid(grid) = &body.layout else {
-            return;
-        };
-        let original: HashMap<u32, u32> = body.images.iter().copied().collect();
-        for &t in &self.tiles {
-            let first = grid.tile_slot(t as usize);
-            let sub = grid.tile_sublattice(t as usize);
-            for i in (first..first + TILE).filter(|s| grid.is_owned(*s)) {
-                for (k, link) in self.links[sub].iter().enumerate() {
-                    if let Some(slot) = link.partner(grid, i) {
-                        let original = original.get(&(slot as u32)).map_or(slot, |o| *o as usize);
-                        visit(i, Partner { slot, original }, k, sub);
-                    }
-                }
-            }
-        }
-    }
-
     /// Every undirected bond once: slots i < j (images resolved), ξ from i to j.
     pub fn each(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
         let Layout::Grid(grid) = &body.layout else {
             return;
         };
-        let original: HashMap<u32, u32> = body.images.iter().copied().collect();
-        for &t in &self.tiles {
-            let first = grid.tile_slot(t as usize);
-            let sub = grid.tile_sublattice(t as usize);
-            for i in (first..first + TILE).filter(|s| grid.is_owned(*s)) {
-                for link in &self.links[sub] {
-                    let Some(j) = link.partner(grid, i) else {
-                        continue;
-                    };
-                    let j = original.get(&(j as u32)).map_or(j, |o| *o as usize);
-                    // a bond between a point and its own image counts from one side only
-                    if i < j || (i == j && link.shift > 0) {
-                        visit(i, j, link.xi);
+        let original = body.originals();
+        self.each_directed(grid, |i, j, sub, k| {
+            let link = &self.links[sub][k];
+            let j = original(j);
+            // a bond between a point and its own image counts from one side only
+            if i < j || (i == j && link.shift > 0) {
+                visit(i, j, link.xi);
+            }
+        });
+    }
+
+    /// Every directed bond: slots from and to (it may be an image), sublattice, and number among that one's links.
+    pub fn each_directed(&self, grid: &Grid<D>, mut visit: impl FnMut(usize, usize, usize, usize)) {
+        for n in 0..self.tiles.len() {
+            let tile = self.tile(grid, n);
+            for l in (0..TILE).filter(|l| tile.owned >> l & 1 == 1) {
+                let i = tile.first + l;
+                for (k, link) in tile.links.iter().enumerate() {
+                    if tile.bits.is_none_or(|bits| bits[k] >> l & 1 == 1) {
+                        visit(i, i.wrapping_add_signed(link.shift), tile.sublattice, k);
                     }
                 }
             }
@@ -188,5 +188,67 @@ impl<const D: usize> Links<D> {
             + 4 * self.tiles.len()
             + 4 * self.begin.len()
             + self.bits.len()
+    }
+}
+
+/// Eight points and their bonds.
+#[derive(Clone, Copy)]
+pub struct Tile<'a, const D: usize> {
+    /// Its first slot.
+    pub first: usize,
+    pub sublattice: usize,
+    /// A bit per slot that holds a point.
+    pub owned: u8,
+    pub links: &'a [Link<D>],
+    /// Per bond, which of the points have it; `None` if all have all.
+    pub bits: Option<&'a [u8]>,
+}
+
+/// Displacements of a lattice body, tile by tile.
+pub struct Tiles<'a, const D: usize> {
+    pub links: &'a Links<D>,
+    grid: &'a Grid<D>,
+    u: [&'a [f64]; D],
+}
+
+impl<'a, const D: usize> Tiles<'a, D> {
+    /// `body` is the one that the links were made of.
+    pub fn new(links: &'a Links<D>, body: &'a Body<D>, u: &'a Field<D>) -> Self {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("links are of lattice bodies")
+        };
+        Tiles {
+            links,
+            grid,
+            u: std::array::from_fn(|a| &*u[a]),
+        }
+    }
+
+    /// The tiles of block `b`.
+    #[inline(always)]
+    pub fn block(&self, b: usize) -> impl Iterator<Item = Tile<'a, D>> {
+        self.links.block(b).map(|n| self.links.tile(self.grid, n))
+    }
+
+    /// Displacements of a tile's points.
+    #[inline(always)]
+    pub fn own<L: Lane>(&self, tile: &Tile<D>) -> [L; D] {
+        self.at(tile, 0)
+    }
+
+    /// Displacements of the partners along a bond; far away where there is none.
+    #[inline(always)]
+    pub fn partners<L: Lane>(&self, tile: &Tile<D>, link: &Link<D>) -> [L; D] {
+        self.at(tile, link.shift)
+    }
+
+    #[inline(always)]
+    fn at<L: Lane>(&self, tile: &Tile<D>, shift: isize) -> [L; D] {
+        let mut u = [L::splat(0.0); D];
+        for a in 0..D {
+            // SAFETY: tiles lie inside the arrays, and the guards keep their partners there
+            u[a] = unsafe { L::load(self.u[a].as_ptr().add(tile.first).offset(shift)) };
+        }
+        u
     }
 }

@@ -5,13 +5,10 @@
 
 use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Layout};
-use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
-use crate::family::links::Links;
-
-/// Tiles per block of work.
-const BLOCK: usize = 64;
+use crate::family::links::{Links, Tile, Tiles};
 
 /// Micromoduli on a lattice.
 pub struct LinearInteraction<const D: usize> {
@@ -19,14 +16,12 @@ pub struct LinearInteraction<const D: usize> {
     links: Links<D>,
     /// Per sublattice and bond: `C` (force density / length).
     stiffness: Vec<Vec<[[f64; D]; D]>>,
-    unit: Vec<()>,
-    sums: Vec<f64>,
+    sums: PerBlock<[f64; 1]>,
 }
 
 impl<const D: usize> LinearInteraction<D> {
     /// `modulus` gives `C` from ξ (force density / length).
     pub fn new(links: Links<D>, simd: Simd, modulus: impl Fn([f64; D]) -> [[f64; D]; D]) -> Self {
-        let blocks = links.tiles.len().div_ceil(BLOCK);
         LinearInteraction {
             simd,
             stiffness: links
@@ -34,70 +29,51 @@ impl<const D: usize> LinearInteraction<D> {
                 .iter()
                 .map(|list| list.iter().map(|l| modulus(l.xi)).collect())
                 .collect(),
+            sums: PerBlock::sums(links.blocks()),
             links,
-            unit: vec![(); blocks],
-            sums: vec![0.0; blocks],
         }
     }
 
-    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared, sums: &mut [f64]) {
+    /// Energy over volume, and energy densities per slot where asked for.
+    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared) -> f64 {
         let kernel = Energies {
             view: self.view(body, u),
             out,
         };
-        for_each_block(self.simd, &kernel, sums);
+        let [sum] = self.sums.sum(self.simd, &kernel);
+        sum
     }
 
     fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D> {
         View {
-            links: &self.links,
+            tiles: Tiles::new(&self.links, body, u),
             stiffness: &self.stiffness,
-            body,
-            u,
         }
     }
 }
 
 struct View<'a, const D: usize> {
-    links: &'a Links<D>,
+    tiles: Tiles<'a, D>,
     stiffness: &'a [Vec<[[f64; D]; D]>],
-    body: &'a Body<D>,
-    u: &'a Field<D>,
 }
 
 impl<const D: usize> View<'_, D> {
-    fn block(&self, block: usize) -> std::ops::Range<usize> {
-        block * BLOCK..((block + 1) * BLOCK).min(self.links.tiles.len())
-    }
-
-    /// First slot, sublattice and bits of the points of tile `n`.
-    #[inline(always)]
-    fn tile(&self, n: usize) -> (usize, usize, u8) {
-        let Layout::Grid(grid) = &self.body.layout else {
-            unreachable!("stencils live on grids")
-        };
-        let t = self.links.tiles[n] as usize;
-        (grid.tile_slot(t), grid.tile_sublattice(t), grid.owned[t])
-    }
-
     /// `Σ C η` and, if asked for, `Σ η·C η` of a tile.
     #[inline(always)]
     fn sum<L: Lane, const FULL: bool, const ENERGY: bool>(
         &self,
-        first: usize,
-        sub: usize,
+        tile: &Tile<D>,
         bits: &[u8],
-        i: &[L; D],
     ) -> ([L; D], L) {
+        let i = self.tiles.own::<L>(tile);
         let mut force = [L::splat(0.0); D];
         let mut energy = L::splat(0.0);
-        let bonds = self.links.links[sub].iter().zip(&self.stiffness[sub]);
+        let bonds = tile.links.iter().zip(&self.stiffness[tile.sublattice]);
         for (k, (link, c)) in bonds.enumerate() {
-            let mut eta = *i;
+            let j = self.tiles.partners::<L>(tile, link);
+            let mut eta = i;
             for a in 0..D {
-                // SAFETY: offsets stay inside the arrays
-                let j = unsafe { L::load(self.u[a].as_ptr().add(first).offset(link.shift)) };
-                eta[a] = j - i[a];
+                eta[a] = j[a] - i[a];
                 if !FULL {
                     eta[a] = eta[a].zero_if(L::dead(bits[k]));
                 }
@@ -116,23 +92,18 @@ impl<const D: usize> View<'_, D> {
         (force, energy)
     }
 
+    /// The same, 0 where there is no point.
     #[inline(always)]
-    fn both<L: Lane, const ENERGY: bool>(&self, n: usize) -> (usize, [L; D], L) {
-        let (first, sub, owned) = self.tile(n);
-        let mut i = [L::splat(0.0); D];
-        for a in 0..D {
-            // SAFETY: tiles lie inside the arrays
-            i[a] = unsafe { L::load(self.u[a].as_ptr().add(first)) };
-        }
-        let (mut force, energy) = match self.links.bits(n, sub) {
-            None => self.sum::<L, true, ENERGY>(first, sub, &[], &i),
-            Some(bits) => self.sum::<L, false, ENERGY>(first, sub, bits, &i),
+    fn both<L: Lane, const ENERGY: bool>(&self, tile: &Tile<D>) -> ([L; D], L) {
+        let (mut force, energy) = match tile.bits {
+            None => self.sum::<L, true, ENERGY>(tile, &[]),
+            Some(bits) => self.sum::<L, false, ENERGY>(tile, bits),
         };
-        let dead = L::dead(owned);
+        let dead = L::dead(tile.owned);
         for f in &mut force {
             *f = f.zero_if(dead);
         }
-        (first, force, energy.zero_if(dead))
+        (force, energy.zero_if(dead))
     }
 }
 
@@ -145,11 +116,11 @@ impl<const D: usize> Kernel for Forces<'_, D> {
     type Out = ();
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
-        for n in self.view.block(block) {
-            let (first, force, _) = self.view.both::<L, false>(n);
+        for tile in self.view.tiles.block(block) {
+            let (force, _) = self.view.both::<L, false>(&tile);
             for a in 0..D {
                 // SAFETY: tiles are disjoint
-                unsafe { force[a].store(self.f[a].at(first)) };
+                unsafe { force[a].store(self.f[a].at(tile.first)) };
             }
         }
     }
@@ -162,20 +133,20 @@ struct Energies<'a, const D: usize> {
 }
 
 impl<const D: usize> Kernel for Energies<'_, D> {
-    type Out = f64;
+    type Out = [f64; 1];
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> f64 {
+    fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
         let mut sum = 0.0;
-        for n in self.view.block(block) {
-            let (first, _, energy) = self.view.both::<L, true>(n);
+        for tile in self.view.tiles.block(block) {
+            let (_, energy) = self.view.both::<L, true>(&tile);
             let energy = energy * L::splat(0.25);
             if !self.out.0.is_null() {
                 // SAFETY: tiles are disjoint
-                unsafe { energy.store(self.out.at(first)) };
+                unsafe { energy.store(self.out.at(tile.first)) };
             }
             sum += energy.to_array().iter().sum::<f64>();
         }
-        sum
+        [sum]
     }
 }
 
@@ -195,33 +166,31 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         if let Some(seen) = seen {
             self.observe(body, u, seen);
         }
-        let mut unit = std::mem::take(&mut self.unit);
         let kernel = Forces {
             view: self.view(body, u),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
         };
-        for_each_block(self.simd, &kernel, &mut unit);
-        self.unit = unit;
+        run_blocks(self.simd, &kernel, self.links.blocks());
         Tally::default()
     }
 
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
-        let mut sums = std::mem::take(&mut self.sums);
-        self.energies(body, u, Shared::NULL, &mut sums);
-        let total: f64 = sums.iter().sum();
-        self.sums = sums;
-        [total * body.volume.uniform().unwrap_or(0.0), 0.0]
+        let sum = self.energies(body, u, Shared::NULL);
+        [sum * body.volume.uniform().unwrap_or(0.0), 0.0]
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
-        let strain = Shared(out.strain.as_mut_ptr());
-        self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
+        self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
 
     fn tangents(&mut self, body: &Body<D>, _: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
-        self.links.each_directed(body, &mut |i, j, k, sub| {
-            visit(BondTangent::direct(i, j.original, self.stiffness[sub][k]))
+        let Layout::Grid(grid) = &body.layout else {
+            return;
+        };
+        let original = body.originals();
+        self.links.each_directed(grid, |i, j, sub, k| {
+            visit(BondTangent::direct(i, original(j), self.stiffness[sub][k]))
         });
     }
 
@@ -237,18 +206,12 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
             return None;
         };
         let mut sum = [0.0; 6];
-        for &s in &body.slots {
-            let i = s as usize;
-            let (_, sub) = grid.cell(i);
-            for (link, c) in self.links.links[sub].iter().zip(&self.stiffness[sub]) {
-                let Some(j) = link.partner(grid, i) else {
-                    continue;
-                };
-                let pull: [f64; D] =
-                    std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
-                super::add_virial(&mut sum, &pull, &link.xi, -0.5 * volume);
-            }
-        }
+        self.links.each_directed(grid, |i, j, sub, k| {
+            let c = &self.stiffness[sub][k];
+            let pull: [f64; D] =
+                std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
+            super::add_virial(&mut sum, &pull, &self.links.links[sub][k].xi, -0.5 * volume);
+        });
         Some(sum)
     }
 

@@ -10,13 +10,14 @@ use super::{
     Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Field, zeros};
-use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::law::Law;
 use crate::spec::CrackKind;
 use kernel::{BLOCK, Energies, Forces, Pack, Share, View};
+use std::ops::AddAssign;
 
 /// A law on a horizon list.
 pub struct ListInteraction<const D: usize, W: Law> {
@@ -43,9 +44,8 @@ pub struct ListInteraction<const D: usize, W: Law> {
     next: Vec<f64>,
     period: [f64; D],
     inv_period: [f64; D],
-    tallies: Vec<Tally>,
-    unit: Vec<()>,
-    sums: Vec<[f64; 2]>,
+    tallies: PerBlock<Tally>,
+    sums: PerBlock<[f64; 2]>,
 }
 
 /// Everything a list interaction is made of.
@@ -103,9 +103,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             critical,
             period: body.period.map(|p| p.unwrap_or(0.0)),
             inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
-            tallies: vec![Tally::default(); blocks],
-            unit: vec![(); blocks],
-            sums: vec![[0.0; 2]; blocks],
+            tallies: PerBlock::new(blocks, Tally::default()),
+            sums: PerBlock::sums(blocks),
         }
     }
 
@@ -139,22 +138,22 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     /// Write displacements and critical stretches into the records.
-    fn pack(&self, u: &Field<D>, moved: &mut [f64], unit: &mut [()]) {
+    fn pack(&self, u: &Field<D>, moved: &mut [f64]) {
         let kernel = Pack::<D> {
             u: std::array::from_fn(|a| &*u[a]),
             critical: &self.critical,
             moved: Shared(moved.as_mut_ptr()),
         };
-        for_each_block(self.simd, &kernel, unit);
+        run_blocks(self.simd, &kernel, self.sums.blocks());
     }
 
-    fn share(&mut self, unit: &mut [()]) {
+    fn share(&mut self) {
         let alive = Shared(self.alive.as_mut_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
         let kernel = Share::<D, W> {
             view: self.view_of(&self.moved, alive, fields),
         };
-        for_each_block(self.simd, &kernel, unit);
+        run_blocks(self.simd, &kernel, self.sums.blocks());
     }
 
     fn sweep<const FULL: bool>(
@@ -162,8 +161,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         body: &Body<D>,
         f: &mut Field<D>,
         motion: Option<(&Field<D>, f64)>,
-    ) {
-        let mut tallies = std::mem::take(&mut self.tallies);
+    ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
         let next = Shared(self.next.as_mut_ptr());
@@ -175,8 +173,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             material: &body.material,
             motion,
         };
-        for_each_block(self.simd, &kernel, &mut tallies);
-        self.tallies = tallies;
+        self.tallies.fold(self.simd, &kernel, Tally::add_assign)
     }
 
     fn is_periodic(&self) -> bool {
@@ -206,8 +203,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// Energies of all points, and `Σ k r0² s` in place of the dilatation. Returns `Σ k r0²` of laws that do not share.
     fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) -> Vec<f64> {
         let mut moved = vec![0.0; 4 * body.len];
-        let mut unit = vec![(); self.sums.len()];
-        self.pack(u, &mut moved, &mut unit);
+        self.pack(u, &mut moved);
         let mut weight = vec![0.0; if W::SHARES { 0 } else { body.len }];
         out.zeros(body.len);
         let kernel = Energies {
@@ -219,7 +215,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
                 weight: Shared(weight.as_mut_ptr()),
             }),
         };
-        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; self.sums.len()]);
+        self.sums.sum(self.simd, &kernel);
         weight
     }
 
@@ -246,8 +242,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         seen: Option<&mut PointEnergies>,
     ) -> Tally {
         let mut moved = std::mem::take(&mut self.moved);
-        let mut unit = std::mem::take(&mut self.unit);
-        self.pack(u, &mut moved, &mut unit);
+        self.pack(u, &mut moved);
         self.moved = moved;
         if let Some(seen) = seen {
             let weight = self.sums(body, u, seen);
@@ -259,44 +254,32 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             }
             seen.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
         } else if W::SHARES {
-            self.share(&mut unit);
+            self.share();
         }
-        self.unit = unit;
         let motion = match sweep {
             Sweep::Evolve { v, dt } => Some((v, dt)),
             Sweep::Hold => None,
         };
-        if self.critical.is_empty() {
-            self.sweep::<false>(body, f, motion);
+        let total = if self.critical.is_empty() {
+            self.sweep::<false>(body, f, motion)
         } else {
-            self.sweep::<true>(body, f, motion);
-        }
+            self.sweep::<true>(body, f, motion)
+        };
         if motion.is_some() && !self.critical.is_empty() {
             std::mem::swap(&mut self.critical, &mut self.next);
-        }
-        let mut total = Tally::default();
-        for t in &self.tallies {
-            total += *t;
         }
         total
     }
 
     fn energy(&mut self, _: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let mut moved = std::mem::take(&mut self.moved);
-        let mut unit = std::mem::take(&mut self.unit);
-        self.pack(u, &mut moved, &mut unit);
+        self.pack(u, &mut moved);
         self.moved = moved;
-        self.unit = unit;
-        let mut sums = std::mem::take(&mut self.sums);
         let kernel = Energies {
             view: self.view(&self.moved),
             fields: None,
         };
-        for_each_block(self.simd, &kernel, &mut sums);
-        self.sums = sums;
-        self.sums
-            .iter()
-            .fold([0.0; 2], |t, s| [t[0] + s[0], t[1] + s[1]])
+        self.sums.sum(self.simd, &kernel)
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {

@@ -10,7 +10,7 @@ use super::{
     Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Column, Field, Layout, field, zeros};
-use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
@@ -19,6 +19,7 @@ use crate::spec::CrackKind;
 pub use assemble::StencilParts;
 pub use kernel::MOST;
 use kernel::{Bond, Energies, Forces, Partner, Remember, Share, View};
+use std::ops::AddAssign;
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {
@@ -63,9 +64,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     most_contact: f64,
     volume: f64,
     guard: usize,
-    tallies: Vec<Tally>,
-    unit: Vec<()>,
-    sums: Vec<[f64; 2]>,
+    tallies: PerBlock<Tally>,
+    sums: PerBlock<[f64; 2]>,
 }
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
@@ -113,8 +113,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         u: &Field<D>,
         f: &mut Field<D>,
         motion: Option<(&Field<D>, f64)>,
-    ) {
-        let mut tallies = std::mem::take(&mut self.tallies);
+    ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
         let state = Shared(self.state.as_mut_ptr());
         let next = Shared(self.next.as_mut_ptr());
@@ -129,8 +128,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             upper: self.least_critical,
             motion,
         };
-        for_each_block(self.simd, &kernel, &mut tallies);
-        self.tallies = tallies;
+        self.tallies.fold(self.simd, &kernel, Tally::add_assign)
     }
 
     /// θ over `Σ k r0² s` at a slot: `n/m`, from `β/m`.
@@ -161,7 +159,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 weight: Shared(weight.as_mut_ptr()),
             }),
         };
-        for_each_block(self.simd, &kernel, &mut vec![[0.0; 2]; self.sums.len()]);
+        self.sums.sum(self.simd, &kernel);
         weight
     }
 
@@ -197,15 +195,13 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             }
             seen.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
         } else if W::SHARES {
-            let mut unit = std::mem::take(&mut self.unit);
             let mut pressure = std::mem::take(&mut self.fields[0]);
             let kernel = Share {
                 view: self.view(body, u),
                 out: Shared(pressure.as_mut_ptr()),
             };
-            for_each_block(self.simd, &kernel, &mut unit);
+            run_blocks(self.simd, &kernel, self.sums.blocks());
             self.fields[0] = pressure;
-            self.unit = unit;
         }
         if W::SHARES {
             body.fill_images(&mut self.fields[0]);
@@ -214,25 +210,20 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             Sweep::Evolve { v, dt } => Some((v, dt)),
             Sweep::Hold => None,
         };
-        if self.critical.is_empty() {
-            self.sweep::<false>(body, u, f, motion);
+        let total = if self.critical.is_empty() {
+            self.sweep::<false>(body, u, f, motion)
         } else {
-            self.sweep::<true>(body, u, f, motion);
-        }
-        let mut total = Tally::default();
-        for t in &self.tallies {
-            total += *t;
-        }
+            self.sweep::<true>(body, u, f, motion)
+        };
         if motion.is_some() && !self.critical.is_empty() && !self.settled {
-            let mut unit = std::mem::take(&mut self.unit);
             let mut critical = std::mem::take(&mut self.critical);
             let kernel = Remember {
                 view: self.view(body, u),
                 next: &self.next,
                 critical: Shared(critical.as_mut_ptr()),
             };
-            for_each_block(self.simd, &kernel, &mut unit);
-            (self.critical, self.unit) = (critical, unit);
+            run_blocks(self.simd, &kernel, self.sums.blocks());
+            self.critical = critical;
             body.fill_images(&mut self.critical);
             self.least_critical = total.least_critical;
             self.settled = self.toughness.iter().all(|t| t.alpha == 0.0);
@@ -241,16 +232,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
-        let mut sums = std::mem::take(&mut self.sums);
         let kernel = Energies {
             view: self.view(body, u),
             fields: None,
         };
-        for_each_block(self.simd, &kernel, &mut sums);
-        self.sums = sums;
-        self.sums
-            .iter()
-            .fold([0.0; 2], |t, s| [t[0] + s[0], t[1] + s[1]])
+        self.sums.sum(self.simd, &kernel)
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
@@ -266,7 +252,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
-        let original: std::collections::HashMap<u32, u32> = body.images.iter().copied().collect();
+        let original = body.originals();
         let field = |n: usize, slot: usize| self.fields[n].get(slot).copied().unwrap_or(0.0);
         for (n, &t) in self.tiles.iter().enumerate() {
             let first = grid.tile_slot(t as usize);
@@ -279,7 +265,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                     let j = b.to(i);
                     visit(BondTangent::of_law(
                         self.law,
-                        [i, original.get(&(j as u32)).map_or(j, |o| *o as usize)],
+                        [i, original(j)],
                         b.k,
                         b.back.map(|x| -x),
                         std::array::from_fn(|a| u[a][j] - u[a][i]),

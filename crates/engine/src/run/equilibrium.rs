@@ -1,5 +1,6 @@
 //! Statics of a model: every step is an increment of load, and ends in equilibrium.
 
+use super::accounts::ledger_base;
 use super::model::Model;
 use super::recipe::Laws;
 use crate::body::{Field, zeros};
@@ -135,6 +136,9 @@ impl<const D: usize> Model<D> {
         let (body, u) = (&self.body, &self.u);
         self.interaction
             .forces(body, u, &mut self.f, Sweep::Hold, None);
+        // energy that came in from outside counts as initial
+        let now = self.energy_now();
+        self.initial_energy = Some(ledger_base(&now));
     }
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.

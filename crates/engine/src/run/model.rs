@@ -1,10 +1,9 @@
-//! The running model: state, forces, motion and accounts.
+//! The running model: its state, and what may be asked of it.
 
-use super::accounts::ledger_base;
 use super::equilibrium::StaticState;
-use super::recipe::{Laws, Recipe};
+use super::recipe::Recipe;
 use super::{Families, Info, ModeShape, PointField, Simulation, SnapshotOptions};
-use crate::body::{Body, Field, Layout};
+use crate::body::{Body, Field};
 use crate::condition::constraint::Constraint;
 use crate::condition::driven::{Drive, Driven, Reaction};
 use crate::condition::indenter::Indenter;
@@ -14,7 +13,7 @@ use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
-use crate::interaction::{BondState, Fault, Interaction, PointEnergies, Sweep};
+use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
 use crate::spec::{ConditionSpec, IndenterSpec};
@@ -80,110 +79,15 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    /// All forces at the current displacements, no bond breaking.
-    pub(super) fn forces_held(&mut self) {
-        self.refresh_images();
-        let (body, u) = (&self.body, &self.u);
-        self.interaction
-            .forces(body, u, &mut self.f, Sweep::Hold, None);
-        self.other_forces(0.0);
-    }
-
-    /// All forces at the current displacements; `dt` is 0 at the start of a run.
-    pub(super) fn forces(&mut self, bonds: bool, dt: f64) {
-        self.refresh_images();
-        let mut watched = self.watched.take();
-        watched = std::mem::take(&mut self.watch).then(|| watched.unwrap_or_default());
-        self.virial = std::mem::take(&mut self.watch_virial).then(|| match bonds {
-            true => self.virial_of_bonds(),
-            false => [0.0; 6],
-        });
-        if bonds {
-            let tally = self.interaction.forces(
-                &self.body,
-                &self.u,
-                &mut self.f,
-                Sweep::Evolve {
-                    v: &self.v,
-                    dt: self.dt,
-                },
-                watched.as_mut(),
-            );
-            self.fault = tally.fault;
-            self.broken += tally.broken;
-            self.released += tally.released;
-        } else {
-            self.f.iter_mut().for_each(|c| c.fill(0.0));
-            if let Some(w) = &mut watched {
-                w.zeros(self.body.len);
-            }
-        }
-        self.watched = watched;
-        self.other_forces(dt);
-        if let Some(mut virial) = self.virial {
-            self.add_virial_of_contact(&mut virial);
-            self.virial = Some(virial);
-        }
-    }
-
-    /// Forces of contact, indenters and loads, on top of those of bonds.
-    fn other_forces(&mut self, dt: f64) {
-        let t = self.time();
-        if let Some(contact) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
-                interaction.in_family(body, i, j)
-            });
-            if let Some(watched) = &mut self.watched {
-                contact.add_energy_density(body, &self.u, &mut watched.repulsion);
-            }
-        }
-        for indenter in &mut self.indenters {
-            indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
-        }
-        for load in &mut self.loads {
-            load.add(&self.body, &self.v, &mut self.f, t, dt);
-        }
-        for d in &mut self.driven {
-            d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);
-        }
-    }
-
-    /// Points may be anywhere now: whoever keeps track of what is near forgets it.
-    fn look_again(&mut self) {
-        if let Some(contact) = &mut self.contact {
-            contact.look_again();
-        }
-        self.indenters.iter_mut().for_each(Indenter::look_again);
-        for d in &mut self.driven {
-            if let Driven::Indenter(i) = d {
-                i.look_again();
-            }
-        }
-    }
-
-    /// Bring velocities to the whole step.
-    pub(super) fn finish(&mut self) {
-        if self.pending {
-            self.verlet.kick(&self.body, &mut self.v, &self.f, self.dt);
-            let (t, dt) = (self.time(), self.dt);
-            for c in &self.constraints {
-                c.settle(&mut self.v, t, dt);
-            }
-            self.still.settle(&mut self.v);
-            self.pending = false;
-        }
-    }
-
     pub(super) fn by_id<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
         self.body.slots.iter().map(|&s| value(s as usize)).collect()
     }
 
-    fn vectors(&self, field: &Field<D>) -> Vec<Point> {
+    pub(super) fn vectors(&self, field: &Field<D>) -> Vec<Point> {
         self.by_id(|i| std::array::from_fn(|a| if a < D { field[a][i] } else { 0.0 }))
     }
 
-    fn scatter(body: &Body<D>, field: &mut Field<D>, values: &[Point]) {
+    pub(super) fn scatter(body: &Body<D>, field: &mut Field<D>, values: &[Point]) {
         for (x, &s) in values.iter().zip(&body.slots) {
             for a in 0..D {
                 field[a][s as usize] = x[a];
@@ -219,91 +123,17 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn start(&mut self, bonds: bool) {
-        self.finish();
-        let (t, dt) = (self.time(), self.dt);
-        self.look_again();
         if self.statics.is_some() {
-            self.unloaded();
-        } else {
-            for c in &mut self.constraints {
-                c.start(&mut self.u, &mut self.v, t, dt);
-            }
-            self.forces(bonds, 0.0);
+            return self.unloaded();
         }
-        // energy that came in from outside counts as initial
-        let now = self.energy_now();
-        self.initial_energy = Some(ledger_base(&now));
+        self.begin(bonds);
     }
 
     fn step(&mut self) -> Result<(), RunError> {
         if self.statics.is_some() {
             return self.increment();
         }
-        let (t, dt) = (self.time(), self.dt);
-        for c in &mut self.constraints {
-            c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
-        }
-        self.still.begin(&mut self.v, &mut self.f, !self.pending);
-        // linear springs may go through each other: they know no distance that is too far for a step
-        let limit = match self.recipe.laws {
-            Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
-            _ => self.body.spacing,
-        };
-        let fastest = self.verlet.advance(
-            &self.body,
-            &mut self.u,
-            &mut self.v,
-            &self.f,
-            dt,
-            self.pending,
-            limit,
-        );
-        if !(fastest < limit * limit) {
-            let error = self.refused(limit);
-            self.verlet
-                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, limit);
-            self.pending = false;
-            self.still.settle(&mut self.v);
-            return Err(error);
-        }
-        self.step += 1;
-        if let Some(contact) = &mut self.contact {
-            contact.moved(fastest.sqrt());
-        }
-        let t = self.time();
-        for c in &self.constraints {
-            c.drift(&mut self.u, t, dt);
-        }
-        for load in &mut self.loads {
-            load.begin(&self.body, &self.v, dt);
-        }
-        for indenter in &mut self.indenters {
-            indenter.begin(&self.body, &self.v, t, dt, fastest.sqrt());
-        }
-        for d in &mut self.driven {
-            d.begin(&self.body, &self.v, t, dt, fastest.sqrt());
-        }
-        self.forces(true, dt);
-        if let Some(fault) = self.fault {
-            let error = self.explained(fault);
-            // back to the step before: where it was, and with the forces that were
-            for &s in &self.body.slots {
-                for a in 0..D {
-                    self.u[a][s as usize] -= self.dt * self.v[a][s as usize];
-                }
-            }
-            self.step -= 1;
-            self.forces(true, 0.0);
-            self.verlet
-                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, 0.0);
-            self.pending = false;
-            return Err(error);
-        }
-        for c in &mut self.constraints {
-            c.end(&self.body, &self.u, &self.f, t, dt);
-        }
-        self.pending = true;
-        Ok(())
+        self.advance()
     }
 
     fn step_number(&self) -> u64 {
@@ -331,49 +161,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn snapshot(&mut self, options: SnapshotOptions) -> Snapshot {
-        self.finish();
-        let mut snapshot = Snapshot {
-            step: self.step,
-            time: self.time(),
-            dimension: D,
-            spacing: self.body.spacing,
-            reference: self.reference(),
-            displacement: self.displacements(),
-            velocity: self.vectors(&self.v),
-            damage: self.damage(),
-            mark: if self.body.mark.is_empty() {
-                vec![0; self.body.points()]
-            } else {
-                self.body.mark.clone()
-            },
-            ..Snapshot::default()
-        };
-        if options.energies {
-            self.refresh_images();
-            let mut energies = PointEnergies::default();
-            self.interaction.observe(&self.body, &self.u, &mut energies);
-            snapshot.energy_density = self.by_id(|i| energies.strain[i] + energies.repulsion[i]);
-            snapshot.dilatation = self.by_id(|i| energies.dilatation[i]);
-        }
-        if options.fragments {
-            snapshot.fragment = Some(Fragments::of(&self.body, self.interaction.as_ref()).label);
-        }
-        if options.bonds {
-            let mut id = vec![0u32; self.body.len];
-            for (k, &s) in self.body.slots.iter().enumerate() {
-                id[s as usize] = k as u32;
-            }
-            let mut bonds = vec![];
-            self.interaction
-                .each_bond(&self.body, &mut |i, j, _, state| {
-                    if state == BondState::Whole {
-                        let (a, b) = (id[i], id[j]);
-                        bonds.push((a.min(b), a.max(b)));
-                    }
-                });
-            snapshot.bonds = Some(bonds);
-        }
-        snapshot
+        self.record(options)
     }
 
     fn broken(&self) -> u64 {
@@ -459,75 +247,11 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn families(&self) -> Families {
-        let mut volume = vec![0.0; self.body.len];
-        let mut foreign = vec![false; self.body.len];
-        let of = |i: usize| self.body.material.get(i).copied().unwrap_or(0);
-        self.interaction
-            .each_bond(&self.body, &mut |i, j, _, state| {
-                if state == BondState::Whole {
-                    volume[i] += self.body.volume.at(j);
-                    volume[j] += self.body.volume.at(i);
-                    let unlike = of(i) != of(j);
-                    foreign[i] |= unlike;
-                    foreign[j] |= unlike;
-                }
-            });
-        Families {
-            size: self.by_id(|i| self.interaction.family_size(&self.body, i) as u32),
-            volume: self.by_id(|i| volume[i]),
-            material: self.by_id(of),
-            foreign: self.by_id(|i| foreign[i]),
-        }
+        self.count_families()
     }
 
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
-        // images of a grid have displacements of their own; a list knows none, so the jump of a homogeneous strain
-        // lies somewhere in a periodic cloud: it is put in several places, and each point asked when it is far away
-        let cut: [bool; D] = std::array::from_fn(|a| {
-            matches!(self.body.layout, Layout::Cloud(_)) && self.body.period[a].is_some()
-        });
-        let reach = self.info.horizon * (1.0 + 1e-6);
-        let period = |a: usize| self.body.period[a].unwrap_or(0.0);
-        // so many places that every point is at least a horizon from one of them
-        let places: [usize; D] = std::array::from_fn(|a| match cut[a] {
-            true => (1.0 / (1.0 - 2.0 * reach / period(a)).max(1e-2)).ceil() as usize + 1,
-            false => 1,
-        });
-        let mut energy = vec![0.0; self.body.points()];
-        let mut u = self.body.at_rest();
-        let mut out = PointEnergies::default();
-        for n in 0..places.iter().product() {
-            let mut rest: usize = n;
-            let at: [f64; D] = std::array::from_fn(|a| {
-                let k = rest % places[a];
-                rest /= places[a];
-                k as f64 / places[a] as f64 * period(a)
-            });
-            // position in the period that begins at the cut
-            let unwrapped = |slot: usize| -> Point {
-                let mut x = self.body.position(slot);
-                for a in (0..D).filter(|a| cut[*a]) {
-                    x[a] = (x[a] - at[a]).rem_euclid(period(a));
-                }
-                x
-            };
-            // images are periodic in displacement; a homogeneous strain is not: give each its own
-            let images = self.body.images.iter().map(|(copy, _)| copy);
-            for &s in self.body.slots.iter().chain(images) {
-                let x = unwrapped(s as usize);
-                for a in 0..D {
-                    u[a][s as usize] = (0..D).map(|b| strain[a][b] * x[b]).sum();
-                }
-            }
-            self.interaction.observe(&self.body, &u, &mut out);
-            for (e, &s) in energy.iter_mut().zip(&self.body.slots) {
-                let x = unwrapped(s as usize);
-                if (0..D).all(|a| !cut[a] || (reach..=period(a) - reach).contains(&x[a])) {
-                    *e = out.strain[s as usize];
-                }
-            }
-        }
-        energy
+        self.strained(strain)
     }
 
     fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {

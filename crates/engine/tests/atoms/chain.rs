@@ -313,22 +313,32 @@ fn one_jump_in_a_long_chain_stops_the_run() {
     }
 }
 
-/// An initial state that is crossed already is named before a step.
+/// An initial state that is crossed already is named before a step, wherever it is, and the first of several.
 #[test]
 fn a_crossed_beginning_is_named() {
-    let mut sim = build(&lj_chain(20, 1.0, 2), Options::default()).unwrap();
-    let mut u = vec![[0.0; 3]; 20];
-    u[7][0] = 1.5;
-    sim.set_displacements(&u);
-    sim.start(true);
-    assert_eq!(
-        sim.ledger().unwrap_err(),
-        RunError::Crossing {
-            step: 0,
-            i: 8,
-            j: 9
+    for (points, at) in [
+        (20, 7usize),
+        (3000, 7),
+        (3000, 1534),
+        (3000, 1535),
+        (3000, 2998),
+    ] {
+        let mut sim = build(&lj_chain(points, 1.0, 2), Options::default()).unwrap();
+        let mut u = vec![[0.0; 3]; points];
+        for u in u[at..].iter_mut().step_by(2) {
+            u[0] = 1.5;
         }
-    );
+        sim.set_displacements(&u);
+        sim.start(true);
+        assert_eq!(
+            sim.ledger().unwrap_err(),
+            RunError::Crossing {
+                step: 0,
+                i: at as u64 + 1,
+                j: at as u64 + 2
+            }
+        );
+    }
 }
 
 fn eam_chain(h: f64, points: usize, density_length: f64) -> Spec {

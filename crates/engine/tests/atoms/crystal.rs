@@ -200,6 +200,33 @@ fn energy_is_exchanged_and_does_not_drift() {
     }
 }
 
+/// Energies seen along with forces are those of a look from outside, near the list's own positions and far from them.
+#[test]
+fn watched_energies_are_the_observed_ones() {
+    for (name, potential) in potentials() {
+        for family in [FamilyChoice::Stencil, FamilyChoice::Neighbours] {
+            let spec = atoms(LatticeKind::Fcc, 3, &potential, family, true);
+            let mut sim = build(&spec, Options::default()).unwrap();
+            let u = shaken(sim.as_mut(), 0.06);
+            let fresh = sim.energy_density();
+            sim.watch_next();
+            sim.start(true);
+            let (seen, _) = sim.watched().unwrap();
+            assert_eq!(seen, sim.energy_density(), "{name}, {family:?}");
+            let scale = seen.iter().fold(0.0f64, |m, e| m.max(e.abs()));
+            for (x, y) in seen.iter().zip(&fresh) {
+                assert!((x - y).abs() < 1e-12 * scale, "{name}, {family:?}");
+            }
+            // far away and back: what was looked at leaves no trace
+            let far: Vec<_> = u.iter().map(|u| [u[0] + 0.4, -3.0 * u[1], u[2]]).collect();
+            sim.set_displacements(&far);
+            assert_ne!(sim.energy_density(), seen, "{name}, {family:?}");
+            sim.set_displacements(&u);
+            assert_eq!(sim.energy_density(), seen, "{name}, {family:?}");
+        }
+    }
+}
+
 #[test]
 fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
     for (name, potential) in potentials() {

@@ -1,8 +1,8 @@
 //! A potential between atoms that are near now: molecular dynamics.
 
-use super::{bad_density, embed, faults};
-use crate::body::{Body, Field};
-use crate::execute::blocks::{Shared, for_each_block};
+use super::{Faults, bad_density, embed, find_fault};
+use crate::body::{Body, Field, Values};
+use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::NearList;
@@ -15,14 +15,13 @@ use crate::law::potential::Potential;
 const SKIN: f64 = 0.12;
 
 /// A potential on current neighbours.
-#[derive(Clone)]
 pub struct CurrentAtoms<const D: usize, P> {
     simd: Simd,
     potential: P,
     cutoff: f64,
     list: NearList<D>,
-    faults: Vec<Option<Fault>>,
-    sums: Vec<[f64; 7]>,
+    faults: Faults,
+    sums: PerBlock<[f64; 7]>,
     /// Neighbours of every slot in the reference.
     family: Vec<u16>,
     /// F″ per slot, of the last tangent.
@@ -32,8 +31,7 @@ pub struct CurrentAtoms<const D: usize, P> {
 impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     pub fn new(body: &Body<D>, potential: P, simd: Simd) -> Self {
         let cutoff = potential.cutoff();
-        let mut list = NearList::new(body, cutoff, SKIN * cutoff);
-        list.update(body, &body.at_rest(), simd);
+        let list = list_at(body, cutoff, &body.at_rest(), simd);
         let mut family = vec![0; body.len];
         let blocks = list.blocks();
         let at = list.positions();
@@ -53,8 +51,8 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             potential,
             cutoff,
             list,
-            faults: vec![None; blocks],
-            sums: vec![[0.0; 7]; blocks],
+            faults: PerBlock::new(blocks, None),
+            sums: PerBlock::sums(blocks),
             family,
             curvature: vec![],
         }
@@ -66,52 +64,61 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         if !P::EMBEDDED {
             return Tally::default();
         }
-        let slope = Shared(self.list.positions_mut().as_mut_ptr().cast::<f64>());
-        let mut found = std::mem::take(&mut self.faults);
+        let position = self.list.positions_mut().as_mut_ptr();
         let kernel = Density {
-            view: self.view(),
-            slope,
+            view: self.view(&self.list, position),
+            slope: Shared(position.cast()),
         };
-        for_each_block(self.simd, &kernel, &mut found);
-        self.faults = found;
+        let tally = find_fault(&self.faults, self.simd, &kernel);
         self.list.copy_to_ghosts();
-        faults(&self.faults)
+        tally
     }
 
-    fn view(&self) -> View<'_, D, P> {
+    /// `position` points to those of all that `list` knows.
+    fn view<'a>(&'a self, list: &'a NearList<D>, position: *const [f64; 4]) -> View<'a, D, P> {
         View {
-            list: &self.list,
-            position: self.list.positions().as_ptr().cast(),
+            list,
+            position: position.cast(),
             potential: &self.potential,
             limit: self.cutoff * self.cutoff,
         }
     }
 
-    /// Energy and virial of the blocks, and energies per slot where asked for.
-    fn sums(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
+    /// Energy, the virial where asked for (of [ready](Self::ready) positions), and energies per slot where asked for.
+    fn sums<const VIRIAL: bool>(
+        &self,
+        list: &NearList<D>,
+        position: &[[f64; 4]],
         out: Shared,
-        volume: &crate::body::Values,
+        volume: &Values,
     ) -> [f64; 7] {
-        self.ready(body, u);
-        let mut sums = std::mem::take(&mut self.sums);
-        let kernel = Energies {
-            view: self.view(),
+        let kernel = Energies::<D, P, VIRIAL> {
+            view: self.view(list, position.as_ptr()),
             out,
             volume,
         };
-        for_each_block(self.simd, &kernel, &mut sums);
-        let mut total = [0.0; 7];
-        for s in &sums {
-            for (t, s) in total.iter_mut().zip(s) {
-                *t += s;
-            }
-        }
-        self.sums = sums;
-        total
+        self.sums.sum(self.simd, &kernel)
     }
+
+    /// Energies of all points, of the list as it is.
+    fn see(
+        &self,
+        body: &Body<D>,
+        list: &NearList<D>,
+        position: &[[f64; 4]],
+        out: &mut PointEnergies,
+    ) {
+        out.zeros(body.len);
+        let strain = Shared(out.strain.as_mut_ptr());
+        self.sums::<false>(list, position, strain, &body.volume);
+    }
+}
+
+/// A list for the displacements `u`.
+fn list_at<const D: usize>(body: &Body<D>, cutoff: f64, u: &Field<D>, simd: Simd) -> NearList<D> {
+    let mut list = NearList::new(body, cutoff, SKIN * cutoff);
+    list.update(body, u, simd);
+    list
 }
 
 struct View<'a, const D: usize, P> {
@@ -215,7 +222,7 @@ impl<const D: usize, P: Potential> Kernel for Density<'_, D, P> {
 struct Forces<'a, const D: usize, P> {
     view: View<'a, D, P>,
     f: [Shared; D],
-    volume: &'a crate::body::Values,
+    volume: &'a Values,
 }
 
 impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
@@ -245,15 +252,15 @@ impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
     }
 }
 
-struct Energies<'a, const D: usize, P> {
+struct Energies<'a, const D: usize, P, const VIRIAL: bool> {
     view: View<'a, D, P>,
     /// Energy density per slot, if asked for.
     out: Shared,
-    volume: &'a crate::body::Values,
+    volume: &'a Values,
 }
 
-impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
-    /// Energy and virial.
+impl<const D: usize, P: Potential, const VIRIAL: bool> Kernel for Energies<'_, D, P, VIRIAL> {
+    /// Energy and, where asked for, virial.
     type Out = [f64; 7];
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
@@ -267,6 +274,9 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
                 let (y, q, other) = view.vector(line, &i);
                 let pair = view.potential.pair(Dual::variable(q)).value;
                 energy = energy + pair.zero_if(q.ge(L::splat(view.limit)));
+                if !VIRIAL {
+                    continue;
+                }
                 let pull = view.pull(q, i[3] + other);
                 for (v, (m, n)) in virial.iter_mut().zip(crate::interaction::VIRIAL) {
                     if n < D {
@@ -309,30 +319,33 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         _: Sweep<D>,
         seen: Option<&mut PointEnergies>,
     ) -> Tally {
-        if let Some(seen) = seen {
-            seen.zeros(body.len);
-            let out = Shared(seen.strain.as_mut_ptr());
-            self.sums(body, u, out, &body.volume);
-        }
         let tally = self.ready(body, u);
+        if let Some(seen) = seen {
+            self.see(body, &self.list, self.list.positions(), seen);
+        }
         let kernel = Forces {
-            view: self.view(),
+            view: self.view(&self.list, self.list.positions().as_ptr()),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             volume: &body.volume,
         };
-        for_each_block(self.simd, &kernel, &mut vec![(); self.list.blocks()]);
+        run_blocks(self.simd, &kernel, self.list.blocks());
         tally
     }
 
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
-        [self.sums(body, u, Shared::NULL, &body.volume)[0], 0.0]
+        self.list.update(body, u, self.simd);
+        let list = &self.list;
+        let sums = self.sums::<false>(list, list.positions(), Shared::NULL, &body.volume);
+        [sums[0], 0.0]
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
-        out.zeros(body.len);
-        let strain = Shared(out.strain.as_mut_ptr());
-        // the list may have to be made anew, for a state that is only looked at
-        self.clone().sums(body, u, strain, &body.volume);
+        if let Some(position) = self.list.positions_at(u, self.simd) {
+            self.see(body, &self.list, &position, out);
+        } else {
+            let list = list_at(body, self.cutoff, u, self.simd);
+            self.see(body, &list, list.positions(), out);
+        }
     }
 
     fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
@@ -397,7 +410,9 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        let sums = self.sums(body, u, Shared::NULL, &body.volume);
+        self.ready(body, u);
+        let list = &self.list;
+        let sums = self.sums::<true>(list, list.positions(), Shared::NULL, &body.volume);
         Some(std::array::from_fn(|n| sums[n + 1]))
     }
 

@@ -1,21 +1,18 @@
 //! A potential on a lattice whose neighbours stay neighbours: chains of seleson2009 (5.1), upscaled models of
 //! seleson2014 (3.4). Distances are the current ones.
 
-use super::{bad_density, embed, faults};
+use super::{Faults, bad_density, embed, find_fault};
 use crate::body::{Body, Column, FAR, Field, Layout, field};
-use crate::execute::blocks::{Shared, for_each_block};
+use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
-use crate::family::links::Links;
+use crate::family::links::{Link, Links, Tile, Tiles};
 use crate::interaction::tangent::curvature;
 use crate::interaction::{
     BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally, add_virial,
 };
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
-
-/// Tiles per block of work.
-const BLOCK: usize = 64;
 
 /// A potential on a stencil.
 pub struct FixedAtoms<const D: usize, P> {
@@ -29,13 +26,14 @@ pub struct FixedAtoms<const D: usize, P> {
     /// F″ per slot, of the last tangent.
     curvature: Vec<f64>,
     volume: f64,
-    faults: Vec<Option<Fault>>,
-    sums: Vec<f64>,
+    /// The link of a chain to its next neighbour.
+    next: Option<usize>,
+    faults: Faults,
+    sums: PerBlock<[f64; 1]>,
 }
 
 impl<const D: usize, P: Potential> FixedAtoms<D, P> {
     pub fn new(body: &Body<D>, links: Links<D>, potential: P, simd: Simd) -> Self {
-        let blocks = links.tiles.len().div_ceil(BLOCK);
         FixedAtoms {
             simd,
             // displacements of absent sites are farther than this
@@ -48,116 +46,69 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
             curvature: vec![],
             volume: body.volume.uniform().unwrap_or(1.0),
             potential,
+            next: next_of_chain(&links),
+            faults: PerBlock::new(links.blocks(), None),
+            sums: PerBlock::sums(links.blocks()),
             links,
-            faults: vec![None; blocks],
-            sums: vec![0.0; blocks],
         }
     }
 
     fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, P> {
         View {
-            links: &self.links,
+            tiles: Tiles::new(&self.links, body, u),
             potential: &self.potential,
             limit: self.limit * self.limit,
-            body,
-            u,
         }
     }
 
-    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared, sums: &mut [f64]) {
+    /// Energy, and energy densities per slot where asked for.
+    fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared) -> f64 {
         let kernel = Energies {
             view: self.view(body, u),
             out,
             inverse: 1.0 / self.volume,
         };
-        for_each_block(self.simd, &kernel, sums);
+        let [sum] = self.sums.sum(self.simd, &kernel);
+        sum
     }
 
     /// F′ everywhere, images included, or why not.
     fn embed(&mut self, body: &Body<D>, u: &Field<D>) -> Tally {
-        let (mut found, mut slope) = (
-            std::mem::take(&mut self.faults),
-            std::mem::take(&mut self.slope),
-        );
+        let slope = Shared(self.slope.as_mut_ptr());
         let kernel = Density {
             view: self.view(body, u),
-            slope: Shared(slope.as_mut_ptr()),
+            slope,
         };
-        for_each_block(self.simd, &kernel, &mut found);
-        let tally = faults(&found);
-        (self.faults, self.slope) = (found, slope);
+        let tally = find_fault(&self.faults, self.simd, &kernel);
         body.fill_images(&mut self.slope);
         tally
     }
+}
 
-    /// Neighbours of a chain that went through each other.
-    fn crossed(&self, body: &Body<D>, u: &Field<D>) -> Option<Fault> {
-        let Layout::Grid(grid) = &body.layout else {
-            return None;
-        };
-        if D != 1 {
-            return None;
-        }
-        let step = self.links.links[0].iter().filter(|l| l.xi[0] > 0.0);
-        let next = step.min_by(|a, b| a.xi[0].total_cmp(&b.xi[0]))?;
-        body.slots.iter().find_map(|&s| {
-            let i = s as usize;
-            let j = next.partner(grid, i)?;
-            let crossed = next.xi[0] + (u[0][j] - u[0][i]) <= 0.0;
-            crossed.then_some(Fault::Crossing { i, j })
-        })
-    }
+/// The shortest link forward, in one dimension.
+fn next_of_chain<const D: usize>(links: &Links<D>) -> Option<usize> {
+    let links = links.links.first().filter(|_| D == 1)?;
+    let forward = links.iter().enumerate().filter(|(_, l)| l.xi[0] > 0.0);
+    let next = forward.min_by(|a, b| a.1.xi[0].total_cmp(&b.1.xi[0]))?;
+    Some(next.0)
 }
 
 struct View<'a, const D: usize, P> {
-    links: &'a Links<D>,
+    tiles: Tiles<'a, D>,
     potential: &'a P,
     /// Squared length.
     limit: f64,
-    body: &'a Body<D>,
-    u: &'a Field<D>,
 }
 
 impl<const D: usize, P: Potential> View<'_, D, P> {
-    fn block(&self, block: usize) -> std::ops::Range<usize> {
-        block * BLOCK..((block + 1) * BLOCK).min(self.links.tiles.len())
-    }
-
-    /// First slot, sublattice and bits of the points of tile `n`.
+    /// Current vector to the partners along a bond, and its square; `i` are the tile's own displacements.
     #[inline(always)]
-    fn tile(&self, n: usize) -> (usize, usize, u8) {
-        let Layout::Grid(grid) = &self.body.layout else {
-            unreachable!("stencils live on grids")
-        };
-        let t = self.links.tiles[n] as usize;
-        (grid.tile_slot(t), grid.tile_sublattice(t), grid.owned[t])
-    }
-
-    #[inline(always)]
-    fn here<L: Lane>(&self, first: usize) -> [L; D] {
-        let mut i = [L::splat(0.0); D];
-        for a in 0..D {
-            // SAFETY: tiles lie inside the arrays
-            i[a] = unsafe { L::load(self.u[a].as_ptr().add(first)) };
-        }
-        i
-    }
-
-    /// Current vector to the partners at an offset, and its square.
-    #[inline(always)]
-    fn vector<L: Lane>(
-        &self,
-        first: usize,
-        shift: isize,
-        xi: &[f64; D],
-        i: &[L; D],
-    ) -> ([L; D], L) {
+    fn vector<L: Lane>(&self, tile: &Tile<D>, link: &Link<D>, i: &[L; D]) -> ([L; D], L) {
+        let j = self.tiles.partners::<L>(tile, link);
         let mut y = *i;
         let mut q = L::splat(0.0);
         for a in 0..D {
-            // SAFETY: offsets stay inside the arrays
-            let j = unsafe { L::load(self.u[a].as_ptr().add(first).offset(shift)) };
-            y[a] = L::splat(xi[a]) + (j - i[a]);
+            y[a] = L::splat(link.xi[a]) + (j[a] - i[a]);
             q = y[a].fma(y[a], q);
         }
         (y, q)
@@ -165,9 +116,9 @@ impl<const D: usize, P: Potential> View<'_, D, P> {
 
     /// Lanes whose partners at bond `k` are beyond the cut-off or not there.
     #[inline(always)]
-    fn out<L: Lane>(&self, q: L, bits: Option<&[u8]>, k: usize) -> L::Mask {
+    fn out<L: Lane>(&self, q: L, tile: &Tile<D>, k: usize) -> L::Mask {
         let far = q.ge(L::splat(self.limit));
-        match bits {
+        match tile.bits {
             None => far,
             Some(bits) => L::or(far, L::dead(bits[k])),
         }
@@ -175,15 +126,28 @@ impl<const D: usize, P: Potential> View<'_, D, P> {
 
     /// Σ f of a tile.
     #[inline(always)]
-    fn density<L: Lane>(&self, n: usize, first: usize, sub: usize, i: &[L; D]) -> L {
+    fn density<L: Lane>(&self, tile: &Tile<D>, i: &[L; D]) -> L {
         let mut density = L::splat(0.0);
-        let bits = self.links.bits(n, sub);
-        for (k, link) in self.links.links[sub].iter().enumerate() {
-            let (_, q) = self.vector(first, link.shift, &link.xi, i);
+        for (k, link) in tile.links.iter().enumerate() {
+            let (_, q) = self.vector(tile, link, i);
             let f = self.potential.density(Dual::variable(q)).value;
-            density = density + f.zero_if(self.out(q, bits, k));
+            density = density + f.zero_if(self.out(q, tile, k));
         }
         density
+    }
+
+    /// The first of a tile's points that went through its partner at bond `k` of a chain.
+    #[inline(always)]
+    fn crossed<L: Lane>(&self, tile: &Tile<D>, k: usize, i: &[L; D]) -> Option<Fault> {
+        let (y, _) = self.vector(tile, &tile.links[k], i);
+        let there = tile.bits.map_or(tile.owned, |bits| bits[k]);
+        let crossed = L::bits(L::splat(0.0).ge(y[0])) as u8 & there;
+        if crossed == 0 {
+            return None;
+        }
+        let i = tile.first + crossed.trailing_zeros() as usize;
+        let j = i.wrapping_add_signed(tile.links[k].shift);
+        Some(Fault::Crossing { i, j })
     }
 }
 
@@ -198,17 +162,21 @@ impl<const D: usize, P: Potential> Kernel for Density<'_, D, P> {
     fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
         let view = &self.view;
         let mut fault = None;
-        for n in view.block(block) {
-            let (first, sub, owned) = view.tile(n);
-            let density = view.density::<L>(n, first, sub, &view.here(first));
+        for tile in view.tiles.block(block) {
+            let density = view.density::<L>(&tile, &view.tiles.own(&tile));
             let [_, slope] = embed(view.potential, density);
             // SAFETY: tiles are disjoint
-            unsafe { slope.zero_if(L::dead(owned)).store(self.slope.at(first)) };
+            unsafe {
+                slope
+                    .zero_if(L::dead(tile.owned))
+                    .store(self.slope.at(tile.first))
+            };
             if fault.is_none()
-                && let Some((l, density)) = bad_density(view.potential, density.to_array(), owned)
+                && let Some((l, density)) =
+                    bad_density(view.potential, density.to_array(), tile.owned)
             {
                 fault = Some(Fault::Density {
-                    slot: first + l,
+                    slot: tile.first + l,
                     density,
                 });
             }
@@ -223,45 +191,53 @@ struct Forces<'a, const D: usize, P> {
     f: [Shared; D],
     /// 2 / volume
     scale: f64,
+    /// The bond of a chain that must not turn over.
+    next: Option<usize>,
 }
 
 impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
-    type Out = ();
+    type Out = Option<Fault>;
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) {
+    fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
         let view = &self.view;
-        for n in view.block(block) {
-            let (first, sub, owned) = view.tile(n);
-            let i = view.here::<L>(first);
+        let mut fault = None;
+        for tile in view.tiles.block(block) {
+            let i = view.tiles.own::<L>(&tile);
             let mut own = L::splat(0.0);
             if P::EMBEDDED {
                 // SAFETY: as the displacements
-                own = unsafe { L::load(self.slope.as_ptr().add(first)) };
+                own = unsafe { L::load(self.slope.as_ptr().add(tile.first)) };
             }
             let mut force = [L::splat(0.0); D];
-            let bits = view.links.bits(n, sub);
-            for (k, link) in view.links.links[sub].iter().enumerate() {
-                let (y, q) = view.vector(first, link.shift, &link.xi, &i);
+            for (k, link) in tile.links.iter().enumerate() {
+                let (y, q) = view.vector(&tile, link, &i);
                 let mut pull = view.potential.pair(Dual::variable(q)).slope;
                 if P::EMBEDDED {
                     // SAFETY: as the displacements
                     let other =
-                        unsafe { L::load(self.slope.as_ptr().add(first).offset(link.shift)) };
+                        unsafe { L::load(self.slope.as_ptr().add(tile.first).offset(link.shift)) };
                     let f = view.potential.density(Dual::variable(q)).slope;
                     pull = f.fma(own + other, pull);
                 }
-                let pull = pull.zero_if(view.out(q, bits, k));
+                let pull = pull.zero_if(view.out(q, &tile, k));
                 for a in 0..D {
                     force[a] = pull.fma(y[a], force[a]);
                 }
             }
-            let dead = L::dead(owned);
+            let dead = L::dead(tile.owned);
             for a in 0..D {
                 let f = force[a] * L::splat(self.scale);
                 // SAFETY: tiles are disjoint
-                unsafe { f.zero_if(dead).store(self.f[a].at(first)) };
+                unsafe { f.zero_if(dead).store(self.f[a].at(tile.first)) };
+            }
+            if D == 1
+                && fault.is_none()
+                && let Some(k) = self.next
+            {
+                fault = view.crossed(&tile, k, &i);
             }
         }
+        fault
     }
 }
 
@@ -274,35 +250,32 @@ struct Energies<'a, const D: usize, P> {
 }
 
 impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
-    type Out = f64;
+    type Out = [f64; 1];
     #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> f64 {
+    fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
         let view = &self.view;
         let mut sum = 0.0;
-        for n in view.block(block) {
-            let (first, sub, owned) = view.tile(n);
-            let i = view.here::<L>(first);
+        for tile in view.tiles.block(block) {
+            let i = view.tiles.own::<L>(&tile);
             let mut energy = L::splat(0.0);
-            let bits = view.links.bits(n, sub);
-            for (k, link) in view.links.links[sub].iter().enumerate() {
-                let (_, q) = view.vector(first, link.shift, &link.xi, &i);
+            for (k, link) in tile.links.iter().enumerate() {
+                let (_, q) = view.vector(&tile, link, &i);
                 let pair = view.potential.pair(Dual::variable(q)).value;
-                energy = energy + pair.zero_if(view.out(q, bits, k));
+                energy = energy + pair.zero_if(view.out(q, &tile, k));
             }
             energy = energy * L::splat(0.5);
             if P::EMBEDDED {
-                let density = view.density::<L>(n, first, sub, &i);
-                let [f, _] = embed(view.potential, density);
+                let [f, _] = embed(view.potential, view.density(&tile, &i));
                 energy = energy + f;
             }
-            let energy = energy.zero_if(L::dead(owned));
+            let energy = energy.zero_if(L::dead(tile.owned));
             if !self.out.0.is_null() {
                 // SAFETY: tiles are disjoint
-                unsafe { (energy * L::splat(self.inverse)).store(self.out.at(first)) };
+                unsafe { (energy * L::splat(self.inverse)).store(self.out.at(tile.first)) };
             }
             sum += energy.to_array().iter().sum::<f64>();
         }
-        sum
+        [sum]
     }
 }
 
@@ -322,36 +295,30 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         if let Some(seen) = seen {
             self.observe(body, u, seen);
         }
-        let mut tally = Tally {
-            fault: self.crossed(body, u),
-            ..Tally::default()
-        };
+        let mut tally = Tally::default();
         if P::EMBEDDED {
-            tally += self.embed(body, u);
+            tally = self.embed(body, u);
         }
         let kernel = Forces {
             view: self.view(body, u),
             slope: &self.slope,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             scale: 2.0 / self.volume,
+            next: self.next,
         };
-        let blocks = self.sums.len();
-        for_each_block(self.simd, &kernel, &mut vec![(); blocks]);
-        tally
+        // a density without meaning comes of neighbours that crossed
+        let mut first = find_fault(&self.faults, self.simd, &kernel);
+        first += tally;
+        first
     }
 
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
-        let mut sums = std::mem::take(&mut self.sums);
-        self.energies(body, u, Shared::NULL, &mut sums);
-        let total = sums.iter().sum();
-        self.sums = sums;
-        [total, 0.0]
+        [self.energies(body, u, Shared::NULL), 0.0]
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
-        let strain = Shared(out.strain.as_mut_ptr());
-        self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
+        self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
 
     fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
@@ -360,9 +327,13 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         }
         let slope = |s: usize| self.slope.get(s).copied().unwrap_or(0.0);
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
-        self.links.each_directed(body, &mut |i, j, k, sub| {
+        let Layout::Grid(grid) = &body.layout else {
+            return;
+        };
+        let original = body.originals();
+        self.links.each_directed(grid, |i, j, sub, k| {
             let xi = self.links.links[sub][k].xi;
-            let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j.slot] - u[a][i]));
+            let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
             let q: f64 = y.iter().map(|c| c * c).sum();
             if q >= self.limit * self.limit {
                 return;
@@ -372,9 +343,9 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
             }
             visit(BondTangent::of_potential(
                 &self.potential,
-                [i, j.original],
+                [i, original(j)],
                 y,
-                slope(i) + slope(j.slot),
+                slope(i) + slope(j),
                 2.0 / self.volume,
             ));
         });
@@ -401,26 +372,20 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
             return None;
         };
         let mut sum = [0.0; 6];
-        for &s in &body.slots {
-            let i = s as usize;
-            let (_, sub) = grid.cell(i);
-            for link in &self.links.links[sub] {
-                let Some(j) = link.partner(grid, i) else {
-                    continue;
-                };
-                let y: [f64; D] = std::array::from_fn(|a| link.xi[a] + (u[a][j] - u[a][i]));
-                let q: f64 = y.iter().map(|c| c * c).sum();
-                if q >= self.limit * self.limit {
-                    continue;
-                }
-                let mut pull = self.potential.pair(Dual::variable(q)).slope;
-                if P::EMBEDDED {
-                    let f = self.potential.density(Dual::variable(q)).slope;
-                    pull += f * (self.slope[i] + self.slope[j]);
-                }
-                add_virial(&mut sum, &y, &y, -pull);
+        self.links.each_directed(grid, |i, j, sub, k| {
+            let xi = &self.links.links[sub][k].xi;
+            let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
+            let q: f64 = y.iter().map(|c| c * c).sum();
+            if q >= self.limit * self.limit {
+                return;
             }
-        }
+            let mut pull = self.potential.pair(Dual::variable(q)).slope;
+            if P::EMBEDDED {
+                let f = self.potential.density(Dual::variable(q)).slope;
+                pull += f * (self.slope[i] + self.slope[j]);
+            }
+            add_virial(&mut sum, &y, &y, -pull);
+        });
         Some(sum)
     }
 

@@ -7,7 +7,9 @@ pub mod current;
 pub mod fixed;
 
 use super::{Fault, Tally};
+use crate::execute::blocks::PerBlock;
 use crate::execute::lane::{Lane, TILE};
+use crate::execute::simd::{Kernel, Simd};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 
@@ -29,10 +31,13 @@ fn bad_density<P: Potential>(
     (0..TILE).find(bad).map(|l| (l, density[l]))
 }
 
-/// A tally of nothing but faults: the first in order.
-fn faults(found: &[Option<Fault>]) -> Tally {
+/// Room for what a kernel that looks for faults finds.
+type Faults = PerBlock<Option<Fault>>;
+
+/// Run such a kernel: a tally of nothing but the first fault in the order of blocks.
+fn find_fault<K: Kernel<Out = Option<Fault>>>(faults: &Faults, simd: Simd, kernel: &K) -> Tally {
     Tally {
-        fault: found.iter().find_map(|f| *f),
+        fault: faults.fold(simd, kernel, |first, found| *first = first.or(found)),
         ..Tally::default()
     }
 }

@@ -3,6 +3,7 @@
 use super::StencilInteraction;
 use super::kernel::{ALIKE, BLOCK, Bond, MOST, Partner, WHOLE};
 use crate::body::{Body, Column, Grid, field};
+use crate::execute::blocks::PerBlock;
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
@@ -146,9 +147,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             most_contact,
             volume,
             guard: grid.guard,
-            tallies: vec![Tally::default(); blocks],
-            unit: vec![(); blocks],
-            sums: vec![[0.0; 2]; blocks],
+            tallies: PerBlock::new(blocks, Tally::default()),
+            sums: PerBlock::sums(blocks),
         };
         made.look(grid);
         made

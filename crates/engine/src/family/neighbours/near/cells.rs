@@ -1,0 +1,171 @@
+//! Small cells over the box and its margin, or over the extent of free atoms.
+
+use crate::execute::blocks::for_each_piece;
+
+/// Cells per reach and axis.
+const PER: usize = 2;
+
+/// The least box that holds some atoms.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent<const D: usize> {
+    pub low: [f64; D],
+    pub high: [f64; D],
+    /// All coordinates are numbers.
+    pub finite: bool,
+}
+
+impl<const D: usize> Extent<D> {
+    /// Of no atoms.
+    pub const EMPTY: Self = Extent {
+        low: [f64::INFINITY; D],
+        high: [f64::NEG_INFINITY; D],
+        finite: true,
+    };
+
+    /// With one more atom.
+    #[inline(always)]
+    pub fn with(mut self, y: &[f64; 4]) -> Self {
+        for a in 0..D {
+            self.low[a] = self.low[a].min(y[a]);
+            self.high[a] = self.high[a].max(y[a]);
+            self.finite &= y[a].is_finite();
+        }
+        self
+    }
+
+    /// And what another holds.
+    pub fn add(&mut self, o: Self) {
+        for a in 0..D {
+            self.low[a] = self.low[a].min(o.low[a]);
+            self.high[a] = self.high[a].max(o.high[a]);
+        }
+        self.finite &= o.finite;
+    }
+}
+
+pub(super) struct Cells<const D: usize> {
+    low: [f64; D],
+    inverse: [f64; D],
+    count: [usize; D],
+}
+
+/// Items in order of cells, those of a cell in order of their numbers.
+pub(super) struct Sorted {
+    /// `[cells + 1]`: the first of every cell.
+    pub start: Vec<u32>,
+    pub item: Vec<u32>,
+}
+
+impl<const D: usize> Cells<D> {
+    /// For so many atoms within `extent`.
+    pub fn new(atoms: usize, extent: &Extent<D>, reach: f64, period: &[Option<f64>; D]) -> Self {
+        let mut cells = Cells {
+            low: [0.0; D],
+            inverse: [1.0; D],
+            count: [1; D],
+        };
+        // at most four cells per atom: atoms that flew away must not cost memory
+        let most = ((4 * atoms + 1000) as f64).powf(1.0 / D as f64);
+        for a in 0..D {
+            let (mut low, mut high) = match period[a] {
+                Some(p) => (-reach, p + reach),
+                None => (extent.low[a], extent.high[a]),
+            };
+            if !(low.is_finite() && high.is_finite()) {
+                (low, high) = (0.0, reach);
+            }
+            let length = (high - low).max(reach);
+            let count = (length / reach * PER as f64)
+                .floor()
+                .clamp(1.0, most.max(1.0));
+            cells.low[a] = low;
+            cells.inverse[a] = count / length;
+            cells.count[a] = count as usize;
+        }
+        cells
+    }
+
+    #[inline(always)]
+    fn along(&self, y: &[f64; 4], a: usize) -> usize {
+        let c = ((y[a] - self.low[a]) * self.inverse[a]).floor();
+        c.clamp(0.0, self.count[a] as f64 - 1.0) as usize
+    }
+
+    fn of(&self, y: &[f64; 4]) -> usize {
+        (0..D)
+            .rev()
+            .fold(0, |c, a| c * self.count[a] + self.along(y, a))
+    }
+
+    /// Sort items of which is known where they are.
+    pub fn sort(&self, items: usize, at: impl Fn(usize) -> [f64; 4] + Sync) -> Sorted {
+        let mut cell = vec![0u32; items];
+        for_each_piece(&mut cell, |first, piece| {
+            for (n, cell) in piece.iter_mut().enumerate() {
+                *cell = self.of(&at(first + n)) as u32;
+            }
+        });
+        // where the next item of every cell goes, one cell late: in the end, where every cell begins
+        let mut start = vec![0u32; self.count.iter().product::<usize>() + 2];
+        for &c in &cell {
+            start[c as usize + 2] += 1;
+        }
+        for c in 2..start.len() {
+            start[c] += start[c - 1];
+        }
+        let mut item = vec![0u32; items];
+        for (n, &c) in cell.iter().enumerate() {
+            let next = &mut start[c as usize + 1];
+            item[*next as usize] = n as u32;
+            *next += 1;
+        }
+        start.pop();
+        Sorted { start, item }
+    }
+
+    /// The lowest and highest cells that are within reach of `y`.
+    #[inline(always)]
+    pub fn around(&self, y: &[f64; 4]) -> ([usize; D], [usize; D]) {
+        let (mut low, mut high) = ([0; D], [0; D]);
+        for a in 0..D {
+            let c = self.along(y, a);
+            (low[a], high[a]) = (c.saturating_sub(PER), (c + PER).min(self.count[a] - 1));
+        }
+        (low, high)
+    }
+
+    /// Rows of cells along x in a box of cells.
+    #[inline(always)]
+    pub fn rows(low: &[usize; D], high: &[usize; D]) -> usize {
+        let mut rows = 1;
+        for a in 1..D {
+            rows *= high[a] - low[a] + 1;
+        }
+        rows
+    }
+
+    /// Items of row `n` of a box of cells.
+    #[inline(always)]
+    pub fn run(
+        &self,
+        n: usize,
+        low: &[usize; D],
+        high: &[usize; D],
+        start: &[u32],
+    ) -> (usize, usize) {
+        let (mut rest, mut row) = (n, 0);
+        let mut at = [0; D];
+        for a in 1..D {
+            let width = high[a] - low[a] + 1;
+            at[a] = low[a] + rest % width;
+            rest /= width;
+        }
+        for a in (1..D).rev() {
+            row = (row + at[a]) * self.count[a - 1];
+        }
+        (
+            start[row + low[0]] as usize,
+            start[row + high[0] + 1] as usize,
+        )
+    }
+}

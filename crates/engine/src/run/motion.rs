@@ -1,0 +1,190 @@
+//! Motion: forces of everything that acts, steps, and the way back from a step that failed.
+
+use super::Simulation;
+use super::accounts::ledger_base;
+use super::model::Model;
+use super::recipe::Laws;
+use crate::condition::driven::Driven;
+use crate::condition::indenter::Indenter;
+use crate::error::RunError;
+use crate::interaction::Sweep;
+
+impl<const D: usize> Model<D> {
+    /// All forces at the current displacements, no bond breaking.
+    pub(super) fn forces_held(&mut self) {
+        self.refresh_images();
+        let (body, u) = (&self.body, &self.u);
+        self.interaction
+            .forces(body, u, &mut self.f, Sweep::Hold, None);
+        self.other_forces(0.0);
+    }
+
+    /// All forces at the current displacements; `dt` is 0 at the start of a run.
+    pub(super) fn forces(&mut self, bonds: bool, dt: f64) {
+        self.refresh_images();
+        let mut watched = self.watched.take();
+        watched = std::mem::take(&mut self.watch).then(|| watched.unwrap_or_default());
+        self.virial = std::mem::take(&mut self.watch_virial).then(|| match bonds {
+            true => self.virial_of_bonds(),
+            false => [0.0; 6],
+        });
+        if bonds {
+            let tally = self.interaction.forces(
+                &self.body,
+                &self.u,
+                &mut self.f,
+                Sweep::Evolve {
+                    v: &self.v,
+                    dt: self.dt,
+                },
+                watched.as_mut(),
+            );
+            self.fault = tally.fault;
+            self.broken += tally.broken;
+            self.released += tally.released;
+        } else {
+            self.f.iter_mut().for_each(|c| c.fill(0.0));
+            if let Some(w) = &mut watched {
+                w.zeros(self.body.len);
+            }
+        }
+        self.watched = watched;
+        self.other_forces(dt);
+        if let Some(mut virial) = self.virial {
+            self.add_virial_of_contact(&mut virial);
+            self.virial = Some(virial);
+        }
+    }
+
+    /// Forces of contact, indenters and loads, on top of those of bonds.
+    fn other_forces(&mut self, dt: f64) {
+        let t = self.time();
+        if let Some(contact) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            contact.add_forces(body, &self.u, &mut self.f, &|i, j| {
+                interaction.in_family(body, i, j)
+            });
+            if let Some(watched) = &mut self.watched {
+                contact.add_energy_density(body, &self.u, &mut watched.repulsion);
+            }
+        }
+        for indenter in &mut self.indenters {
+            indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
+        }
+        for load in &mut self.loads {
+            load.add(&self.body, &self.v, &mut self.f, t, dt);
+        }
+        for d in &mut self.driven {
+            d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);
+        }
+    }
+
+    /// Points may be anywhere now: whoever keeps track of what is near forgets it.
+    pub(super) fn look_again(&mut self) {
+        if let Some(contact) = &mut self.contact {
+            contact.look_again();
+        }
+        self.indenters.iter_mut().for_each(Indenter::look_again);
+        for d in &mut self.driven {
+            if let Driven::Indenter(i) = d {
+                i.look_again();
+            }
+        }
+    }
+
+    /// Bring velocities to the whole step.
+    pub(super) fn finish(&mut self) {
+        if self.pending {
+            self.verlet.kick(&self.body, &mut self.v, &self.f, self.dt);
+            let (t, dt) = (self.time(), self.dt);
+            for c in &self.constraints {
+                c.settle(&mut self.v, t, dt);
+            }
+            self.still.settle(&mut self.v);
+            self.pending = false;
+        }
+    }
+
+    /// First forces and accounts of a run; without bonds: for a body whose bonds are still to be cut.
+    pub(super) fn begin(&mut self, bonds: bool) {
+        self.finish();
+        let (t, dt) = (self.time(), self.dt);
+        for c in &mut self.constraints {
+            c.start(&mut self.u, &mut self.v, t, dt);
+        }
+        self.look_again();
+        self.forces(bonds, 0.0);
+        // energy that came in from outside counts as initial
+        let now = self.energy_now();
+        self.initial_energy = Some(ledger_base(&now));
+    }
+
+    /// One step.
+    pub(super) fn advance(&mut self) -> Result<(), RunError> {
+        let (t, dt) = (self.time(), self.dt);
+        for c in &mut self.constraints {
+            c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
+        }
+        self.still.begin(&mut self.v, &mut self.f, !self.pending);
+        // linear springs may go through each other: they know no distance that is too far for a step
+        let limit = match self.recipe.laws {
+            Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
+            _ => self.body.spacing,
+        };
+        let fastest = self.verlet.advance(
+            &self.body,
+            &mut self.u,
+            &mut self.v,
+            &self.f,
+            dt,
+            self.pending,
+            limit,
+        );
+        if !(fastest < limit * limit) {
+            let error = self.refused(limit);
+            self.verlet
+                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, limit);
+            self.pending = false;
+            self.still.settle(&mut self.v);
+            return Err(error);
+        }
+        self.step += 1;
+        if let Some(contact) = &mut self.contact {
+            contact.moved(fastest.sqrt());
+        }
+        let t = self.time();
+        for c in &self.constraints {
+            c.drift(&mut self.u, t, dt);
+        }
+        for load in &mut self.loads {
+            load.begin(&self.body, &self.v, dt);
+        }
+        for indenter in &mut self.indenters {
+            indenter.begin(&self.body, &self.v, t, dt, fastest.sqrt());
+        }
+        for d in &mut self.driven {
+            d.begin(&self.body, &self.v, t, dt, fastest.sqrt());
+        }
+        self.forces(true, dt);
+        if let Some(fault) = self.fault {
+            let error = self.explained(fault);
+            // back to the step before: where it was, and with the forces that were
+            for &s in &self.body.slots {
+                for a in 0..D {
+                    self.u[a][s as usize] -= self.dt * self.v[a][s as usize];
+                }
+            }
+            self.step -= 1;
+            self.forces(true, 0.0);
+            self.verlet
+                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, 0.0);
+            self.pending = false;
+            return Err(error);
+        }
+        for c in &mut self.constraints {
+            c.end(&self.body, &self.u, &self.f, t, dt);
+        }
+        self.pending = true;
+        Ok(())
+    }
+}
