@@ -45,14 +45,16 @@ impl Bar {
         let mut v = vec![0.0; n];
         let mut force = vec![0.0; n];
         let mut before = vec![0.0; n];
-        let (mut step, mut residual) = (0, f64::INFINITY);
+        let mut step = 0;
         loop {
             s.apply(&u, &mut force);
             force[0] -= load;
             force[n - 1] += load;
-            residual = force.iter().fold(0.0f64, |r, f| r.max(f.abs())) / load;
+            let residual = force.iter().fold(0.0f64, |r, f| r.max(f.abs())) / load;
             if residual <= tolerance || step >= most {
-                break;
+                let middle = 0.5 * (u[0] + u[n - 1]);
+                u.iter_mut().for_each(|x| *x -= middle);
+                return (u, step, residual);
             }
             let damping = if step == 0 {
                 0.0
@@ -85,9 +87,6 @@ impl Bar {
             std::mem::swap(&mut before, &mut force);
             step += 1;
         }
-        let middle = 0.5 * (u[0] + u[n - 1]);
-        u.iter_mut().for_each(|x| *x -= middle);
-        (u, step, residual)
     }
 }
 
