@@ -1,6 +1,6 @@
 //! Fig. 4: a short bar with half-weight ends.
 
-use peridyne_theory::exact::q;
+use peridyne_theory::exact::{Q, q};
 use peridyne_theory::homogenize::bar::Ends;
 
 use super::pulled::{Pulled, caption};
@@ -20,7 +20,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.text("homogenized", homogenized.to_string());
     found.number("uniform", pulled.off(1.0 / 17.0));
     found.text("end", plain.to_string());
-    let s = pulled.bars[0].stiffness();
+    let s = pulled.bars[0].stiffness::<Q>();
     let (there, back) = (s.bond(0, 3), s.bond(3, 0));
     found.holds(
         "reaction",

@@ -87,11 +87,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         found.holds(key, text, off < 0.0125);
     }
     let digits = |f: &Q| f.numer().to_string().len().max(f.denom().to_string().len());
-    let four = [Ends::Half, Ends::Full].map(|ends| Ok(bar(4, 9, ends, false)?.f()));
     let mut longest = 0;
-    for f in four {
-        let f: Q = f?;
-        longest = longest.max(digits(&f));
+    for ends in [Ends::Half, Ends::Full] {
+        longest = longest.max(digits(&bar(4, 9, ends, false)?.f()));
     }
     found.number("digits", longest as f64);
     Ok(found)
