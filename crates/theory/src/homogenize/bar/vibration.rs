@@ -266,8 +266,8 @@ mod tests {
         }
     }
 
-    /// With the true length the homogenized bar is nearer; with Δ = L/N the softness of the other's free end and the
-    /// half spacing that is counted too much cancel, and it looks better at m = 2.
+    /// With the true length the homogenized bar is nearer; with Δ = L/N the softness of the other's fixed end, 1/(2√2) of a
+    /// spacing, cancels most of the half spacing that is counted too much, and it looks better at m = 2.
     #[test]
     fn the_convention_of_length_decides() {
         let n = 200;
