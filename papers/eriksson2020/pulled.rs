@@ -42,7 +42,12 @@ impl Pulled {
             &pulled.x,
             &scale(&classical),
         );
-        let mut errors = Plot::new(&title).x("x", "m").y("(u − u0)/u0", "%");
+        // room for the legend above
+        let most = 150.0 * pulled.errors(0)[0];
+        let mut errors = Plot::new(&title)
+            .x("x", "m")
+            .y("(u − u0)/u0", "%")
+            .y_range(-0.3 * most, most);
         let mut table =
             Table::new()
                 .column("x", "m", pulled.x.clone())

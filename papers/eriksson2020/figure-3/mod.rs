@@ -19,6 +19,9 @@ const HORIZONS: std::ops::RangeInclusive<usize> = 1..=4;
 /// Steps after which a relaxation is looked at, converged or not.
 const STEPS: usize = 200;
 
+/// Below it an error is round-off.
+const FLOOR: f64 = 1e-16;
+
 /// Relative error of an end's displacement (over Δσ/E).
 fn error(u: &[f64]) -> f64 {
     u[u.len() - 1] / (0.5 * (u.len() - 1) as f64) - 1.0
@@ -74,8 +77,16 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         "Homogenized, dynamic relaxation: after {STEPS} steps, and at rest"
     ))
     .x("N", "")
-    .y("relative error of u", "%")
-    .log_x();
+    .y("|relative error of u|", "")
+    .log_x()
+    .log_y()
+    .y_range(FLOOR, 1e4);
+    let shown = |e: &[f64]| {
+        e.iter()
+            .map(|e| e.abs().max(2.0 * FLOOR))
+            .collect::<Vec<f64>>()
+    };
+    let mut rested = vec![0.0f64; points.len()];
     let mut table = Table::new().column("N", "", x.clone());
     let (mut worst, mut seen, mut grows) = (0.0f64, vec![], true);
     for m in HORIZONS {
@@ -90,22 +101,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             steps.push(rest.steps as f64);
         }
         worst = late.iter().fold(worst, |w, e| w.max(e.abs()));
-        let percent = |e: &[f64]| e.iter().map(|e| 100.0 * e).collect::<Vec<f64>>();
-        plot = plot
-            .series(
-                &format!("δ = {m}Δ, {STEPS} steps"),
-                &x,
-                &percent(&early),
-                Stroke::Dashed,
-                Mark::Disc,
-            )
-            .series(
-                &format!("δ = {m}Δ, at rest"),
-                &x,
-                &percent(&late),
-                Stroke::None,
-                Mark::Square,
-            );
+        let label = format!("δ = {m}Δ after {STEPS} steps");
+        plot = plot.series(&label, &x, &shown(&early), Stroke::Dashed, Mark::Disc);
+        for (most, e) in rested.iter_mut().zip(&late) {
+            *most = most.max(e.abs());
+        }
         let last = points.len() - 1;
         grows &= early[last].abs() > 100.0 * early[0].abs() && steps[last] > steps[0];
         seen.push(format!(
@@ -117,6 +117,13 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             .column(&format!("δ = {m}Δ at rest"), "", late)
             .column(&format!("δ = {m}Δ steps"), "", steps);
     }
+    let plot = plot.series(
+        "at rest, largest of all",
+        &x,
+        &shown(&rested),
+        Stroke::None,
+        Mark::Square,
+    );
     found.picture(plot.save(&context.out, "b-relaxation")?);
     let path = context.out.join("relaxation.csv");
     table.save(&path)?;

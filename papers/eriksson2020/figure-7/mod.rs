@@ -104,6 +104,8 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let plot = Plot::new(format!("First frequency, N = {points}"))
         .x("δ/Δ", "")
         .y("ω/ω0 − 1", "10⁻³")
+        // room for the legend above
+        .y_range(1.1e3 * effective[4], -0.8e3 * effective[4])
         .line("not homogenized, Δ = L/N", &x, &thousandth(counted))
         .line("homogenized, Δ = L/N", &x, &thousandth(counted_homogenized))
         .dashed("not homogenized, (N−½)Δ = L", &x, &thousandth(effective))

@@ -20,7 +20,8 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut plot = Plot::new("Homogenized, full-weight ends, N = 2m + 1")
         .x("point", "")
         .y("Σ cξV", "")
-        .y_range(0.0, 18.0);
+        .x_range(0.5, 9.5)
+        .y_range(0.0, 24.0);
     let mut table = Table::new().column("point", "", (1..=9).map(f64::from));
     let mut whole = true;
     for (m, mark) in [(2, Mark::Disc), (3, Mark::Square), (4, Mark::Triangle)] {
