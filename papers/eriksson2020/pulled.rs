@@ -37,12 +37,13 @@ impl Pulled {
         let title = format!("δ = 3Δ, N = 7, {weight}-weight ends");
         let classical: Vec<f64> = pulled.x.iter().map(|x| x * STRAIN).collect();
         let scale = |u: &[f64]| u.iter().map(|u| u * 1e3).collect::<Vec<f64>>();
-        let mut plot = Plot::new(&title).x("x", "m").y("displacement", "mm").line(
-            "classical",
-            &pulled.x,
-            &scale(&classical),
-        );
-        // room for the legend above
+        // room for the legends above
+        let top = 1e3 * pulled.u[0][POINTS - 1];
+        let mut plot = Plot::new(&title)
+            .x("x", "m")
+            .y("displacement", "mm")
+            .y_range(-1.1 * top, 1.8 * top)
+            .line("classical", &pulled.x, &scale(&classical));
         let most = 150.0 * pulled.errors(0)[0];
         let mut errors = Plot::new(&title)
             .x("x", "m")

@@ -35,7 +35,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             .x("t", "µs")
             .y("u", "mm")
             .x_range(from, to)
-            .y_range(-0.6, 0.6)
+            .y_range(-0.7, 1.2)
             .line("classical (73)", &micro, &milli(&motion.classical))
             .line("not homogenized", &micro, &milli(&motion.u[0]))
             .dashed("homogenized", &micro, &milli(&motion.u[1]));

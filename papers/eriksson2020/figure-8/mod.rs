@@ -22,7 +22,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let plot = Plot::new(format!("u of the middle, δ = 3Δ, N = {points}"))
         .x("step", "")
         .y("u", "mm")
-        .y_range(-0.8, 0.8)
+        .y_range(-0.7, 1.2)
         .line("classical (73)", &step, &milli(&motion.classical))
         .line("not homogenized", &step, &milli(&motion.u[0]))
         .dashed("homogenized", &step, &milli(&motion.u[1]));

@@ -10,13 +10,11 @@ use crate::{Context, Failure, Findings};
 
 experiment!(Table1, "table-1", "f(N) of bars", []);
 
+/// An approximation of f by N.
+type Formula = fn(f64) -> f64;
+
 /// Largest relative difference of a formula from f(N), 2m+1 ≤ N ≤ `most`, and where.
-fn worst(
-    m: usize,
-    ends: Ends,
-    most: usize,
-    formula: fn(f64) -> f64,
-) -> Result<(f64, usize), Failure> {
+fn worst(m: usize, ends: Ends, most: usize, formula: Formula) -> Result<(f64, usize), Failure> {
     let mut worst = (0.0, 0);
     for points in 2 * m + 1..=most {
         let off = (formula(points as f64) / bar(m, points, ends, false)?.f().value() - 1.0).abs();
@@ -68,7 +66,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.file(path);
 
     let most = if context.small { 60 } else { 400 };
-    let fits: [(&str, usize, Ends, fn(f64) -> f64); 4] = [
+    let fits: [(&str, usize, Ends, Formula); 4] = [
         ("fit-half-2", 2, Ends::Half, |n| {
             (7.0 + 5.0 * n) / (4.0 * (n - 1.0))
         }),
