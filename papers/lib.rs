@@ -6,6 +6,7 @@
 
 pub mod checkpoint;
 pub mod claim;
+mod eriksson2020;
 pub mod experiment;
 mod page;
 pub mod profile;
@@ -19,5 +20,5 @@ pub use reproduce::{Options, Outcome, Report, reproduce};
 
 /// All experiments, in the order of the papers.
 pub fn all() -> Vec<&'static dyn Experiment> {
-    [seleson2009::all(), seleson2014::all()].concat()
+    [seleson2009::all(), seleson2014::all(), eriksson2020::all()].concat()
 }

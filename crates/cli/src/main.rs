@@ -1,5 +1,6 @@
 //! The peridyne program.
 
+mod bar;
 mod check;
 mod converge;
 mod deck;
@@ -38,6 +39,8 @@ enum Verb {
     Waves(waves::WavesArguments),
     /// Refine a lattice deck level by level, and fit the order with which its error falls.
     Converge(converge::ConvergeArguments),
+    /// A peristatic bar pulled at its ends: stiffness, homogenization factors, elongation as a fraction and its limit.
+    Bar(bar::BarArguments),
     /// Run the experiments of the papers and compare with what was published.
     Reproduce(reproduce::ReproduceArguments),
     /// List the laws, lattices and influence functions with their parameters.
@@ -78,6 +81,7 @@ fn main() -> ExitCode {
         Verb::Upscale(arguments) => upscale::upscale(&arguments),
         Verb::Waves(arguments) => waves::waves(&arguments),
         Verb::Converge(arguments) => converge::converge(&arguments),
+        Verb::Bar(arguments) => bar::bar(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),
         Verb::Schema => print_schema(),

@@ -1,0 +1,229 @@
+//! `peridyne bar`: the peristatic bar of eriksson2020.
+
+use crate::failure::{Failure, say};
+use clap::ValueEnum;
+use peridyne_theory::exact::{Field, Q, binary};
+use peridyne_theory::homogenize::bar::limit::decimals;
+use peridyne_theory::homogenize::bar::stiffness::Corner;
+use peridyne_theory::homogenize::bar::{Bar, BarError, Ends, micromodulus};
+use serde_json::{Value, json};
+
+/// Decimals of the limit.
+const DIGITS: u32 = 30;
+/// Longest horizon in spacings: corners have its square of numbers.
+const LARGEST_M: i64 = 100;
+/// Most points: each needs some hundred bytes.
+const MOST_POINTS: i64 = 10_000_000;
+/// Points times m beyond which the fraction, that has about as many digits, is left out.
+const LONGEST_FRACTION: usize = 60_000;
+
+#[derive(clap::Args)]
+pub struct BarArguments {
+    /// Horizon in spacings: δ/Δ.
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub m: i64,
+    /// Points N of the bar, at least 2M + 1.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub points: i64,
+    /// Volume of an end point: that of the others, or half of it.
+    #[arg(long, value_enum)]
+    pub ends: Weight,
+    /// With the factors on the bonds of the end points that make uniform strain exact.
+    #[arg(long)]
+    pub homogenize: bool,
+    /// Print JSON instead of a report.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Weight {
+    Full,
+    Half,
+}
+
+/// What is said about a bar.
+struct Found {
+    bar: Bar,
+    /// `None` if it has too many digits.
+    f: Option<Q>,
+    decimal: f64,
+    limit: Q,
+    factors: Vec<Q>,
+    corner: Corner,
+    /// Points 1…m+1 in uniform strain.
+    energy: Vec<Q>,
+}
+
+pub fn bar(arguments: &BarArguments) -> Result<(), Failure> {
+    let bar = asked(arguments).map_err(Failure::input)?;
+    let short = bar.points() * bar.m() <= LONGEST_FRACTION;
+    let f = (short || bar.homogenized()).then(|| bar.f());
+    let found = Found {
+        decimal: f.as_ref().map_or_else(|| bar.f_by_strains(), Field::value),
+        limit: bar.f_limit().value,
+        factors: bar.factors(),
+        corner: bar.corner(),
+        energy: bar.end_energy(),
+        f,
+        bar,
+    };
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&json(&found));
+        say(&text.map_err(|e| Failure::Run(e.to_string()))?);
+    } else {
+        say(&report(&found));
+    }
+    Ok(())
+}
+
+/// The bar, or what to write instead.
+fn asked(arguments: &BarArguments) -> Result<Bar, String> {
+    let BarArguments { m, points, .. } = *arguments;
+    if m < 1 {
+        return Err(format!(
+            "--m {m} is no horizon: it is the number of spacings within the horizon, at least 1; write for example --m 3"
+        ));
+    }
+    if m > LARGEST_M {
+        return Err(format!(
+            "--m {m} is more than this verb prints: at most {LARGEST_M}"
+        ));
+    }
+    if points < 0 {
+        return Err(format!(
+            "--points {points} is no number of points: for --m {m} at least 2·{m} + 1 = {}",
+            2 * m + 1
+        ));
+    }
+    if points > MOST_POINTS {
+        return Err(format!(
+            "--points {points} is more than is solved for: at most {MOST_POINTS}; the elongation of longer bars is the limit"
+        ));
+    }
+    let ends = match arguments.ends {
+        Weight::Full => Ends::Full,
+        Weight::Half => Ends::Half,
+    };
+    // both fit: they were compared above
+    Bar::new(m as usize, points as usize, ends, arguments.homogenize).map_err(|e| match e {
+        BarError::TooFew { points, least, .. } => format!(
+            "--points {points} is too few for --m {m}: no point would see its whole family; write --points {least} or more, \
+             or a smaller --m"
+        ),
+        other => other.to_string(),
+    })
+}
+
+fn texts(fractions: &[Q]) -> Vec<String> {
+    fractions.iter().map(Q::to_string).collect()
+}
+
+/// A whole number without a point.
+fn number(x: f64) -> Value {
+    if x == x.trunc() && x.abs() < 9e15 {
+        json!(x as i64)
+    } else {
+        json!(x)
+    }
+}
+
+/// Scale and entries as numbers; in units of cA itself where they would not be exact.
+fn corner(corner: &Corner) -> (Value, Value) {
+    let exact = |x: &Q| binary(x.value()).as_ref() == Some(x);
+    let scale = Q::from_integer(corner.scale.clone());
+    let whole = exact(&scale) && corner.rows.iter().flatten().all(exact);
+    let entry = |x: &Q| {
+        let x = if whole { x.clone() } else { x / &scale };
+        number(x.value())
+    };
+    let row = |row: &Vec<Q>| row.iter().map(entry).collect::<Vec<Value>>();
+    let rows: Vec<Vec<Value>> = corner.rows.iter().map(row).collect();
+    let scale = if whole { scale.value() } else { 1.0 };
+    (number(scale), json!(rows))
+}
+
+fn json(found: &Found) -> Value {
+    let Found { bar, .. } = found;
+    let (scale, rows) = corner(&found.corner);
+    json!({
+        "m": bar.m(),
+        "points": bar.points(),
+        "ends": ends(bar),
+        "homogenized": bar.homogenized(),
+        "f": found.f.as_ref().map(Q::to_string),
+        "f_decimal": found.decimal,
+        "f_limit": decimals(&found.limit, DIGITS),
+        "alpha": texts(&found.factors),
+        "stiffness_scale": scale,
+        "stiffness_corner": rows,
+        "energy_density": texts(&found.energy),
+        "micromodulus_factor": micromodulus::half_way::<Q>(bar.m()).to_string(),
+    })
+}
+
+fn ends(bar: &Bar) -> &'static str {
+    match bar.ends() {
+        Ends::Full => "full",
+        Ends::Half => "half",
+    }
+}
+
+fn report(found: &Found) -> String {
+    let Found { bar, .. } = found;
+    let (m, points) = (bar.m(), bar.points());
+    let kind = if bar.homogenized() {
+        "homogenized"
+    } else {
+        "not homogenized"
+    };
+    let f = match &found.f {
+        None => format!(
+            "{}; the fraction is printed where points times m is at most {LONGEST_FRACTION}",
+            found.decimal
+        ),
+        Some(f) => match f.to_string() {
+            long if long.len() > 80 => format!(
+                "{}; a fraction of {} digits: --json prints it",
+                found.decimal,
+                long.len() - 1
+            ),
+            short => format!("{short} = {}", found.decimal),
+        },
+    };
+    let mut lines = vec![
+        format!(
+            "bar       m = {m}, {points} points, {}-weight ends, {kind}",
+            ends(bar)
+        ),
+        format!("f({points})  {f}"),
+        format!("f(∞)      {}", decimals(&found.limit, DIGITS)),
+        "          elongation over (N−1)Δ σ/E, that of the classical bar".to_string(),
+    ];
+    if m > 1 {
+        lines.push(format!("alpha     {}", texts(&found.factors).join("  ")));
+        lines.push(
+            "          factors of the bonds between an end and its neighbours, nearest first"
+                .to_string(),
+        );
+    }
+    lines.push(format!("energy    {}", texts(&found.energy).join("  ")));
+    lines.push(format!(
+        "          Σ cξV of points 1 to m+1 in uniform strain; {} inside",
+        m * m
+    ));
+    let rows: Vec<Vec<String>> = found.corner.rows.iter().map(|r| texts(r)).collect();
+    let width = rows.iter().flatten().map(String::len).max().unwrap_or(0);
+    if m <= 10 {
+        lines.push(format!(
+            "stiffness first {} rows and columns, in units of cA/{}",
+            m + 1,
+            found.corner.scale
+        ));
+        for row in rows {
+            let cells: Vec<String> = row.iter().map(|t| format!("{t:>width$}")).collect();
+            lines.push(format!("          {}", cells.join("  ")));
+        }
+    }
+    lines.join("\n")
+}
