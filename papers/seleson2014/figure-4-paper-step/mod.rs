@@ -49,9 +49,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             "cost",
             format!(
                 "{:.0} s for h = a, {:.1} s for h = 4a, on {} threads",
-                fine.seconds, coarse.seconds, context.threads
+                fine.record.seconds, coarse.record.seconds, context.threads
             ),
-            fine.seconds > 200.0 * coarse.seconds,
+            fine.record.seconds > 200.0 * coarse.record.seconds,
         );
     }
     Ok(found)
