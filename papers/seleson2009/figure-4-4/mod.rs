@@ -30,6 +30,7 @@ const DECK: &str = include_str!("deck.toml");
 /// The printed time, and its frame of the fine run.
 const TIME: f64 = 150.05;
 const FRAME: f64 = 130.0;
+
 fn run(context: &Context) -> Result<Findings, Failure> {
     let whole = |steps, _| Wanted {
         profiles: vec![0, steps],

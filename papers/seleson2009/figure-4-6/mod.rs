@@ -8,6 +8,7 @@ use super::motion::Wanted;
 use super::runs::{
     self, CCM, COARSE, FINE, MD, MODELS, SAFETY, SHARED_SPACING, distance, fewer, shared, shared_x,
 };
+use crate::measure::largest;
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -123,7 +124,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
 fn oscillation(u: &[f64]) -> f64 {
     let path: f64 = u.windows(2).map(|w| (w[1] - w[0]).abs()).sum();
     // round-off of a single pulse
-    (path - 2.0).max(0.0)
+    largest([path - 2.0])
 }
 
 /// Fewer points for the two runs of 100,001, with the step of the full runs.
