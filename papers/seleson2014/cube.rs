@@ -5,7 +5,7 @@ use std::path::Path;
 use peridyne::run::{PointField, Simulation};
 use peridyne_io::write::plot::{Map, Plot};
 
-use super::{CONSERVED, deck, model};
+use super::{conserved, deck, model};
 use crate::checkpoint::{self, Plan, Record};
 use crate::measure::{apart, largest};
 use crate::{Context, Failure, Findings};
@@ -193,12 +193,7 @@ impl Wave {
             format!("largest radial displacement at r = {crests:.4?} along x, y, z; x and z differ by {worst:.1e} m"),
             crests.iter().all(|r| (r - crests[0]).abs() < 1.5 * self.spacing),
         );
-        let [drift, invariant] = [self.record.drift(), self.record.invariant_drift()];
-        found.holds(
-            "conserved",
-            format!("the total energy changes by {drift:.1e} of it at most; without what the time stepper adds, (Δt²/8) Σ m a², by {invariant:.1e}"),
-            invariant < CONSERVED,
-        );
+        conserved([&self.record], found);
     }
 }
 
