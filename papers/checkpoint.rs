@@ -2,7 +2,7 @@
 //!
 //! A state is `.parts/NAME.state`, little-endian: the eight bytes `pdynpart`, version and dimension (u32), points and step
 //! (u64), time step and seconds spent (f64), the hash of the inputs (length as u32, text), rows of energies (number as u64;
-//! step, kinetic, strain), all displacements, then all velocities, one axis after the other (f64), and the CRC-32 of
+//! step, kinetic, strain, scheme), all displacements, then all velocities, one axis after the other (f64), and the CRC-32 of
 //! everything before it. It is written whole or not at all.
 
 use std::fs::File;
@@ -15,9 +15,10 @@ use peridyne::run::{PointField, Simulation};
 use peridyne_io::write::atomic::{create_directory, write_file};
 
 use crate::experiment::{Context, Failure};
+use crate::measure::{change, stepper_energy};
 
 const MAGIC: &[u8; 8] = b"pdynpart";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Points that are read or written at once.
 const BLOCK: usize = 8192;
 
@@ -37,6 +38,14 @@ pub struct Row {
     pub step: u64,
     pub kinetic: f64,
     pub strain: f64,
+    /// That of [`stepper_energy`].
+    pub scheme: f64,
+}
+
+impl Row {
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.strain
+    }
 }
 
 /// What is known of a run beside its state.
@@ -45,6 +54,23 @@ pub struct Record {
     pub rows: Vec<Row>,
     /// Time spent in steps alone, over all parts.
     pub seconds: f64,
+}
+
+impl Record {
+    /// Largest relative change of the energy.
+    pub fn drift(&self) -> f64 {
+        change(self.rows.iter().map(Row::total))
+    }
+
+    /// The same of what the time stepper conserves where forces are linear.
+    pub fn invariant_drift(&self) -> f64 {
+        change(self.rows.iter().map(|r| r.total() - r.scheme))
+    }
+
+    /// Nanoseconds of a directed bond in a step.
+    pub fn ns(&self, bonds: u64, steps: u64) -> f64 {
+        1e9 * self.seconds / (bonds as f64 * steps as f64)
+    }
 }
 
 /// Runs a model to its end, from the last state that was kept of the same inputs.
@@ -98,6 +124,7 @@ fn row(sim: &mut dyn Simulation) -> Result<Row, Failure> {
         step: sim.step_number(),
         kinetic: ledger.kinetic,
         strain: ledger.strain,
+        scheme: stepper_energy(sim),
     })
 }
 
@@ -183,7 +210,7 @@ fn save(
         out.put(&(record.rows.len() as u64).to_le_bytes())?;
         for row in &record.rows {
             out.put(&row.step.to_le_bytes())?;
-            out.numbers(&[row.kinetic, row.strain])?;
+            out.numbers(&[row.kinetic, row.strain, row.scheme])?;
         }
         let mut block = vec![0.0; BLOCK];
         for field in fields(dimension) {
@@ -252,6 +279,7 @@ fn load(path: &PathBuf, inputs: &str, sim: &mut dyn Simulation) -> io::Result<Re
             step: reader.long()?,
             kinetic: reader.number()?,
             strain: reader.number()?,
+            scheme: reader.number()?,
         });
     }
     for field in fields(dimension) {

@@ -7,6 +7,8 @@ use peridyne_io::write::{WriteError, atomic};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::claim::Value;
+
 /// Why an experiment has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
@@ -44,6 +46,47 @@ pub trait Experiment: Sync {
     /// # Errors
     /// What went wrong.
     fn run(&self, context: &Context) -> Result<Findings, Failure>;
+}
+
+/// A folder as an [`Experiment`] of the paper in whose module it is: `experiment!(Figure4, "figure-4", "Title",
+/// ["../shared.rs", "deck.toml"])` beside a `fn run(context: &Context) -> Result<Findings, Failure>`. The list has the files
+/// that the result depends on beside `mod.rs`. A last `, long` is for runs of hours.
+macro_rules! experiment {
+    ($name:ident, $figure:literal, $title:literal, [$($source:literal),* $(,)?] $(, $long:ident)? $(,)?) => {
+        pub struct $name;
+
+        impl $crate::Experiment for $name {
+            fn key(&self) -> &'static str {
+                $crate::experiment::paper(module_path!())
+            }
+            fn figure(&self) -> &'static str {
+                $figure
+            }
+            fn title(&self) -> &'static str {
+                $title
+            }
+            fn claims(&self) -> &'static str {
+                include_str!("claims.toml")
+            }
+            fn readme(&self) -> &'static str {
+                include_str!("README.md")
+            }
+            fn sources(&self) -> &'static [&'static str] {
+                &[include_str!("mod.rs") $(, include_str!($source))*]
+            }
+            $(fn $long(&self) -> bool {
+                true
+            })?
+            fn run(&self, context: &$crate::Context) -> Result<$crate::Findings, $crate::Failure> {
+                run(context)
+            }
+        }
+    };
+}
+
+/// The paper that a module of this crate belongs to: `seleson2009` of `peridyne_papers::seleson2009::figure_4_3`.
+pub(crate) fn paper(module: &'static str) -> &'static str {
+    module.split("::").nth(1).unwrap_or(module)
 }
 
 /// What a run is given.
@@ -115,10 +158,19 @@ pub enum Computed {
     Holds(String, bool),
 }
 
+/// A number or words that no claim is about: what a run took here, what a reading of the paper changes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    pub key: String,
+    pub value: Value,
+    pub unit: String,
+}
+
 /// What an experiment found.
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
     pub(crate) values: Vec<(String, Computed)>,
+    pub(crate) measurements: Vec<Measurement>,
     pub(crate) files: Vec<PathBuf>,
 }
 
@@ -141,6 +193,15 @@ impl Findings {
     pub fn holds(&mut self, key: &str, seen: impl Into<String>, holds: bool) {
         self.values
             .push((key.to_string(), Computed::Holds(seen.into(), holds)));
+    }
+
+    /// A number or words to be shown, without a verdict; the key says in words what it is of.
+    pub fn measured(&mut self, key: &str, value: impl Into<Value>, unit: &str) {
+        self.measurements.push(Measurement {
+            key: key.to_string(),
+            value: value.into(),
+            unit: unit.to_string(),
+        });
     }
 
     /// A file that was written.

@@ -61,6 +61,14 @@ pub fn page(report: &Report, readme: &str) -> String {
     text += "| claim | published | computed | tolerance | kind | holds | note |\n|---|---|---|---|---|---|---|\n";
     report.claims.iter().for_each(|c| text += &row(c));
     text.push('\n');
+    if !report.measurements.is_empty() {
+        text += "| measured, no claim | value | unit |\n|---|---|---|\n";
+        for m in &report.measurements {
+            let cells = [m.key.clone(), computed(&m.value), m.unit.clone()];
+            text += &format!("| {} |\n", cells.map(|t| cell(&t)).join(" | "));
+        }
+        text.push('\n');
+    }
     for file in report.files.iter().filter(|f| f.ends_with(".png")) {
         text += &format!("![{file}]({file})\n\n");
     }

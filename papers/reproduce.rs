@@ -7,8 +7,8 @@ use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::run_json::deck_hash;
 use serde::{Deserialize, Serialize};
 
-use crate::claim::{self, Claim};
-use crate::experiment::{Context, Experiment, Failure};
+use crate::claim::{self, Claim, Value};
+use crate::experiment::{Context, Experiment, Failure, Measurement};
 use crate::page;
 
 /// How to run.
@@ -36,6 +36,9 @@ pub struct Report {
     /// All claims pass.
     pub pass: bool,
     pub claims: Vec<Claim>,
+    /// What was measured and is no claim.
+    #[serde(default)]
+    pub measurements: Vec<Measurement>,
     /// Relative to the folder of the figure.
     pub files: Vec<String>,
 }
@@ -175,6 +178,20 @@ fn inputs(e: &dyn Experiment, small: bool) -> String {
     deck_hash(parts.concat().as_bytes())
 }
 
+/// Every measurement once, and as a number that JSON has.
+fn measured(all: Vec<Measurement>) -> Result<Vec<Measurement>, Failure> {
+    for (k, m) in all.iter().enumerate() {
+        let wrong = |what| Err(Failure::new(format!("the measurement `{}` {what}", m.key)));
+        if all[..k].iter().any(|other| other.key == m.key) {
+            return wrong("is there twice");
+        }
+        if matches!(m.value, Value::Number(x) if !x.is_finite()) {
+            return wrong("is not a finite number");
+        }
+    }
+    Ok(all)
+}
+
 fn one(e: &dyn Experiment, options: &Options) -> Result<Outcome, Failure> {
     let out = folder(options, e);
     let inputs = inputs(e, options.small);
@@ -208,6 +225,7 @@ fn one(e: &dyn Experiment, options: &Options) -> Result<Outcome, Failure> {
     let findings = e.run(&context)?;
     let seconds = start.elapsed().as_secs_f64();
     let claims = claim::compare(&published, &findings.values, options.small)?;
+    let measurements = measured(findings.measurements)?;
     let mut files = Vec::new();
     for file in &findings.files {
         let inside = file.strip_prefix(&out).ok().filter(|_| file.exists());
@@ -230,6 +248,7 @@ fn one(e: &dyn Experiment, options: &Options) -> Result<Outcome, Failure> {
         seconds,
         pass: claims.iter().all(|c| c.pass),
         claims,
+        measurements,
         files,
     };
     let text = page::page(&report, e.readme());

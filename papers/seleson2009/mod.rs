@@ -20,19 +20,11 @@ mod figure_5_2;
 mod lennard_jones;
 mod modes;
 mod motion;
+mod runs;
 #[path = "table-4-1/mod.rs"]
 mod table_4_1;
 
 use crate::Experiment;
-
-/// What the results of all figures here depend on.
-const SHARED: &str = concat!(
-    include_str!("chain.rs"),
-    include_str!("deck.rs"),
-    include_str!("lennard_jones.rs"),
-    include_str!("modes.rs"),
-    include_str!("motion.rs"),
-);
 
 pub fn all() -> Vec<&'static dyn Experiment> {
     vec![

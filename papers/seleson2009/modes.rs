@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::chain::Chain;
+use crate::measure::largest;
 
 /// Displacements of `at` after `steps` steps of `dt`, of the chain that starts at rest with `u0`; NaN if a wave is unstable.
 pub fn displacements(chain: &Chain, dt: f64, steps: u64, u0: &[f64], at: &[usize]) -> Vec<f64> {
@@ -57,9 +58,7 @@ pub fn difference(chain: &Chain, dt: f64, steps: u64, u0: &[f64], run: &[f64]) -
         .map(|i| (n / 5 + i * (3 * n / 5) / 97).min(n - 1))
         .collect();
     let exact = displacements(chain, dt, steps, u0, &at);
-    let difference = exact.iter().zip(&at).map(|(e, j)| (e - run[*j]).abs());
-    // what is not a number stays
-    difference.fold(0.0, |m, d| if m.is_nan() || d <= m { m } else { d })
+    largest(exact.iter().zip(&at).map(|(e, j)| (e - run[*j]).abs()))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::chain::Chain;
 use super::{deck, modes};
+use crate::measure::{change, stepper_energy};
 use crate::{Context, Failure};
 
 /// What to keep of a run.
@@ -37,7 +38,7 @@ pub struct Energies {
     pub time: f64,
     pub kinetic: f64,
     pub potential: f64,
-    /// (Δt²/8) ρΔx Σ a²: what velocity Verlet adds up beside the energy when forces are linear.
+    /// That of [`stepper_energy`].
     pub scheme: f64,
 }
 
@@ -160,7 +161,6 @@ pub fn record(
 ) -> Result<Motion, RunError> {
     let info = sim.info().clone();
     let (points, spacing, dt) = (info.points as usize, info.spacing, info.time_step);
-    let mass = info.mass / points as f64;
     sim.start(true);
     let mut motion = Motion {
         points,
@@ -193,18 +193,11 @@ pub fn record(
         }
         if wanted.energies > 0 && (step % every(wanted.energies) == 0 || step == steps) {
             let ledger = sim.ledger()?;
-            let density = mass / (spacing * info.section);
-            // force densities over the density are accelerations
-            let a2: f64 = sim
-                .force_densities()
-                .iter()
-                .map(|f| (f[0] / density).powi(2))
-                .sum();
             motion.energies.push(Energies {
                 time,
                 kinetic: ledger.kinetic,
                 potential: ledger.strain,
-                scheme: dt * dt / 8.0 * mass * a2,
+                scheme: stepper_energy(sim.as_mut()),
             });
         }
         if step < steps {
@@ -267,9 +260,12 @@ impl Motion {
 
     /// Largest relative change of an energy since the start.
     pub fn drift(&self, of: impl Fn(&Energies) -> f64) -> f64 {
-        let first = self.energies.first().map_or(f64::NAN, &of);
-        let change = self.energies.iter().map(|e| (of(e) / first - 1.0).abs());
-        change.fold(0.0, f64::max)
+        change(self.energies.iter().map(of))
+    }
+
+    /// A title of pictures.
+    pub fn titled(&self, label: &str) -> String {
+        format!("{label}: {} points, N = {}", self.points, self.neighbours)
     }
 
     /// What is said of the run in a line.

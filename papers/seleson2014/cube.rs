@@ -4,10 +4,10 @@ use std::path::Path;
 
 use peridyne::run::{PointField, Simulation};
 use peridyne_io::write::plot::{Map, Plot};
-use peridyne_io::write::run_json::peak_memory_bytes;
 
-use super::{deck, model};
-use crate::checkpoint::{self, Plan, Row};
+use super::{conserved, deck, model};
+use crate::checkpoint::{self, Plan, Record};
+use crate::measure::{apart, largest};
 use crate::{Context, Failure, Findings};
 
 pub const DECK: &str = include_str!("figure-6/cube.toml");
@@ -28,11 +28,8 @@ pub struct Wave {
     pub points: u64,
     pub bonds: u64,
     pub bytes: usize,
-    pub peak: Option<u64>,
     pub steps: u64,
-    pub time_step: f64,
-    pub seconds: f64,
-    pub rows: Vec<Row>,
+    pub record: Record,
     pub spacing: f64,
     /// Points along x.
     pub across: usize,
@@ -107,11 +104,8 @@ impl Cube {
             points: info.points,
             bonds: info.directed_bonds,
             bytes: info.bytes,
-            peak: peak_memory_bytes(),
             steps: self.steps,
-            time_step: info.time_step,
-            seconds: record.seconds,
-            rows: record.rows,
+            record,
             spacing: h,
             across: n,
             radial,
@@ -121,10 +115,6 @@ impl Cube {
 }
 
 impl Wave {
-    pub fn ns(&self) -> f64 {
-        1e9 * self.seconds / (self.bonds as f64 * self.steps as f64)
-    }
-
     /// Distance of the largest radial displacement beyond r = 0.05 along each axis.
     pub fn crests(&self) -> [f64; 3] {
         [0, 1, 2].map(|a| {
@@ -135,19 +125,12 @@ impl Wave {
         })
     }
 
-    pub fn drift(&self) -> f64 {
-        let total = |r: &Row| r.kinetic + r.strain;
-        let first = self.rows.first().map_or(f64::NAN, total);
-        let change = self.rows.iter().map(|r| (total(r) / first - 1.0).abs());
-        change.fold(0.0, f64::max)
-    }
-
     /// The octant seen into its corner in the middle of the cube, the plane z = 0, and the radial displacements.
     pub fn pictures(&self, out: &Path, found: &mut Findings) -> Result<(), Failure> {
         let beyond = self.faces[2]
             .iter()
             .filter(|(x, _)| x[0].hypot(x[1]) > 0.05);
-        let top = beyond.map(|(_, e)| *e).fold(0.0, f64::max);
+        let top = largest(beyond.map(|(_, e)| *e));
         let (cos, sin) = (0.75f64.sqrt(), 0.5);
         // x to the left below, y to the right below, z up
         let seen = |[x, y, z]: [f64; 3]| [cos * (y - x), z - sin * (x + y)];
@@ -204,20 +187,13 @@ impl Wave {
     /// What both figures say of the wave.
     pub fn judge(&self, found: &mut Findings) {
         let crests = self.crests();
-        let worst = (self.radial[0].iter().zip(&self.radial[2]))
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
+        let worst = apart(&self.radial[0], &self.radial[2]);
         found.holds(
             "spherical",
             format!("largest radial displacement at r = {crests:.4?} along x, y, z; x and z differ by {worst:.1e} m"),
             crests.iter().all(|r| (r - crests[0]).abs() < 1.5 * self.spacing),
         );
-        let drift = self.drift();
-        found.holds(
-            "conserved",
-            format!("the total energy changes by {drift:.1e} of it at most"),
-            drift < 0.05,
-        );
+        conserved([&self.record], found);
     }
 }
 

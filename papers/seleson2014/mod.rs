@@ -4,40 +4,6 @@ mod chain;
 mod cube;
 mod plate;
 
-/// A folder as an [`Experiment`]: its texts, other sources it depends on, and `run` of its module.
-macro_rules! experiment {
-    ($name:ident, $figure:literal, $title:literal, [$($source:literal),*] $(, $long:ident)?) => {
-        pub struct $name;
-
-        impl crate::Experiment for $name {
-            fn key(&self) -> &'static str {
-                "seleson2014"
-            }
-            fn figure(&self) -> &'static str {
-                $figure
-            }
-            fn title(&self) -> &'static str {
-                $title
-            }
-            fn claims(&self) -> &'static str {
-                include_str!("claims.toml")
-            }
-            fn readme(&self) -> &'static str {
-                include_str!("README.md")
-            }
-            fn sources(&self) -> &'static [&'static str] {
-                &[include_str!("mod.rs") $(, include_str!($source))*]
-            }
-            $(fn $long(&self) -> bool {
-                true
-            })?
-            fn run(&self, context: &crate::Context) -> Result<crate::Findings, crate::Failure> {
-                run(context)
-            }
-        }
-    };
-}
-
 #[path = "figure-1/mod.rs"]
 mod figure_1;
 #[path = "figure-2/mod.rs"]
@@ -65,7 +31,9 @@ mod table_3;
 #[path = "table-4/mod.rs"]
 mod table_4;
 
-use crate::{Experiment, Failure};
+use crate::checkpoint::Record;
+use crate::measure::largest;
+use crate::{Experiment, Failure, Findings};
 use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::Deck;
 
@@ -87,6 +55,24 @@ pub fn all() -> Vec<&'static dyn Experiment> {
     ]
 }
 
+/// What is not linear in displacements is not conserved by (Δt²/8) Σ m a²: small beside what the stepper exchanges.
+const CONSERVED: f64 = 1e-4;
+
+/// The claim `conserved`: the energy of runs, less what the time stepper adds.
+fn conserved<'r>(records: impl IntoIterator<Item = &'r Record>, found: &mut Findings) {
+    let both = |r: &Record| (r.drift(), r.invariant_drift());
+    let (total, invariant): (Vec<f64>, Vec<f64>) = records.into_iter().map(both).unzip();
+    let invariant = largest(invariant);
+    found.holds(
+        "conserved",
+        format!(
+            "the total changes by {:.1e} of it at most; less (Δt²/8) Σ m a², which velocity Verlet adds, by {invariant:.1e}",
+            largest(total)
+        ),
+        invariant < CONSERVED,
+    );
+}
+
 /// A deck with some of its entries replaced.
 fn deck(text: &str, name: &str, set: &[(&str, String)]) -> Result<Deck, Failure> {
     let set: Vec<_> = set
@@ -103,11 +89,4 @@ fn model(deck: &Deck, measured: bool) -> Result<Box<dyn Simulation>, Failure> {
         ..Options::default()
     };
     build(&deck.spec, options).map_err(|e| Failure::new(e.to_string()))
-}
-
-/// `√(Σ (a − b)² / Σ b²)`
-fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
-    let difference: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
-    let size: f64 = b.iter().map(|y| y * y).sum();
-    (difference / size).sqrt()
 }

@@ -5,7 +5,8 @@ use peridyne_io::write::plot::{Map, Plot};
 use peridyne_io::write::table::Table;
 
 use super::{deck, model};
-use crate::checkpoint::{self, Plan, Row};
+use crate::checkpoint::{self, Plan, Record, Row};
+use crate::measure::{largest, relative_difference};
 use crate::{Context, Failure, Findings};
 
 pub const DECK: &str = include_str!("figure-4/plate.toml");
@@ -21,6 +22,8 @@ pub const MESHES: [u32; 3] = [1, 2, 4];
 pub enum Step {
     /// 800 times that of the paper at h = a, for all meshes: 0.7 of the stability limit.
     Limit,
+    /// Half of that.
+    HalfLimit,
     /// 100 times that of the paper at h = a, for all meshes.
     Hundred,
     /// Δt0 h/a.
@@ -58,6 +61,7 @@ impl Plate {
         let all = if self.small { 5000 } else { 20_000 };
         match self.step {
             Step::Limit => all / 800,
+            Step::HalfLimit => all / 400,
             Step::Hundred => all / 100,
             Step::Paper => all / u64::from(self.mesh),
         }
@@ -86,7 +90,7 @@ impl Plate {
             steps,
             row: (steps / if self.small { 10 } else { 50 }).max(1),
             part: match self.step {
-                Step::Limit | Step::Hundred => 0,
+                Step::Limit | Step::HalfLimit | Step::Hundred => 0,
                 Step::Paper => 500,
             },
         };
@@ -99,8 +103,7 @@ impl Plate {
             time_step: info.time_step,
             bonds: info.directed_bonds,
             steps,
-            seconds: record.seconds,
-            rows: record.rows,
+            record,
             x: sim.reference().iter().map(|x| [x[0], x[1]]).collect(),
             u: sim.displacements().iter().map(|u| [u[0], u[1]]).collect(),
             energy: sim.energy_density(),
@@ -115,8 +118,7 @@ pub struct Wave {
     pub time_step: f64,
     pub bonds: u64,
     pub steps: u64,
-    pub seconds: f64,
-    pub rows: Vec<Row>,
+    pub record: Record,
     pub x: Vec<[f64; 2]>,
     pub u: Vec<[f64; 2]>,
     /// Strain energy density.
@@ -124,11 +126,6 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// Nanoseconds of a directed bond in a step.
-    pub fn ns(&self) -> f64 {
-        1e9 * self.seconds / (self.bonds as f64 * self.steps as f64)
-    }
-
     /// Whole numbers of spacings from the middle.
     fn at(&self, k: usize) -> [i64; 2] {
         self.x[k].map(|x| (x / self.spacing).round() as i64)
@@ -154,7 +151,7 @@ impl Wave {
     /// `√(Σ |u − v|²/Σ |v|²)` on the points that both have, v of the finer mesh.
     pub fn difference(&self, fine: &Wave) -> f64 {
         let reference = fine.on(self);
-        super::relative_difference(self.u.as_flattened(), reference.as_flattened())
+        relative_difference(self.u.as_flattened(), reference.as_flattened())
     }
 
     /// Radius of the largest radial displacement on the x axis, and that displacement; beyond the middle, where the
@@ -171,17 +168,22 @@ impl Wave {
     }
 
     pub fn time(&self) -> Vec<f64> {
-        let times = self.rows.iter().map(|r| r.step as f64 * self.time_step);
+        let times = self
+            .record
+            .rows
+            .iter()
+            .map(|r| r.step as f64 * self.time_step);
         times.collect()
     }
+}
 
-    /// Largest change of the total energy, relative.
-    pub fn drift(&self) -> f64 {
-        let total = |r: &Row| r.kinetic + r.strain;
-        let first = self.rows.first().map_or(f64::NAN, total);
-        let change = self.rows.iter().map(|r| (total(r) / first - 1.0).abs());
-        change.fold(0.0, f64::max)
-    }
+/// The plates of all meshes, with the same step.
+pub fn waves(context: &Context) -> Result<Vec<Wave>, Failure> {
+    let run = |mesh| {
+        context.say(&format!("plate with h = {mesh}a"));
+        Plate::new(context, mesh, Step::Hundred).run(context)
+    };
+    MESHES.into_iter().map(run).collect()
 }
 
 /// Energy maps of all meshes, with the same colours: from 0 to the largest value beyond r = 0.05 of the finest mesh.
@@ -189,7 +191,7 @@ pub fn maps(out: &std::path::Path, waves: &[Wave], found: &mut Findings) -> Resu
     let beyond = |w: &Wave| {
         let ring = w.x.iter().zip(&w.energy);
         let ring = ring.filter(|(x, _)| x[0].hypot(x[1]) > 0.05);
-        ring.map(|(_, e)| *e).fold(0.0, f64::max)
+        largest(ring.map(|(_, e)| *e))
     };
     let top = waves.first().map_or(1.0, beyond);
     for wave in waves {
@@ -242,9 +244,9 @@ pub fn curves(out: &std::path::Path, waves: &[Wave], found: &mut Findings) -> Re
             .save(&path)?;
         found.file(path);
         let time = wave.time();
-        let kinetic: Vec<f64> = wave.rows.iter().map(|r| r.kinetic).collect();
-        let strain: Vec<f64> = wave.rows.iter().map(|r| r.strain).collect();
-        let total: Vec<f64> = wave.rows.iter().map(|r| r.kinetic + r.strain).collect();
+        let kinetic: Vec<f64> = wave.record.rows.iter().map(|r| r.kinetic).collect();
+        let strain: Vec<f64> = wave.record.rows.iter().map(|r| r.strain).collect();
+        let total: Vec<f64> = wave.record.rows.iter().map(Row::total).collect();
         // the coarsest lies over the finest; what is between would hide both
         let columns = [
             ("kinetic", &kinetic),

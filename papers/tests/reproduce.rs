@@ -23,6 +23,7 @@ struct Counted {
     /// Fails after the part this many times.
     failures: AtomicUsize,
     value: f64,
+    time: f64,
     long: bool,
 }
 
@@ -34,6 +35,7 @@ impl Counted {
             parts: AtomicUsize::new(0),
             failures: AtomicUsize::new(failures),
             value,
+            time: 1.5,
             long: false,
         }
     }
@@ -82,6 +84,8 @@ impl Experiment for Counted {
         std::fs::write(&path, b"png").map_err(|e| Failure::new(e.to_string()))?;
         let mut found = Findings::new();
         found.number("a", value);
+        found.measured("time | all", self.time, "s");
+        found.measured("threads", "two", "");
         found.file(path);
         Ok(found)
     }
@@ -146,11 +150,40 @@ fn a_run_that_is_cut_off_goes_on_and_others_are_run() {
         page.contains("![p.png](p.png)") && page.ends_with("\nUnsaid: all.\n"),
         "{page}"
     );
+    assert!(
+        page.contains("| time \\| all | 1.5 | s |\n| threads | two |  |\n"),
+        "{page}"
+    );
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("report.json")).unwrap()).unwrap();
+    assert_eq!(
+        report["measurements"][0],
+        serde_json::json!({ "key": "time | all", "value": 1.5, "unit": "s" })
+    );
+    assert!(report["measurements"][0].get("pass").is_none());
     // the other one is still in the index
     let index = std::fs::read_to_string(dir.path().join("index.md")).unwrap();
     assert!(
         index.contains("figure-1/page.md") && index.contains("figure-2/page.md"),
         "{index}"
+    );
+}
+
+#[test]
+fn a_measurement_without_a_value_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let broken = Counted {
+        time: f64::NAN,
+        ..Counted::new("figure-1", 42.0, 0)
+    };
+    let all: [&dyn Experiment; 1] = [&broken];
+    let outcomes = reproduce_of(&all, None, &options(dir.path())).unwrap();
+    let Outcome::Failed { failure, .. } = &outcomes[0] else {
+        panic!("{outcomes:?}")
+    };
+    assert_eq!(
+        failure.to_string(),
+        "the measurement `time | all` is not a finite number"
     );
 }
 
@@ -213,7 +246,7 @@ fn the_small_variants_of_all_papers_pass() {
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.join("report.json")).unwrap()).unwrap();
     assert_eq!(report["claims"][1]["computed"], 162.0);
-    assert_eq!(report["claims"][3]["kind"], "exact");
+    assert_eq!(report["claims"][2]["kind"], "exact");
 }
 
 #[test]

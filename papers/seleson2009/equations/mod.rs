@@ -17,47 +17,26 @@ use peridyne_theory::gradient::linear::{
 use peridyne_theory::gradient::power_law::{PowerLawChain, orders};
 use peridyne_theory::upscaling::{Comparison, compare};
 
-use super::SHARED;
-use crate::{Context, Experiment, Failure, Findings};
+use crate::measure::largest;
+use crate::{Context, Failure, Findings};
 
-pub struct Equations;
+experiment!(
+    Equations,
+    "equations",
+    "Gradient equations and dispersion relations",
+    ["printed.rs"]
+);
 
-impl Experiment for Equations {
-    fn key(&self) -> &'static str {
-        "seleson2009"
-    }
-
-    fn figure(&self) -> &'static str {
-        "equations"
-    }
-
-    fn title(&self) -> &'static str {
-        "Gradient equations and dispersion relations"
-    }
-
-    fn claims(&self) -> &'static str {
-        include_str!("claims.toml")
-    }
-
-    fn readme(&self) -> &'static str {
-        include_str!("README.md")
-    }
-
-    fn sources(&self) -> &'static [&'static str] {
-        &[include_str!("mod.rs"), include_str!("printed.rs"), SHARED]
-    }
-
-    fn run(&self, context: &Context) -> Result<Findings, Failure> {
-        let mut found = Findings::new();
-        springs(&mut found)?;
-        let verdicts = [upscaling_of_springs(&mut found), lennard_jones(&mut found)];
-        dispersion(context, &mut found)?;
-        let path = context.out.join("equations.md");
-        let text = format!("{}\n{}", derived(), verdicts.concat());
-        write_file(&path, |w| w.write_all(text.as_bytes()))?;
-        found.file(path);
-        Ok(found)
-    }
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let mut found = Findings::new();
+    springs(&mut found)?;
+    let verdicts = [upscaling_of_springs(&mut found), lennard_jones(&mut found)];
+    dispersion(context, &mut found)?;
+    let path = context.out.join("equations.md");
+    let text = format!("{}\n{}", derived(), verdicts.concat());
+    write_file(&path, |w| w.write_all(text.as_bytes()))?;
+    found.file(path);
+    Ok(found)
 }
 
 fn fractions(values: &[Q]) -> String {
@@ -75,10 +54,7 @@ fn springs(found: &mut Findings) -> Result<(), Failure> {
     let (near, off) = (far(1000), far(2000));
     let rest = |c: &[Q], p: usize| (c[p].clone() - nonlocal[p].clone()).value().abs();
     let halves = [1, 2].map(|p| rest(&near, p) / rest(&off, p));
-    found.number(
-        "4.2-limit",
-        halves.iter().map(|h| (h - 2.0).abs()).fold(0.0, f64::max),
-    );
+    found.number("4.2-limit", largest(halves.map(|h| (h - 2.0).abs())));
     found.text("4.2-finite", fractions(&springs_excess(20, 3)));
     found.text("4.4", fractions(&nonlocal[..3]));
     found.text("4.4-next", nonlocal[3].to_string());
@@ -191,7 +167,7 @@ fn lennard_jones(found: &mut Findings) -> String {
         let chain = PowerLawChain::lennard_jones_upscaled(q(1, 1), q(1, 2), q(1, 1), n);
         inner::energy(&chain, 1)[0].partial(1).at(&[1.0]).abs()
     });
-    found.number("a-5", pull.into_iter().fold(0.0, f64::max));
+    found.number("a-5", largest(pull));
     let md = paper(1, 4);
     let mut text = String::from("## Lennard-Jones, σ̄⁶ = ½, ε̄ = 1\n\n");
     for (key, n, m) in [
@@ -241,7 +217,7 @@ fn dispersion(context: &Context, found: &mut Findings) -> Result<(), Failure> {
     };
     let waves = [0.05, 0.3, 1.0, 3.0];
     let off = waves.map(|k| (exact.frequency(k) / integral(k) - 1.0).abs());
-    found.number("dispersion-integral", off.into_iter().fold(0.0, f64::max));
+    found.number("dispersion-integral", largest(off));
     let series = |x: f64| x * (1.0 - x * x / 48.0 + 17.0 / 69120.0 * x.powi(4)) / horizon;
     // what the series leaves is of order (kδ)⁷
     let rest = |x: f64| (exact.frequency(x / horizon) - series(x)).abs();
@@ -250,7 +226,7 @@ fn dispersion(context: &Context, found: &mut Findings) -> Result<(), Failure> {
     let apart = |n: usize| {
         let ratio = waves
             .map(|k| chain(n).frequency(k, 1.0).unwrap_or(f64::NAN) / exact.frequency(k) - 1.0);
-        ratio.iter().map(|r| r.abs()).fold(0.0, f64::max)
+        largest(ratio.map(f64::abs))
     };
     found.holds(
         "dispersion-converges",

@@ -5,10 +5,17 @@ use peridyne_io::write::table::Table;
 use peridyne_theory::gradient::linear::LinearChain;
 use peridyne_theory::stability::{observed, springs_bound};
 
-use super::SHARED;
 use super::chain::Chain;
 use super::deck;
-use crate::{Context, Experiment, Failure, Findings};
+use crate::measure::largest;
+use crate::{Context, Failure, Findings};
+
+experiment!(
+    Figure42,
+    "figure-4-2",
+    "Stable time step over the distance of points",
+    ["../chain.rs", "../deck.rs", "deck.toml"]
+);
 
 const DECK: &str = include_str!("deck.toml");
 /// δ of the figure.
@@ -23,147 +30,119 @@ const CLOSE: f64 = 5e-4;
 /// The pulse has height 1: waves that stay bounded stay below this.
 const BOUNDED: f64 = 100.0;
 
-pub struct Figure42;
-
-impl Experiment for Figure42 {
-    fn key(&self) -> &'static str {
-        "seleson2009"
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let runs = if context.small {
+        &RUNS[..SMALL]
+    } else {
+        &RUNS[..]
+    };
+    let bound = |n: usize| springs_bound(1.0, 1.0, HORIZON, n);
+    let sharp = |n: usize| {
+        LinearChain::springs(1.0, HORIZON / n as f64, n)
+            .largest(1.0)
+            .time_step()
+    };
+    let mut seen = vec![];
+    for &n in runs {
+        let limit = context.part(&format!("observed-n={n}"), || border(n, bound(n)))?;
+        context.say(&format!("N = {n}: {limit:.5}, bound {:.5}", bound(n)));
+        seen.push(limit);
     }
-
-    fn figure(&self) -> &'static str {
-        "figure-4-2"
-    }
-
-    fn title(&self) -> &'static str {
-        "Stable time step over the distance of points"
-    }
-
-    fn claims(&self) -> &'static str {
-        include_str!("claims.toml")
-    }
-
-    fn readme(&self) -> &'static str {
-        include_str!("README.md")
-    }
-
-    fn sources(&self) -> &'static [&'static str] {
-        &[include_str!("mod.rs"), DECK, SHARED]
-    }
-
-    fn run(&self, context: &Context) -> Result<Findings, Failure> {
-        let runs = if context.small {
-            &RUNS[..SMALL]
-        } else {
-            &RUNS[..]
-        };
-        let bound = |n: usize| springs_bound(1.0, 1.0, HORIZON, n);
-        let sharp = |n: usize| {
-            LinearChain::springs(1.0, HORIZON / n as f64, n)
-                .largest(1.0)
-                .time_step()
-        };
-        let mut seen = vec![];
-        for &n in runs {
-            let limit = context.part(&format!("observed-n={n}"), || border(n, bound(n)))?;
-            context.say(&format!("N = {n}: {limit:.5}, bound {:.5}", bound(n)));
-            seen.push(limit);
-        }
-        let mut found = Findings::new();
-        let formula = CURVE.map(|n| {
-            let chain = Chain::thousand(200 * n as u32 + 1, n as u32);
-            (chain.time_step(1.0) / bound(n) - 1.0).abs()
-        });
-        found.number("bound-formula", formula.into_iter().fold(0.0, f64::max));
-        found.number("bound-local", bound(1));
-        let weaker: Vec<f64> = CURVE.map(|n| bound(n) / (HORIZON / n as f64)).to_vec();
-        found.holds(
-            "weaker-than-cfl",
-            format!(
-                "(4.12) over the straight line: {:.3} at N = 2, {:.1} at N = 500",
-                weaker[1], weaker[12]
-            ),
-            weaker[1..].iter().all(|r| *r > 1.0) && weaker.is_sorted(),
-        );
-        let ratio: Vec<f64> = runs.iter().zip(&seen).map(|(n, l)| l / bound(*n)).collect();
-        let texts: Vec<String> = runs
-            .iter()
+    let mut found = Findings::new();
+    let formula = CURVE.map(|n| {
+        let chain = Chain::thousand(200 * n as u32 + 1, n as u32);
+        (chain.time_step(1.0) / bound(n) - 1.0).abs()
+    });
+    found.number("bound-formula", largest(formula));
+    found.number("bound-local", bound(1));
+    let weaker: Vec<f64> = CURVE.map(|n| bound(n) / (HORIZON / n as f64)).to_vec();
+    found.holds(
+        "weaker-than-cfl",
+        format!(
+            "(4.12) over the straight line: {:.3} at N = 2, {:.1} at N = 500",
+            weaker[1], weaker[12]
+        ),
+        weaker[1..].iter().all(|r| *r > 1.0) && weaker.is_sorted(),
+    );
+    let ratio: Vec<f64> = runs.iter().zip(&seen).map(|(n, l)| l / bound(*n)).collect();
+    let texts: Vec<String> = runs
+        .iter()
+        .zip(&ratio)
+        .map(|(n, r)| format!("N = {n}: {:.1} %", 100.0 * (r - 1.0)))
+        .collect();
+    found.holds(
+        "observed-20-to-30-percent",
+        texts.join(", "),
+        runs.iter()
             .zip(&ratio)
-            .map(|(n, r)| format!("N = {n}: {:.1} %", 100.0 * (r - 1.0)))
-            .collect();
+            .filter(|(n, _)| (5..=20).contains(*n))
+            .all(|(_, r)| (1.2..1.3).contains(r)),
+    );
+    if !context.small {
         found.holds(
-            "observed-20-to-30-percent",
-            texts.join(", "),
-            runs.iter()
-                .zip(&ratio)
-                .filter(|(n, _)| (5..=20).contains(*n))
-                .all(|(_, r)| (1.2..1.3).contains(r)),
+            "finer-is-beyond",
+            format!(
+                "sharp limit over bound: {:.3} at N = 200, {:.3} at N = 500",
+                sharp(200) / bound(200),
+                sharp(500) / bound(500)
+            ),
+            ratio[5..].iter().all(|r| (1.3..1.35).contains(r)),
         );
-        if !context.small {
-            found.holds(
-                "finer-is-beyond",
-                format!(
-                    "sharp limit over bound: {:.3} at N = 200, {:.3} at N = 500",
-                    sharp(200) / bound(200),
-                    sharp(500) / bound(500)
-                ),
-                ratio[5..].iter().all(|r| (1.3..1.35).contains(r)),
-            );
-        }
-        found.holds(
-            "margin-grows",
-            format!("from {:.4} to {:.4}", ratio[0], ratio[ratio.len() - 1]),
-            ratio.is_sorted() && ratio.iter().all(|r| *r < std::f64::consts::SQRT_2),
-        );
-        let off = runs
-            .iter()
-            .zip(&seen)
-            .map(|(n, l)| (l / sharp(*n) - 1.0).abs());
-        found.number("observed-is-sharp", off.fold(0.0, f64::max));
-        found.number("sharp-local", sharp(1) / bound(1));
-
-        let spacing: Vec<f64> = CURVE.iter().map(|n| HORIZON / *n as f64).collect();
-        let at: Vec<f64> = runs.iter().map(|n| HORIZON / *n as f64).collect();
-        let plot = Plot::new("Stable step, δ = 5")
-            .x("Δx", "")
-            .y("Δt", "")
-            .series(
-                "(4.12)",
-                &spacing,
-                &CURVE.map(bound),
-                Stroke::Solid,
-                Mark::Disc,
-            )
-            .dashed("linear, Δt = Δx", &spacing, &spacing)
-            .series("observed", &at, &seen, Stroke::Dashed, Mark::Diamond)
-            .series(
-                "sharp: 2/max ω",
-                &spacing,
-                &CURVE.map(sharp),
-                Stroke::Dotted,
-                Mark::None,
-            );
-        let linear = plot.clone().x_range(0.0, HORIZON).y_range(0.0, 7.5);
-        found.picture(linear.save(&context.out, "stable-step")?);
-        let log = plot.log_x().log_y();
-        found.picture(log.save(&context.out, "stable-step-log")?);
-        let path = context.out.join("stable-step.csv");
-        Table::new()
-            .column("N", "", CURVE.map(|n| n as f64))
-            .column("spacing", "", spacing)
-            .column("bound (4.12)", "", CURVE.map(bound))
-            .column("sharp limit", "", CURVE.map(sharp))
-            .column(
-                "observed",
-                "",
-                CURVE.map(|n| {
-                    let run = runs.iter().position(|m| *m == n);
-                    run.map_or(f64::NAN, |k| seen[k])
-                }),
-            )
-            .save(&path)?;
-        found.file(path);
-        Ok(found)
     }
+    found.holds(
+        "margin-grows",
+        format!("from {:.4} to {:.4}", ratio[0], ratio[ratio.len() - 1]),
+        ratio.is_sorted() && ratio.iter().all(|r| *r < std::f64::consts::SQRT_2),
+    );
+    let off = runs
+        .iter()
+        .zip(&seen)
+        .map(|(n, l)| (l / sharp(*n) - 1.0).abs());
+    found.number("observed-is-sharp", largest(off));
+    found.number("sharp-local", sharp(1) / bound(1));
+
+    let spacing: Vec<f64> = CURVE.iter().map(|n| HORIZON / *n as f64).collect();
+    let at: Vec<f64> = runs.iter().map(|n| HORIZON / *n as f64).collect();
+    let plot = Plot::new("Stable step, δ = 5")
+        .x("Δx", "")
+        .y("Δt", "")
+        .series(
+            "(4.12)",
+            &spacing,
+            &CURVE.map(bound),
+            Stroke::Solid,
+            Mark::Disc,
+        )
+        .dashed("linear, Δt = Δx", &spacing, &spacing)
+        .series("observed", &at, &seen, Stroke::Dashed, Mark::Diamond)
+        .series(
+            "sharp: 2/max ω",
+            &spacing,
+            &CURVE.map(sharp),
+            Stroke::Dotted,
+            Mark::None,
+        );
+    let linear = plot.clone().x_range(0.0, HORIZON).y_range(0.0, 7.5);
+    found.picture(linear.save(&context.out, "stable-step")?);
+    let log = plot.log_x().log_y();
+    found.picture(log.save(&context.out, "stable-step-log")?);
+    let path = context.out.join("stable-step.csv");
+    Table::new()
+        .column("N", "", CURVE.map(|n| n as f64))
+        .column("spacing", "", spacing)
+        .column("bound (4.12)", "", CURVE.map(bound))
+        .column("sharp limit", "", CURVE.map(sharp))
+        .column(
+            "observed",
+            "",
+            CURVE.map(|n| {
+                let run = runs.iter().position(|m| *m == n);
+                run.map_or(f64::NAN, |k| seen[k])
+            }),
+        )
+        .save(&path)?;
+    found.file(path);
+    Ok(found)
 }
 
 /// The observed border of steady runs, by bisection from the bound (4.12) to √2 of it.
@@ -180,12 +159,7 @@ fn border(n: usize, bound: f64) -> Result<f64, Failure> {
         sim.set_time(0, 0.0);
         sim.start(true);
         let runs = (0..steps).all(|_| sim.step().is_ok());
-        let largest = sim
-            .displacements()
-            .iter()
-            .map(|u| u[0].abs())
-            .fold(0.0, f64::max);
-        runs && largest < BOUNDED
+        runs && largest(sim.displacements().iter().map(|u| u[0].abs())) < BOUNDED
     };
     let interval = [0.99 * bound, 1.45 * bound];
     observed(steady, interval, CLOSE)

@@ -2,15 +2,31 @@
 
 use peridyne::error::RunError;
 
-use super::SHARED;
 use super::deck;
 use super::lennard_jones::Paper;
-use super::motion::{Motion, Wanted, record, run};
-use crate::{Context, Experiment, Failure, Findings};
+use super::motion::{Motion, Wanted, record};
+use super::runs::{self, Name};
+use crate::measure::{apart, largest};
+use crate::{Context, Failure, Findings};
+
+experiment!(
+    Figure51,
+    "figure-5-1",
+    "A shock in a Lennard-Jones chain",
+    [
+        "../chain.rs",
+        "../deck.rs",
+        "../modes.rs",
+        "../motion.rs",
+        "../runs.rs",
+        "../lennard_jones.rs",
+        "deck.toml"
+    ]
+);
 
 const DECK: &str = include_str!("deck.toml");
 /// Names of the runs in the deck, and what they are called.
-const RUNS: [(&str, &str); 4] = [
+const RUNS: [Name; 4] = [
     ("md", "MD"),
     ("pd-1", "PD"),
     ("pd-2", "coarse PD"),
@@ -21,158 +37,129 @@ const CONTRAST: f64 = 0.04;
 /// The corner that is shown larger: x between these, t from here on.
 const CORNER: ([f64; 2], f64) = ([850.0, 1000.0], 200.0);
 
-pub struct Figure51;
-
-impl Experiment for Figure51 {
-    fn key(&self) -> &'static str {
-        "seleson2009"
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let mut found = Findings::new();
+    let runs = runs::all(
+        context,
+        DECK,
+        &RUNS,
+        |_| vec![],
+        |steps, _| Wanted {
+            columns: 999,
+            rows: 750,
+            profiles: vec![0, steps / 100, steps],
+            energies: 0,
+        },
+    )?;
+    // the whole of the molecular dynamics, the corner of all
+    runs::densities(context, &runs[..1], &RUNS, CONTRAST, &mut found)?;
+    for (motion, (name, label)) in runs.iter().zip(RUNS) {
+        let map = motion
+            .image
+            .zoom(&motion.titled(label), CONTRAST, CORNER.0, CORNER.1);
+        found.picture(map.save(&context.out, &format!("corner-{name}"))?);
     }
+    let (md, fine) = (&runs[0], &runs[1]);
+    let last = |m: &Motion| -> Result<Vec<f64>, Failure> { Ok(m.profile(m.steps)?.u.clone()) };
+    let ends: Vec<Vec<f64>> = runs.iter().map(last).collect::<Result<_, _>>()?;
 
-    fn figure(&self) -> &'static str {
-        "figure-5-1"
+    let counts: Vec<String> = runs[1..]
+        .iter()
+        .map(|m| format!("{} and {}", m.points, m.neighbours))
+        .collect();
+    found.text("points", counts.join(", "));
+    let same = md
+        .profiles
+        .iter()
+        .zip(&fine.profiles)
+        .all(|(a, b)| a.u == b.u);
+    found.holds(
+        "pd-is-md-at-one-resolution",
+        format!(
+            "displacements at {} steps: the same bits: {same}",
+            md.profiles.len()
+        ),
+        same,
+    );
+    // (5.3) as it is printed, in a stepper of its own
+    let mut off = vec![];
+    for m in &runs[1..] {
+        let [start, some] = [m.profile(0)?, m.profile(m.steps / 100)?];
+        let paper = Paper {
+            neighbours: m.neighbours as usize,
+            spacing: m.spacing,
+            epsilon: 1.0 / 72.0,
+            sigma6: 0.5,
+        };
+        let u = paper.displacements(&start.u, m.time_step, some.step);
+        off.push(apart(&u, &some.u));
     }
-
-    fn title(&self) -> &'static str {
-        "A shock in a Lennard-Jones chain"
-    }
-
-    fn claims(&self) -> &'static str {
-        include_str!("claims.toml")
-    }
-
-    fn readme(&self) -> &'static str {
-        include_str!("README.md")
-    }
-
-    fn sources(&self) -> &'static [&'static str] {
-        &[include_str!("mod.rs"), DECK, SHARED]
-    }
-
-    fn run(&self, context: &Context) -> Result<Findings, Failure> {
-        let mut found = Findings::new();
-        let mut runs: Vec<Motion> = vec![];
-        for (name, label) in RUNS {
-            let motion = run(context, DECK, name, name, &[], |steps, _| Wanted {
-                columns: 999,
-                rows: 750,
-                profiles: vec![0, steps / 100, steps],
-                energies: 0,
-            })?;
-            let title = format!(
-                "{label}: {} points, N = {}",
-                motion.points, motion.neighbours
-            );
-            if name == "md" {
-                let map = motion.image.map(&title, CONTRAST);
-                found.picture(map.save(&context.out, "density-md")?);
-            }
-            let map = motion.image.zoom(&title, CONTRAST, CORNER.0, CORNER.1);
-            found.picture(map.save(&context.out, &format!("corner-{name}"))?);
-            runs.push(motion);
-        }
-        let (md, fine) = (&runs[0], &runs[1]);
-        let last = |m: &Motion| -> Result<Vec<f64>, Failure> { Ok(m.profile(m.steps)?.u.clone()) };
-        let ends: Vec<Vec<f64>> = runs.iter().map(last).collect::<Result<_, _>>()?;
-
-        let counts: Vec<String> = runs[1..]
+    found.number("equation-5-3", largest(off));
+    // the shock: steepest front in the half that runs to the right
+    let slope = |m: &Motion, u: &[f64]| {
+        let steep = u
+            .windows(2)
+            .skip(u.len() / 2)
+            .map(|w| (w[0] - w[1]) / m.spacing);
+        largest(steep)
+    };
+    let start = slope(md, &md.profile(0)?.u) / 2.0;
+    let steepest = slope(md, &ends[0]);
+    let front = front(&ends[0]);
+    found.holds(
+        "shock",
+        format!("largest compression of the right pulse: {start:.4} as it starts, {steepest:.4} at the end, at x = {front:.0}"),
+        steepest > 1.5 * start && front > CORNER.0[0],
+    );
+    let waves: Vec<f64> = ends
+        .iter()
+        .zip(&runs)
+        .map(|(u, m)| wavelength(u, m.spacing))
+        .collect();
+    found.holds(
+        "resolution-changes-the-front",
+        format!(
+            "distance of the two foremost waves: {:.2}, {:.2}, {:.2} for Δx = 1, 2, 4",
+            waves[1], waves[2], waves[3]
+        ),
+        waves[2] > 1.3 * waves[1] && waves[3] > 1.3 * waves[2],
+    );
+    let smooth = |k: usize| {
+        let every = (runs[k].spacing / md.spacing).round() as usize;
+        let apart = ends[k]
             .iter()
-            .map(|m| format!("{} and {}", m.points, m.neighbours))
+            .enumerate()
+            .map(|(j, u)| (u - ends[0][j * every]).abs());
+        largest(apart)
+    };
+    let displacement = largest(ends[0].iter().copied());
+    found.holds(
+        "coarse-away-from-the-front",
+        format!(
+            "largest difference of displacements from MD: {:.3} (Δx = 2), {:.3} (Δx = 4), of {displacement:.2}",
+            smooth(2),
+            smooth(3)
+        ),
+        smooth(2) < 0.1 * displacement && smooth(3) < 0.25 * displacement,
+    );
+    let (text, stopped) = literal()?;
+    found.holds("literal-pulse-crosses", text, stopped);
+
+    let path = context.out.join("displacements.csv");
+    let column = |k: usize| {
+        let every = (runs[k].spacing / md.spacing).round() as usize;
+        (0..md.points).map(move |j| (j % every == 0).then(|| j / every))
+    };
+    let mut table = peridyne_io::write::table::Table::new().column("x", "", md.x());
+    for (k, (name, _)) in RUNS.iter().enumerate() {
+        let values: Vec<f64> = column(k)
+            .map(|j| j.map_or(f64::NAN, |j| ends[k][j]))
             .collect();
-        found.text("points", counts.join(", "));
-        let same = md
-            .profiles
-            .iter()
-            .zip(&fine.profiles)
-            .all(|(a, b)| a.u == b.u);
-        found.holds(
-            "pd-is-md-at-one-resolution",
-            format!(
-                "displacements at {} steps: the same bits: {same}",
-                md.profiles.len()
-            ),
-            same,
-        );
-        // (5.3) as it is printed, in a stepper of its own
-        let mut off = 0.0f64;
-        for m in &runs[1..] {
-            let [start, some] = [m.profile(0)?, m.profile(m.steps / 100)?];
-            let paper = Paper {
-                neighbours: m.neighbours as usize,
-                spacing: m.spacing,
-                epsilon: 1.0 / 72.0,
-                sigma6: 0.5,
-            };
-            let u = paper.displacements(&start.u, m.time_step, some.step);
-            let apart = u.iter().zip(&some.u).map(|(a, b)| (a - b).abs());
-            off = apart.fold(off, f64::max);
-        }
-        found.number("equation-5-3", off);
-        // the shock: steepest front in the half that runs to the right
-        let slope = |m: &Motion, u: &[f64]| {
-            let steep = u
-                .windows(2)
-                .skip(u.len() / 2)
-                .map(|w| (w[0] - w[1]) / m.spacing);
-            steep.fold(0.0, f64::max)
-        };
-        let start = slope(md, &md.profile(0)?.u) / 2.0;
-        let steepest = slope(md, &ends[0]);
-        let front = front(&ends[0]);
-        found.holds(
-            "shock",
-            format!("largest compression of the right pulse: {start:.4} as it starts, {steepest:.4} at the end, at x = {front:.0}"),
-            steepest > 1.5 * start && front > CORNER.0[0],
-        );
-        let waves: Vec<f64> = ends
-            .iter()
-            .zip(&runs)
-            .map(|(u, m)| wavelength(u, m.spacing))
-            .collect();
-        found.holds(
-            "resolution-changes-the-front",
-            format!(
-                "distance of the two foremost waves: {:.2}, {:.2}, {:.2} for Δx = 1, 2, 4",
-                waves[1], waves[2], waves[3]
-            ),
-            waves[2] > 1.3 * waves[1] && waves[3] > 1.3 * waves[2],
-        );
-        let smooth = |k: usize| {
-            let every = (runs[k].spacing / md.spacing).round() as usize;
-            let apart = ends[k]
-                .iter()
-                .enumerate()
-                .map(|(j, u)| (u - ends[0][j * every]).abs());
-            apart.fold(0.0, f64::max)
-        };
-        let displacement = ends[0].iter().copied().fold(0.0, f64::max);
-        found.holds(
-            "coarse-away-from-the-front",
-            format!(
-                "largest difference of displacements from MD: {:.3} (Δx = 2), {:.3} (Δx = 4), of {displacement:.2}",
-                smooth(2),
-                smooth(3)
-            ),
-            smooth(2) < 0.1 * displacement && smooth(3) < 0.25 * displacement,
-        );
-        let (text, stopped) = literal()?;
-        found.holds("literal-pulse-crosses", text, stopped);
-
-        let path = context.out.join("displacements.csv");
-        let column = |k: usize| {
-            let every = (runs[k].spacing / md.spacing).round() as usize;
-            (0..md.points).map(move |j| (j % every == 0).then(|| j / every))
-        };
-        let mut table = peridyne_io::write::table::Table::new().column("x", "", md.x());
-        for (k, (name, _)) in RUNS.iter().enumerate() {
-            let values: Vec<f64> = column(k)
-                .map(|j| j.map_or(f64::NAN, |j| ends[k][j]))
-                .collect();
-            table = table.column(&format!("{name} at 300"), "", values);
-        }
-        table.save(&path)?;
-        found.file(path);
-        Ok(found)
+        table = table.column(&format!("{name} at 300"), "", values);
     }
+    table.save(&path)?;
+    found.file(path);
+    Ok(found)
 }
 
 /// Where the pulse that runs to the right begins: the last point displaced by a hundredth of its height.

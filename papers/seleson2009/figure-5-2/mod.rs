@@ -3,13 +3,28 @@
 use peridyne_io::write::plot::{Mark, Plot, Stroke};
 use peridyne_io::write::table::Table;
 
-use super::SHARED;
-use super::motion::{Energies, Motion, Wanted, run};
-use crate::{Context, Experiment, Failure, Findings};
+use super::motion::{Energies, Motion, Wanted};
+use super::runs::{self, Name};
+use crate::measure::{self, largest};
+use crate::{Context, Failure, Findings};
+
+experiment!(
+    Figure52,
+    "figure-5-2",
+    "Energies of a Lennard-Jones chain and of its upscaling",
+    [
+        "../chain.rs",
+        "../deck.rs",
+        "../modes.rs",
+        "../motion.rs",
+        "../runs.rs",
+        "deck.toml"
+    ]
+);
 
 const DECK: &str = include_str!("deck.toml");
 /// Names of the runs in the deck, and what they are called.
-const RUNS: [(&str, &str); 3] = [
+const RUNS: [Name; 3] = [
     ("md", "MD"),
     ("pd-2", "coarse PD, Δx = 2"),
     ("pd-4", "coarse PD, Δx = 4"),
@@ -18,147 +33,116 @@ const RUNS: [(&str, &str); 3] = [
 const EPSILON: f64 = 1.0 / 72.0;
 const SIGMA6: f64 = 0.5;
 
-pub struct Figure52;
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let mut found = Findings::new();
+    let runs = runs::all(
+        context,
+        DECK,
+        &RUNS,
+        |_| vec![],
+        |_, _| Wanted {
+            energies: 300,
+            ..Wanted::default()
+        },
+    )?;
+    let rest: Vec<f64> = runs.iter().map(|m| at_rest(m).1).collect();
+    let series = |k: usize, of: fn(&Energies) -> f64| -> Vec<f64> {
+        runs[k].energies.iter().map(of).collect()
+    };
+    let kinetic: Vec<Vec<f64>> = (0..3).map(|k| series(k, |e| e.kinetic)).collect();
+    // above the reference state, which is the binding energy
+    let potential: Vec<Vec<f64>> = (0..3)
+        .map(|k| {
+            series(k, |e| e.potential)
+                .iter()
+                .map(|p| p - rest[k])
+                .collect()
+        })
+        .collect();
+    let total: Vec<Vec<f64>> = (0..3)
+        .map(|k| {
+            kinetic[k]
+                .iter()
+                .zip(&potential[k])
+                .map(|(a, b)| a + b)
+                .collect()
+        })
+        .collect();
+    let t = series(0, |e| e.time);
 
-impl Experiment for Figure52 {
-    fn key(&self) -> &'static str {
-        "seleson2009"
-    }
-
-    fn figure(&self) -> &'static str {
-        "figure-5-2"
-    }
-
-    fn title(&self) -> &'static str {
-        "Energies of a Lennard-Jones chain and of its upscaling"
-    }
-
-    fn claims(&self) -> &'static str {
-        include_str!("claims.toml")
-    }
-
-    fn readme(&self) -> &'static str {
-        include_str!("README.md")
-    }
-
-    fn sources(&self) -> &'static [&'static str] {
-        &[include_str!("mod.rs"), DECK, SHARED]
-    }
-
-    fn run(&self, context: &Context) -> Result<Findings, Failure> {
-        let mut found = Findings::new();
-        let mut runs: Vec<Motion> = vec![];
-        for (name, _) in RUNS {
-            runs.push(run(context, DECK, name, name, &[], |_, _| Wanted {
-                energies: 300,
-                ..Wanted::default()
-            })?);
-        }
-        let rest: Vec<f64> = runs.iter().map(|m| at_rest(m).1).collect();
-        let series = |k: usize, of: fn(&Energies) -> f64| -> Vec<f64> {
-            runs[k].energies.iter().map(of).collect()
-        };
-        let kinetic: Vec<Vec<f64>> = (0..3).map(|k| series(k, |e| e.kinetic)).collect();
-        // above the reference state, which is the binding energy
-        let potential: Vec<Vec<f64>> = (0..3)
-            .map(|k| {
-                series(k, |e| e.potential)
-                    .iter()
-                    .map(|p| p - rest[k])
-                    .collect()
-            })
-            .collect();
-        let total: Vec<Vec<f64>> = (0..3)
-            .map(|k| {
-                kinetic[k]
-                    .iter()
-                    .zip(&potential[k])
-                    .map(|(a, b)| a + b)
-                    .collect()
-            })
-            .collect();
-        let t = series(0, |e| e.time);
-
-        let density: Vec<f64> = runs.iter().map(|m| at_rest(m).0).collect();
-        let off = density.iter().map(|d| (d / -EPSILON - 1.0).abs());
-        found.number("binding", off.fold(0.0, f64::max));
-        let scale = total[0][0];
-        let spread = |e: &[f64]| {
-            let change = e.iter().map(|x| (x - e[0]).abs());
-            change.fold(0.0, f64::max) / scale
-        };
-        let drifts: Vec<f64> = total.iter().map(|e| spread(e)).collect();
+    let density: Vec<f64> = runs.iter().map(|m| at_rest(m).0).collect();
+    let off = density.iter().map(|d| (d / -EPSILON - 1.0).abs());
+    found.number("binding", largest(off));
+    let scale = total[0][0];
+    let spread = |e: &[f64]| largest(e.iter().map(|x| (x - e[0]).abs())) / scale;
+    let drifts: Vec<f64> = total.iter().map(|e| spread(e)).collect();
+    found.holds(
+        "total-is-conserved",
+        format!(
+            "largest change over the energy of the pulse: MD {:.1e}, Δx = 2 {:.1e}, Δx = 4 {:.1e}",
+            drifts[0], drifts[1], drifts[2]
+        ),
+        drifts.iter().all(|d| *d < 1e-3),
+    );
+    let apart = |a: &[f64], b: &[f64]| measure::apart(a, b) / scale;
+    let text = |of: &[Vec<f64>]| {
+        format!(
+            "Δx = 2 {:.2} %, Δx = 4 {:.2} %",
+            100.0 * apart(&of[1], &of[0]),
+            100.0 * apart(&of[2], &of[0])
+        )
+    };
+    for (key, of) in [
+        ("kinetic-agrees", &kinetic),
+        ("potential-agrees", &potential),
+        ("total-agrees", &total),
+    ] {
         found.holds(
-            "total-is-conserved",
-            format!(
-                "largest change over the energy of the pulse: MD {:.1e}, Δx = 2 {:.1e}, Δx = 4 {:.1e}",
-                drifts[0], drifts[1], drifts[2]
-            ),
-            drifts.iter().all(|d| *d < 1e-3),
+            key,
+            text(of),
+            apart(&of[1], &of[0]) < 0.02 && apart(&of[2], &of[0]) < 0.05,
         );
-        let apart = |a: &[f64], b: &[f64]| {
-            let difference = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-            difference.fold(0.0, f64::max) / scale
-        };
-        let text = |of: &[Vec<f64>]| {
-            format!(
-                "Δx = 2 {:.2} %, Δx = 4 {:.2} %",
-                100.0 * apart(&of[1], &of[0]),
-                100.0 * apart(&of[2], &of[0])
+    }
+    let share = kinetic[0][t.len() - 1] / scale;
+    found.holds(
+        "halves",
+        format!("kinetic part of MD: 0 at the start, {share:.3} at the end"),
+        kinetic[0][0] == 0.0 && (0.45..0.55).contains(&share),
+    );
+
+    for (name, title, of) in [
+        ("kinetic", "Kinetic energy", &kinetic),
+        (
+            "potential",
+            "Potential energy above the reference state",
+            &potential,
+        ),
+        ("total", "Total energy above the reference state", &total),
+    ] {
+        let plot = Plot::new(title).x("t", "").y("energy", "");
+        let plot = plot.y_range(-0.05 * scale, 1.2 * scale);
+        let plot = plot
+            .line(RUNS[0].1, &t, &of[0])
+            .dashed(RUNS[1].1, &t, &of[1])
+            .series(RUNS[2].1, &t, &of[2], Stroke::Dotted, Mark::None);
+        found.picture(plot.save(&context.out, name)?);
+    }
+    let path = context.out.join("energies.csv");
+    let mut table = Table::new().column("t", "", t);
+    for (k, (_, label)) in RUNS.iter().enumerate() {
+        table = table
+            .column(&format!("{label}: kinetic"), "", kinetic[k].clone())
+            .column(
+                &format!("{label}: potential above rest"),
+                "",
+                potential[k].clone(),
             )
-        };
-        for (key, of) in [
-            ("kinetic-agrees", &kinetic),
-            ("potential-agrees", &potential),
-            ("total-agrees", &total),
-        ] {
-            found.holds(
-                key,
-                text(of),
-                apart(&of[1], &of[0]) < 0.02 && apart(&of[2], &of[0]) < 0.05,
-            );
-        }
-        let share = kinetic[0][t.len() - 1] / scale;
-        found.holds(
-            "halves",
-            format!("kinetic part of MD: 0 at the start, {share:.3} at the end"),
-            kinetic[0][0] == 0.0 && (0.45..0.55).contains(&share),
-        );
-
-        for (name, title, of) in [
-            ("kinetic", "Kinetic energy", &kinetic),
-            (
-                "potential",
-                "Potential energy above the reference state",
-                &potential,
-            ),
-            ("total", "Total energy above the reference state", &total),
-        ] {
-            let plot = Plot::new(title).x("t", "").y("energy", "");
-            let plot = plot.y_range(-0.05 * scale, 1.2 * scale);
-            let plot = plot
-                .line(RUNS[0].1, &t, &of[0])
-                .dashed(RUNS[1].1, &t, &of[1])
-                .series(RUNS[2].1, &t, &of[2], Stroke::Dotted, Mark::None);
-            found.picture(plot.save(&context.out, name)?);
-        }
-        let path = context.out.join("energies.csv");
-        let mut table = Table::new().column("t", "", t);
-        for (k, (_, label)) in RUNS.iter().enumerate() {
-            table = table
-                .column(&format!("{label}: kinetic"), "", kinetic[k].clone())
-                .column(
-                    &format!("{label}: potential above rest"),
-                    "",
-                    potential[k].clone(),
-                )
-                .column(&format!("{label}: total above rest"), "", total[k].clone())
-                .column(&format!("{label}: total"), "", series(k, Energies::total));
-        }
-        table.save(&path)?;
-        found.file(path);
-        Ok(found)
+            .column(&format!("{label}: total above rest"), "", total[k].clone())
+            .column(&format!("{label}: total"), "", series(k, Energies::total));
     }
+    table.save(&path)?;
+    found.file(path);
+    Ok(found)
 }
 
 /// Energy per length of the endless chain at rest, and the energy of the chain with its free ends: every bond once.

@@ -5,6 +5,7 @@ use peridyne_io::write::table::Table;
 
 use super::chain::{DECK, Family, Wave};
 use super::{deck, model};
+use crate::measure::{apart, largest};
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -89,10 +90,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         found.file(path);
     }
 
-    let worst = (md.u.iter().zip(&fine.u))
-        .flat_map(|(a, b)| a.iter().zip(b))
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max);
+    let worst = largest(md.u.iter().zip(&fine.u).map(|(a, b)| apart(a, b)));
     found.holds(
         "same-resolution",
         format!("displacements of all times differ by {worst:.1e} at most, of 7"),

@@ -4,7 +4,7 @@ use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 
 use super::chain::{Family, Wave};
-use super::relative_difference;
+use crate::measure::{change, largest, relative_difference};
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -79,7 +79,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         found.file(path);
     }
 
-    found.number("height", md.u[0].iter().copied().fold(0.0, f64::max));
+    found.number("height", largest(md.u[0].iter().copied()));
     // on the points that all three have
     let shared = |wave: &Wave| -> Vec<f64> {
         let every = 4 / wave.h as usize;
@@ -94,28 +94,13 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             difference < 0.1,
         );
     }
-    let drift = |wave: &Wave| {
-        let total = wave.total();
-        total
-            .iter()
-            .map(|e| (e / total[0] - 1.0).abs())
-            .fold(0.0, f64::max)
-    };
-    let drifts: Vec<f64> = waves.iter().map(drift).collect();
+    let drift = largest(waves.iter().map(|wave| change(wave.total())));
     found.holds(
         "conserved",
-        format!(
-            "largest change of the total: {:.1e} of it",
-            drifts.iter().copied().fold(0.0, f64::max)
-        ),
-        drifts.iter().all(|d| *d < 0.01),
+        format!("largest change of the total: {drift:.1e} of it"),
+        drift < 0.01,
     );
-    let spread = |of: &dyn Fn(&Wave) -> f64| {
-        let all = [of(&waves[0]), of(&waves[1]), of(&waves[2])];
-        all.iter()
-            .map(|x| (x / all[0] - 1.0).abs())
-            .fold(0.0, f64::max)
-    };
+    let spread = |of: &dyn Fn(&Wave) -> f64| change(waves.iter().map(of));
     let kinetic = spread(&|w| w.kinetic[w.steps()]);
     let total = spread(&|w| w.total()[0]);
     found.holds(
@@ -128,7 +113,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         .iter()
         .zip(&md.strain)
         .map(|(k, s)| k + s - md.strain[0]);
-    let exchange = exchange.map(f64::abs).fold(0.0, f64::max) / md.kinetic[md.steps()];
+    let exchange = largest(exchange.map(f64::abs)) / md.kinetic[md.steps()];
     found.holds(
         "complementary",
         format!("kinetic energy and loss of strain energy agree within {exchange:.1e}"),

@@ -3,6 +3,7 @@
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 
+use crate::measure::largest;
 use crate::profile::{pulse, rise};
 use crate::seleson2014::plate::{Plate, Step};
 use crate::{Context, Failure, Findings};
@@ -44,16 +45,12 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let outside = outside.filter(|(x, _)| x[0].hypot(x[1]) >= 0.2);
     found.number(
         "outside",
-        outside
-            .map(|(_, u)| u[0].abs().max(u[1].abs()))
-            .fold(0.0, f64::max),
+        largest(outside.map(|(_, u)| u[0].abs().max(u[1].abs()))),
     );
     // rise is s¹¹ times what is not 0 there
     found.number("order", (rise(2e-4) / rise(1e-4)).log2());
     let points = x.iter().zip(&u).filter(|(x, _)| **x > 0.0);
-    let worst = points
-        .map(|(x, u)| (u - pulse(*x, 0.0, 0.2, 1e-4)).abs())
-        .fold(0.0, f64::max);
+    let worst = largest(points.map(|(x, u)| (u - pulse(*x, 0.0, 0.2, 1e-4)).abs()));
     found.number("points", worst);
     Ok(found)
 }

@@ -1,6 +1,7 @@
 //! Figs. 4 and 5 with the paper's time steps: 20,000 for h = a, in parts of 500 that are kept.
 
 use crate::seleson2014::plate::{MESHES, Plate, Step, curves, maps};
+use crate::seleson2014::{conserved, figure_5};
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -37,21 +38,22 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     maps(&context.out, &waves, &mut found)?;
     curves(&context.out, &waves, &mut found)?;
-    crate::seleson2014::figure_5::judge(&waves, &mut found);
+    conserved(waves.iter().map(|w| &w.record), &mut found);
     found.holds(
         "step",
         steps.join("; "),
         differences.iter().all(|d| *d < 0.02),
     );
     if !context.small {
+        figure_5::compare(&waves, &mut found);
         let [fine, coarse] = [&waves[0], &waves[2]];
         found.holds(
             "cost",
             format!(
                 "{:.0} s for h = a, {:.1} s for h = 4a, on {} threads",
-                fine.seconds, coarse.seconds, context.threads
+                fine.record.seconds, coarse.record.seconds, context.threads
             ),
-            fine.seconds > 200.0 * coarse.seconds,
+            fine.record.seconds > 200.0 * coarse.record.seconds,
         );
     }
     Ok(found)

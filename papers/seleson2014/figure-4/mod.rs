@@ -1,6 +1,6 @@
 //! Fig. 4: the strain energy of the plate at the final time.
 
-use crate::seleson2014::plate::{MESHES, Plate, Step, T, Wave, maps};
+use crate::seleson2014::plate::{self, Plate, Step, T, Wave, maps};
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -12,11 +12,7 @@ experiment!(
 
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
-    let mut waves = vec![];
-    for mesh in MESHES {
-        context.say(&format!("plate with h = {mesh}a"));
-        waves.push(Plate::new(context, mesh, Step::Hundred).run(context)?);
-    }
+    let waves = plate::waves(context)?;
     maps(&context.out, &waves, &mut found)?;
     let crests = [0, 1, 2].map(|k: usize| waves[k].crest());
     found.holds(
@@ -56,49 +52,50 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         ),
         d < 0.02,
     );
+    let [limit, half] =
+        [Step::Limit, Step::HalfLimit].map(|step| Plate::new(context, 1, step).run(context));
+    let (limit, half) = (limit?, half?);
+    let d = [&limit, &half].map(|w| w.difference(&waves[0]));
+    found.holds(
+        "limit",
+        format!(
+            "h = a: {} steps of {:.3e} s, {} of {:.3e} s and {} of {:.3e} s: displacements of the first two differ from the last by {:.2} % and {:.2} %",
+            limit.steps,
+            limit.time_step,
+            half.steps,
+            half.time_step,
+            waves[0].steps,
+            waves[0].time_step,
+            100.0 * d[0],
+            100.0 * d[1]
+        ),
+        d[0] > 3.0 * d[1],
+    );
     if !context.small {
         let other = Plate {
             horizon: 12.0,
             ..Plate::new(context, 1, Step::Hundred)
         };
         let other = other.run(context)?;
-        let d = other.difference(&waves[0]);
-        found.holds(
-            "horizon",
-            format!(
-                "12a against 12.1a at h = a: displacements differ by {:.2} %",
-                100.0 * d
-            ),
-            // as much as the coarse meshes are allowed
-            d < 0.1,
+        found.measured(
+            "displacements with ε = 12a against 12.1a, h = a: difference (root of the squares)",
+            100.0 * other.difference(&waves[0]),
+            "%",
         );
-        let limit = Plate::new(context, 1, Step::Limit).run(context)?;
-        let d = limit.difference(&waves[0]);
-        found.holds(
-            "limit",
-            format!(
-                "h = a: {} steps of {:.3e} s and {} of {:.3e} s: displacements differ by {:.2} %",
-                limit.steps,
-                limit.time_step,
-                waves[0].steps,
-                waves[0].time_step,
-                100.0 * d
-            ),
-            d < 0.1,
-        );
-        found.holds("cost", cost(&waves[0]), true);
+        cost(&waves[0], &mut found);
     }
     Ok(found)
 }
 
 /// What the run takes, and what it would at the paper's step.
-fn cost(fine: &Wave) -> String {
-    let bond_steps = fine.bonds as f64 * T / 1.25e-9;
-    format!(
-        "{:.0} s for {} steps: {:.2} ns per directed bond and step; at the paper's step that is {:.2} h",
-        fine.seconds,
-        fine.steps,
-        fine.ns(),
-        fine.ns() * 1e-9 * bond_steps / 3600.0
-    )
+fn cost(fine: &Wave, found: &mut Findings) {
+    let (ns, steps) = (fine.record.ns(fine.bonds, fine.steps), T / 1.25e-9);
+    found.measured("time of the plate with h = a", fine.record.seconds, "s");
+    found.measured("steps in that time", fine.steps as f64, "");
+    found.measured("time of a directed bond in a step", ns, "ns");
+    found.measured(
+        "time at the paper's step by this (14,564 s on 64 cores)",
+        ns * 1e-9 * fine.bonds as f64 * steps,
+        "s",
+    );
 }

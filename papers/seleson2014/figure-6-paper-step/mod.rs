@@ -1,7 +1,7 @@
 //! Fig. 6 with the paper's 10,000 steps, in parts of 500 that are kept.
 
+use crate::measure::relative_difference;
 use crate::seleson2014::cube::Cube;
-use crate::seleson2014::relative_difference;
 use crate::{Context, Failure, Findings};
 
 experiment!(

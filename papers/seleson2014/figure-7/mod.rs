@@ -12,6 +12,7 @@ use peridyne::spec::{
 };
 use peridyne_io::write::table::Table;
 
+use crate::measure::{apart, largest};
 use crate::seleson2014::chain::{Family, parsed};
 use crate::{Context, Failure, Findings};
 use states::{Family as Bonds, Solid};
@@ -87,15 +88,9 @@ fn engine(
 }
 
 /// Largest difference relative to the largest force.
-fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+fn relative(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let (a, b) = (a.as_flattened(), b.as_flattened());
-    let size = b.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let worst = a
-        .iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max);
-    worst / size
+    apart(a, b) / largest(b.iter().map(|x| x.abs()))
 }
 
 fn run(context: &Context) -> Result<Findings, Failure> {
@@ -127,8 +122,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         ] {
             let solid = Solid::new(&bonds, omega, BULK, SHEAR);
             let lps = solid.lps(&u);
-            worst[0] = worst[0].max(apart(&solid.eam_like(&u), &lps));
-            worst[1] = worst[1].max(apart(&engine(&bonds, as_typed, influence, &u)?, &lps));
+            let typed = engine(&bonds, as_typed, influence, &u)?;
+            worst[0] = largest([worst[0], relative(&solid.eam_like(&u), &lps)]);
+            worst[1] = largest([worst[1], relative(&typed, &lps)]);
         }
         note(&mut found, d("eam-like"), worst[0]);
         note(&mut found, d("engine"), worst[1]);
@@ -140,7 +136,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             let structured = states::structured(&bonds, p, k, c, &u);
             let omega = move |r: f64| r.powi(-p);
             let lps = Solid::new(&bonds, &omega, BULK, SHEAR).lps(&u);
-            worst = worst.max(apart(&structured, &lps));
+            worst = largest([worst, relative(&structured, &lps)]);
         }
         note(&mut found, d("structured"), worst);
         let law = LawSpec::EamLike {
@@ -149,16 +145,20 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         };
         let structured = states::structured(&bonds, 1, k, c, &u);
         let run = engine(&bonds, law, Influence::Inverse, &u)?;
-        note(&mut found, d("deck"), apart(&run, &structured));
+        note(&mut found, d("deck"), relative(&run, &structured));
 
         // ν = 1/4: P = 0, and with ω = 1/ξ it is PMB with c = 30 G/m
         let solid = Solid::new(&bonds, &inverse, 5.0 / 3.0 * SHEAR, SHEAR);
         let lps = solid.lps(&u);
-        note(&mut found, d("bond-based"), apart(&solid.pairs(&u), &lps));
+        note(
+            &mut found,
+            d("bond-based"),
+            relative(&solid.pairs(&u), &lps),
+        );
         let micromodulus = 30.0 * SHEAR / solid.m;
         let pmb = LawSpec::Pmb(PmbStiffness::Micromodulus(micromodulus));
         let run = engine(&bonds, pmb, Influence::Constant, &u)?;
-        note(&mut found, d("pmb"), apart(&run, &lps));
+        note(&mut found, d("pmb"), relative(&run, &lps));
         if dimension == 3 {
             let moduli = Moduli {
                 young: 1.0,
@@ -168,11 +168,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             let micromodulus = 30.0 * moduli.shear() / solid.m;
             let pmb = LawSpec::Pmb(PmbStiffness::Micromodulus(micromodulus));
             let pmb = engine(&bonds, pmb, Influence::Constant, &u)?;
-            note(&mut found, "pmb-quarter".into(), apart(&pmb, &lps));
+            note(&mut found, "pmb-quarter".into(), relative(&pmb, &lps));
         }
         // what would hide an error of the volume term
         let without = Solid::new(&bonds, &inverse, BULK, SHEAR);
-        let difference = apart(&without.pairs(&u), &without.lps(&u));
+        let difference = relative(&without.pairs(&u), &without.lps(&u));
         found.holds(
             &d("not-bond-based"),
             format!(
@@ -203,7 +203,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let by_hand = structureless::forces(mei.spec(), h, &u);
         let mut sim = build(&spec, Options::default()).map_err(|e| Failure::new(e.to_string()))?;
         let u: Vec<[f64; 3]> = u.iter().map(|u| [*u, 0.0, 0.0]).collect();
-        worst = worst.max(apart(&sim.forces_under(&u), &by_hand));
+        worst = largest([worst, relative(&sim.forces_under(&u), &by_hand)]);
     }
     note(&mut found, "structureless".into(), worst);
 

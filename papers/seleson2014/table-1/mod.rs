@@ -10,6 +10,7 @@ use peridyne_theory::crystal::potential::{Reach, Reference};
 
 use super::chain::{DECK, Family, parsed};
 use super::deck;
+use crate::measure::largest;
 use crate::{Context, Failure, Findings};
 
 experiment!(
@@ -86,12 +87,13 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let of = |x: &f64| uniform(mei, x * h).map(|r| r.energy / h);
         energies.push(stretches.iter().map(of).collect::<Result<Vec<f64>, _>>()?);
     }
-    let worst = energies[1..]
+    let pairs = energies[1..]
         .iter()
-        .flat_map(|e| e.iter().zip(&energies[0]))
-        .map(|(a, b)| (a / b - 1.0).abs())
-        .fold(0.0, f64::max);
-    found.number("upscaling", worst);
+        .flat_map(|e| e.iter().zip(&energies[0]));
+    found.number(
+        "upscaling",
+        largest(pairs.map(|(a, b)| (a / b - 1.0).abs())),
+    );
     let path = context.out.join("uniform.csv");
     Table::new()
         .column("stretch", "", stretches.clone())

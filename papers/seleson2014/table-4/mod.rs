@@ -22,15 +22,18 @@ struct Counted {
     steps: u64,
 }
 
-fn counted(mesh: u32) -> Counted {
-    let n = 800 / u64::from(mesh);
-    let horizon = 12.1 / f64::from(mesh);
-    Counted {
-        points: n * n,
-        family: family(horizon),
-        bonds: bonds(n as i64, horizon),
-        steps: 20_000 / u64::from(mesh),
-    }
+fn counted(context: &Context, mesh: u32) -> Result<Counted, Failure> {
+    let plate = Plate {
+        small: false,
+        ..Plate::new(context, mesh, Step::Paper)
+    };
+    let info = plate.model(false)?.info().clone();
+    Ok(Counted {
+        points: info.points,
+        family: family(plate.horizon / f64::from(mesh)),
+        bonds: info.directed_bonds,
+        steps: plate.steps(),
+    })
 }
 
 /// Seconds of a step at the paper's step (mean over about two seconds or twenty steps), and bytes held.
@@ -49,17 +52,21 @@ fn measured(plate: Plate) -> Result<[f64; 2], Failure> {
 
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
-    let all = MESHES.map(counted);
+    let [a, b, c] = MESHES.map(|mesh| counted(context, mesh));
+    let all = [a?, b?, c?];
     for (mesh, c) in MESHES.iter().zip(&all) {
         found.number(&format!("points-{mesh}"), c.points as f64);
         found.number(&format!("bonds-{mesh}"), (c.points * c.family) as f64);
     }
     let exact = all.each_ref().map(|c| c.bonds);
+    let edges = |c: &Counted, mesh: u32| {
+        let n = c.points.isqrt();
+        n * n == c.points && c.bonds == bonds(n as i64, 12.1 / f64::from(mesh))
+    };
     found.holds(
         "edges",
         format!("{}, {}, {} with the edges", exact[0], exact[1], exact[2]),
-        all.iter()
-            .all(|c| c.bonds < c.points * c.family && c.bonds * 100 > c.points * c.family * 97),
+        all.iter().zip(MESHES).all(|(c, mesh)| edges(c, mesh)),
     );
     // distances are roots of whole numbers
     let fits = |square: u32| {

@@ -120,20 +120,20 @@ impl<const D: usize> Support<D> {
         };
         let top = values.iter().copied().fold(1.0, f64::max);
         let null = (0..count).filter(|k| values[*k] < 1e-12 * top);
-        let mut loose: Vec<Loose> = null
+        let mut found: Vec<usize> = null
             .filter_map(|k| {
-                let strongest = (0..count)
-                    .max_by(|p, q| vectors[k][*p].abs().total_cmp(&vectors[k][*q].abs()))?;
-                Some(Loose {
-                    points: members.len(),
-                    point: members[0],
-                    motion: motions[strongest].0,
-                })
+                (0..count).max_by(|p, q| vectors[k][*p].abs().total_cmp(&vectors[k][*q].abs()))
             })
             .collect();
-        loose.sort_by_key(|l| l.motion);
-        loose.dedup();
-        loose
+        // translations first
+        found.sort_unstable();
+        found.dedup();
+        let named = |n: usize| Loose {
+            points: members.len(),
+            point: members[0],
+            motion: motions[n].0,
+        };
+        found.into_iter().map(named).collect()
     }
 }
 

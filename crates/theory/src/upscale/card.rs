@@ -251,8 +251,8 @@ fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRo
     for (mode, shape) in modes {
         for strain in STRAINS {
             let tensor = shape.map(|row| row.map(|x| strain * x));
-            let at = |s: &Box<dyn peridyne::run::Simulation>| s.energy_under_strain(tensor)[0];
-            let (fine, coarse) = (at(a) - rest_a, at(b) - rest_b);
+            let at = |s: &dyn peridyne::run::Simulation| s.energy_under_strain(tensor)[0];
+            let (fine, coarse) = (at(a.as_ref()) - rest_a, at(b.as_ref()) - rest_b);
             if !(fine.is_finite() && coarse.is_finite()) {
                 notes.push(format!(
                     "Under a {mode} strain of {strain} the energy has no value (ρ_h ≤ 0)."
@@ -343,11 +343,10 @@ fn waves<const D: usize>(
     let wavelengths = TOLERANCES
         .iter()
         .map(|t| {
-            let apart = |(x, y): (&Vec<f64>, &Vec<f64>)| {
-                x.iter()
-                    .zip(y)
-                    .any(|(x, y)| !((x - y).abs() <= t * y.abs().max(x.abs())))
-            };
+            // an unstable wave has no frequency and is never near
+            let near = |x: f64, y: f64| (x - y).abs() <= t * y.abs().max(x.abs());
+            let apart =
+                |(x, y): (&Vec<f64>, &Vec<f64>)| x.iter().zip(y).any(|(x, y)| !near(*x, *y));
             let first = fine.iter().zip(&coarse).position(apart);
             (*t, first.map(|i| 2.0 * PI / wave[i]))
         })
