@@ -10,6 +10,7 @@
 //! | what is the coarse model with the same dynamics, and how far does it agree? | [`upscale`] |
 //! | is one model an upscaling of another, to which order? | [`upscaling`] |
 //! | all of that of one lattice, for a report | [`survey`] |
+//! | which factors of bonds make a body as stiff at its surface as inside? | [`homogenize`] |
 //! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
 
 // tensors are indexed by components
@@ -23,6 +24,7 @@ pub mod elastic;
 pub mod exact;
 pub mod fracture;
 pub mod gradient;
+pub mod homogenize;
 pub mod jet;
 pub mod lattice_elastic;
 pub mod moments;

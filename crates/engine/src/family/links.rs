@@ -12,7 +12,8 @@ pub struct Link<const D: usize> {
     pub shift: isize,
     /// Reference vector to the partner (length).
     pub xi: [f64; D],
-    cell: [i32; D],
+    /// Cells to the partner.
+    pub cell: [i32; D],
     to: usize,
 }
 

@@ -3,10 +3,12 @@
 //! Springs are `C = c ω ν V_j ξ⊗ξ/|ξ|³`, the bond-based solid linearised about the reference (seleson2009 (A.2)); they pull
 //! along their reference direction and may go through each other.
 
+use super::scale::Scale;
 use super::{BondState, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Layout};
 use crate::execute::blocks::{Shared, for_each_block};
-use crate::execute::lane::Lane;
+use crate::error::BuildError;
+use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::Links;
 
@@ -19,6 +21,8 @@ pub struct LinearInteraction<const D: usize> {
     links: Links<D>,
     /// Per sublattice and bond: `C` (force density / length).
     stiffness: Vec<Vec<[[f64; D]; D]>>,
+    /// Factors of bonds.
+    scale: Scale,
     unit: Vec<()>,
     sums: Vec<f64>,
 }
@@ -35,6 +39,7 @@ impl<const D: usize> LinearInteraction<D> {
                 .map(|list| list.iter().map(|l| modulus(l.xi)).collect())
                 .collect(),
             links,
+            scale: Scale::default(),
             unit: vec![(); blocks],
             sums: vec![0.0; blocks],
         }
@@ -52,6 +57,7 @@ impl<const D: usize> LinearInteraction<D> {
         View {
             links: &self.links,
             stiffness: &self.stiffness,
+            scale: &self.scale,
             body,
             u,
         }
@@ -61,6 +67,7 @@ impl<const D: usize> LinearInteraction<D> {
 struct View<'a, const D: usize> {
     links: &'a Links<D>,
     stiffness: &'a [Vec<[[f64; D]; D]>],
+    scale: &'a Scale,
     body: &'a Body<D>,
     u: &'a Field<D>,
 }
@@ -82,11 +89,12 @@ impl<const D: usize> View<'_, D> {
 
     /// `Σ C η` and, if asked for, `Σ η·C η` of a tile.
     #[inline(always)]
-    fn sum<L: Lane, const FULL: bool, const ENERGY: bool>(
+    fn sum<L: Lane, const FULL: bool, const ENERGY: bool, const SCALED: bool>(
         &self,
         first: usize,
         sub: usize,
         bits: &[u8],
+        scale: &[f64],
         i: &[L; D],
     ) -> ([L; D], L) {
         let mut force = [L::splat(0.0); D];
@@ -102,10 +110,19 @@ impl<const D: usize> View<'_, D> {
                     eta[a] = eta[a].zero_if(L::dead(bits[k]));
                 }
             }
+            // SAFETY: eight numbers per bond
+            let factor: L = if SCALED {
+                unsafe { L::load(scale.as_ptr().add(k * TILE)) }
+            } else {
+                L::splat(1.0)
+            };
             for a in 0..D {
                 let mut pull = L::splat(c[a][0]) * eta[0];
                 for b in 1..D {
                     pull = L::splat(c[a][b]).fma(eta[b], pull);
+                }
+                if SCALED {
+                    pull = pull * factor;
                 }
                 force[a] = force[a] + pull;
                 if ENERGY {
@@ -125,8 +142,15 @@ impl<const D: usize> View<'_, D> {
             i[a] = unsafe { L::load(self.u[a].as_ptr().add(first)) };
         }
         let (mut force, energy) = match self.links.bits(n, sub) {
-            None => self.sum::<L, true, ENERGY>(first, sub, &[], &i),
-            Some(bits) => self.sum::<L, false, ENERGY>(first, sub, bits, &i),
+            bits if self.scale.is_scaled(n) => {
+                let scale = self.scale.tile(n);
+                match bits {
+                    None => self.sum::<L, true, ENERGY, true>(first, sub, &[], scale, &i),
+                    Some(bits) => self.sum::<L, false, ENERGY, true>(first, sub, bits, scale, &i),
+                }
+            }
+            None => self.sum::<L, true, ENERGY, false>(first, sub, &[], &[], &i),
+            Some(bits) => self.sum::<L, false, ENERGY, false>(first, sub, bits, &[], &i),
         };
         let dead = L::dead(owned);
         for f in &mut force {
@@ -173,7 +197,18 @@ impl<const D: usize> Kernel for Energies<'_, D> {
                 // SAFETY: tiles are disjoint
                 unsafe { energy.store(self.out.at(first)) };
             }
-            sum += energy.to_array().iter().sum::<f64>();
+            let energies = energy.to_array();
+            sum += match self.view.body.volume.uniform() {
+                Some(_) => energies.iter().sum::<f64>(),
+                // what the caller multiplies by is 1
+                None => {
+                    let first = self.view.tile(n).0;
+                    let volume = |l: usize| self.view.body.volume.at(first + l);
+                    (energies.iter().enumerate())
+                        .map(|(l, x)| x * volume(l))
+                        .sum::<f64>()
+                }
+            };
         }
         sum
     }
@@ -210,7 +245,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         self.energies(body, u, Shared::NULL, &mut sums);
         let total: f64 = sums.iter().sum();
         self.sums = sums;
-        [total * body.volume.uniform().unwrap_or(0.0), 0.0]
+        [total * body.volume.uniform().unwrap_or(1.0), 0.0]
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
@@ -226,7 +261,6 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
 
     /// Of the linear forces, along the reference distances.
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        let volume = body.volume.uniform().unwrap_or(0.0);
         let Layout::Grid(grid) = &body.layout else {
             return None;
         };
@@ -234,16 +268,44 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         for &s in &body.slots {
             let i = s as usize;
             let (_, sub) = grid.cell(i);
-            for (link, c) in self.links.links[sub].iter().zip(&self.stiffness[sub]) {
+            let tile = (i - grid.guard) / TILE;
+            let n = self.links.tiles.binary_search(&(tile as u32)).ok()?;
+            let bonds = self.links.links[sub].iter().zip(&self.stiffness[sub]);
+            for (k, (link, c)) in bonds.enumerate() {
+                let factor = self.scale.of(n, k, (i - grid.guard) % TILE);
                 let Some(j) = link.partner(grid, i) else {
                     continue;
                 };
                 let pull: [f64; D] =
                     std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
-                super::add_virial(&mut sum, &pull, &link.xi, -0.5 * volume);
+                let factor = -0.5 * body.volume.at(i) * factor;
+                super::add_virial(&mut sum, &pull, &link.xi, factor);
             }
         }
         Some(sum)
+    }
+
+    fn scale_bonds(
+        &mut self,
+        body: &Body<D>,
+        factor: &dyn Fn(usize, [i32; D]) -> f64,
+    ) -> Result<(), BuildError> {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        if grid.basis() > 1 {
+            return Err(BuildError::new(
+                "surface",
+                "factors of bonds need a chain, square or cubic lattice",
+            ));
+        }
+        let links = &self.links;
+        self.scale = Scale::new(links.tiles.len(), links.links[0].len(), |n, k, l| {
+            let slot = grid.tile_slot(links.tiles[n] as usize) + l;
+            let there = links.bits(n, 0).is_none_or(|bits| bits[k] >> l & 1 == 1);
+            if there { factor(slot, links.links[0][k].cell) } else { 1.0 }
+        });
+        Ok(())
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -256,6 +318,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
 
     fn bytes(&self) -> usize {
         self.links.bytes()
+            + self.scale.bytes()
             + self
                 .stiffness
                 .iter()

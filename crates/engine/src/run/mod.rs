@@ -10,6 +10,7 @@ mod probe;
 mod recipe;
 mod reference;
 mod sets;
+mod surface;
 mod virial;
 
 pub use build::{Options, build, build_in};
