@@ -86,13 +86,21 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let mut sigma = [[0.0; 3]; 3];
     for k in 0..side.pow(d as u32) {
         let o: [f64; 3] = std::array::from_fn(|a| {
-            if a < d { f64::from(k / side.pow(a as u32) % side - m) * H } else { 0.0 }
+            if a < d {
+                f64::from(k / side.pow(a as u32) % side - m) * H
+            } else {
+                0.0
+            }
         });
         let r = o.iter().map(|x| x * x).sum::<f64>().sqrt();
         if r == 0.0 || r > horizon * (1.0 + 1e-12) {
             continue;
         }
-        let nu = if spec.volume_scaling { volume_fraction(r, horizon, H) } else { 1.0 };
+        let nu = if spec.volume_scaling {
+            volume_fraction(r, horizon, H)
+        } else {
+            1.0
+        };
         let weight = nu * influence(spec.influence, r, horizon) * H.powi(d as i32) * spec.section;
         let n = o.map(|x| x / r);
         let mut stretch = 0.0;
@@ -193,7 +201,11 @@ fn residual_inside(spec: &Spec) -> f64 {
     for e in strains(spec.dimension) {
         let f = sim.forces_under(&displaced(sim.as_ref(), &e, STRAIN));
         let size = |f: &Point| f.iter().fold(0.0f64, |m, c| m.max(c.abs()));
-        let largest = f.iter().zip(&v).map(|(f, v)| size(f) * v).fold(0.0, f64::max);
+        let largest = f
+            .iter()
+            .zip(&v)
+            .map(|(f, v)| size(f) * v)
+            .fold(0.0, f64::max);
         for ((f, v), x) in f.iter().zip(&v).zip(&x) {
             assert!(*v <= whole, "{x:?}");
             if *v == whole {
@@ -209,8 +221,14 @@ fn holes_and_steps() {
     let hole = |p: &[i32; 3]| (2 * p[0] - 23).pow(2) + (2 * p[1] - 23).pow(2) >= 120;
     let step = |p: &[i32; 3]| p[0] < 9 || p[1] < 9;
     let mut kept: Vec<(&str, Vec<[i32; 3]>)> = vec![];
-    kept.push(("hole", points([24, 24, 1]).into_iter().filter(hole).collect()));
-    kept.push(("step", points([18, 18, 1]).into_iter().filter(step).collect()));
+    kept.push((
+        "hole",
+        points([24, 24, 1]).into_iter().filter(hole).collect(),
+    ));
+    kept.push((
+        "step",
+        points([18, 18, 1]).into_iter().filter(step).collect(),
+    ));
     for (name, points) in kept {
         for m in [2, 3] {
             let spec = body(2, &points, m);
@@ -271,13 +289,21 @@ fn force_is_the_derivative_of_energy_and_momentum_is_kept() {
         let volumes = sim.volumes();
         let f = sim.forces_under(&u);
         let size = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
-        let sum: Point = std::array::from_fn(|a| f.iter().zip(&volumes).map(|(f, v)| f[a] * v).sum());
+        let sum: Point =
+            std::array::from_fn(|a| f.iter().zip(&volumes).map(|(f, v)| f[a] * v).sum());
         let total: f64 = volumes.iter().sum();
-        assert!(sum.iter().all(|s| s.abs() < 1e-13 * size * total), "{sum:?}");
+        assert!(
+            sum.iter().all(|s| s.abs() < 1e-13 * size * total),
+            "{sum:?}"
+        );
         let mut energy = |u: &[Point]| {
             sim.set_displacements(u);
             let density = sim.energy_density();
-            density.iter().zip(&volumes).map(|(w, v)| w * v).sum::<f64>()
+            density
+                .iter()
+                .zip(&volumes)
+                .map(|(w, v)| w * v)
+                .sum::<f64>()
         };
         let step = 1e-5 * H;
         for i in (0..u.len()).step_by(37) {

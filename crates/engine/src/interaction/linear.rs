@@ -6,8 +6,8 @@
 use super::scale::Scale;
 use super::{BondState, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Layout};
-use crate::execute::blocks::{Shared, for_each_block};
 use crate::error::BuildError;
+use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::Links;
@@ -303,7 +303,11 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         self.scale = Scale::new(links.tiles.len(), links.links[0].len(), |n, k, l| {
             let slot = grid.tile_slot(links.tiles[n] as usize) + l;
             let there = links.bits(n, 0).is_none_or(|bits| bits[k] >> l & 1 == 1);
-            if there { factor(slot, links.links[0][k].cell) } else { 1.0 }
+            if there {
+                factor(slot, links.links[0][k].cell)
+            } else {
+                1.0
+            }
         });
         Ok(())
     }

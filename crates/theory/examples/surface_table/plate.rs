@@ -19,7 +19,12 @@ pub struct Plate {
     moduli: Moduli,
 }
 
-fn spec(points: &[[i32; 2]], m: u32, periodic: [Option<f64>; 3], method: Option<SurfaceMethod>) -> Spec {
+fn spec(
+    points: &[[i32; 2]],
+    m: u32,
+    periodic: [Option<f64>; 3],
+    method: Option<SurfaceMethod>,
+) -> Spec {
     let body = BodySpec::Sites {
         kind: LatticeKind::Square,
         spacing: 1.0,
@@ -41,7 +46,10 @@ fn spec(points: &[[i32; 2]], m: u32, periodic: [Option<f64>; 3], method: Option<
 }
 
 fn dot(a: &[Point], b: &[Point]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (0..2).map(|k| a[k] * b[k]).sum::<f64>()).sum()
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (0..2).map(|k| a[k] * b[k]).sum::<f64>())
+        .sum()
 }
 
 /// Forces that hold displacements: `K u`.
@@ -50,7 +58,10 @@ fn stiffness(sim: &mut dyn Simulation, volumes: &[f64], u: &[Point]) -> Vec<Poin
     let scale = SMALL / largest.max(f64::MIN_POSITIVE);
     let small: Vec<Point> = u.iter().map(|u| u.map(|x| scale * x)).collect();
     let f = sim.forces_under(&small);
-    f.iter().zip(volumes).map(|(f, v)| f.map(|f| -f * v / scale)).collect()
+    f.iter()
+        .zip(volumes)
+        .map(|(f, v)| f.map(|f| -f * v / scale))
+        .collect()
 }
 
 /// Solve `K u = b` for loads in equilibrium; rigid motion is left as it comes.
@@ -153,13 +164,19 @@ impl Plate {
     pub fn error(&mut self, load: Load) -> f64 {
         let b = self.loads(load);
         let u = equilibrium(self.sim.as_mut(), &b);
-        let classical: Vec<[f64; 2]> =
-            self.place.iter().map(|x| load.displacement(self.moduli, *x)).collect();
+        let classical: Vec<[f64; 2]> = self
+            .place
+            .iter()
+            .map(|x| load.displacement(self.moduli, *x))
+            .collect();
         let size = |u: &[[f64; 2]]| u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
         let found: Vec<[f64; 2]> = u.iter().map(|u| [u[0], u[1]]).collect();
         let without = |u: &[[f64; 2]]| without_rigid_motion(&self.place, u);
-        let difference: Vec<[f64; 2]> =
-            found.iter().zip(&classical).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+        let difference: Vec<[f64; 2]> = found
+            .iter()
+            .zip(&classical)
+            .map(|(a, b)| [a[0] - b[0], a[1] - b[1]])
+            .collect();
         size(&without(&difference)) / size(&without(&classical))
     }
 }
@@ -220,19 +237,32 @@ pub fn frequency_error(n: i32, m: u32, method: Option<SurfaceMethod>) -> f64 {
     let (volumes, densities) = (sim.volumes(), sim.densities());
     let mass: Vec<f64> = volumes.iter().zip(&densities).map(|(v, d)| v * d).collect();
     let total: f64 = mass.iter().sum();
-    let length = if method == Some(SurfaceMethod::Exact) { f64::from(n - 1) } else { f64::from(n) };
+    let length = if method == Some(SurfaceMethod::Exact) {
+        f64::from(n - 1)
+    } else {
+        f64::from(n)
+    };
     let middle = 0.5 * f64::from(n - 1);
     let x = sim.reference();
     let mut u: Vec<Point> = x
         .iter()
-        .map(|x| [(std::f64::consts::PI * (x[0] - middle) / length).sin(), 0.0, 0.0])
+        .map(|x| {
+            [
+                (std::f64::consts::PI * (x[0] - middle) / length).sin(),
+                0.0,
+                0.0,
+            ]
+        })
         .collect();
     let mut square = 0.0;
     // inverse iteration
     for _ in 0..6 {
         let mean = u.iter().zip(&mass).map(|(u, m)| u[0] * m).sum::<f64>() / total;
-        let load: Vec<Point> =
-            u.iter().zip(&mass).map(|(u, m)| [m * (u[0] - mean), 0.0, 0.0]).collect();
+        let load: Vec<Point> = u
+            .iter()
+            .zip(&mass)
+            .map(|(u, m)| [m * (u[0] - mean), 0.0, 0.0])
+            .collect();
         u = equilibrium(sim.as_mut(), &load);
         let mean = u.iter().zip(&mass).map(|(u, m)| u[0] * m).sum::<f64>() / total;
         u.iter_mut().for_each(|u| u[0] -= mean);

@@ -169,7 +169,10 @@ impl LatticeBody {
                 }
             })
             .collect();
-        let points: Vec<[i32; 3]> = quarters.iter().map(|q| q.map(|q| q.div_euclid(4))).collect();
+        let points: Vec<[i32; 3]> = quarters
+            .iter()
+            .map(|q| q.map(|q| q.div_euclid(4)))
+            .collect();
         let periodic = spec.periodic.map(|p| p.is_some());
         Ok(LatticeBody {
             sites: Sites::new(spec.dimension, &points, periodic),
@@ -298,10 +301,7 @@ pub fn correct(
         "surface = \"exact\": no factors without negative ones make every uniform strain of this body exact; those taken leave at most {:.1e} of the stiffness, at ({a:.6}, {b:.6}, {c:.6})",
         report.residual
     );
-    Ok((
-        finish(&body, &mut attempt, &x, Some(warning)),
-        Some(report),
-    ))
+    Ok((finish(&body, &mut attempt, &x, Some(warning)), Some(report)))
 }
 
 /// The factors of a spec whose body or horizon has changed since, made anew.
@@ -321,7 +321,12 @@ fn report(body: &LatticeBody, attempt: &Attempt, x: &[f64], floor: Option<f64>) 
     let residual = system.residual(x);
     let worst = (0..residual.len())
         .max_by(|a, b| residual[*a].abs().total_cmp(&residual[*b].abs()))
-        .map(|n| (residual[n].abs() / scale, body.position(system.place[n] as usize)));
+        .map(|n| {
+            (
+                residual[n].abs() / scale,
+                body.position(system.place[n] as usize),
+            )
+        });
     let (residual, worst) = worst.unwrap_or_default();
     Report {
         exact: floor.is_some(),

@@ -98,7 +98,7 @@ impl Neighbourhoods {
             names: HashMap::new(),
             patterns: vec![],
             turned: vec![],
-            of_place: vec![VOID; sites.len()],
+            of_place: vec![VOID; sites.places()],
             classes: HashMap::new(),
             known: HashMap::new(),
         };
@@ -216,11 +216,11 @@ impl Kinds {
                     return 0;
                 }
                 let mut key = vec![around.of(place as usize)];
-                key.extend(
-                    offsets
-                        .iter()
-                        .map(|o| sites.step(place as usize, *o).map_or(VOID, |j| around.of(j))),
-                );
+                key.extend(offsets.iter().map(|o| {
+                    sites
+                        .step(place as usize, *o)
+                        .map_or(VOID, |j| around.of(j))
+                }));
                 let new = example.len() as u32;
                 *names.entry(key).or_insert_with(|| {
                     example.push(place);

@@ -41,12 +41,8 @@ impl Sites {
     }
 
     /// Places of the box.
-    pub fn len(&self) -> usize {
+    pub fn places(&self) -> usize {
         self.present.len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.place.is_empty()
     }
 
     fn cell(&self, place: usize) -> [i32; 3] {
@@ -110,7 +106,7 @@ impl Sites {
         for a in 0..self.dimension {
             let n = self.size[a];
             let mut line = vec![false; n as usize];
-            for first in 0..self.len() {
+            for first in 0..self.places() {
                 if self.cell(first)[a] != 0 {
                     continue;
                 }

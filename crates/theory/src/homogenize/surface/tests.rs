@@ -36,7 +36,10 @@ fn plates_have_positive_factors_in_the_outermost_layer() {
         assert!(report.exact && report.residual < 1e-13, "{report:?}");
         assert_eq!((report.layers, report.unknowns), (1, unknowns));
         assert_eq!(report.floor, 0.25);
-        assert!(report.lowest > 0.2499 && report.vanishing == 0, "{report:?}");
+        assert!(
+            report.lowest > 0.2499 && report.vanishing == 0,
+            "{report:?}"
+        );
     }
 }
 
@@ -107,7 +110,10 @@ fn refused_with_a_reason() {
         },
         perturb: None,
     };
-    assert!(matches!(refused(&spec), SurfaceError::Loose { count: 4, .. }));
+    assert!(matches!(
+        refused(&spec),
+        SurfaceError::Loose { count: 4, .. }
+    ));
 }
 
 #[test]

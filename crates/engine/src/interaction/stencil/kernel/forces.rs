@@ -43,17 +43,18 @@ impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL>
             // SAFETY: tiles lie inside the arrays, offsets inside the guards; each tile is written by one block
             unsafe {
                 match (v.is_intact(n), v.is_scaled(n)) {
-                    (true, false) if W::SHARES && v.is_alike(n) => self
-                        .tile::<L, false, true, false>(n, &mut offsets, &mut rare, &mut tally),
-                    (true, false) => self.tile::<L, false, false, false>(
-                        n, &mut offsets, &mut rare, &mut tally,
-                    ),
-                    (false, false) => self.tile::<L, true, false, false>(
-                        n, &mut offsets, &mut rare, &mut tally,
-                    ),
-                    (_, true) => self.tile::<L, true, false, true>(
-                        n, &mut offsets, &mut rare, &mut tally,
-                    ),
+                    (true, false) if W::SHARES && v.is_alike(n) => {
+                        self.tile::<L, false, true, false>(n, &mut offsets, &mut rare, &mut tally)
+                    }
+                    (true, false) => {
+                        self.tile::<L, false, false, false>(n, &mut offsets, &mut rare, &mut tally)
+                    }
+                    (false, false) => {
+                        self.tile::<L, true, false, false>(n, &mut offsets, &mut rare, &mut tally)
+                    }
+                    (_, true) => {
+                        self.tile::<L, true, false, true>(n, &mut offsets, &mut rare, &mut tally)
+                    }
                 }
             }
         }
