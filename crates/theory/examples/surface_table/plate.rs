@@ -17,6 +17,10 @@ pub struct Plate {
     place: Vec<[f64; 2]>,
     size: [i32; 2],
     moduli: Moduli,
+    /// Does the body end half a spacing outside its outermost points?
+    whole_cells: bool,
+    /// Radius of a circle with the area of the hole.
+    hole: f64,
 }
 
 fn spec(
@@ -114,7 +118,15 @@ impl Plate {
         };
         let sim = build(&spec, Options::default()).expect("the plate is sound");
         let moduli = moduli(sim.info().micromodulus[0], m);
+        let whole_cells = method != Some(SurfaceMethod::Exact);
+        let box_area: f64 = size
+            .iter()
+            .map(|n| f64::from(*n - i32::from(!whole_cells)))
+            .product();
+        let hole = ((box_area - sim.info().volume).max(0.0) / std::f64::consts::PI).sqrt();
         Plate {
+            whole_cells,
+            hole,
             place: points.iter().map(place).collect(),
             sim,
             factors,
@@ -132,31 +144,49 @@ impl Plate {
         self.factors
     }
 
-    /// Forces of the tractions on the outer edges.
+    /// The radius that the classical hole must have.
+    pub fn hole(&self) -> f64 {
+        self.hole
+    }
+
+    /// Forces of the tractions on the outer edges: exact on the outermost points if the body ends there; else those on the
+    /// faces of the cells of these points. The second leave a couple, which inertia of the body takes up.
     fn loads(&self, load: Load) -> Vec<Point> {
         let half = self.size.map(|n| 0.5 * f64::from(n - 1));
-        self.place
-            .iter()
-            .map(|&x| {
-                let mut force = [0.0; 3];
-                for a in 0..2 {
-                    if x[a].abs() != half[a] {
-                        continue;
-                    }
-                    let mut normal = [0.0; 2];
-                    normal[a] = x[a].signum();
+        let force = |&x: &[f64; 2]| {
+            let mut force = [0.0; 3];
+            for a in (0..2).filter(|a| x[*a].abs() == half[*a]) {
+                let mut normal = [0.0; 2];
+                normal[a] = x[a].signum();
+                let mut add = |f: [f64; 2]| {
+                    force[0] += f[0];
+                    force[1] += f[1];
+                };
+                if self.whole_cells {
+                    let mut middle = x;
+                    middle[a] += 0.5 * normal[a];
+                    let (mut from, mut to) = (middle, middle);
+                    from[1 - a] -= 0.5;
+                    to[1 - a] += 0.5;
+                    add(load.edge_force(from, to, normal));
+                    add(load.edge_force(to, from, normal));
+                } else {
                     for side in [-1.0, 1.0] {
                         let mut to = x;
                         to[1 - a] += side;
                         if to[1 - a].abs() <= half[1 - a] {
-                            let f = load.edge_force(x, to, normal);
-                            force[0] += f[0];
-                            force[1] += f[1];
+                            add(load.edge_force(x, to, normal));
                         }
                     }
                 }
-                force
-            })
+            }
+            force
+        };
+        let all: Vec<Point> = self.place.iter().map(force).collect();
+        let flat: Vec<[f64; 2]> = all.iter().map(|f| [f[0], f[1]]).collect();
+        without_rigid_motion(&self.place, &flat)
+            .iter()
+            .map(|f| [f[0], f[1], 0.0])
             .collect()
     }
 
