@@ -62,6 +62,7 @@ fn main() {
             Influence::Constant
         },
         periodic: [None; 3],
+        surface: None,
         precracks: vec![],
         contact: Some(ContactSpec {
             bonded: 0.9,

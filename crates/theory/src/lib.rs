@@ -10,7 +10,7 @@
 //! | what is the coarse model with the same dynamics, and how far does it agree? | [`upscale`] |
 //! | is one model an upscaling of another, to which order? | [`upscaling`] |
 //! | all of that of one lattice, for a report | [`survey`] |
-//! | which bonds near a surface must be stiffer for uniform strain to be exact? | [`homogenize`] |
+//! | which factors of bonds make a body as stiff at its ends as inside? | [`homogenize`] |
 //! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
 
 // tensors are indexed by components

@@ -42,6 +42,8 @@ pub enum RefineError {
     FewNeighbours(u32),
     #[error("level {0} has too many points or neighbours to be counted: take fewer levels")]
     TooFine(u32),
+    #[error("{0}")]
+    Surface(#[from] crate::homogenize::surface::SurfaceError),
 }
 
 /// The body of level `level` (0: as it is).
@@ -108,6 +110,7 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
         perturb: None,
     };
     fine.horizon = horizon;
+    crate::homogenize::surface::renew(&mut fine)?;
     Ok(fine)
 }
 

@@ -90,6 +90,7 @@ fn case(
         calibration: Calibration::Discrete,
         influence,
         periodic,
+        surface: None,
         precracks: vec![],
         contact: None,
         initial: vec![],

@@ -15,7 +15,8 @@ pub struct Link<const D: usize> {
     pub shift: isize,
     /// Reference vector to the partner (length).
     pub xi: [f64; D],
-    cell: [i32; D],
+    /// Cells to the partner.
+    pub cell: [i32; D],
     to: usize,
 }
 
@@ -122,6 +123,7 @@ impl<const D: usize> Links<D> {
         let sublattice = grid.tile_sublattice(t);
         Tile {
             first: grid.tile_slot(t),
+            number: n,
             sublattice,
             owned: grid.owned[t],
             links: &self.links[sublattice],
@@ -196,6 +198,8 @@ impl<const D: usize> Links<D> {
 pub struct Tile<'a, const D: usize> {
     /// Its first slot.
     pub first: usize,
+    /// Its place among the tiles that have points.
+    pub number: usize,
     pub sublattice: usize,
     /// A bit per slot that holds a point.
     pub owned: u8,

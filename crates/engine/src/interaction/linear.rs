@@ -3,10 +3,12 @@
 //! Springs are `C = c ω ν V_j ξ⊗ξ/|ξ|³`, the bond-based solid linearised about the reference (seleson2009 (A.2)); they pull
 //! along their reference direction and may go through each other.
 
+use super::scale::Scale;
 use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
-use crate::body::{Body, Field, Layout};
+use crate::body::{Body, Field, Grid, Layout, Values};
+use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
-use crate::execute::lane::Lane;
+use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::{Links, Tile, Tiles};
 
@@ -16,6 +18,8 @@ pub struct LinearInteraction<const D: usize> {
     links: Links<D>,
     /// Per sublattice and bond: `C` (force density / length).
     stiffness: Vec<Vec<[[f64; D]; D]>>,
+    /// Factors of bonds.
+    scale: Scale,
     sums: PerBlock<[f64; 1]>,
 }
 
@@ -30,14 +34,25 @@ impl<const D: usize> LinearInteraction<D> {
                 .map(|list| list.iter().map(|l| modulus(l.xi)).collect())
                 .collect(),
             sums: PerBlock::sums(links.blocks()),
+            scale: Scale::default(),
             links,
         }
     }
 
-    /// Energy over volume, and energy densities per slot where asked for.
+    /// Factor of bond `k` of a slot's point.
+    fn factor(&self, grid: &Grid<D>, slot: usize, k: usize) -> f64 {
+        let at = slot - grid.guard;
+        match self.links.tiles.binary_search(&((at / TILE) as u32)) {
+            Ok(n) => self.scale.of(n, k, at % TILE),
+            Err(_) => 1.0,
+        }
+    }
+
+    /// Energy, and energy densities per slot where asked for.
     fn energies(&self, body: &Body<D>, u: &Field<D>, out: Shared) -> f64 {
         let kernel = Energies {
             view: self.view(body, u),
+            volume: &body.volume,
             out,
         };
         let [sum] = self.sums.sum(self.simd, &kernel);
@@ -48,6 +63,7 @@ impl<const D: usize> LinearInteraction<D> {
         View {
             tiles: Tiles::new(&self.links, body, u),
             stiffness: &self.stiffness,
+            scale: &self.scale,
         }
     }
 }
@@ -55,15 +71,17 @@ impl<const D: usize> LinearInteraction<D> {
 struct View<'a, const D: usize> {
     tiles: Tiles<'a, D>,
     stiffness: &'a [Vec<[[f64; D]; D]>],
+    scale: &'a Scale,
 }
 
 impl<const D: usize> View<'_, D> {
     /// `Σ C η` and, if asked for, `Σ η·C η` of a tile.
     #[inline(always)]
-    fn sum<L: Lane, const FULL: bool, const ENERGY: bool>(
+    fn sum<L: Lane, const FULL: bool, const ENERGY: bool, const SCALED: bool>(
         &self,
         tile: &Tile<D>,
         bits: &[u8],
+        scale: &[f64],
     ) -> ([L; D], L) {
         let i = self.tiles.own::<L>(tile);
         let mut force = [L::splat(0.0); D];
@@ -78,10 +96,18 @@ impl<const D: usize> View<'_, D> {
                     eta[a] = eta[a].zero_if(L::dead(bits[k]));
                 }
             }
+            // SAFETY: eight numbers per bond
+            let factor: L = match SCALED {
+                true => unsafe { L::load(scale.as_ptr().add(k * TILE)) },
+                false => L::splat(1.0),
+            };
             for a in 0..D {
                 let mut pull = L::splat(c[a][0]) * eta[0];
                 for b in 1..D {
                     pull = L::splat(c[a][b]).fma(eta[b], pull);
+                }
+                if SCALED {
+                    pull = pull * factor;
                 }
                 force[a] = force[a] + pull;
                 if ENERGY {
@@ -95,9 +121,16 @@ impl<const D: usize> View<'_, D> {
     /// The same, 0 where there is no point.
     #[inline(always)]
     fn both<L: Lane, const ENERGY: bool>(&self, tile: &Tile<D>) -> ([L; D], L) {
-        let (mut force, energy) = match tile.bits {
-            None => self.sum::<L, true, ENERGY>(tile, &[]),
-            Some(bits) => self.sum::<L, false, ENERGY>(tile, bits),
+        let scaled = self.scale.is_scaled(tile.number);
+        let scale = match scaled {
+            true => self.scale.tile(tile.number),
+            false => &[],
+        };
+        let (mut force, energy) = match (tile.bits, scaled) {
+            (None, false) => self.sum::<L, true, ENERGY, false>(tile, &[], scale),
+            (Some(bits), false) => self.sum::<L, false, ENERGY, false>(tile, bits, scale),
+            (None, true) => self.sum::<L, true, ENERGY, true>(tile, &[], scale),
+            (Some(bits), true) => self.sum::<L, false, ENERGY, true>(tile, bits, scale),
         };
         let dead = L::dead(tile.owned);
         for f in &mut force {
@@ -128,6 +161,7 @@ impl<const D: usize> Kernel for Forces<'_, D> {
 
 struct Energies<'a, const D: usize> {
     view: View<'a, D>,
+    volume: &'a Values,
     /// Energy density per slot, if asked for.
     out: Shared,
 }
@@ -144,7 +178,9 @@ impl<const D: usize> Kernel for Energies<'_, D> {
                 // SAFETY: tiles are disjoint
                 unsafe { energy.store(self.out.at(tile.first)) };
             }
-            sum += energy.to_array().iter().sum::<f64>();
+            let energies = energy.to_array().into_iter().enumerate();
+            let volume = |l: usize| self.volume.at(tile.first + l);
+            sum += energies.map(|(l, e)| e * volume(l)).sum::<f64>();
         }
         [sum]
     }
@@ -175,8 +211,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     }
 
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
-        let sum = self.energies(body, u, Shared::NULL);
-        [sum * body.volume.uniform().unwrap_or(0.0), 0.0]
+        [self.energies(body, u, Shared::NULL), 0.0]
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
@@ -190,7 +225,9 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         };
         let original = body.originals();
         self.links.each_directed(grid, |i, j, sub, k| {
-            visit(BondTangent::direct(i, original(j), self.stiffness[sub][k]))
+            let factor = self.factor(grid, i, k);
+            let stiffness = self.stiffness[sub][k].map(|row| row.map(|c| factor * c));
+            visit(BondTangent::direct(i, original(j), stiffness))
         });
     }
 
@@ -201,7 +238,6 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
 
     /// Of the linear forces, along the reference distances.
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        let volume = body.volume.uniform().unwrap_or(0.0);
         let Layout::Grid(grid) = &body.layout else {
             return None;
         };
@@ -210,9 +246,35 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
             let c = &self.stiffness[sub][k];
             let pull: [f64; D] =
                 std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
-            super::add_virial(&mut sum, &pull, &self.links.links[sub][k].xi, -0.5 * volume);
+            let factor = -0.5 * body.volume.at(i) * self.factor(grid, i, k);
+            super::add_virial(&mut sum, &pull, &self.links.links[sub][k].xi, factor);
         });
         Some(sum)
+    }
+
+    fn scale_bonds(
+        &mut self,
+        body: &Body<D>,
+        factor: &dyn Fn(usize, [i32; D]) -> f64,
+    ) -> Result<(), BuildError> {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        if grid.basis() > 1 {
+            return Err(BuildError::new(
+                "surface",
+                "factors of bonds need a chain, square or cubic lattice",
+            ));
+        }
+        let links = &self.links;
+        self.scale = Scale::new(links.tiles.len(), links.links[0].len(), |n, k, l| {
+            let tile = links.tile(grid, n);
+            match tile.bits.is_none_or(|bits| bits[k] >> l & 1 == 1) {
+                true => factor(tile.first + l, links.links[0][k].cell),
+                false => 1.0,
+            }
+        });
+        Ok(())
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -225,6 +287,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
 
     fn bytes(&self) -> usize {
         self.links.bytes()
+            + self.scale.bytes()
             + self
                 .stiffness
                 .iter()

@@ -8,11 +8,13 @@ mod history;
 pub mod linear;
 pub mod list;
 pub mod micromoduli;
+pub mod scale;
 pub mod stencil;
 pub mod tangent;
 pub mod weight;
 
 use crate::body::{Body, Field};
+use crate::error::BuildError;
 use crate::execute::blocks::Shared;
 use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
@@ -230,6 +232,24 @@ pub trait Interaction<const D: usize>: Send + Sync {
         _crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
         0
+    }
+
+    /// Multiply the force density at a slot, of its bond to the site `cell` cells away, by `factor(slot, cell)`; energies,
+    /// and what breaking releases, follow. Critical stretches stay. Call before the first sweep.
+    fn scale_bonds(
+        &mut self,
+        _body: &Body<D>,
+        _factor: &dyn Fn(usize, [i32; D]) -> f64,
+    ) -> Result<(), BuildError> {
+        Err(BuildError::new(
+            "surface",
+            "factors of bonds need a bond-based law (pmb or springs) on a chain, square or cubic lattice",
+        ))
+    }
+
+    /// Volume with which the bond along ξ acts on slot i, where that is not the volume of its partner.
+    fn reached_volume(&self, _body: &Body<D>, _i: usize, _xi: [f64; D]) -> Option<f64> {
+        None
     }
 
     /// Compute what depends on the family (weighted volumes); after all `Absent` cuts, before the first sweep.

@@ -5,11 +5,13 @@ mod assemble;
 mod kernel;
 
 use super::bond::critical_stretch;
+use super::scale::Scale;
 use super::{
     BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion,
     Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Column, Field, Layout, field, zeros};
+use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -42,6 +44,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     reach: Vec<u32>,
     /// `[different][words]`: a bit per offset that any point of a tile has a partner at.
     reaches: Vec<u64>,
+    /// Factors of bonds.
+    scale: Scale,
     /// Family size per active tile and lane.
     family: Vec<u16>,
     directed: u64,
@@ -62,6 +66,7 @@ pub struct StencilInteraction<const D: usize, W: Law> {
     settled: bool,
     /// The highest `e` at which any bond repels.
     most_contact: f64,
+    /// Of a whole cell.
     volume: f64,
     guard: usize,
     tallies: PerBlock<Tally>,
@@ -98,10 +103,10 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             state,
             reach: &self.reach,
             reaches: &self.reaches,
+            scale: &self.scale,
             u: std::array::from_fn(|a| &*u[a]),
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,
-            volume: self.volume,
             repulsion: self.repulsion,
             most_contact: self.most_contact,
         }
@@ -266,7 +271,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                     visit(BondTangent::of_law(
                         self.law,
                         [i, original(j)],
-                        b.k,
+                        b.k * self.scale.of(n, b.number as usize, i - first),
                         b.back.map(|x| -x),
                         std::array::from_fn(|a| u[a][j] - u[a][i]),
                         [i, j].map(|s| [field(0, s), field(1, s)]),
@@ -401,6 +406,46 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         count
     }
 
+    fn scale_bonds(
+        &mut self,
+        body: &Body<D>,
+        factor: &dyn Fn(usize, [i32; D]) -> f64,
+    ) -> Result<(), BuildError> {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        if W::SHARES || grid.basis() > 1 {
+            return Err(BuildError::new(
+                "surface",
+                "factors of bonds need a bond-based law (pmb or springs) on a chain, square or cubic lattice",
+            ));
+        }
+        self.scale = Scale::new(self.tiles.len(), self.width, |n, k, l| {
+            if self.row(n)[k] >> l & 1 == 1 {
+                let slot = grid.tile_slot(self.tiles[n] as usize) + l;
+                factor(slot, self.partners[0][k].cell)
+            } else {
+                1.0
+            }
+        });
+        Ok(())
+    }
+
+    fn reached_volume(&self, body: &Body<D>, i: usize, xi: [f64; D]) -> Option<f64> {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        if self.scale.is_empty() {
+            return None;
+        }
+        let tile = (i - grid.guard) / TILE;
+        let n = self.tiles.binary_search(&(tile as u32)).ok()?;
+        let k = self.bonds[0]
+            .iter()
+            .position(|b| b.back.map(|x| -x) == xi)?;
+        Some(self.volume * self.scale.of(n, k, (i - grid.guard) % TILE))
+    }
+
     fn prepare(&mut self, body: &Body<D>) {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
@@ -492,6 +537,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             + self.next.len();
         self.alive.len()
             + self.state.len()
+            + self.scale.bytes()
             + 4 * self.reach.len()
             + 8 * self.reaches.len()
             + self.offsets.bytes()

@@ -8,6 +8,7 @@ use super::probe;
 use super::recipe::{Laws, Recipe};
 use super::reference::{Reference, cell, current_neighbours, reference};
 use super::sets::{assign_materials, initial, sets};
+use super::surface;
 use super::{Info, Simulation};
 use crate::body::{Values, zeros};
 use crate::condition::still::Still;
@@ -101,6 +102,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     }
     let mut recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
     let mut interaction = recipe.interaction(&body, None)?;
+    let cell_volume = body.volume.uniform();
+    if let Some(factors) = &spec.surface {
+        surface::scale(factors, &mut body, interaction.as_mut())?;
+        warnings.extend(factors.warning.clone());
+    }
     // a ratio is meant inclusively; only a length leaves the decision to round-off
     let near_horizon = if recipe.ratio {
         0
@@ -156,7 +162,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let stable_step = if options.trust_time_step || spec.schedule.statics.is_some() {
         f64::INFINITY
     } else {
-        probe::stable_step(&recipe, &body, interaction.as_mut(), spec)?
+        probe::stable_step(&recipe, &body, interaction.as_mut(), spec, cell_volume)?
     };
     let dt = match spec.schedule.time_step {
         TimeStep::Fraction(x) if stable_step.is_finite() => x * stable_step,

@@ -13,6 +13,7 @@ mod recipe;
 mod record;
 mod reference;
 mod sets;
+mod surface;
 mod virial;
 
 pub use build::{Options, build, build_in};

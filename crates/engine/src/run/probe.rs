@@ -1,6 +1,7 @@
 //! The stability limit of a body, measured on the body itself, or on a block of its lattice where that is smaller.
 
 use super::recipe::Recipe;
+use super::surface;
 use crate::body::{Body, Layout, Values};
 use crate::dynamics::stable_step::largest_eigenvalue;
 use crate::error::BuildError;
@@ -23,6 +24,7 @@ pub(super) fn stable_step<const D: usize>(
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
     spec: &Spec,
+    cell_volume: Option<f64>,
 ) -> Result<f64, BuildError> {
     let lambda = match &body.layout {
         Layout::Grid(grid) if body.points() > LARGE => {
@@ -53,12 +55,25 @@ pub(super) fn stable_step<const D: usize>(
                 &quarters,
                 reach,
                 periodic,
-                body.volume.uniform().unwrap_or(1.0),
+                cell_volume.unwrap_or(1.0),
             )?;
+            let factors = match &spec.surface {
+                None => None,
+                Some(all) => match surface::of_block(all, body, &block) {
+                    Some(factors) => Some(factors),
+                    // no block has all its places
+                    None => return Ok(step(largest_eigenvalue(body, interaction))),
+                },
+            };
+            let whole = block.volume.clone();
             let mut lambda = 0.0f64;
             for (n, m) in spec.materials.iter().enumerate() {
                 block.density = Values::Uniform(m.density);
+                block.volume = whole.clone();
                 let mut it = recipe.interaction(&block, Some(n))?;
+                if let Some(factors) = &factors {
+                    surface::scale(factors, &mut block, it.as_mut())?;
+                }
                 it.prepare(&block);
                 lambda = lambda.max(largest_eigenvalue(&block, it.as_mut()));
             }
@@ -66,9 +81,14 @@ pub(super) fn stable_step<const D: usize>(
         }
         _ => largest_eigenvalue(body, interaction),
     };
-    Ok(if lambda > 0.0 {
+    Ok(step(lambda))
+}
+
+/// Largest stable step at a largest eigenvalue.
+fn step(lambda: f64) -> f64 {
+    if lambda > 0.0 {
         2.0 / lambda.sqrt()
     } else {
         f64::INFINITY
-    })
+    }
 }

@@ -61,6 +61,7 @@ impl<const D: usize> Model<D> {
                 let e = 2.0 * change / squared;
                 // (r − r0)/r without cancellation
                 let w = (1.0 + e).sqrt();
+                let volumes = [i, j].map(|s| self.body.volume.at(s));
                 let mut pull = 0.0;
                 if state == BondState::Whole {
                     let (g, weight) = (e / (w * (1.0 + w)), recipe.weight(r0));
@@ -74,18 +75,16 @@ impl<const D: usize> Model<D> {
                         Laws::Solid(_) => EamLike { ratio: 0.0 }.pull(weight, g, fi, fj),
                     };
                 }
+                if let Some(reached) = self.interaction.reached_volume(&self.body, i, xi) {
+                    pull *= reached / volumes[1];
+                }
                 if let Some(repulsion) = recipe.repulsion {
                     let (r, d) = (r0 * w, repulsion.distance(r0));
                     if r < d {
                         pull += repulsion.stiffness * (r - d) / r;
                     }
                 }
-                add(
-                    &mut virial,
-                    &y,
-                    pull,
-                    [i, j].map(|s| self.body.volume.at(s)),
-                );
+                add(&mut virial, &y, pull, volumes);
             });
         virial
     }

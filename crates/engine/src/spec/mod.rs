@@ -2,12 +2,15 @@
 //!
 //! A front end (deck, LAMMPS script, another program) fills a [`Spec`]; `run::build` makes a model of it.
 
+mod surface;
+
 use crate::expression::Expression;
 pub use crate::law::potential::PotentialSpec;
 use crate::space::lattice::LatticeKind;
 use crate::space::region::Region;
 use crate::statics::{AnyLinearBody, LinearBody};
 use std::sync::Arc;
+pub use surface::{SurfaceFactors, SurfaceMethod};
 
 /// Everything a run is.
 #[derive(Debug, Clone)]
@@ -40,6 +43,8 @@ pub struct Spec {
     pub influence: Influence,
     /// Periodic axes; the period is the box of the lattice body or `period`.
     pub periodic: [Option<f64>; 3],
+    /// Factors of bonds near the surface; `None`: all 1.
+    pub surface: Option<SurfaceFactors>,
     pub precracks: Vec<PrecrackSpec>,
     pub contact: Option<ContactSpec>,
     pub initial: Vec<InitialSpec>,
@@ -78,6 +83,7 @@ impl Spec {
             calibration: Calibration::Discrete,
             influence: Influence::Constant,
             periodic: [None; 3],
+            surface: None,
             precracks: vec![],
             contact: None,
             initial: vec![],

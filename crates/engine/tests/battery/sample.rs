@@ -205,6 +205,7 @@ impl Case {
             calibration: Calibration::Discrete,
             influence: self.material.influence,
             periodic: [None; 3],
+            surface: None,
             precracks: vec![],
             contact: None,
             initial: vec![],

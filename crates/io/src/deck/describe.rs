@@ -71,6 +71,15 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             ));
         }
     }
+    if let Some(surface) = &spec.surface {
+        let all = surface.rows.iter().flatten().map(|(_, x)| *x);
+        let (low, high) = all.fold((1.0f64, 1.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        lines.push(format!(
+            "surface    {:?}: {} kinds of points, factors of bonds {low:.2} to {high:.2}",
+            surface.method,
+            surface.rows.len() - 1
+        ));
+    }
     if let Some(contact) = spec.contact {
         lines.push(format!(
             "contact    below {} of the reference distance, within {} spacings",

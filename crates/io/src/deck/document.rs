@@ -52,6 +52,9 @@ pub struct Document {
     pub family: Option<FamilyName>,
     /// ["x"]: the body's region spans one period; or { x = "50 mm" }.
     pub periodic: Option<At<Periodic>>,
+    /// Factors of bonds near the surface of a lattice body with a bond-based law; none when left out. exact: every uniform
+    /// strain is in equilibrium under its uniform traction, and the surface runs through the outermost points.
+    pub surface: Option<At<SurfaceName>>,
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,
     /// On when a material can fracture; false turns it off.
@@ -412,6 +415,7 @@ names! {
     InterfaceName { Series, Parallel, Minimum }
     InfluenceName { Constant, Inverse, Conical, Gaussian, CubicSpline }
     CalibrationName { Continuum, Discrete }
+    SurfaceName { None, Exact, Volume, Energy, Force }
     FamilyName { Auto, Stencil, List, Neighbours }
     CrackName { Absent, Broken }
     /// Point fields that can be written.

@@ -46,6 +46,8 @@ pub enum UpscaleError {
     },
     #[error(transparent)]
     Crystal(#[from] CrystalError),
+    #[error(transparent)]
+    Surface(#[from] crate::homogenize::surface::SurfaceError),
 }
 
 /// What an upscaling keeps.
@@ -193,6 +195,7 @@ pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
         },
         ..spec.schedule
     };
+    crate::homogenize::surface::renew(&mut coarse)?;
     Ok((coarse, rule))
 }
 

@@ -8,6 +8,7 @@ use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
 use crate::family::stencil::{Offset, Stencil};
+use crate::interaction::scale::Scale;
 use crate::interaction::{PointConstants, Repulsion, Tally, Toughness};
 use crate::law::Law;
 use std::collections::HashMap;
@@ -133,6 +134,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             tiles,
             reach,
             reaches,
+            scale: Scale::default(),
             family,
             directed,
             fields: Default::default(),

@@ -14,6 +14,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
 use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::scale::Scale;
 use crate::law::Law;
 pub use energies::Energies;
 pub use forces::{Forces, Remember};
@@ -73,11 +74,12 @@ pub struct View<'a, const D: usize, W> {
     pub reach: &'a [u32],
     /// `[different][words]`: a bit per offset that any point of a tile ever had a partner at.
     pub reaches: &'a [u64],
+    /// Factors of bonds, of tiles that have any.
+    pub scale: &'a Scale,
     pub u: [&'a [f64]; D],
     pub fields: [&'a [f64]; 2],
     /// Pressure factors per slot where materials differ; else empty: the law's own.
     pub pressure: &'a [f64],
-    pub volume: f64,
     pub repulsion: Option<Repulsion>,
     /// The highest `e` at which any bond repels.
     pub most_contact: f64,
@@ -189,6 +191,19 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         unsafe { *self.state.at(n) & ALIKE != 0 }
     }
 
+    /// Has any bond of the `n`-th active tile a factor?
+    #[inline(always)]
+    fn is_scaled(&self, n: usize) -> bool {
+        !W::SHARES && self.scale.is_scaled(n)
+    }
+
+    /// Factors of bond `b` of the points of a tile whose factors are `scale`.
+    #[inline(always)]
+    unsafe fn factor<L: Lane>(b: &Bond<D>, scale: &[f64]) -> L {
+        // SAFETY: eight numbers per bond of the stencil
+        unsafe { L::load(scale.as_ptr().add(b.number as usize * TILE)) }
+    }
+
     /// Bond bits of the `n`-th active tile.
     #[inline(always)]
     unsafe fn row(&self, n: usize) -> *mut u8 {
@@ -221,19 +236,23 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             return (L::splat(0.0), L::splat(0.0));
         };
         let mut there = 0u8;
+        let mut volume = [0.0; TILE];
         for l in 0..TILE {
             if L::bits(close) >> l & 1 == 1
                 && self.grid.is_owned(i + l)
-                && self.grid.neighbour(i + l, to.cell, to.to).is_some()
+                && let Some(j) = self.grid.neighbour(i + l, to.cell, to.to)
             {
                 there |= 1 << l;
+                volume[l] = self.body.volume.at(j);
             }
         }
         let absent = L::dead(there);
         let r = (L::splat(to.r0_squared) * (L::splat(1.0) + e)).sqrt();
         let d = L::splat(to.contact_distance);
-        let pull = (L::splat(c.stiffness * self.volume) * (r - d)).div(r);
-        let energy = L::splat(0.25 * c.stiffness * self.volume) * (r - d) * (r - d);
+        // SAFETY: a number per lane
+        let volume = unsafe { L::load(volume.as_ptr()) };
+        let pull = (L::splat(c.stiffness) * volume * (r - d)).div(r);
+        let energy = L::splat(0.25 * c.stiffness) * volume * (r - d) * (r - d);
         (pull.zero_if(absent), energy.zero_if(absent))
     }
 }

@@ -13,7 +13,7 @@ pub(super) use schedule::steps;
 use super::OutputSpec;
 use super::document::{
     Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InterfaceName,
-    PlaneName,
+    PlaneName, SurfaceName,
 };
 use super::error::DeckError;
 use super::source::Source;
@@ -24,7 +24,7 @@ use crate::read::eam::{self, EamFile};
 use context::{Context, Result};
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule,
-    LawSpec, MaterialSpec, Plane, Spec,
+    LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
 };
 use std::path::Path;
 
@@ -126,7 +126,7 @@ pub(super) fn lower(
         cloud.volume.iter_mut().for_each(|area| *area *= section);
     }
     let run = schedule::schedule(&context, document)?;
-    let spec = Spec {
+    let mut spec = Spec {
         title: document.title.clone().unwrap_or_default(),
         dimension: context.dimension,
         plane: match document.plane.as_ref().map(|p| p.value) {
@@ -168,6 +168,7 @@ pub(super) fn lower(
         },
         influence: influence(document.influence, &materials),
         periodic,
+        surface: None,
         precracks: document
             .precrack
             .iter()
@@ -192,6 +193,9 @@ pub(super) fn lower(
         sets,
         materials,
     };
+    if let Some(surface) = &document.surface {
+        spec.surface = surface_factors(&context, surface, &spec)?;
+    }
     let species = potential.and_then(|p| p.element);
     let output = schedule::output(&context, &document.output, spec.potential.is_some())?;
     let of_body = context
@@ -307,6 +311,25 @@ fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
             Some(LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. }) => Influence::Inverse,
             _ => Influence::Constant,
         },
+    }
+}
+
+/// Factors of the bonds near the surface that a deck asks for.
+fn surface_factors(
+    context: &Context,
+    asked: &At<SurfaceName>,
+    spec: &Spec,
+) -> Result<Option<SurfaceFactors>> {
+    let method = match asked.value {
+        SurfaceName::None => return Ok(None),
+        SurfaceName::Exact => SurfaceMethod::Exact,
+        SurfaceName::Volume => SurfaceMethod::Volume,
+        SurfaceName::Energy => SurfaceMethod::Energy,
+        SurfaceName::Force => SurfaceMethod::Force,
+    };
+    match peridyne_theory::homogenize::surface::correct(spec, method) {
+        Ok((factors, _)) => Ok(Some(factors)),
+        Err(e) => Err(context.error_with(&asked.span, e.to_string(), e.help())),
     }
 }
 

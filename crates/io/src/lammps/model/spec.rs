@@ -80,6 +80,7 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
         calibration: Calibration::Continuum,
         influence,
         periodic,
+        surface: None,
         precracks: vec![],
         contact: Some(CONTACT),
         initial: vec![],

@@ -39,17 +39,19 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
             let i = v.slot(n);
             // SAFETY: as in the force pass
             unsafe {
-                let mut tile = if v.is_intact(n) {
-                    self.tile::<L, false>(n, i, &mut offsets)
-                } else {
-                    self.tile::<L, true>(n, i, &mut offsets)
+                let mut tile = match (v.is_intact(n), v.is_scaled(n)) {
+                    (true, false) => self.tile::<L, false, false>(n, i, &mut offsets),
+                    (false, false) => self.tile::<L, true, false>(n, i, &mut offsets),
+                    (_, true) => self.tile::<L, true, true>(n, i, &mut offsets),
                 };
                 if W::SHARES {
                     let q = v.pressure_factor::<L>(i);
                     tile.strain = tile.strain + L::splat(0.5) * q * tile.share * tile.share;
                 }
                 for (sum, x) in sums.iter_mut().zip([tile.strain, tile.repulsion]) {
-                    x.to_array().iter().for_each(|x| *sum += x * v.volume);
+                    for (l, x) in x.to_array().iter().enumerate() {
+                        *sum += x * v.body.volume.at(i + l);
+                    }
                 }
                 if let Some(out) = self.fields {
                     tile.strain.store(out.strain.at(i));
@@ -67,7 +69,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
 
 impl<const D: usize, W: Law> Energies<'_, D, W> {
     #[inline(always)]
-    unsafe fn tile<L: Lane, const MASKED: bool>(
+    unsafe fn tile<L: Lane, const MASKED: bool, const SCALED: bool>(
         &self,
         n: usize,
         i: usize,
@@ -82,6 +84,7 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
         unsafe {
             let ui = v.displacement::<L>(i);
             let own = v.fields::<L>(i);
+            let scale = if SCALED { v.scale.tile(n) } else { &[] };
             let mut word = 0;
             while word < v.reach(n).len() {
                 let (bonds, next) = offsets.stretch(v.stencil(n), v.reach(n), word);
@@ -93,7 +96,10 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                     for (c, b) in bonds.iter().enumerate() {
                         let mut s = stretch.get(c);
                         let gone = s.is_nan();
-                        let kr = L::splat(b.share);
+                        let mut kr = L::splat(b.share);
+                        if SCALED {
+                            kr = kr * View::<D, W>::factor::<L>(b, scale);
+                        }
                         if MASKED {
                             s = s.zero_if(gone);
                         }
@@ -119,6 +125,9 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                     if self.fields.is_some() && !W::SHARES {
                         for b in bonds {
                             let mut kr = L::splat(b.share);
+                            if SCALED {
+                                kr = kr * View::<D, W>::factor::<L>(b, scale);
+                            }
                             if MASKED {
                                 kr = kr.zero_if(L::dead(*v.row(n).add(b.number as usize)));
                             }

@@ -42,12 +42,19 @@ impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL>
         for n in v.block(block) {
             // SAFETY: tiles lie inside the arrays, offsets inside the guards; each tile is written by one block
             unsafe {
-                if !v.is_intact(n) {
-                    self.tile::<L, true, false>(n, &mut offsets, &mut rare, &mut tally);
-                } else if W::SHARES && v.is_alike(n) {
-                    self.tile::<L, false, true>(n, &mut offsets, &mut rare, &mut tally);
-                } else {
-                    self.tile::<L, false, false>(n, &mut offsets, &mut rare, &mut tally);
+                match (v.is_intact(n), v.is_scaled(n)) {
+                    (true, false) if W::SHARES && v.is_alike(n) => {
+                        self.tile::<L, false, true, false>(n, &mut offsets, &mut rare, &mut tally)
+                    }
+                    (true, false) => {
+                        self.tile::<L, false, false, false>(n, &mut offsets, &mut rare, &mut tally)
+                    }
+                    (false, false) => {
+                        self.tile::<L, true, false, false>(n, &mut offsets, &mut rare, &mut tally)
+                    }
+                    (_, true) => {
+                        self.tile::<L, true, false, true>(n, &mut offsets, &mut rare, &mut tally)
+                    }
                 }
             }
         }
@@ -66,12 +73,13 @@ struct Points<L, const D: usize> {
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// All bonds of a tile. With `ALIKE` all ends of its bonds have the same constant field.
+    /// All bonds of a tile. With `ALIKE` all ends of its bonds have the same constant field, with `SCALED` bonds have
+    /// factors.
     ///
     /// Where all `e` of a chunk lie between bounds that hold for the whole body, nothing can happen. Else lanes are
     /// looked at one by one: those that break or are too close wait and are added last.
     #[inline(always)]
-    unsafe fn tile<L: Lane, const MASKED: bool, const ALIKE: bool>(
+    unsafe fn tile<L: Lane, const MASKED: bool, const ALIKE: bool, const SCALED: bool>(
         &self,
         tile: usize,
         offsets: &mut Offsets<D>,
@@ -96,6 +104,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     zero
                 },
             };
+            let scale = if SCALED { v.scale.tile(tile) } else { &[] };
             let (lower, upper) = (L::splat(self.lower), L::splat(self.upper));
             let mut lowest = L::splat(f64::INFINITY);
             let (mut acc, mut total) = ([zero; D], zero);
@@ -123,21 +132,23 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                                 }
                             }
                             chunk.each(bonds.len(), series, &x, &mut answer);
-                            self.gather::<L, true, ALIKE>(
-                                &at, bonds, &answer, &mut acc, &mut total,
+                            self.gather::<L, true, ALIKE, SCALED>(
+                                &at, bonds, scale, &answer, &mut acc, &mut total,
                             );
                             continue;
                         }
                     }
                     chunk.each(bonds.len(), series, &x, &mut answer);
-                    self.gather::<L, MASKED, ALIKE>(&at, bonds, &answer, &mut acc, &mut total);
+                    self.gather::<L, MASKED, ALIKE, SCALED>(
+                        &at, bonds, scale, &answer, &mut acc, &mut total,
+                    );
                 }
             }
             for a in 0..D {
                 acc[a] = total.fma(at.u[a], acc[a]);
             }
             if FULL && waiting > 0 {
-                self.rare::<L>(&at, &rare[..waiting], &mut acc, tally);
+                self.rare::<L, SCALED>(&at, &rare[..waiting], scale, &mut acc, tally);
             }
             for a in 0..D {
                 // what was summed points from j to i
@@ -157,10 +168,11 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     /// Add what the bonds of a chunk pull, as `−Σ p (ξ + u_j)` and `Σ p`: less to keep in registers than `u_i` and the
     /// sum (rounding of `e` costs more digits than this difference). With `MASKED`, not in lanes that were left out.
     #[inline(always)]
-    unsafe fn gather<L: Lane, const MASKED: bool, const ALIKE: bool>(
+    unsafe fn gather<L: Lane, const MASKED: bool, const ALIKE: bool, const SCALED: bool>(
         &self,
         at: &Points<L, D>,
         bonds: &[Bond<D>],
+        scale: &[f64],
         answer: &Chunk<L>,
         acc: &mut [L; D],
         total: &mut L,
@@ -177,6 +189,9 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     v.fields::<L>(b.to(at.i))
                 };
                 let mut pull = v.law.pull(L::splat(b.k), g, at.own, other);
+                if SCALED {
+                    pull = pull * View::<D, W>::factor::<L>(b, scale);
+                }
                 if MASKED {
                     pull = pull.zero_if(g.is_nan());
                 }
@@ -201,10 +216,11 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
 
     /// The lanes that waited: repulsion, breaking.
     #[inline(always)]
-    unsafe fn rare<L: Lane>(
+    unsafe fn rare<L: Lane, const SCALED: bool>(
         &self,
         at: &Points<L, D>,
         rare: &[MaybeUninit<u16>],
+        scale: &[f64],
         acc: &mut [L; D],
         tally: &mut Tally,
     ) {
@@ -229,7 +245,12 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let aside = self.aside(at, b, e, raw);
                 let other = v.fields::<L>(j);
                 let g = Extension::exact(e);
-                let own_pull = v.law.pull(L::splat(b.k), g, own, other).zero_if(dead);
+                let mut own_pull = v.law.pull(L::splat(b.k), g, own, other).zero_if(dead);
+                let mut share = L::splat(b.share);
+                if SCALED {
+                    let factor = View::<D, W>::factor::<L>(b, scale);
+                    (own_pull, share) = (own_pull * factor, share * factor);
+                }
                 let mut pull = L::select(aside, own_pull, zero);
                 let close = raw.lt(L::splat(b.contact_e));
                 if L::any(close) {
@@ -244,7 +265,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                         *v.state.at(at.tile) = 0;
                         tally.broken += which.count_ones() as u64;
                         let s = Stretch::exact(e);
-                        let share = L::splat(b.share) * s;
+                        let share = share * s;
                         let held = v.law.pair_energy(share * s, own, other)
                             + self.farewell(own_pull, y, i, j);
                         let sum = lost.unwrap_or([zero; 2]);
@@ -260,8 +281,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             }
             if let Some(lost) = lost {
                 let energy = history::released::<L, W>(v.pressure_factor(i), own, lost);
-                for x in &energy.to_array() {
-                    tally.released += x * v.volume;
+                for (l, x) in energy.to_array().iter().enumerate() {
+                    tally.released += x * v.body.volume.at(i + l);
                 }
             }
         }

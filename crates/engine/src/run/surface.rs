@@ -1,0 +1,100 @@
+//! Factors of bonds near a surface, put into a body and its interaction.
+
+use crate::body::{Body, Layout, Values};
+use crate::error::BuildError;
+use crate::interaction::Interaction;
+use crate::spec::SurfaceFactors;
+use std::collections::HashMap;
+
+/// Scale the bonds of `interaction`, made for whole cells, and give the points of `body` the part of their cells that
+/// they hold. Call before [`Interaction::prepare`] and any sweep.
+pub(super) fn scale<const D: usize>(
+    surface: &SurfaceFactors,
+    body: &mut Body<D>,
+    interaction: &mut dyn Interaction<D>,
+) -> Result<(), BuildError> {
+    let points = body.points();
+    let rows = surface.rows.len();
+    let fits = surface.row.len() == points
+        && surface.part.len() == rows
+        && surface.row.iter().all(|r| (*r as usize) < rows)
+        && surface.part.iter().all(|p| *p > 0.0 && *p <= 1.0);
+    let (true, Layout::Grid(_), Some(cell)) = (fits, &body.layout, body.volume.uniform()) else {
+        return Err(BuildError::new(
+            "surface",
+            format!(
+                "the factors of bonds are for {} points of {rows} kinds on a lattice, and do not fit this body of {points} points",
+                surface.row.len()
+            ),
+        ));
+    };
+    let mut row = vec![0u32; body.len];
+    for (slot, r) in body.slots.iter().zip(&surface.row) {
+        row[*slot as usize] = *r;
+    }
+    let table: Vec<HashMap<[i32; D], f64>> = surface
+        .rows
+        .iter()
+        .zip(&surface.part)
+        .map(|(bonds, part)| {
+            bonds
+                .iter()
+                .map(|(o, x)| (std::array::from_fn(|a| o[a]), x / part))
+                .collect()
+        })
+        .collect();
+    interaction.scale_bonds(body, &|slot, to| {
+        let r = row[slot] as usize;
+        match (r, table[r].get(&to)) {
+            (_, Some(x)) => *x,
+            (r, None) => 1.0 / surface.part[r],
+        }
+    })?;
+    if surface.part.iter().any(|p| *p != 1.0) {
+        let mut volume = vec![0.0; body.len];
+        for (slot, r) in body.slots.iter().zip(&surface.row) {
+            volume[*slot as usize] = cell * surface.part[*r as usize];
+        }
+        body.fill_images(&mut volume);
+        body.volume = Values::PerSlot(volume);
+    }
+    Ok(())
+}
+
+/// The factors of a block that has the corners of a body filling its box: the same distance from the nearest face along
+/// every axis. `None` if the body does not fill its box.
+pub(super) fn of_block<const D: usize>(
+    surface: &SurfaceFactors,
+    body: &Body<D>,
+    block: &Body<D>,
+) -> Option<SurfaceFactors> {
+    let (Layout::Grid(whole), Layout::Grid(small)) = (&body.layout, &block.layout) else {
+        return None;
+    };
+    let own = |grid: &crate::body::Grid<D>, a: usize| (grid.cells[a] - 2 * grid.halo[a]) as i64;
+    let full: i64 = (0..D).map(|a| own(whole, a)).product();
+    if full != body.points() as i64 {
+        return None;
+    }
+    let mut row = vec![0u32; body.len];
+    for (slot, r) in body.slots.iter().zip(&surface.row) {
+        row[*slot as usize] = *r;
+    }
+    let of = |slot: u32| {
+        let (c, _) = small.cell(slot as usize);
+        let there = std::array::from_fn(|a| {
+            let c = c[a] - small.halo[a] as i64;
+            let (n, m) = (own(whole, a), own(small, a));
+            whole.halo[a] as i64 + if 2 * c < m { c } else { n - m + c }
+        });
+        whole.slot(there, 0).map(|slot| row[slot])
+    };
+    Some(SurfaceFactors {
+        row: block
+            .slots
+            .iter()
+            .map(|s| of(*s))
+            .collect::<Option<Vec<_>>>()?,
+        ..surface.clone()
+    })
+}

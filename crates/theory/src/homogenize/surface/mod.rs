@@ -1,0 +1,391 @@
+//! Corrections of bonds near the surface of a lattice body with a bond-based law.
+//!
+//! [`SurfaceMethod::Exact`]: one factor per bond near the surface, so that *every* uniform strain is in equilibrium
+//! under its own uniform traction: no residual at inner points, and at points of the surface the exact traction times
+//! their area. The surface runs through the outermost points, which hold the half, quarter, eighth of a cell that lies
+//! inside ([`sites`]); docs/decisions/0003-surface.md says why no such factors exist for a surface half a spacing
+//! outside. The equations ([`equations`]) are solved for the factors nearest to 1 that are not negative ([`solve`]), one
+//! unknown per kind of bond ([`neighbourhoods`]): the size of the body does not count, only how many different places
+//! its surface has. [`published`] has what users know already.
+
+mod equations;
+mod neighbourhoods;
+mod published;
+mod sites;
+mod solve;
+
+use equations::{Equations, StencilBond, equations};
+use neighbourhoods::{Kinds, Neighbourhoods};
+use peridyne::family::stencil::Stencil;
+use peridyne::family::volume_fraction;
+use peridyne::law::influence::influence;
+use peridyne::space::fill::fill;
+use peridyne::space::lattice::{Lattice, LatticeKind};
+use peridyne::spec::{
+    BodySpec, FamilyChoice, Horizon, LawSpec, Spec, SurfaceFactors, SurfaceMethod,
+};
+use sites::Sites;
+
+/// Kinds of bonds that a quadratic programme is tried for.
+const MOST_UNKNOWNS: usize = 60_000;
+/// A factor this close to 1 is 1.
+const ONE: f64 = 1e-15;
+
+/// Why a body has no surface correction.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SurfaceError {
+    #[error(
+        "a surface correction needs a bond-based law (pmb or springs); the bonds of a state-based solid or of atoms do not act alone"
+    )]
+    Law,
+    #[error(
+        "a surface correction needs points on a chain, square or cubic lattice: a cloud has no surface that could be known exactly"
+    )]
+    Lattice,
+    #[error(
+        "{count} points, the first at ({:.6}, {:.6}, {:.6}), are corners of no whole cell: they hold nothing of the body", first[0], first[1], first[2]
+    )]
+    Loose { count: usize, first: [f64; 3] },
+    #[error("the surface has {0} different kinds of bonds, more than can be solved for")]
+    TooManyKinds(usize),
+    #[error("{0}")]
+    Build(String),
+    #[error("the quadratic programme of the surface failed: {0}")]
+    Solver(String),
+}
+
+impl SurfaceError {
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            SurfaceError::Law => "leave surface out, or take pmb",
+            SurfaceError::Lattice => {
+                "take a lattice body without perturbation and without family = \"list\", or leave surface out"
+            }
+            SurfaceError::Loose { .. } => {
+                "change the region or the origin a little, so that no single point sticks out; surface = \"volume\" takes any body"
+            }
+            SurfaceError::TooManyKinds(_) => {
+                "take a region with flat faces along the axes, or surface = \"volume\""
+            }
+            SurfaceError::Build(_) | SurfaceError::Solver(_) => {
+                "surface = \"volume\" takes any lattice body"
+            }
+        }
+    }
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Is every uniform strain exact?
+    pub exact: bool,
+    /// Bonds with an end within so many layers of an empty site were free to change.
+    pub layers: i32,
+    /// Kinds of bonds and of equations.
+    pub unknowns: usize,
+    pub equations: usize,
+    /// Lowest factor that was allowed, of those that need not vanish.
+    pub floor: f64,
+    /// Kinds of bonds with factor 0.
+    pub vanishing: usize,
+    pub lowest: f64,
+    pub highest: f64,
+    /// Largest residual over the largest stiffness coefficient, and the point where it is left (length).
+    pub residual: f64,
+    pub worst: [f64; 3],
+}
+
+/// A lattice body and the bonds of a point.
+struct LatticeBody {
+    lattice: Lattice,
+    sites: Sites,
+    bonds: Vec<StencilBond>,
+}
+
+impl LatticeBody {
+    fn new(spec: &Spec) -> Result<LatticeBody, SurfaceError> {
+        let bond_based = |law: &LawSpec| matches!(law, LawSpec::Pmb(_) | LawSpec::Springs(_));
+        if !spec.materials.iter().all(|m| bond_based(&m.law)) {
+            return Err(SurfaceError::Law);
+        }
+        if !matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Stencil) {
+            return Err(SurfaceError::Lattice);
+        }
+        let (lattice, quarters) = match &spec.body {
+            BodySpec::Lattice {
+                kind,
+                spacing,
+                origin,
+                region,
+                perturb: None,
+            } => {
+                let lattice = Lattice {
+                    kind: *kind,
+                    spacing: *spacing,
+                    origin: *origin,
+                };
+                let sites =
+                    fill(&lattice, region).map_err(|e| SurfaceError::Build(e.to_string()))?;
+                (lattice, sites.quarters)
+            }
+            BodySpec::Sites {
+                kind,
+                spacing,
+                origin,
+                quarters,
+                ..
+            } => {
+                let lattice = Lattice {
+                    kind: *kind,
+                    spacing: *spacing,
+                    origin: *origin,
+                };
+                (lattice, quarters.clone())
+            }
+            _ => return Err(SurfaceError::Lattice),
+        };
+        use LatticeKind::{Chain, Cubic, Square};
+        if !matches!(lattice.kind, Chain | Square | Cubic) {
+            return Err(SurfaceError::Lattice);
+        }
+        let h = lattice.spacing;
+        let horizon = match spec.horizon {
+            Horizon::Ratio(m) => f64::from(m) * h,
+            Horizon::Length(d) => d,
+        };
+        let stencil = Stencil::new(lattice.kind, h, spec.horizon);
+        let bonds = stencil.offsets[0]
+            .iter()
+            .map(|o| {
+                let r = h * (o.squared as f64).sqrt() / 4.0;
+                let nu = match spec.volume_scaling {
+                    true => volume_fraction(r, horizon, h),
+                    false => 1.0,
+                };
+                StencilBond {
+                    offset: o.cell,
+                    weight: nu * influence(spec.influence, r, horizon),
+                }
+            })
+            .collect();
+        let points: Vec<[i32; 3]> = quarters
+            .iter()
+            .map(|q| q.map(|q| q.div_euclid(4)))
+            .collect();
+        let periodic = spec.periodic.map(|p| p.is_some());
+        Ok(LatticeBody {
+            sites: Sites::new(spec.dimension, &points, periodic),
+            lattice,
+            bonds,
+        })
+    }
+
+    fn position(&self, place: usize) -> [f64; 3] {
+        let c = self.sites.coordinates(place);
+        self.lattice.position(c.map(|c| 4 * c))
+    }
+
+    fn offsets(&self) -> Vec<[i32; 3]> {
+        self.bonds.iter().map(|b| b.offset).collect()
+    }
+
+    fn longest(&self) -> i32 {
+        let all = self.bonds.iter().flat_map(|b| b.offset);
+        all.map(i32::abs).max().unwrap_or(1)
+    }
+
+    /// Points that are corners of no whole cell.
+    fn loose(&self) -> Result<(), SurfaceError> {
+        let near = self.sites.near_void(1);
+        let places = self.sites.place.iter().map(|p| *p as usize);
+        let mut loose = places.filter(|p| near[*p] && self.sites.cell_share(*p).0 == 0.0);
+        match loose.next() {
+            None => Ok(()),
+            Some(first) => Err(SurfaceError::Loose {
+                count: 1 + loose.count(),
+                first: self.position(first),
+            }),
+        }
+    }
+}
+
+/// A system of equations that was tried.
+struct Attempt {
+    around: Neighbourhoods,
+    kinds: Kinds,
+    system: Equations,
+    layers: i32,
+}
+
+impl Attempt {
+    fn new(body: &LatticeBody, layers: i32, reach: i32) -> Attempt {
+        let mut around = Neighbourhoods::new(&body.sites, reach);
+        let kinds = Kinds::new(&body.sites, &around, &body.offsets());
+        let system = equations(&body.sites, &body.bonds, &mut around, &kinds, layers);
+        Attempt {
+            around,
+            kinds,
+            system,
+            layers,
+        }
+    }
+
+    /// Factors of the bonds of the point at `place`.
+    fn row(&mut self, body: &LatticeBody, x: &[f64], place: usize) -> Vec<f64> {
+        let own = self.around.of(place);
+        let own_near = self.around.near(own, self.layers);
+        let mut row = Vec::with_capacity(body.bonds.len());
+        for bond in &body.bonds {
+            let factor = body.sites.step(place, bond.offset).map_or(1.0, |to| {
+                let other = self.around.of(to);
+                if own_near || self.around.near(other, self.layers) {
+                    x[self.around.class(own, other, bond.offset)]
+                } else {
+                    1.0
+                }
+            });
+            row.push(factor);
+        }
+        row
+    }
+}
+
+/// Factors of the bonds of a body near its surface. `exact` says what was found; the other methods find nothing.
+///
+/// # Errors
+/// [`SurfaceError`]; a body without exact factors is not one: it gets those that leave the least residual, and a warning.
+pub fn correct(
+    spec: &Spec,
+    method: SurfaceMethod,
+) -> Result<(SurfaceFactors, Option<Report>), SurfaceError> {
+    let body = LatticeBody::new(spec)?;
+    if method != SurfaceMethod::Exact {
+        let around = Neighbourhoods::new(&body.sites, body.longest());
+        let kinds = Kinds::new(&body.sites, &around, &body.offsets());
+        let row = |place: usize| published::row(&body.sites, &body.bonds, method, place);
+        return Ok((table(&body, method, &kinds, row, |_| 1.0, None), None));
+    }
+    body.loose()?;
+    let longest = body.longest();
+    let mut fewest = usize::MAX;
+    for (layers, reach) in [
+        (1, longest),
+        (1, longest + 1),
+        (2, longest.max(2)),
+        (2, longest + 1),
+        (longest.max(3), longest.max(3)),
+    ] {
+        let mut attempt = Attempt::new(&body, layers, reach);
+        let unknowns = attempt.system.unknowns;
+        fewest = fewest.min(unknowns);
+        if unknowns > MOST_UNKNOWNS {
+            continue;
+        }
+        if let Some(found) = solve::exact(&attempt.system).map_err(SurfaceError::Solver)? {
+            let report = report(&body, &attempt, &found.factors, Some(found.floor));
+            return Ok((
+                finish(&body, &mut attempt, &found.factors, None),
+                Some(report),
+            ));
+        }
+    }
+    if fewest > MOST_UNKNOWNS {
+        return Err(SurfaceError::TooManyKinds(fewest));
+    }
+    let mut attempt = Attempt::new(&body, 1, longest);
+    let x = solve::nearest(&attempt.system).map_err(SurfaceError::Solver)?;
+    let report = report(&body, &attempt, &x, None);
+    let [a, b, c] = report.worst;
+    let warning = format!(
+        "surface = \"exact\": no factors without negative ones make every uniform strain of this body exact; those taken leave at most {:.1e} of the stiffness, at ({a:.6}, {b:.6}, {c:.6})",
+        report.residual
+    );
+    Ok((finish(&body, &mut attempt, &x, Some(warning)), Some(report)))
+}
+
+/// The factors of a spec whose body or horizon has changed since, made anew.
+///
+/// # Errors
+/// As [`correct`].
+pub fn renew(spec: &mut Spec) -> Result<(), SurfaceError> {
+    if let Some(old) = &spec.surface {
+        spec.surface = Some(correct(spec, old.method)?.0);
+    }
+    Ok(())
+}
+
+fn report(body: &LatticeBody, attempt: &Attempt, x: &[f64], floor: Option<f64>) -> Report {
+    let system = &attempt.system;
+    let scale = equations::stiffness(&body.bonds)[0][0][0][0];
+    let residual = system.residual(x);
+    let worst = (0..residual.len())
+        .max_by(|a, b| residual[*a].abs().total_cmp(&residual[*b].abs()))
+        .map(|n| {
+            (
+                residual[n].abs() / scale,
+                body.position(system.place[n] as usize),
+            )
+        });
+    let (residual, worst) = worst.unwrap_or_default();
+    Report {
+        exact: floor.is_some(),
+        layers: attempt.layers,
+        unknowns: system.unknowns,
+        equations: system.rows.len(),
+        floor: floor.unwrap_or(0.0),
+        vanishing: x.iter().filter(|x| **x == 0.0).count(),
+        lowest: x.iter().copied().fold(f64::INFINITY, f64::min),
+        highest: x.iter().copied().fold(0.0, f64::max),
+        residual,
+        worst,
+    }
+}
+
+fn finish(
+    body: &LatticeBody,
+    attempt: &mut Attempt,
+    x: &[f64],
+    warning: Option<String>,
+) -> SurfaceFactors {
+    let kinds = Kinds {
+        of_point: std::mem::take(&mut attempt.kinds.of_point),
+        example: std::mem::take(&mut attempt.kinds.example),
+    };
+    let part = |place: usize| body.sites.cell_share(place).0;
+    let row = |place: usize| attempt.row(body, x, place);
+    table(body, SurfaceMethod::Exact, &kinds, row, part, warning)
+}
+
+fn table(
+    body: &LatticeBody,
+    method: SurfaceMethod,
+    kinds: &Kinds,
+    mut row: impl FnMut(usize) -> Vec<f64>,
+    part: impl Fn(usize) -> f64,
+    warning: Option<String>,
+) -> SurfaceFactors {
+    let mut rows = vec![vec![]];
+    let mut parts = vec![1.0];
+    for place in kinds.examples() {
+        let factors = row(place);
+        let changed = body.bonds.iter().zip(factors);
+        rows.push(
+            changed
+                .filter(|(_, x)| (x - 1.0).abs() > ONE)
+                .map(|(b, x)| (b.offset, x))
+                .collect(),
+        );
+        parts.push(part(place));
+    }
+    SurfaceFactors {
+        method,
+        row: kinds.of_point.clone(),
+        rows,
+        part: parts,
+        warning,
+    }
+}
+
+#[cfg(test)]
+mod tests;
