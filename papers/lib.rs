@@ -12,6 +12,7 @@ pub mod profile;
 pub mod reproduce;
 mod seleson2009;
 mod seleson2014;
+mod silling2010;
 
 pub use claim::{Claim, Kind};
 pub use experiment::{Context, Experiment, Failure, Findings};
@@ -19,5 +20,10 @@ pub use reproduce::{Options, Outcome, Report, reproduce};
 
 /// All experiments, in the order of the papers.
 pub fn all() -> Vec<&'static dyn Experiment> {
-    [seleson2009::all(), seleson2014::all()].concat()
+    [
+        seleson2009::all(),
+        seleson2014::all(),
+        silling2010::all(),
+    ]
+    .concat()
 }

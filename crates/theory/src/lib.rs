@@ -25,7 +25,6 @@ pub mod elastic;
 pub mod exact;
 pub mod fracture;
 pub mod gradient;
-pub mod jet;
 pub mod lattice_elastic;
 pub mod moments;
 pub mod refine;

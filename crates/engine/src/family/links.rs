@@ -23,6 +23,15 @@ impl<const D: usize> Link<D> {
     }
 }
 
+/// The other end of a bond.
+#[derive(Debug, Clone, Copy)]
+pub struct Partner {
+    /// Where its numbers are: perhaps an image.
+    pub slot: usize,
+    /// The point.
+    pub original: usize,
+}
+
 /// All bonds of a lattice body.
 #[derive(Debug, Clone)]
 pub struct Links<const D: usize> {
@@ -120,6 +129,30 @@ impl<const D: usize> Links<D> {
         match &body.layout {
             Layout::Grid(grid) => self.family(grid, slot),
             Layout::Cloud(_) => 0,
+        }
+    }
+
+    /// Every directed bond: slot i, the other end, number of the bond in its stencil, sublattice.
+    pub fn each_directed(
+        &self,
+        body: &Body<D>,
+        visit: &mut dyn FnMut(usize, Partner, usize, usize),
+    ) {
+        let Layout::Grid(grid) = &body.layout else {
+            return;
+        };
+        let original: HashMap<u32, u32> = body.images.iter().copied().collect();
+        for &t in &self.tiles {
+            let first = grid.tile_slot(t as usize);
+            let sub = grid.tile_sublattice(t as usize);
+            for i in (first..first + TILE).filter(|s| grid.is_owned(*s)) {
+                for (k, link) in self.links[sub].iter().enumerate() {
+                    if let Some(slot) = link.partner(grid, i) {
+                        let original = original.get(&(slot as u32)).map_or(slot, |o| *o as usize);
+                        visit(i, Partner { slot, original }, k, sub);
+                    }
+                }
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 //! Springs are `C = c ω ν V_j ξ⊗ξ/|ξ|³`, the bond-based solid linearised about the reference (seleson2009 (A.2)); they pull
 //! along their reference direction and may go through each other.
 
-use super::{BondState, Interaction, PointEnergies, Sweep, Tally};
+use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Layout};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
@@ -217,6 +217,17 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
+    }
+
+    fn tangents(
+        &mut self,
+        body: &Body<D>,
+        _: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        self.links.each_directed(body, &mut |i, j, k, sub| {
+            visit(BondTangent::direct(i, j.original, self.stiffness[sub][k]))
+        });
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

@@ -6,10 +6,10 @@ mod kernel;
 use super::bond::critical_stretch;
 use super::weight::BondWeight;
 use super::{
-    BondState, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
+    BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
     Toughness,
 };
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, zeros};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -302,6 +302,41 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let weight = self.sums(body, u, out);
         out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
+    }
+
+    fn tangents(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        if W::SHARES {
+            // the pressures of this state
+            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+        }
+        let view = self.view(&self.moved);
+        let field = |n: usize, slot: usize| self.fields.get(2 * slot + n).copied().unwrap_or(0.0);
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            let i = i as usize;
+            for (line, j) in self.list.partners(row) {
+                if self.alive[line] >> (row % TILE) & 1 == 0 {
+                    continue;
+                }
+                let (xi, share) = view.constant(i, j);
+                visit(BondTangent::of_law(
+                    self.law,
+                    [i, j],
+                    share / xi.iter().map(|x| x * x).sum::<f64>(),
+                    xi,
+                    std::array::from_fn(|a| u[a][j] - u[a][i]),
+                    [i, j].map(|s| [field(0, s), field(1, s)]),
+                ));
+            }
+        }
+    }
+
+    fn gain(&self, slot: usize) -> f64 {
+        if W::SHARES { self.pressure_factor(slot) } else { 0.0 }
     }
 
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

@@ -8,6 +8,7 @@ mod history;
 pub mod linear;
 pub mod list;
 pub mod stencil;
+pub mod tangent;
 pub mod weight;
 
 use crate::body::{Body, Field};
@@ -16,6 +17,7 @@ use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::CrackKind;
 use std::ops::AddAssign;
+pub use tangent::BondTangent;
 
 /// What a sweep reports besides its forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -192,6 +194,20 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Energy densities and dilatation of all points at `u`.
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
+
+    /// Every directed bond that is whole with its tangent at `u`, images of which are fresh, in order of slots. Repulsion inside
+    /// the family is left out. The scalars' gains are in [`Interaction::gain`] afterwards.
+    fn tangents(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    );
+
+    /// `∂p_i / ∂(Σ share)` of a slot, since the last call of [`Interaction::tangents`].
+    fn gain(&self, _slot: usize) -> f64 {
+        0.0
+    }
 
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));

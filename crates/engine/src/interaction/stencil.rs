@@ -6,10 +6,10 @@ mod kernel;
 
 use super::bond::critical_stretch;
 use super::{
-    BondState, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
+    BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion, Sweep, Tally,
     Toughness,
 };
-use crate::body::{Body, Column, Field, Layout, field};
+use crate::body::{Body, Column, Field, Layout, field, zeros};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -256,6 +256,47 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let weight = self.sums(body, u, out);
         out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
+    }
+
+    fn tangents(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        if W::SHARES {
+            // the pressures of this state
+            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+        }
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        let original: std::collections::HashMap<u32, u32> = body.images.iter().copied().collect();
+        let field = |n: usize, slot: usize| self.fields[n].get(slot).copied().unwrap_or(0.0);
+        for (n, &t) in self.tiles.iter().enumerate() {
+            let first = grid.tile_slot(t as usize);
+            let bonds = &self.bonds[grid.tile_sublattice(t as usize)];
+            for i in (first..first + TILE).filter(|i| grid.is_owned(*i)) {
+                for (b, bits) in bonds.iter().zip(self.row(n)) {
+                    if bits >> (i - first) & 1 == 0 {
+                        continue;
+                    }
+                    let j = b.to(i);
+                    visit(BondTangent::of_law(
+                        self.law,
+                        [i, original.get(&(j as u32)).map_or(j, |o| *o as usize)],
+                        b.k,
+                        b.back.map(|x| -x),
+                        std::array::from_fn(|a| u[a][j] - u[a][i]),
+                        [i, j].map(|s| [field(0, s), field(1, s)]),
+                    ));
+                }
+            }
+        }
+    }
+
+    fn gain(&self, slot: usize) -> f64 {
+        if W::SHARES { self.pressure_factor(slot) } else { 0.0 }
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

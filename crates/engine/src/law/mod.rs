@@ -5,6 +5,7 @@
 //! `s = (r − r0)/r0`.
 
 pub mod influence;
+pub mod jet;
 pub mod micromodulus;
 pub mod number;
 pub mod potential;

@@ -62,20 +62,20 @@ impl<const D: usize> LinearBody<D> {
         })
     }
 
-    /// Force densities at displacements `u`.
-    pub fn forces(&self, u: &[[f64; D]], f: &mut [[f64; D]]) {
-        for (i, f) in f.iter_mut().enumerate() {
-            let (partners, blocks) = self.row(i);
-            *f = [0.0; D];
-            for (&j, c) in partners.iter().zip(blocks) {
-                for b in 0..D {
-                    let eta = u[j as usize][b] - u[i][b];
-                    for a in 0..D {
-                        f[a] += c[a][b] * eta;
-                    }
+    /// Force density on point `i` at displacements `u`.
+    #[inline]
+    pub fn force(&self, u: &[[f64; D]], i: usize) -> [f64; D] {
+        let (partners, blocks) = self.row(i);
+        let mut f = [0.0; D];
+        for (&j, c) in partners.iter().zip(blocks) {
+            for b in 0..D {
+                let eta = u[j as usize][b] - u[i][b];
+                for a in 0..D {
+                    f[a] += c[a][b] * eta;
                 }
             }
         }
+        f
     }
 
     /// Longest bond that acts (length).
@@ -164,8 +164,7 @@ mod tests {
     #[test]
     fn forces_are_those_of_springs() {
         let body = chain();
-        let mut f = vec![[0.0]; 3];
-        body.forces(&[[0.0], [0.1], [0.4]], &mut f);
+        let f = [0, 1, 2].map(|i| body.force(&[[0.0], [0.1], [0.4]], i));
         let expected = [0.1, -0.05 + 0.3, -0.6];
         assert!(
             f.iter()

@@ -1,5 +1,70 @@
 //! Equilibrium and vibration: linear bodies, solvers, modes.
+//!
+//! | question | module |
+//! |---|---|
+//! | which linear body is a law about a state? | [`assemble`], [`linear_body`] |
+//! | what does it do to a displacement, with or without a matrix? | [`operator`] |
+//! | is it held? | [`support`] |
+//! | where is it in equilibrium? | [`direct`] ([`banded`] in 1-D), [`cg`] |
+//! | how does it vibrate? | [`modes`] |
 
+pub mod assemble;
+pub mod banded;
+pub mod cg;
+pub mod direct;
 pub mod linear_body;
+pub mod modes;
+pub mod operator;
+pub mod support;
+mod vectors;
 
+pub use assemble::linear_body;
+pub use direct::Direct;
 pub use linear_body::{LinearBody, Soundness};
+pub use operator::{Assembled, LinearOperator, Swept};
+pub use support::{Loose, Support};
+
+/// What a solver did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Solved {
+    pub iterations: usize,
+    /// Residual force over that of the start.
+    pub residual: f64,
+}
+
+/// Why there is no solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    #[error("every component of every point is prescribed: nothing is left to solve for")]
+    NothingFree,
+    #[error("nothing holds the body: {} of the part of {} points around point {} is free", .0.motion, .0.points, .0.point)]
+    Loose(Loose),
+    /// A motion around this point that gives energy back.
+    #[error("the operator is not positive definite: some motion around point {point} meets no resistance")]
+    Indefinite { point: usize },
+    #[error("the equations are singular")]
+    Singular,
+    #[error("the matrix does not fit: take conjugate gradients")]
+    TooLarge,
+    #[error("the body is not symmetric ({asymmetry:.1e}): conjugate gradients do not solve it")]
+    NotSymmetric { asymmetry: f64 },
+    #[error("after {iterations} iterations the residual is {residual:.1e} of that of the start, not {tolerance:.1e}")]
+    NotConverged {
+        iterations: usize,
+        residual: f64,
+        tolerance: f64,
+    },
+    #[error("a force or displacement is not a number")]
+    NotFinite,
+}
+
+impl SolveError {
+    /// Where a motion that gives energy back is largest.
+    fn indefinite<const D: usize>(p: &[[f64; D]]) -> SolveError {
+        let square = |p: &[f64; D]| p.iter().map(|c| c * c).sum::<f64>();
+        let largest = (0..p.len()).max_by(|i, j| square(&p[*i]).total_cmp(&square(&p[*j])));
+        SolveError::Indefinite {
+            point: largest.unwrap_or(0),
+        }
+    }
+}

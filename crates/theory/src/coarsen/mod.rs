@@ -21,6 +21,7 @@ mod coupling;
 mod energy;
 mod error;
 pub mod exact;
+pub mod lattice;
 mod lump;
 mod near;
 mod rows;

@@ -1,2 +1,5 @@
 mod bodies;
-mod probe;
+mod errors;
+mod exactness;
+mod schemes;
+mod selection;

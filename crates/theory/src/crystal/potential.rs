@@ -2,7 +2,7 @@
 
 use super::cells::{Link, links, primitive};
 use super::{Bond, Crystal, CrystalError, positive};
-use crate::jet;
+use peridyne::law::jet;
 use peridyne::law::potential::Potential;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::Horizon;

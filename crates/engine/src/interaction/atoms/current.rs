@@ -6,7 +6,8 @@ use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::NearList;
-use crate::interaction::{BondState, Fault, Interaction, PointEnergies, Sweep, Tally};
+use crate::interaction::tangent::curvature;
+use crate::interaction::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 
@@ -24,6 +25,8 @@ pub struct CurrentAtoms<const D: usize, P> {
     sums: Vec<[f64; 7]>,
     /// Neighbours of every slot in the reference.
     family: Vec<u16>,
+    /// F″ per slot, of the last tangent.
+    curvature: Vec<f64>,
 }
 
 impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
@@ -53,6 +56,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             faults: vec![None; blocks],
             sums: vec![[0.0; 7]; blocks],
             family,
+            curvature: vec![],
         }
     }
 
@@ -329,6 +333,49 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         let strain = Shared(out.strain.as_mut_ptr());
         // the list may have to be made anew, for a state that is only looked at
         self.clone().sums(body, u, strain, &body.volume);
+    }
+
+    fn tangents(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        self.ready(body, u);
+        let at = self.list.positions();
+        let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
+        for (t, lines) in (0..self.list.blocks()).flat_map(|b| self.list.tiles(b)) {
+            for (l, &slot) in self.list.slots(t).iter().enumerate() {
+                let i = slot as usize;
+                let x = at[t * TILE + l];
+                for line in lines {
+                    let z = at[line[l] as usize];
+                    let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
+                    let q: f64 = y.iter().map(|c| c * c).sum();
+                    let Some(j) = self.list.original(line[l] as usize) else {
+                        continue;
+                    };
+                    if q >= self.cutoff * self.cutoff {
+                        continue;
+                    }
+                    if P::EMBEDDED {
+                        density[i] += self.potential.density(q);
+                    }
+                    visit(BondTangent::of_potential(
+                        &self.potential,
+                        [i, j],
+                        y,
+                        if P::EMBEDDED { x[3] + z[3] } else { 0.0 },
+                        2.0 / body.volume.at(i),
+                    ));
+                }
+            }
+        }
+        self.curvature = density.iter().map(|d| curvature(&self.potential, *d)).collect();
+    }
+
+    fn gain(&self, slot: usize) -> f64 {
+        self.curvature.get(slot).copied().unwrap_or(0.0)
     }
 
     /// Pairs of the current list that are within the cut-off now.

@@ -7,7 +7,8 @@ use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::Links;
-use crate::interaction::{BondState, Fault, Interaction, PointEnergies, Sweep, Tally, add_virial};
+use crate::interaction::tangent::curvature;
+use crate::interaction::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally, add_virial};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 
@@ -23,6 +24,8 @@ pub struct FixedAtoms<const D: usize, P> {
     limit: f64,
     /// F′ per slot; empty without embedding.
     slope: Column,
+    /// F″ per slot, of the last tangent.
+    curvature: Vec<f64>,
     volume: f64,
     faults: Vec<Option<Fault>>,
     sums: Vec<f64>,
@@ -40,6 +43,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
             } else {
                 Column::default()
             },
+            curvature: vec![],
             volume: body.volume.uniform().unwrap_or(1.0),
             potential,
             links,
@@ -346,6 +350,42 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
+    }
+
+    fn tangents(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        if P::EMBEDDED {
+            self.embed(body, u);
+        }
+        let slope = |s: usize| self.slope.get(s).copied().unwrap_or(0.0);
+        let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
+        self.links.each_directed(body, &mut |i, j, k, sub| {
+            let xi = self.links.links[sub][k].xi;
+            let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j.slot] - u[a][i]));
+            let q: f64 = y.iter().map(|c| c * c).sum();
+            if q >= self.limit * self.limit {
+                return;
+            }
+            if P::EMBEDDED {
+                density[i] += self.potential.density(q);
+            }
+            visit(BondTangent::of_potential(
+                &self.potential,
+                [i, j.original],
+                y,
+                slope(i) + slope(j.slot),
+                2.0 / self.volume,
+            ));
+        });
+        self.curvature = density.iter().map(|d| curvature(&self.potential, *d)).collect();
+    }
+
+    fn gain(&self, slot: usize) -> f64 {
+        self.curvature.get(slot).copied().unwrap_or(0.0)
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

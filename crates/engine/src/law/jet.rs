@@ -1,8 +1,8 @@
 //! Taylor series as numbers: any potential evaluated on one yields its derivatives of any order, exactly.
 
-use peridyne::law::number::Number;
-use peridyne::law::potential::Potential;
-use peridyne::law::spline::{Spline, Twin};
+use super::number::Number;
+use super::potential::Potential;
+use super::spline::{Spline, Twin};
 use std::ops::{Add, Mul, Sub};
 
 /// `Σ a_n t^n`, n < N.
@@ -148,7 +148,7 @@ pub fn embedding<const N: usize>(potential: &impl Potential, rho: f64) -> [f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::law::potential::lennard_jones::LennardJones;
+    use crate::law::potential::lennard_jones::LennardJones;
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() <= 1e-13 * b.abs().max(1.0), "{a} is not {b}");

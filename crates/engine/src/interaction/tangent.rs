@@ -1,0 +1,110 @@
+//! What small changes do: the tangent of a law about a state, bond by bond. Statics assembles it.
+//!
+//! With `η` the change of `u_j − u_i`: `δf_i = Σ_j C_ij η + Σ_j (δp_i + δp_j) pull_ij`, `δp_i = gain_i Σ_j share_ij · η`.
+//! The scalar p is the pressure of state-based solids, F′ of embedded atoms; pair laws have none.
+
+use crate::law::Law;
+use crate::law::jet::{self, Jet};
+use crate::law::potential::Potential;
+
+/// A directed bond between two points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondTangent<const D: usize> {
+    /// Slots of points, images resolved.
+    pub i: usize,
+    pub j: usize,
+    /// C (force density / length).
+    pub stiffness: [[f64; D]; D],
+    /// What the bond adds to the scalar of i.
+    pub share: [f64; D],
+    /// What the scalars of both ends add to the force density on i.
+    pub pull: [f64; D],
+}
+
+impl<const D: usize> BondTangent<D> {
+    /// Without scalar.
+    pub fn direct(i: usize, j: usize, stiffness: [[f64; D]; D]) -> Self {
+        BondTangent {
+            i,
+            j,
+            stiffness,
+            share: [0.0; D],
+            pull: [0.0; D],
+        }
+    }
+
+    /// Of a peridynamic law with bond constant `k`, at the relative displacement η of a bond ξ; `fields` of both ends.
+    pub(super) fn of_law<W: Law>(
+        law: W,
+        [i, j]: [usize; 2],
+        k: f64,
+        xi: [f64; D],
+        eta: [f64; D],
+        fields: [[f64; 2]; 2],
+    ) -> Self {
+        let y: [f64; D] = std::array::from_fn(|a| xi[a] + eta[a]);
+        let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+        let (r0, r) = (square(&xi).sqrt(), square(&y).sqrt());
+        let longer: f64 = (0..D).map(|a| (xi[a] + y[a]) * eta[a]).sum();
+        let g = longer / (r * (r + r0));
+        let [p, q] = fields;
+        let tension = law.pull(k, g, p, q);
+        // a law's pull is linear in g: its slope is a difference
+        let slope = law.pull(k, 1.0, p, q) - law.pull(k, 0.0, p, q);
+        let n = y.map(|c| c / r);
+        let (mut share, mut pull) = ([0.0; D], [0.0; D]);
+        if W::SHARES {
+            let of = |scalar: f64| law.pull(k, g, [scalar, p[1]], [0.0, q[1]]);
+            let per_scalar = of(1.0) - of(0.0);
+            share = n.map(|n| k * r0 * n);
+            pull = y.map(|y| per_scalar * y);
+        }
+        BondTangent {
+            i,
+            j,
+            stiffness: central(tension, slope * r0 / r, &n),
+            share,
+            pull,
+        }
+    }
+
+    /// Of a potential at the current vector y; `slopes` is F′_i + F′_j, `scale` two over the volume of i.
+    pub(super) fn of_potential<P: Potential>(
+        potential: &P,
+        [i, j]: [usize; 2],
+        y: [f64; D],
+        slopes: f64,
+        scale: f64,
+    ) -> Self {
+        let q: f64 = y.iter().map(|c| c * c).sum();
+        let at = Jet::<3>::variable(q);
+        let [_, mut first, mut second] = potential.pair(at).derivatives();
+        let (mut share, mut pull) = ([0.0; D], [0.0; D]);
+        if P::EMBEDDED {
+            let [_, f, curvature] = potential.density(at).derivatives();
+            first += slopes * f;
+            second += slopes * curvature;
+            share = y.map(|y| 2.0 * f * y);
+            pull = y.map(|y| scale * f * y);
+        }
+        BondTangent {
+            i,
+            j,
+            stiffness: central(scale * first, scale * 2.0 * second, &y),
+            share,
+            pull,
+        }
+    }
+}
+
+/// `tension 1 + more n⊗n`
+fn central<const D: usize>(tension: f64, more: f64, n: &[f64; D]) -> [[f64; D]; D] {
+    std::array::from_fn(|a| {
+        std::array::from_fn(|b| more * n[a] * n[b] + if a == b { tension } else { 0.0 })
+    })
+}
+
+/// F″ of a potential.
+pub(super) fn curvature<P: Potential>(potential: &P, density: f64) -> f64 {
+    jet::embedding::<3>(potential, density)[2]
+}

@@ -1,0 +1,140 @@
+//! Lowest modes of vibration: `K φ = ω² M φ`, by Lanczos on the inverse.
+
+use super::direct::Direct;
+use super::linear_body::LinearBody;
+use super::support::Support;
+use super::SolveError;
+use super::vectors::{add, dot};
+use faer::{Mat, Side};
+
+/// A mode of vibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode<const D: usize> {
+    /// `ω²` (1 / time²), round-off of 0 for rigid motions; negative: unstable.
+    pub square: f64,
+    /// `[N]` displacement, `φ·Mφ = 1`.
+    pub shape: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Mode<D> {
+    /// Cycles per time; 0 for rigid motions.
+    pub fn frequency(&self) -> f64 {
+        self.square.max(0.0).sqrt() / (2.0 * std::f64::consts::PI)
+    }
+}
+
+/// Residual of a mode, `|Kφ − ω²Mφ|` over `ω²_max`'s bound, that counts as found.
+const TOLERANCE: f64 = 1e-10;
+
+/// The lowest `count` modes, lowest first; fewer if the body has fewer.
+///
+/// # Errors
+/// Those of the factorisation.
+pub fn lowest<const D: usize>(
+    body: &LinearBody<D>,
+    support: &Support<D>,
+    count: usize,
+) -> Result<Vec<Mode<D>>, SolveError> {
+    let mass: Vec<f64> = (0..body.points())
+        .map(|i| body.volume[i] * body.density[i])
+        .collect();
+    // a bound on ω², for the shift that makes rigid motions harmless
+    let stiffest = (0..body.points())
+        .map(|i| {
+            let sum: f64 = body.row(i).1.iter().map(|c| largest(c)).sum();
+            2.0 * sum / body.density[i]
+        })
+        .fold(0.0, f64::max);
+    let shift = 1e-8 * stiffest;
+    let factors = Direct::new(body, support, shift)?;
+    let most = support.unknowns();
+    let count = count.min(most);
+    let steps = (4 * count + 40).min(most);
+    let times_mass = |x: &[[f64; D]]| -> Vec<[f64; D]> {
+        x.iter().zip(&mass).map(|(x, m)| x.map(|c| c * m)).collect()
+    };
+    // every point in motion, no symmetry
+    let mut q: Vec<[f64; D]> = (0..body.points())
+        .map(|i| std::array::from_fn(|a| ((i * D + a + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5))
+        .collect();
+    support.mask(&mut q);
+    let mut basis: Vec<Vec<[f64; D]>> = vec![];
+    let mut images: Vec<Vec<[f64; D]>> = vec![];
+    let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
+    for _ in 0..steps {
+        let mut mq = times_mass(&q);
+        // twice is enough
+        for _ in 0..2 {
+            for (b, m) in basis.iter().zip(&images) {
+                let part = dot(&q, m);
+                add(&mut q, -part, b);
+            }
+            mq = times_mass(&q);
+        }
+        let norm = dot(&q, &mq).sqrt();
+        let scale = alpha.iter().copied().fold(0.0f64, |m, a: f64| m.max(a.abs()));
+        if !(norm > 1e-13 * scale) {
+            break;
+        }
+        if !alpha.is_empty() {
+            beta.push(norm);
+        }
+        for c in q.iter_mut().chain(&mut mq).flatten() {
+            *c /= norm;
+        }
+        let next = factors.solve(&mq);
+        alpha.push(dot(&next, &mq));
+        basis.push(std::mem::replace(&mut q, next));
+        images.push(mq);
+    }
+    let n = basis.len();
+    let mut t = Mat::<f64>::zeros(n, n);
+    for i in 0..n {
+        t[(i, i)] = alpha[i];
+        if i + 1 < n {
+            t[(i, i + 1)] = beta[i];
+            t[(i + 1, i)] = beta[i];
+        }
+    }
+    let eigen = t
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| SolveError::NotFinite)?;
+    let mut modes = vec![];
+    for k in (n - count.min(n)..n).rev() {
+        let mut shape = vec![[0.0; D]; body.points()];
+        for (i, b) in basis.iter().enumerate() {
+            add(&mut shape, eigen.U()[(i, k)], b);
+        }
+        // Rayleigh's quotient is better than the eigenvalue, above all for rigid motions
+        let m = times_mass(&shape);
+        let energy: f64 = (0..body.points())
+            .map(|i| {
+                let f = body.force(&shape, i);
+                -body.volume[i] * (0..D).map(|a| f[a] * shape[i][a]).sum::<f64>()
+            })
+            .sum();
+        let square = energy / dot(&shape, &m);
+        let residual: f64 = (0..body.points())
+            .map(|i| {
+                let f = body.force(&shape, i);
+                let free = (0..D).filter(|a| support.free[i][*a]);
+                free.map(|a| (body.volume[i] * f[a] + square * m[i][a]).powi(2) / mass[i]).sum::<f64>()
+            })
+            .sum::<f64>()
+            .sqrt();
+        if residual > TOLERANCE.sqrt() * stiffest {
+            return Err(SolveError::NotConverged {
+                iterations: n,
+                residual: residual / stiffest,
+                tolerance: TOLERANCE.sqrt(),
+            });
+        }
+        modes.push(Mode { square, shape });
+    }
+    modes.sort_by(|a, b| a.square.total_cmp(&b.square));
+    Ok(modes)
+}
+
+fn largest<const D: usize>(c: &[[f64; D]; D]) -> f64 {
+    c.iter().map(|row| row.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max)
+}

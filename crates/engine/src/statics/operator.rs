@@ -1,0 +1,121 @@
+//! Symmetric operators on displacements: `A u`, the forces that hold a body at u (force per point).
+
+use super::linear_body::LinearBody;
+use crate::body::{Body, Field, zeros};
+use crate::interaction::{Interaction, Sweep};
+use rayon::prelude::*;
+
+/// Points per piece of work.
+const CHUNK: usize = 1024;
+
+/// `A = −V ∂f/∂u` on D numbers per point.
+pub trait LinearOperator<const D: usize> {
+    fn points(&self) -> usize;
+    /// `y = A x` (force), x in lengths.
+    fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]);
+    /// Blocks of A on the diagonal, or of an operator near to it.
+    fn diagonal(&mut self) -> Vec<[[f64; D]; D]>;
+}
+
+/// A linear body as an operator.
+pub struct Assembled<'a, const D: usize>(pub &'a LinearBody<D>);
+
+impl<const D: usize> LinearOperator<D> for Assembled<'_, D> {
+    fn points(&self) -> usize {
+        self.0.points()
+    }
+
+    fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]) {
+        let body = self.0;
+        y.par_chunks_mut(CHUNK).enumerate().for_each(|(c, y)| {
+            for (n, y) in y.iter_mut().enumerate() {
+                let i = c * CHUNK + n;
+                *y = body.force(x, i).map(|f| -body.volume[i] * f);
+            }
+        });
+    }
+
+    fn diagonal(&mut self) -> Vec<[[f64; D]; D]> {
+        let body = self.0;
+        let of = |i: usize| {
+            let mut sum = [[0.0; D]; D];
+            for c in body.row(i).1 {
+                for a in 0..D {
+                    for b in 0..D {
+                        sum[a][b] += body.volume[i] * c[a][b];
+                    }
+                }
+            }
+            sum
+        };
+        (0..body.points()).map(of).collect()
+    }
+}
+
+/// Displacements so small (in spacings) that the square of a strain is beyond round-off.
+const SMALL: f64 = 1e-60;
+
+/// The tangent at the reference of a law that has no forces there, without a matrix: force sweeps at displacements so small
+/// that the law is linear to the last digit, because stretches are computed without cancellation.
+pub struct Swept<'a, const D: usize> {
+    body: &'a Body<D>,
+    interaction: &'a mut dyn Interaction<D>,
+    u: Field<D>,
+    f: Field<D>,
+}
+
+impl<'a, const D: usize> Swept<'a, D> {
+    pub fn new(body: &'a Body<D>, interaction: &'a mut dyn Interaction<D>) -> Self {
+        Swept {
+            u: body.at_rest(),
+            f: zeros(body.len),
+            body,
+            interaction,
+        }
+    }
+}
+
+impl<const D: usize> LinearOperator<D> for Swept<'_, D> {
+    fn points(&self) -> usize {
+        self.body.points()
+    }
+
+    fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]) {
+        let body = self.body;
+        let peak = x.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs()));
+        if peak == 0.0 {
+            y.fill([0.0; D]);
+            return;
+        }
+        let small = SMALL * body.spacing / peak;
+        for (x, &s) in x.iter().zip(&body.slots) {
+            for a in 0..D {
+                self.u[a][s as usize] = small * x[a];
+            }
+        }
+        for c in &mut self.u {
+            body.fill_images(c);
+        }
+        self.interaction
+            .forces(body, &self.u, &mut self.f, Sweep::Hold, None);
+        for (y, &s) in y.iter_mut().zip(&body.slots) {
+            let s = s as usize;
+            let scale = -body.volume.at(s) / small;
+            *y = std::array::from_fn(|a| scale * self.f[a][s]);
+        }
+    }
+
+    /// Of the direct bonds; what goes through scalars is left out.
+    fn diagonal(&mut self) -> Vec<[[f64; D]; D]> {
+        let body = self.body;
+        let mut sum = vec![[[0.0; D]; D]; body.len];
+        self.interaction.tangents(body, &body.at_rest(), &mut |bond| {
+            for a in 0..D {
+                for b in 0..D {
+                    sum[bond.i][a][b] += body.volume.at(bond.i) * bond.stiffness[a][b];
+                }
+            }
+        });
+        body.slots.iter().map(|s| sum[*s as usize]).collect()
+    }
+}

@@ -1,0 +1,176 @@
+//! Where a body is held, and whether that holds it.
+
+use faer::{Mat, Side};
+
+/// Which components of which points are free to move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support<const D: usize> {
+    pub free: Vec<[bool; D]>,
+}
+
+/// A motion of a connected part that nothing resists.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loose {
+    /// Points of the part, and one of them.
+    pub points: usize,
+    pub point: usize,
+    /// `translation along x`, `rotation about z`
+    pub motion: &'static str,
+}
+
+const TRANSLATIONS: [&str; 3] = ["translation along x", "translation along y", "translation along z"];
+
+impl<const D: usize> Support<D> {
+    pub fn none(points: usize) -> Self {
+        Support {
+            free: vec![[true; D]; points],
+        }
+    }
+
+    /// Number of free components.
+    pub fn unknowns(&self) -> usize {
+        self.free.iter().flatten().filter(|f| **f).count()
+    }
+
+    /// 0 on components that are held.
+    pub fn mask(&self, x: &mut [[f64; D]]) {
+        for (x, free) in x.iter_mut().zip(&self.free) {
+            for a in 0..D {
+                if !free[a] {
+                    x[a] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Rigid motions that the held components leave to connected parts; `part` labels each point's.
+    pub fn loose(
+        &self,
+        position: &[[f64; D]],
+        part: &[u32],
+        period: &[Option<f64>; D],
+    ) -> Vec<Loose> {
+        let parts = part.iter().max().map_or(0, |m| *m as usize + 1);
+        let mut members = vec![vec![]; parts];
+        for (i, p) in part.iter().enumerate() {
+            members[*p as usize].push(i);
+        }
+        members
+            .iter()
+            .filter(|m| !m.is_empty())
+            .flat_map(|m| self.loose_part(position, m, period))
+            .collect()
+    }
+
+    fn loose_part(
+        &self,
+        position: &[[f64; D]],
+        members: &[usize],
+        period: &[Option<f64>; D],
+    ) -> Vec<Loose> {
+        let n = members.len() as f64;
+        let center: [f64; D] =
+            std::array::from_fn(|a| members.iter().map(|i| position[*i][a]).sum::<f64>() / n);
+        let arm = |i: usize, a: usize| position[i][a] - center[a];
+        let size = members
+            .iter()
+            .map(|i| (0..D).map(|a| arm(*i, a).powi(2)).sum::<f64>())
+            .fold(0.0, f64::max)
+            .sqrt();
+        // a motion, as its component `a` at point i
+        let mut motions: Vec<(&'static str, [usize; 2])> = (0..D).map(|a| (TRANSLATIONS[a], [a, a])).collect();
+        let planes = [("rotation about z", [0, 1]), ("rotation about x", [1, 2]), ("rotation about y", [2, 0])];
+        for (name, [m, n]) in planes.into_iter().take(D * (D - 1) / 2) {
+            // about the line through all points nothing turns: a bar in the plane still turns about its centre
+            let turns = members
+                .iter()
+                .any(|i| arm(*i, m).abs().max(arm(*i, n).abs()) > 1e-9 * size);
+            if size > 0.0 && turns && period[m].is_none() && period[n].is_none() {
+                motions.push((name, [m, n]));
+            }
+        }
+        let value = |[m, n]: [usize; 2], i: usize, a: usize| match (m == n, a) {
+            (true, a) => f64::from(a == m),
+            (false, a) if a == m => -arm(i, n) / size,
+            (false, a) if a == n => arm(i, m) / size,
+            _ => 0.0,
+        };
+        let count = motions.len();
+        let mut gram = Mat::<f64>::zeros(count, count);
+        for &i in members {
+            for a in (0..D).filter(|a| !self.free[i][*a]) {
+                for (p, (_, p_axes)) in motions.iter().enumerate() {
+                    for (q, (_, q_axes)) in motions.iter().enumerate() {
+                        gram[(p, q)] += value(*p_axes, i, a) * value(*q_axes, i, a);
+                    }
+                }
+            }
+        }
+        let Ok(eigen) = gram.self_adjoint_eigen(Side::Lower) else {
+            return vec![];
+        };
+        let (values, vectors) = (eigen.S(), eigen.U());
+        let top = (0..count).map(|k| values[k]).fold(1.0, f64::max);
+        let null = (0..count).filter(|k| values[*k] < 1e-12 * top);
+        let mut loose: Vec<Loose> = null
+            .filter_map(|k| {
+                let strongest = (0..count).max_by(|p, q| {
+                    vectors[(*p, k)].abs().total_cmp(&vectors[(*q, k)].abs())
+                })?;
+                Some(Loose {
+                    points: members.len(),
+                    point: members[0],
+                    motion: motions[strongest].0,
+                })
+            })
+            .collect();
+        loose.sort_by_key(|l| l.motion);
+        loose.dedup();
+        loose
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn loose<const D: usize>(held: &[(usize, usize)], period: [Option<f64>; D]) -> Vec<&'static str> {
+        // corners of a cube (square, segment)
+        let position: Vec<[f64; D]> = (0..1 << D)
+            .map(|i| std::array::from_fn(|a| f64::from(i >> a & 1)))
+            .collect();
+        let mut support = Support::<D>::none(position.len());
+        for (i, a) in held {
+            support.free[*i][*a] = false;
+        }
+        let part = vec![0; position.len()];
+        let found = support.loose(&position, &part, &period);
+        found.iter().map(|l| l.motion).collect()
+    }
+
+    #[test]
+    fn motions_that_nothing_holds_are_named() {
+        assert_eq!(loose::<1>(&[], [None]), ["translation along x"]);
+        assert!(loose::<1>(&[(1, 0)], [None]).is_empty());
+        assert_eq!(loose::<2>(&[(0, 0), (0, 1)], [None; 2]), ["rotation about z"]);
+        assert!(loose::<2>(&[(0, 0), (0, 1), (1, 1)], [None; 2]).is_empty());
+        // rollers on one side
+        assert_eq!(loose::<2>(&[(0, 0), (2, 0)], [None; 2]), ["translation along y"]);
+        // nothing turns where an axis is periodic
+        assert!(loose::<2>(&[(0, 0), (0, 1)], [Some(2.0), None]).is_empty());
+        let pins = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2)];
+        assert_eq!(loose::<3>(&pins, [None; 3]), ["rotation about x"]);
+        assert!(loose::<3>(&[&pins[..], &[(2, 2)]].concat(), [None; 3]).is_empty());
+        assert_eq!(loose::<3>(&[], [None; 3]).len(), 6);
+    }
+
+    #[test]
+    fn each_part_must_be_held() {
+        let position = [[0.0], [1.0], [5.0], [6.0]];
+        let mut support = Support::<1>::none(4);
+        support.free[0][0] = false;
+        let found = support.loose(&position, &[0, 0, 1, 1], &[None]);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].point, found[0].points), (2, 2));
+    }
+}

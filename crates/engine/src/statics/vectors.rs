@@ -1,0 +1,47 @@
+//! Sums over points with a fixed order, so that solvers give the same bits for any number of threads.
+
+use rayon::prelude::*;
+
+/// Points per partial sum.
+const CHUNK: usize = 4096;
+
+/// `x · y`
+pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
+    let part = |(x, y): (&[[f64; D]], &[[f64; D]])| -> f64 {
+        let both = x.iter().zip(y);
+        both.map(|(x, y)| (0..D).map(|a| x[a] * y[a]).sum::<f64>()).sum()
+    };
+    let parts: Vec<f64> = x.par_chunks(CHUNK).zip(y.par_chunks(CHUNK)).map(part).collect();
+    parts.iter().sum()
+}
+
+/// `y += s x`
+pub fn add<const D: usize>(y: &mut [[f64; D]], s: f64, x: &[[f64; D]]) {
+    y.par_chunks_mut(CHUNK)
+        .zip(x.par_chunks(CHUNK))
+        .for_each(|(y, x)| {
+            for (y, x) in y.iter_mut().zip(x) {
+                for a in 0..D {
+                    y[a] = s.mul_add(x[a], y[a]);
+                }
+            }
+        });
+}
+
+/// `y = x + s y`
+pub fn add_to_multiple<const D: usize>(y: &mut [[f64; D]], s: f64, x: &[[f64; D]]) {
+    y.par_chunks_mut(CHUNK)
+        .zip(x.par_chunks(CHUNK))
+        .for_each(|(y, x)| {
+            for (y, x) in y.iter_mut().zip(x) {
+                for a in 0..D {
+                    y[a] = s.mul_add(y[a], x[a]);
+                }
+            }
+        });
+}
+
+/// `√(x · x)`
+pub fn norm<const D: usize>(x: &[[f64; D]]) -> f64 {
+    dot(x, x).sqrt()
+}
