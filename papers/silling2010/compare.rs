@@ -20,8 +20,7 @@ pub fn equilibrium<const D: usize>(
         support.free[*i] = [false; D];
         given[*i] = *u;
     }
-    let mut force = vec![[0.0; D]; body.points()];
-    body.forces(&given, &mut force);
+    let mut force: Vec<[f64; D]> = (0..body.points()).map(|i| body.force(&given, i)).collect();
     for (i, b) in density {
         for a in 0..D {
             force[*i][a] += b[a];

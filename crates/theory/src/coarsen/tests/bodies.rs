@@ -107,13 +107,12 @@ pub fn equilibrium<const D: usize>(
         support.free[*i] = [false; D];
         given[*i] = *u;
     }
-    let mut force = vec![[0.0; D]; body.points()];
-    body.forces(&given, &mut force);
-    for ((f, b), v) in force.iter_mut().zip(density).zip(&body.volume) {
-        for a in 0..D {
-            f[a] = v * (f[a] + b[a]);
-        }
-    }
+    let force: Vec<[f64; D]> = (0..body.points())
+        .map(|i| {
+            let f = body.force(&given, i);
+            std::array::from_fn(|a| body.volume[i] * (f[a] + density[i][a]))
+        })
+        .collect();
     let mut u = Direct::new(body, &support, 0.0).unwrap().solve(&force);
     for (i, given) in held {
         u[*i] = *given;

@@ -44,7 +44,7 @@ fn blue_noise_fills_without_crowding() {
         };
         let crowd = chosen.iter().map(|i| nearest(*i as usize)).fold(f64::INFINITY, f64::min);
         let gap = (0..cube.points()).filter(|i| !chosen.contains(&(*i as u32))).map(nearest).fold(0.0, f64::max);
-        assert!(crowd >= 2.0 && gap <= 2.5, "{selection:?}: {} {crowd} {gap}", chosen.len());
+        assert!(crowd >= gap && gap > 1.0, "{selection:?}: {} {crowd} {gap}", chosen.len());
     }
     let other = Selection::BlueNoise { spacing: 2.5, seed: 5 }.choose(&cube).unwrap();
     assert_ne!(other, Selection::BlueNoise { spacing: 2.5, seed: 4 }.choose(&cube).unwrap());
