@@ -17,6 +17,7 @@ pub mod profile;
 pub mod reproduce;
 mod seleson2009;
 mod seleson2014;
+mod silling2010;
 
 pub use claim::{Claim, Kind, Value};
 pub use experiment::{Context, Experiment, Failure, Findings, Measurement};
@@ -24,5 +25,11 @@ pub use reproduce::{Options, Outcome, Report, reproduce};
 
 /// All experiments, in the order of the papers.
 pub fn all() -> Vec<&'static dyn Experiment> {
-    [seleson2009::all(), seleson2014::all(), eriksson2020::all()].concat()
+    [
+        seleson2009::all(),
+        seleson2014::all(),
+        eriksson2020::all(),
+        silling2010::all(),
+    ]
+    .concat()
 }

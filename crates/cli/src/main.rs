@@ -2,6 +2,7 @@
 
 mod bar;
 mod check;
+mod coarsen;
 mod converge;
 mod deck;
 mod failure;
@@ -35,6 +36,8 @@ enum Verb {
     Check(check::CheckArguments),
     /// From atoms (or fine points) to coarse peridynamic points: decks of both, and an error card.
     Upscale(upscale::UpscaleArguments),
+    /// From a linear body (a deck about its reference) to coarser ones, level by level, that move alike.
+    Coarsen(coarsen::CoarsenArguments),
     /// Waves of a lattice deck: dispersion, stability, elastic constants, gradient coefficients.
     Waves(waves::WavesArguments),
     /// Refine a lattice deck level by level, and fit the order with which its error falls.
@@ -79,6 +82,7 @@ fn main() -> ExitCode {
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
         Verb::Upscale(arguments) => upscale::upscale(&arguments),
+        Verb::Coarsen(arguments) => coarsen::coarsen(&arguments),
         Verb::Waves(arguments) => waves::waves(&arguments),
         Verb::Converge(arguments) => converge::converge(&arguments),
         Verb::Bar(arguments) => bar::bar(&arguments),

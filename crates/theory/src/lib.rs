@@ -9,6 +9,7 @@
 //! | which differential equation is it? | [`gradient`], exactly by [`exact`] |
 //! | what is the coarse model with the same dynamics, and how far does it agree? | [`upscale`] |
 //! | is one model an upscaling of another, to which order? | [`upscaling`] |
+//! | which body of fewer points has the same mechanics? | [`coarsen`] |
 //! | all of that of one lattice, for a report | [`survey`] |
 //! | which factors of bonds make a body as stiff at its ends as inside? | [`homogenize`] |
 //! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
@@ -17,6 +18,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod asked;
+pub mod coarsen;
 pub mod convergence;
 pub mod crystal;
 pub mod dispersion;

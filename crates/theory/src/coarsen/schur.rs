@@ -1,0 +1,104 @@
+//! The exact elimination of all removed points at once: the reference for every ball and every number of levels.
+
+use super::balls::{Task, Work};
+use super::block::{Block, add_product, scaled, transposed, zero};
+use super::coupling::Coupling;
+use super::error::CoarsenError;
+use peridyne::statics::{Direct, SolveError, Support};
+use rayon::prelude::*;
+
+/// Numbers that the exact elimination may hold: the coarse stiffness is full.
+pub const SCHUR_LIMIT: usize = 60_000_000;
+
+pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<(Coupling<D>, Work), CoarsenError> {
+    let (body, retained) = (task.body, task.retained);
+    let (n, m) = (D * (body.points() - retained.len()), D * retained.len());
+    if m * m > SCHUR_LIMIT {
+        return Err(CoarsenError::TooLarge {
+            removed: n,
+            retained: m,
+            limit: SCHUR_LIMIT,
+        });
+    }
+    let support = Support {
+        free: task.marked.iter().map(|held| [!held; D]).collect(),
+    };
+    let factors = match Direct::new(body, &support, 0.0) {
+        Ok(factors) => Some(factors),
+        Err(SolveError::NothingFree) => None,
+        Err(_) => return Err(CoarsenError::IndefiniteBody),
+    };
+    // one column of the coarse stiffness after the other: the forces on retained points when one is displaced
+    let column = |q: u32| -> Option<Vec<Block<D>>> {
+        let mut displaced = vec![zero::<D>(); body.points()];
+        for b in 0..D {
+            let mut u = match &factors {
+                Some(factors) => factors.solve(&forces(task, q, b)),
+                None => vec![[0.0; D]; body.points()],
+            };
+            u[q as usize][b] = 1.0;
+            for (block, u) in displaced.iter_mut().zip(u) {
+                for a in 0..D {
+                    block[a][b] = u[a];
+                }
+            }
+        }
+        let blocks: Vec<Block<D>> = (retained.iter())
+            .map(|i| {
+                let (partners, blocks) = body.row(*i as usize);
+                let mut sum = zero();
+                for (j, c) in partners.iter().zip(blocks) {
+                    add_product(&mut sum, c, &displaced[*j as usize]);
+                }
+                scaled(body.volume[*i as usize], &sum)
+            })
+            .collect();
+        let finite = blocks
+            .as_flattened()
+            .as_flattened()
+            .iter()
+            .all(|x| x.is_finite());
+        finite.then_some(blocks)
+    };
+    let columns: Vec<Option<Vec<Block<D>>>> = retained.par_iter().map(|q| column(*q)).collect();
+    let mut rows = vec![Vec::with_capacity(retained.len() - 1); retained.len()];
+    for (q, blocks) in columns.into_iter().enumerate() {
+        let blocks = blocks.ok_or(CoarsenError::IndefiniteBody)?;
+        for (i, block) in blocks.into_iter().enumerate().filter(|(i, _)| *i != q) {
+            rows[i].push((q as u32, block));
+        }
+    }
+    let work = Work {
+        solved: 1,
+        points: body.points(),
+        ..Work::default()
+    };
+    Ok((Coupling { rows }, work))
+}
+
+/// Forces on removed points when component b of point q is displaced by 1.
+fn forces<const D: usize>(task: &Task<D>, q: u32, b: usize) -> Vec<[f64; D]> {
+    let body = task.body;
+    let mut force = vec![[0.0; D]; body.points()];
+    let mut take = |e: usize, k: &Block<D>| {
+        for a in 0..D {
+            force[e][a] += k[a][b];
+        }
+    };
+    if task.symmetric {
+        let (partners, blocks) = body.row(q as usize);
+        for (j, c) in partners.iter().zip(blocks) {
+            take(
+                *j as usize,
+                &scaled(body.volume[q as usize], &transposed(c)),
+            );
+        }
+    } else {
+        for e in 0..body.points() {
+            if let Some(c) = body.micromodulus(e, q as usize) {
+                take(e, &scaled(body.volume[e], c));
+            }
+        }
+    }
+    force
+}

@@ -1,0 +1,5 @@
+mod bodies;
+mod errors;
+mod exactness;
+mod schemes;
+mod selection;

@@ -1,0 +1,30 @@
+//! Silling, "A coarsening method for linear peridynamics" (2010): its examples, and the same in two and three dimensions.
+
+mod bar;
+mod compare;
+
+#[path = "beyond-block/mod.rs"]
+mod beyond_block;
+#[path = "beyond-plates/mod.rs"]
+mod beyond_plates;
+#[path = "figure-3/mod.rs"]
+mod figure_3;
+#[path = "figure-4/mod.rs"]
+mod figure_4;
+#[path = "figure-5/mod.rs"]
+mod figure_5;
+#[path = "figure-7/mod.rs"]
+mod figure_7;
+
+use crate::Experiment;
+
+pub fn all() -> Vec<&'static dyn Experiment> {
+    vec![
+        &figure_3::Figure3,
+        &figure_4::Figure4,
+        &figure_5::Figure5,
+        &figure_7::Figure7,
+        &beyond_plates::BeyondPlates,
+        &beyond_block::BeyondBlock,
+    ]
+}
