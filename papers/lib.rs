@@ -20,10 +20,5 @@ pub use reproduce::{Options, Outcome, Report, reproduce};
 
 /// All experiments, in the order of the papers.
 pub fn all() -> Vec<&'static dyn Experiment> {
-    [
-        seleson2009::all(),
-        seleson2014::all(),
-        silling2010::all(),
-    ]
-    .concat()
+    [seleson2009::all(), seleson2014::all(), silling2010::all()].concat()
 }

@@ -2,7 +2,7 @@
 
 use peridyne::statics::LinearBody;
 use peridyne_theory::coarsen::lattice::LatticeBlock;
-use peridyne_theory::coarsen::{Options, Radius, Report, Scheme, Selection, Volume, coarsen, schur};
+use peridyne_theory::coarsen::{Options, Radius, Scheme, Selection, Volume, coarsen, schur};
 
 use super::compare::failed;
 use crate::Failure;
@@ -79,7 +79,6 @@ pub struct Level {
     pub body: LinearBody<1>,
     /// Numbers of its nodes at level 0.
     pub node: Vec<usize>,
-    pub report: Option<Report>,
 }
 
 impl Level {
@@ -93,13 +92,15 @@ impl Level {
 pub enum Way {
     /// As published: free balls of 40 v and 80 v, rows as they come.
     Published,
-    /// The same radii, from the energy of the level below.
+    /// From the energy of the level below, balls of 16 v and 48 v.
     Energy,
     Exact,
 }
 
 /// Radii of levels 1 and 2 (v): not given; these reproduce the figures (erratum 4).
 pub const RADII: [i64; 2] = [40, 80];
+/// Of [`Way::Energy`]: coarse bonds are as long as two balls.
+const ENERGY_RADII: [i64; 2] = [16, 48];
 
 /// Options of a level of a given radius (v).
 pub fn options(scheme: Scheme, radius: i64) -> Options {
@@ -118,19 +119,24 @@ pub fn levels(fine: LinearBody<1>, every: [u32; 2], way: Way) -> Result<[Level; 
     let zero = Level {
         node: (0..fine.points()).collect(),
         body: fine,
-        report: None,
     };
-    let one = next(&zero, every[0], RADII[0], way)?;
-    let two = next(&one, every[1], RADII[1], way)?;
+    let radii = match way {
+        Way::Energy => ENERGY_RADII,
+        _ => RADII,
+    };
+    let one = next(&zero, every[0], radii[0], way)?;
+    let two = next(&one, every[1], radii[1], way)?;
     Ok([zero, one, two])
 }
 
-pub fn next(below: &Level, every: u32, radius: i64, way: Way) -> Result<Level, Failure> {
-    let keep = Selection::every(every).choose(&below.body).map_err(failed)?;
-    let (body, report) = match way {
-        Way::Published => coarsen(&below.body, &keep, &options(Scheme::Rows, radius)),
-        Way::Energy => coarsen(&below.body, &keep, &options(Scheme::Energy, radius)),
-        Way::Exact => schur(&below.body, &keep).map(|(mut body, report)| {
+fn next(below: &Level, every: u32, radius: i64, way: Way) -> Result<Level, Failure> {
+    let keep = Selection::every(every)
+        .choose(&below.body)
+        .map_err(failed)?;
+    let body = match way {
+        Way::Published => coarsen(&below.body, &keep, &options(Scheme::Rows, radius)).map(|c| c.0),
+        Way::Energy => coarsen(&below.body, &keep, &options(Scheme::Energy, radius)).map(|c| c.0),
+        Way::Exact => schur(&below.body, &keep).map(|(mut body, _)| {
             // back to v per node
             for i in 0..body.points() {
                 let factor = body.volume[i] / V;
@@ -138,14 +144,13 @@ pub fn next(below: &Level, every: u32, radius: i64, way: Way) -> Result<Level, F
                 body.block[row].iter_mut().for_each(|c| c[0][0] *= factor);
                 body.volume[i] = V;
             }
-            (body, report)
+            body
         }),
     }
     .map_err(failed)?;
     Ok(Level {
         node: keep.iter().map(|k| below.node[*k as usize]).collect(),
         body,
-        report: Some(report),
     })
 }
 

@@ -1,6 +1,9 @@
 //! Equilibrium, and how far two levels are apart.
 
+use std::time::Instant;
+
 use peridyne::statics::{Direct, LinearBody, Support};
+use peridyne_theory::coarsen::{Options, Report, Selection, coarsen};
 
 use crate::Failure;
 
@@ -42,4 +45,90 @@ pub fn largest<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
     let most = b.as_flattened().iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let off = a.as_flattened().iter().zip(b.as_flattened());
     off.fold(0.0f64, |m, (a, b)| m.max((a - b).abs())) / most
+}
+
+/// A body, its levels, and where their points are in it.
+pub struct Levels<const D: usize> {
+    pub body: Vec<LinearBody<D>>,
+    /// Numbers in the finest body.
+    pub point: Vec<Vec<usize>>,
+    /// Of levels 1, 2, …
+    pub report: Vec<Report>,
+}
+
+impl<const D: usize> Levels<D> {
+    /// Every third point of the level before, so many times.
+    pub fn thirds(fine: LinearBody<D>, times: usize, options: &Options) -> Result<Self, Failure> {
+        let mut levels = Levels {
+            point: vec![(0..fine.points()).collect()],
+            body: vec![fine],
+            report: vec![],
+        };
+        for m in 0..times {
+            let (below, point) = (&levels.body[m], &levels.point[m]);
+            let keep = Selection::every(3).choose(below).map_err(failed)?;
+            let (body, report) = coarsen(below, &keep, options).map_err(failed)?;
+            let point = keep.iter().map(|k| point[*k as usize]).collect();
+            levels.body.push(body);
+            levels.point.push(point);
+            levels.report.push(report);
+        }
+        Ok(levels)
+    }
+
+    /// Displacements of every level, its ends along x held and pulled apart by `strain` at the points of the last level there.
+    pub fn pulled(&self, strain: f64) -> Result<Pulled<D>, Failure> {
+        let last = self.point.len() - 1;
+        let x = |k: &usize| self.body[0].position[*k][0];
+        let far = self.point[last].iter().map(x).fold(0.0, f64::max);
+        let ends: Vec<usize> = (self.point[last].iter().copied())
+            .filter(|k| x(k) < 1e-9 * far || x(k) > far * (1.0 - 1e-9))
+            .collect();
+        let mut pulled = Pulled {
+            u: vec![],
+            seconds: vec![],
+        };
+        for (body, point) in self.body.iter().zip(&self.point) {
+            let held: Vec<(usize, [f64; D])> = (point.iter().enumerate())
+                .filter(|(_, k)| ends.contains(k))
+                .map(|(i, k)| {
+                    let mut u = [0.0; D];
+                    u[0] = strain * x(k);
+                    (i, u)
+                })
+                .collect();
+            let begin = Instant::now();
+            pulled.u.push(equilibrium(body, &held, &[])?);
+            pulled.seconds.push(begin.elapsed().as_secs_f64());
+        }
+        Ok(pulled)
+    }
+
+    /// Largest difference of the points of a level from the finest body's, over the largest displacement.
+    pub fn error(&self, pulled: &Pulled<D>, m: usize) -> f64 {
+        let fine: Vec<[f64; D]> = self.point[m].iter().map(|k| pulled.u[0][*k]).collect();
+        largest(&pulled.u[m], &fine)
+    }
+}
+
+pub struct Pulled<const D: usize> {
+    /// Per level.
+    pub u: Vec<Vec<[f64; D]>>,
+    /// Time of the solution by a sparse direct solver, per level.
+    pub seconds: Vec<f64>,
+}
+
+/// What the solution costs at each level; dense elimination by the law of section 6, (K0/Km)³.
+pub fn costs<const D: usize>(levels: &Levels<D>, pulled: &Pulled<D>) -> String {
+    let per_level = levels.body.iter().zip(&pulled.seconds).map(|(body, s)| {
+        let k = (levels.body[0].points() as f64 / body.points() as f64).powi(3);
+        format!(
+            "{} points, {} bonds, {:.1} ms sparse, dense elimination {:.0} times less",
+            body.points(),
+            body.partner.len(),
+            1e3 * s,
+            k
+        )
+    });
+    per_level.collect::<Vec<_>>().join("; ")
 }

@@ -6,25 +6,41 @@ use peridyne_io::write::table::Table;
 use super::bar::{Nodes, REACH, V, modulus, tent};
 use crate::{Context, Failure, Findings};
 
-experiment!(Figure3, "figure-3", "Tent-shaped micromodulus", ["../bar.rs"]);
+experiment!(
+    Figure3,
+    "figure-3",
+    "Tent-shaped micromodulus",
+    ["../bar.rs"]
+);
 
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let (xi, c): (Vec<f64>, Vec<f64>) = (-12i64..=12)
         .map(|n| {
-            let c = if n == 0 || n.abs() > REACH { 0.0 } else { tent(0, n) };
+            let c = if n == 0 || n.abs() > REACH {
+                0.0
+            } else {
+                tent(0, n)
+            };
             (n as f64 * V, c)
         })
         .unzip();
     let r0 = 10.0 * V;
-    let plot = Plot::new("C0, levels of example 1")
+    let plot = Plot::new("micromodulus of level 0")
         .x("q − x", "")
         .y("C0", "")
-        .dashed("C0(x, q)", &[-1.2 * r0, -r0, 0.0, r0, 1.2 * r0], &[0.0, 0.0, 1.0, 0.0, 0.0])
+        .dashed(
+            "C0(x, q)",
+            &[-1.2 * r0, -r0, 0.0, r0, 1.2 * r0],
+            &[0.0, 0.0, 1.0, 0.0, 0.0],
+        )
         .points("nodes", &xi, &c);
     found.picture(plot.save(&context.out, "c0")?);
     let path = context.out.join("c0.csv");
-    Table::new().column("q-x", "", xi).column("C0", "", c).save(&path)?;
+    Table::new()
+        .column("q-x", "", xi)
+        .column("C0", "", c)
+        .save(&path)?;
     found.file(path);
     let bar = Nodes::Centred.bar(tent);
     found.number("bonds", bar.row(100).0.len() as f64);

@@ -25,8 +25,12 @@ fn pulled(level: &Level, ends: &Level) -> Result<Vec<f64>, Failure> {
         let found = level.node.iter().position(|node| *node == ends.node[k]);
         found.ok_or_else(|| failed("a node of level 2 is in every level"))
     };
-    let held = (0..3).map(|k| Ok((at(k)?, [0.0]))).collect::<Result<Vec<_>, Failure>>()?;
-    let load = (n - 3..n).map(|k| Ok((at(k)?, [B]))).collect::<Result<Vec<_>, Failure>>()?;
+    let held = (0..3)
+        .map(|k| Ok((at(k)?, [0.0])))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let load = (n - 3..n)
+        .map(|k| Ok((at(k)?, [B])))
+        .collect::<Result<Vec<_>, Failure>>()?;
     let u = equilibrium(&level.body, &held, &load)?;
     Ok(u.into_iter().map(|u| u[0]).collect())
 }
@@ -34,7 +38,10 @@ fn pulled(level: &Level, ends: &Level) -> Result<Vec<f64>, Failure> {
 /// Displacements at the nodes of level 2.
 fn common(level: &Level, ends: &Level, u: &[f64]) -> Vec<f64> {
     let at = |node: &usize| level.node.iter().position(|k| k == node);
-    ends.node.iter().filter_map(|node| Some(u[at(node)?])).collect()
+    ends.node
+        .iter()
+        .filter_map(|node| Some(u[at(node)?]))
+        .collect()
 }
 
 /// Stress 3 b v over the strain between two nodes of level 2 that are four stripes apart, in the middle of the bar.
@@ -51,7 +58,11 @@ fn period() -> Result<f64, Failure> {
     let wrapped = |i: i64| i.rem_euclid(2 * STRIPE);
     let c = |i: i64, n: i64| V * striped(wrapped(i), wrapped(i + n));
     let cell: LinearBody<1> = cells.body(|_| true, |[i], [n]| c(i, n));
-    let row = |i: i64| (-REACH..=REACH).filter(|n| *n != 0).map(move |n| (n, c(i, n)));
+    let row = |i: i64| {
+        (-REACH..=REACH)
+            .filter(|n| *n != 0)
+            .map(move |n| (n, c(i, n)))
+    };
     let size = 4 * STRIPE;
     // forces of unit strain, and half their work
     let mut load = vec![];
@@ -81,11 +92,19 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut moduli = vec![];
     for nodes in Nodes::ALL {
         let made = levels(nodes.bar(striped), [4, 2], Way::Published)?;
-        let (mut plot, mut compared) = (Plot::new(format!("u, nodes {}", nodes.name())).x("x", "").y("u", ""), vec![]);
+        let (mut plot, mut compared) = (
+            Plot::new(format!("u, nodes {}", nodes.name()))
+                .x("x", "")
+                .y("u", ""),
+            vec![],
+        );
         for (m, level) in made.iter().enumerate() {
             let u = pulled(level, &made[2])?;
             let path = context.out.join(format!("{}-u{m}.csv", nodes.name()));
-            Table::new().column("x", "", level.x()).column("u", "", u.clone()).save(&path)?;
+            Table::new()
+                .column("x", "", level.x())
+                .column("u", "", u.clone())
+                .save(&path)?;
             found.file(path);
             plot = match m {
                 0 => plot.line("level 0", &level.x(), &u),
@@ -101,15 +120,21 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         same &= off.iter().all(|x| x.abs() < 0.03);
         said.push(format!(
             "{}: u of the last node {:.4e}, {:+.2} % at level 1, {:+.2} % at level 2",
-            nodes.name(), stretch[0], 100.0 * off[1], 100.0 * off[2]
+            nodes.name(),
+            stretch[0],
+            100.0 * off[1],
+            100.0 * off[2]
         ));
         if nodes == Nodes::Centred {
             moduli = compared.iter().map(|u| measured(&made[2], u)).collect();
             let slopes = |m: usize| {
                 let (x, u) = (made[m].x(), pulled(&made[m], &made[2])?);
                 let step = |k: usize| (u[k + 1] - u[k]) / (x[k + 1] - x[k]);
-                let middle = (0..x.len() - 1).filter(|k| (0.3..0.7).contains(&x[*k])).map(step);
-                let (low, high) = middle.fold((f64::MAX, f64::MIN), |(a, b), s| (a.min(s), b.max(s)));
+                let middle = (0..x.len() - 1)
+                    .filter(|k| (0.3..0.7).contains(&x[*k]))
+                    .map(step);
+                let (low, high) =
+                    middle.fold((f64::MAX, f64::MIN), |(a, b), s| (a.min(s), b.max(s)));
                 Ok::<f64, Failure>(high / low)
             };
             let ratio = [slopes(0)?, slopes(1)?, slopes(2)?];
@@ -119,7 +144,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
                 ratio[0] > ratio[1] && ratio[1] > ratio[2],
             );
             // from the energy, and exactly
-            for (key, way) in [("modulus-energy", Way::Energy), ("modulus-exact", Way::Exact)] {
+            for (key, way) in [
+                ("modulus-energy", Way::Energy),
+                ("modulus-exact", Way::Exact),
+            ] {
                 let made = levels(nodes.bar(striped), [4, 2], way)?;
                 let u = pulled(&made[2], &made[2])?;
                 found.number(key, measured(&made[2], &u) / exact);

@@ -29,7 +29,11 @@ fn stretched(level: &Level, ends: &Level) -> Result<Vec<f64>, Failure> {
         let i = found.ok_or_else(|| failed("a node of level 2 is in every level"))?;
         Ok((i, level.body.position[i]))
     });
-    let u = equilibrium(&level.body, &held.collect::<Result<Vec<_>, Failure>>()?, &[])?;
+    let u = equilibrium(
+        &level.body,
+        &held.collect::<Result<Vec<_>, Failure>>()?,
+        &[],
+    )?;
     Ok(u.into_iter().map(|u| u[0]).collect())
 }
 
@@ -46,14 +50,21 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let bar = || nodes.bar(|i, j| weak(nodes, i, j));
         let made = levels(bar(), [3, 3], Way::Published)?;
         let (mut plot, mut us) = (
-            Plot::new(format!("u near the defect, nodes {}", nodes.name())).x("x", "").y("u", "").x_range(0.35, 0.65).y_range(0.1, 0.9),
+            Plot::new(format!("u near the defect, nodes {}", nodes.name()))
+                .x("x", "")
+                .y("u", "")
+                .x_range(0.35, 0.65)
+                .y_range(0.1, 0.9),
             vec![],
         );
         for (m, level) in made.iter().enumerate() {
             let u = stretched(level, &made[2])?;
             let x = level.x();
             let path = context.out.join(format!("{}-u{m}.csv", nodes.name()));
-            Table::new().column("x", "", x.clone()).column("u", "", u.clone()).save(&path)?;
+            Table::new()
+                .column("x", "", x.clone())
+                .column("u", "", u.clone())
+                .save(&path)?;
             found.file(path);
             plot = match m {
                 0 => plot.line("level 0", &x, &u),
@@ -66,10 +77,16 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         worst.push([off(&made[1], &us[1], &us[0]), off(&made[2], &us[2], &us[0])]);
         if nodes == Nodes::Centred {
             // across the widest step of each level
-            let jumps: Vec<f64> = us.iter().map(|u| u.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max)).collect();
+            let jumps: Vec<f64> = us
+                .iter()
+                .map(|u| u.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max))
+                .collect();
             found.holds(
                 "jump",
-                format!("largest difference of neighbours: {:.3}, {:.3}, {:.3}", jumps[0], jumps[1], jumps[2]),
+                format!(
+                    "largest difference of neighbours: {:.3}, {:.3}, {:.3}",
+                    jumps[0], jumps[1], jumps[2]
+                ),
                 jumps[0] < jumps[1] && jumps[1] < jumps[2],
             );
             let exact = levels(bar(), [3, 3], Way::Exact)?;

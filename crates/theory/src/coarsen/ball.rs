@@ -234,6 +234,10 @@ impl<'a, const D: usize> Ball<'a, D> {
         for k in row {
             add(&mut sum, k);
         }
-        if scale > 0.0 { largest(&sum) / scale } else { 0.0 }
+        if scale > 0.0 {
+            largest(&sum) / scale
+        } else {
+            0.0
+        }
     }
 }

@@ -78,7 +78,14 @@ impl<const D: usize> Task<'_, D> {
     /// Points of the ball about the k-th retained point.
     pub fn walk(&self, k: usize, radius: f64, scratch: &mut Scratch) -> Walk<D> {
         let centre = self.retained[k] as usize;
-        walk(self.body, self.marked, centre, radius, grain(self.range), scratch)
+        walk(
+            self.body,
+            self.marked,
+            centre,
+            radius,
+            grain(self.range),
+            scratch,
+        )
     }
 
     pub fn balls(&self, radius: f64, beyond: Beyond) -> Result<Balls<D>, CoarsenError> {

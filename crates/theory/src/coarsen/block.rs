@@ -37,5 +37,7 @@ pub(super) fn add_product<const D: usize>(sum: &mut Block<D>, x: &Block<D>, m: &
 }
 
 pub(super) fn largest<const D: usize>(m: &Block<D>) -> f64 {
-    m.as_flattened().iter().fold(0.0, |a: f64, x| a.max(x.abs()))
+    m.as_flattened()
+        .iter()
+        .fold(0.0, |a: f64, x| a.max(x.abs()))
 }

@@ -38,7 +38,10 @@ impl<const D: usize> Coupling<D> {
                     continue;
                 }
                 let mut mean = scaled(0.5, k);
-                add(&mut mean, &scaled(0.5, &transposed(other.unwrap_or(&zero()))));
+                add(
+                    &mut mean,
+                    &scaled(0.5, &transposed(other.unwrap_or(&zero()))),
+                );
                 rows[i].push((*j, mean));
                 rows[*j as usize].push((i as u32, transposed(&mean)));
             }
@@ -58,7 +61,10 @@ impl<const D: usize> Coupling<D> {
         mass: &[f64],
     ) -> LinearBody<D> {
         let mut body = LinearBody {
-            position: retained.iter().map(|i| below.position[*i as usize]).collect(),
+            position: retained
+                .iter()
+                .map(|i| below.position[*i as usize])
+                .collect(),
             density: mass.iter().zip(&volume).map(|(m, v)| m / v).collect(),
             volume,
             period: below.period,

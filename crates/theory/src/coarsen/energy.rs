@@ -69,7 +69,12 @@ fn carry_rigid_motions<const D: usize>(
 ) {
     let motions: Vec<Vec<[f64; D]>> = row
         .iter()
-        .map(|(q, _)| rigid(&task.body.xi(p, task.retained[*q as usize] as usize), length))
+        .map(|(q, _)| {
+            rigid(
+                &task.body.xi(p, task.retained[*q as usize] as usize),
+                length,
+            )
+        })
         .collect();
     let here = rigid(&[0.0; D], length);
     let n = here.len();

@@ -24,7 +24,12 @@ impl<F: Field> Network<F> {
 
     /// The network of some of its points alone, bonds to others left out.
     pub fn part(&self, points: &[usize]) -> Network<F> {
-        let row = |i: &usize| points.iter().map(|j| self.stiffness[*i][*j].clone()).collect();
+        let row = |i: &usize| {
+            points
+                .iter()
+                .map(|j| self.stiffness[*i][*j].clone())
+                .collect()
+        };
         Network {
             stiffness: points.iter().map(row).collect(),
         }
@@ -67,7 +72,11 @@ impl<F: Field> Network<F> {
         let low = centre.saturating_sub(radius);
         let high = (centre + radius).min(self.stiffness.len() - 1);
         let points: Vec<usize> = (low..=high).collect();
-        let rim: Vec<usize> = points.iter().copied().filter(|p| retained.contains(p)).collect();
+        let rim: Vec<usize> = points
+            .iter()
+            .copied()
+            .filter(|p| retained.contains(p))
+            .collect();
         let within: Vec<usize> = rim.iter().map(|p| p - low).collect();
         let coarse = self.part(&points).eliminated(&within)?;
         let row = &coarse.stiffness[rim.iter().position(|p| *p == centre)?];
@@ -101,7 +110,11 @@ mod tests {
         assert_eq!(coarse.stiffness, [[q(0, 1), q(1, 2)], [q(1, 2), q(0, 1)]]);
         for k in 2..9 {
             let coarse = Network::chain(4 * k + 1, &[q(3, 7)]).eliminated(&every(4 * k + 1, k));
-            assert_eq!(coarse, Some(Network::chain(5, &[q(3, 7 * k as i64)])), "{k}");
+            assert_eq!(
+                coarse,
+                Some(Network::chain(5, &[q(3, 7 * k as i64)])),
+                "{k}"
+            );
         }
         let unlike = Network {
             stiffness: vec![
@@ -117,7 +130,11 @@ mod tests {
     fn two_steps_are_one() {
         let chain = Network::chain(25, &[q(4, 1), q(1, 3), q(1, 5)]);
         let one = chain.eliminated(&every(25, 6)).unwrap();
-        let two = chain.eliminated(&every(25, 2)).unwrap().eliminated(&every(13, 3)).unwrap();
+        let two = chain
+            .eliminated(&every(25, 2))
+            .unwrap()
+            .eliminated(&every(13, 3))
+            .unwrap();
         assert_eq!(one, two);
         let loose = Network::chain(3, &[q(0, 1), q(1, 1)]);
         assert_eq!(loose.eliminated(&[0, 2]), None);
@@ -145,11 +162,18 @@ mod tests {
         let chain = Network::chain(81, &tent);
         let row = chain.ball_row(40, 40, &every(81, 4)).unwrap();
         assert_eq!(row.len(), 20);
-        let stiff = tent.iter().enumerate().fold(q(0, 1), |s, (j, c)| s + c * q((j as i64 + 1).pow(2), 1));
+        let stiff = tent
+            .iter()
+            .enumerate()
+            .fold(q(0, 1), |s, (j, c)| s + c * q((j as i64 + 1).pow(2), 1));
         assert_eq!(stiff, q(165, 2));
         // a coarse point stands for four
         let ratio = modulus(40, &row) / (q(4, 1) * stiff);
-        assert!(ratio < q(992, 1000) && ratio > q(991, 1000), "{}", ratio.value());
+        assert!(
+            ratio < q(992, 1000) && ratio > q(991, 1000),
+            "{}",
+            ratio.value()
+        );
         let symmetric = (0..10).all(|k| row[k].1 == row[19 - k].1);
         assert!(symmetric);
     }

@@ -42,7 +42,9 @@ impl<const D: usize> LatticeBlock<D> {
             true => at[a].rem_euclid(n[a]),
             false => at[a],
         });
-        (0..D).all(|a| (0..n[a]).contains(&wrapped[a])).then_some(wrapped)
+        (0..D)
+            .all(|a| (0..n[a]).contains(&wrapped[a]))
+            .then_some(wrapped)
     }
 
     /// A body of the points that are `present`, density 1 and `spacing^D` as volume, with
@@ -60,7 +62,10 @@ impl<const D: usize> LatticeBlock<D> {
                 n as i64
             })
         };
-        let places: Vec<[i64; D]> = (0..self.size.iter().product()).map(at).filter(|n| present(*n)).collect();
+        let places: Vec<[i64; D]> = (0..self.size.iter().product())
+            .map(at)
+            .filter(|n| present(*n))
+            .collect();
         let number = |n: [i64; D]| {
             let n = self.wrapped(n)?;
             let key = |n: &[i64; D]| n.iter().rev().copied().collect::<Vec<_>>();

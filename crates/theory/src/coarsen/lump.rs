@@ -52,7 +52,8 @@ pub(super) fn lump<const D: usize>(
                 Lumping::Centred => centred(&near, body.position[p], spacing, widest),
                 Lumping::Nearest => None,
             };
-            let shares = centred.unwrap_or_else(|| nearest(&near, body.position[p], spacing, widest));
+            let shares =
+                centred.unwrap_or_else(|| nearest(&near, body.position[p], spacing, widest));
             for (q, w) in shares {
                 volume[q as usize] += w * body.volume[p];
                 mass[q as usize] += w * body.volume[p] * body.density[p];
@@ -115,7 +116,12 @@ fn centred<const D: usize>(
         let factor = solve_semidefinite(g, &one);
         let shares: Vec<(u32, f64)> = terms
             .iter()
-            .map(|(q, w, s)| (*q, w * s.iter().zip(&factor).map(|(s, f)| s * f).sum::<f64>()))
+            .map(|(q, w, s)| {
+                (
+                    *q,
+                    w * s.iter().zip(&factor).map(|(s, f)| s * f).sum::<f64>(),
+                )
+            })
             .collect();
         let moment = |a: usize| {
             let sum: f64 = shares.iter().zip(&terms).map(|(s, t)| s.1 * t.2[a]).sum();
@@ -130,7 +136,12 @@ fn centred<const D: usize>(
 }
 
 /// Equal shares of the nearest points.
-fn nearest<const D: usize>(near: &Near<D>, x: [f64; D], spacing: f64, widest: f64) -> Vec<(u32, f64)> {
+fn nearest<const D: usize>(
+    near: &Near<D>,
+    x: [f64; D],
+    spacing: f64,
+    widest: f64,
+) -> Vec<(u32, f64)> {
     let mut radius = spacing;
     loop {
         let mut found: Vec<(u32, f64)> = (near.within(x, radius).into_iter())

@@ -116,7 +116,7 @@ pub struct Report {
     pub asymmetry: f64,
     /// Of the coarse body.
     pub soundness: Soundness,
-    /// Were all energies found to be at least 0? `false`: more than [`DEFINITE_LIMIT`] unknowns, not looked at.
+    /// Were all energies found to be at least 0, but for what a rotation meets? `false`: more than [`DEFINITE_LIMIT`] unknowns, not looked at.
     pub definite: bool,
     pub lumping: Lumping,
     /// Mass of the body below and of the coarse one.
@@ -162,11 +162,14 @@ pub fn coarsen<const D: usize>(
     };
     let (made, radius, convergence) = plan.converged()?;
     check::connected(&made.coupling, &retained, &parts, radius)?;
-    let definite = check::definite(&made.coupling.symmetrised())?.is_some();
     let soundness = made.body.soundness();
     let allowed = options.rotation + 2.0 * below.rotation;
     // bonds of half a period have no one direction
-    let half = body.period.iter().flatten().fold(f64::INFINITY, |m, p| m.min(0.5 * p));
+    let half = body
+        .period
+        .iter()
+        .flatten()
+        .fold(f64::INFINITY, |m, p| m.min(0.5 * p));
     let turns = made.body.range() < half * (1.0 - 1e-9);
     if turns && soundness.rotation > allowed {
         return Err(CoarsenError::Rotation {
@@ -174,6 +177,9 @@ pub fn coarsen<const D: usize>(
             allowed,
         });
     }
+    // where a rotation meets forces, its energy may be as much below 0
+    let slack = soundness.rotation.max(1e-10);
+    let definite = check::definite(&made.coupling.symmetrised(), slack)?;
     let (mass, centre) = mass_and_centre(body);
     let (coarse, moved) = mass_and_centre(&made.body);
     let shift = (0..D).filter(|a| body.period[*a].is_none());
@@ -213,7 +219,9 @@ pub fn schur<const D: usize>(
 /// Is every number a number?
 fn finite<const D: usize>(body: &LinearBody<D>) -> Result<(), CoarsenError> {
     let sound = |i: &usize| {
-        let x = body.position[*i].iter().chain(body.row(*i).1.as_flattened().as_flattened());
+        let x = body.position[*i]
+            .iter()
+            .chain(body.row(*i).1.as_flattened().as_flattened());
         let (v, rho) = (body.volume[*i], body.density[*i]);
         let counts = v > 0.0 && v.is_finite() && rho >= 0.0 && rho.is_finite();
         counts && x.copied().all(f64::is_finite)
@@ -246,7 +254,10 @@ fn mass_and_centre<const D: usize>(body: &LinearBody<D>) -> (f64, [f64; D]) {
             centre[a] += v * rho * x[a];
         }
     }
-    (mass, centre.map(|x| if mass > 0.0 { x / mass } else { 0.0 }))
+    (
+        mass,
+        centre.map(|x| if mass > 0.0 { x / mass } else { 0.0 }),
+    )
 }
 
 struct Plan<'a, const D: usize> {
@@ -286,19 +297,18 @@ impl<const D: usize> Plan<'_, D> {
         };
         let volume = match self.options.volume {
             Volume::Lumped => self.lumped.volume.clone(),
-            Volume::Kept => (task.retained.iter()).map(|i| task.body.volume[*i as usize]).collect(),
+            Volume::Kept => (task.retained.iter())
+                .map(|i| task.body.volume[*i as usize])
+                .collect(),
         };
-        let body = |c: &Coupling<D>| c.body(task.body, task.retained, volume.clone(), &self.lumped.mass);
-        let found = body(&coupling);
-        let asymmetry = found.soundness().asymmetry;
-        let (coupling, body) = match self.options.symmetrise && asymmetry > 0.0 {
-            true => {
-                let coupling = coupling.symmetrised();
-                let body = body(&coupling);
-                (coupling, body)
-            }
-            false => (coupling, found),
+        let body =
+            |c: &Coupling<D>| c.body(task.body, task.retained, volume.clone(), &self.lumped.mass);
+        let asymmetry = body(&coupling).soundness().asymmetry;
+        let coupling = match self.options.symmetrise && asymmetry > 0.0 {
+            true => coupling.symmetrised(),
+            false => coupling,
         };
+        let body = body(&coupling);
         Ok(Made {
             coupling,
             body,
@@ -316,7 +326,12 @@ impl<const D: usize> Plan<'_, D> {
         let one = |made: &Made<D>, radius, left| {
             let modulus = modulus(&check::affine(&made.body));
             let change = 0.0;
-            vec![Tried { radius, modulus, change, left }]
+            vec![Tried {
+                radius,
+                modulus,
+                change,
+                left,
+            }]
         };
         let tolerance = match (self.options.scheme, self.options.radius) {
             (Scheme::Schur, _) => {
@@ -335,7 +350,12 @@ impl<const D: usize> Plan<'_, D> {
         let coarse = spacing(self.task.body, self.task.retained.len());
         let span = lump::extents(self.task.body);
         let span = span.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let mut radius = self.task.range.max(2.0 * coarse);
+        // shapes from the energy fall off sooner than rows
+        let first = match self.options.scheme {
+            Scheme::Energy => 1.25 * coarse,
+            Scheme::Rows | Scheme::Schur => 2.0 * coarse,
+        };
+        let mut radius = self.task.range.max(first);
         let mut tried: Vec<Tried> = vec![];
         let mut before: Vec<f64> = vec![];
         loop {
@@ -356,14 +376,18 @@ impl<const D: usize> Plan<'_, D> {
                 off += (x - y) * (x - y);
                 size += x * x;
             }
-            let change = if size > 0.0 { f64::sqrt(off / size) } else { 0.0 };
+            let change = if size > 0.0 {
+                f64::sqrt(off / size)
+            } else {
+                0.0
+            };
             let left = match tried.last() {
                 _ if radius >= span => 0.0,
                 None => f64::INFINITY,
                 Some(_) if change < 1e-13 => change,
                 // a geometric trend, but never one that ends at once
                 Some(last) if last.change > 0.0 => {
-                    let ratio = (change / last.change).clamp(0.3, 0.95);
+                    let ratio = (change / last.change).clamp(0.5, 0.95);
                     change * ratio / (1.0 - ratio)
                 }
                 Some(_) => f64::INFINITY,
@@ -378,6 +402,7 @@ impl<const D: usize> Plan<'_, D> {
                 return Ok((made, radius, tried));
             }
             before = affine;
+            // balls grow by whole coarse cells: less would show no trend
             radius = (radius + coarse).max(1.2 * radius);
         }
     }

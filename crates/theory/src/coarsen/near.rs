@@ -27,7 +27,11 @@ impl<const D: usize> Near<D> {
         }
     }
 
-    pub fn of(points: impl Iterator<Item = [f64; D]>, size: f64, period: [Option<f64>; D]) -> Near<D> {
+    pub fn of(
+        points: impl Iterator<Item = [f64; D]>,
+        size: f64,
+        period: [Option<f64>; D],
+    ) -> Near<D> {
         let mut near = Near::new(size, period);
         points.for_each(|x| near.push(x));
         near
@@ -97,12 +101,18 @@ mod tests {
         let points: Vec<[f64; 2]> = (0..200)
             .map(|k| [f64::from(k * 37 % 101) * 0.1, f64::from(k * 53 % 97) * 0.1])
             .collect();
-        for (period, size) in [([None, None], 1.3), ([Some(10.1), None], 2.0), ([Some(10.1), Some(9.7)], 7.0)] {
+        for (period, size) in [
+            ([None, None], 1.3),
+            ([Some(10.1), None], 2.0),
+            ([Some(10.1), Some(9.7)], 7.0),
+        ] {
             let near = Near::of(points.iter().copied(), size, period);
             for x in [[0.05, 0.0], [5.0, 9.6]] {
                 for radius in [0.4, 2.5, 4.8] {
                     let found: Vec<u32> = near.within(x, radius).iter().map(|f| f.0).collect();
-                    let all: Vec<u32> = (0..200).filter(|k| inside(&near.xi(x, *k), radius)).collect();
+                    let all: Vec<u32> = (0..200)
+                        .filter(|k| inside(&near.xi(x, *k), radius))
+                        .collect();
                     assert_eq!(found, all, "{period:?} {x:?} {radius}");
                 }
             }

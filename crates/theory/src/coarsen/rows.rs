@@ -14,7 +14,11 @@ pub(super) fn rows<const D: usize>(
         let walk = task.walk(k, radius, scratch);
         let row = &balls.solved[balls.class[k]].row;
         // the centre itself never acts
-        walk.rim[1..].iter().copied().zip(row[1..].iter().copied()).collect()
+        walk.rim[1..]
+            .iter()
+            .copied()
+            .zip(row[1..].iter().copied())
+            .collect()
     });
     Ok((Coupling::new(task.retained, rows), balls.work))
 }

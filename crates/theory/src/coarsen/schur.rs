@@ -53,7 +53,11 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<(Coupling<D>, Work
                 scaled(body.volume[*i as usize], &sum)
             })
             .collect();
-        let finite = blocks.as_flattened().as_flattened().iter().all(|x| x.is_finite());
+        let finite = blocks
+            .as_flattened()
+            .as_flattened()
+            .iter()
+            .all(|x| x.is_finite());
         finite.then_some(blocks)
     };
     let columns: Vec<Option<Vec<Block<D>>>> = retained.par_iter().map(|q| column(*q)).collect();
@@ -84,7 +88,10 @@ fn forces<const D: usize>(task: &Task<D>, q: u32, b: usize) -> Vec<[f64; D]> {
     if task.symmetric {
         let (partners, blocks) = body.row(q as usize);
         for (j, c) in partners.iter().zip(blocks) {
-            take(*j as usize, &scaled(body.volume[q as usize], &transposed(c)));
+            take(
+                *j as usize,
+                &scaled(body.volume[q as usize], &transposed(c)),
+            );
         }
     } else {
         for e in 0..body.points() {

@@ -35,7 +35,10 @@ mod tests {
     #[test]
     fn singular_systems_are_solved_where_they_can_be() {
         let x = solve_semidefinite(vec![4.0, 2.0, 2.0, 3.0], &[2.0, 5.0]);
-        assert!((x[0] + 0.5).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15, "{x:?}");
+        assert!(
+            (x[0] + 0.5).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15,
+            "{x:?}"
+        );
         // (1, 1) ⊗ (1, 1)
         let x = solve_semidefinite(vec![1.0, 1.0, 1.0, 1.0], &[3.0, 3.0]);
         assert_eq!(x, [3.0, 0.0]);

@@ -128,8 +128,7 @@ pub(super) fn conjugate_gradients<const D: usize>(
         }
         precondition(&r, &mut z);
         let next = dots(&r, &z);
-        let beta: [f64; D] =
-            std::array::from_fn(|a| if open[a] { next[a] / rz[a] } else { 0.0 });
+        let beta: [f64; D] = std::array::from_fn(|a| if open[a] { next[a] / rz[a] } else { 0.0 });
         for e in 0..n {
             for a in 0..D {
                 for c in 0..D {
@@ -179,7 +178,12 @@ pub(super) fn direct<const D: usize>(
     let x: Vec<Block<D>> = (0..n)
         .map(|e| std::array::from_fn(|a| std::array::from_fn(|c| solved[(D * e + c, a)])))
         .collect();
-    if !x.as_flattened().as_flattened().iter().all(|x| x.is_finite()) {
+    if !x
+        .as_flattened()
+        .as_flattened()
+        .iter()
+        .all(|x| x.is_finite())
+    {
         return Err(indefinite);
     }
     Ok((x, Effort::default()))

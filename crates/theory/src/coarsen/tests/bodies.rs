@@ -37,7 +37,9 @@ pub fn tent(points: usize) -> LinearBody<1> {
 /// Hard and soft at random, from a seed.
 pub fn random<const D: usize>(size: [usize; D], periodic: bool, contrast: f64) -> LinearBody<D> {
     let hard = |x: [i64; D]| {
-        let key = x.iter().fold(7u64, |h, x| super::super::select::mixed(h ^ *x as u64));
+        let key = x
+            .iter()
+            .fold(7u64, |h, x| super::super::select::mixed(h ^ *x as u64));
         key.is_multiple_of(2)
     };
     lattice(size, 2.5, periodic, |x, y| match hard(x) && hard(y) {

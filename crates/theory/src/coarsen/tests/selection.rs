@@ -17,19 +17,37 @@ fn every_nth_point_with_an_offset() {
         every: [0, 2],
         offset: [0, 0],
     };
-    assert_eq!(none.choose(&plane), Err(CoarsenError::EveryZero { axis: 0 }));
+    assert_eq!(
+        none.choose(&plane),
+        Err(CoarsenError::EveryZero { axis: 0 })
+    );
     plane.position[9][1] += 0.06;
     let said = Selection::every(2).choose(&plane).unwrap_err().to_string();
-    assert!(said.contains("do not lie on a lattice along axis 1"), "{said}");
-    assert_eq!(Selection::Marked(vec![3, 1]).choose(&plane).unwrap(), [1, 3]);
-    assert_eq!(Selection::Marked(vec![3, 99]).choose(&plane).unwrap_err(), CoarsenError::OutOfRange { index: 99, points: 35 });
+    assert!(
+        said.contains("do not lie on a lattice along axis 1"),
+        "{said}"
+    );
+    assert_eq!(
+        Selection::Marked(vec![3, 1]).choose(&plane).unwrap(),
+        [1, 3]
+    );
+    assert_eq!(
+        Selection::Marked(vec![3, 99]).choose(&plane).unwrap_err(),
+        CoarsenError::OutOfRange {
+            index: 99,
+            points: 35
+        }
+    );
 }
 
 #[test]
 fn blue_noise_fills_without_crowding() {
     let cube = lattice([9, 9, 9], 1.0, true, |_, _| 1.0);
     for selection in [
-        Selection::BlueNoise { spacing: 2.5, seed: 4 },
+        Selection::BlueNoise {
+            spacing: 2.5,
+            seed: 4,
+        },
         Selection::Farthest { count: 60, seed: 4 },
     ] {
         let chosen = selection.choose(&cube).unwrap();
@@ -40,15 +58,62 @@ fn blue_noise_fills_without_crowding() {
         };
         let nearest = |i: usize| {
             let others = chosen.iter().filter(|j| **j as usize != i);
-            others.map(|j| distance(i, *j)).fold(f64::INFINITY, f64::min)
+            others
+                .map(|j| distance(i, *j))
+                .fold(f64::INFINITY, f64::min)
         };
-        let crowd = chosen.iter().map(|i| nearest(*i as usize)).fold(f64::INFINITY, f64::min);
-        let gap = (0..cube.points()).filter(|i| !chosen.contains(&(*i as u32))).map(nearest).fold(0.0, f64::max);
-        assert!(crowd >= gap && gap > 1.0, "{selection:?}: {} {crowd} {gap}", chosen.len());
+        let crowd = chosen
+            .iter()
+            .map(|i| nearest(*i as usize))
+            .fold(f64::INFINITY, f64::min);
+        let gap = (0..cube.points())
+            .filter(|i| !chosen.contains(&(*i as u32)))
+            .map(nearest)
+            .fold(0.0, f64::max);
+        assert!(
+            crowd >= gap && gap > 1.0,
+            "{selection:?}: {} {crowd} {gap}",
+            chosen.len()
+        );
     }
-    let other = Selection::BlueNoise { spacing: 2.5, seed: 5 }.choose(&cube).unwrap();
-    assert_ne!(other, Selection::BlueNoise { spacing: 2.5, seed: 4 }.choose(&cube).unwrap());
-    assert_eq!(Selection::BlueNoise { spacing: -1.0, seed: 0 }.choose(&cube), Err(CoarsenError::Spacing(-1.0)));
-    assert_eq!(Selection::Farthest { count: 0, seed: 0 }.choose(&cube), Err(CoarsenError::Count { count: 0, points: 729 }));
-    assert_eq!(Selection::Farthest { count: 729, seed: 0 }.choose(&cube).unwrap().len(), 729);
+    let other = Selection::BlueNoise {
+        spacing: 2.5,
+        seed: 5,
+    }
+    .choose(&cube)
+    .unwrap();
+    assert_ne!(
+        other,
+        Selection::BlueNoise {
+            spacing: 2.5,
+            seed: 4
+        }
+        .choose(&cube)
+        .unwrap()
+    );
+    assert_eq!(
+        Selection::BlueNoise {
+            spacing: -1.0,
+            seed: 0
+        }
+        .choose(&cube),
+        Err(CoarsenError::Spacing(-1.0))
+    );
+    assert_eq!(
+        Selection::Farthest { count: 0, seed: 0 }.choose(&cube),
+        Err(CoarsenError::Count {
+            count: 0,
+            points: 729
+        })
+    );
+    assert_eq!(
+        Selection::Farthest {
+            count: 729,
+            seed: 0
+        }
+        .choose(&cube)
+        .unwrap()
+        .len(),
+        729
+    );
 }
