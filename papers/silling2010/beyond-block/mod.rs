@@ -40,7 +40,6 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let (side, times) = if context.small { (9, 1) } else { (18, 2) };
     let options = Options {
         scheme: Scheme::Energy,
-        drop: 1e-6,
         radius: Radius::Tolerance(if context.small { 0.1 } else { 0.01 }),
         ..Options::default()
     };
@@ -58,7 +57,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             report.radius,
             report.work.solved
         ));
-        close &= error < 0.02 && report.soundness.rotation < 1e-5 && report.definite;
+        close &= error < 0.02 && report.soundness.rotation < 1e-10 && report.definite;
         let row = [
             m as f64,
             levels.body[m].points() as f64,

@@ -120,7 +120,6 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     };
     let options = Options {
         scheme: Scheme::Energy,
-        drop: 1e-6,
         radius: if context.small {
             Radius::Fixed(9.0)
         } else {
@@ -156,7 +155,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
                     100.0 * error,
                     report.radius
                 ));
-                close &= error < 0.01 && report.soundness.rotation < 1e-5 && report.definite;
+                close &= error < 0.01 && report.soundness.rotation < 1e-10 && report.definite;
                 for (row, value) in rows.iter_mut().zip([
                     m as f64,
                     levels.body[m].points() as f64,

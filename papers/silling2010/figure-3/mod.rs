@@ -26,7 +26,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         })
         .unzip();
     let r0 = 10.0 * V;
-    let plot = Plot::new("C0, levels of example 1")
+    let plot = Plot::new("micromodulus of level 0")
         .x("q − x", "")
         .y("C0", "")
         .dashed(

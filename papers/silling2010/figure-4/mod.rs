@@ -40,7 +40,7 @@ fn scheme(context: &Context, levels: &[Level; 3], found: &mut Findings) -> Resul
     let mut plot = Plot::new("nodes of levels 0, 1, 2 (first 49 of level 0)")
         .x("x/v", "")
         .y("level", "")
-        .y_range(-0.5, 2.5);
+        .y_range(-0.5, 3.5);
     for (m, level) in levels.iter().enumerate() {
         let x: Vec<f64> = level
             .node

@@ -82,15 +82,18 @@ pub(super) fn connected<const D: usize>(
 /// Unknowns up to which definiteness is decided by factorising.
 pub const DEFINITE_LIMIT: usize = 30_000;
 
-/// Is the energy of every displacement at least 0? By Cholesky of the stiffness with 1e-10 of its norm added; `None`: too many
+/// Is the energy of every displacement at least 0? By Cholesky of the stiffness with a part `slack` of its norm added; `false`: too many
 /// unknowns for that.
 ///
 /// # Errors
-/// It is not: `low` is how much must be added (a power of ten), relative to the norm.
-pub(super) fn definite<const D: usize>(coupling: &Coupling<D>) -> Result<Option<()>, CoarsenError> {
+/// It is not: an eigenvalue is below `low`, relative to the norm.
+pub(super) fn definite<const D: usize>(
+    coupling: &Coupling<D>,
+    slack: f64,
+) -> Result<bool, CoarsenError> {
     let n = D * coupling.rows.len();
     if n > DEFINITE_LIMIT {
-        return Ok(None);
+        return Ok(false);
     }
     let mut entries = vec![];
     let mut norm = 0.0f64;
@@ -119,13 +122,17 @@ pub(super) fn definite<const D: usize>(coupling: &Coupling<D>) -> Result<Option<
         let all: Vec<_> = lower.chain(diagonal).collect();
         Factors::symmetric(n, &all).is_ok()
     };
-    if norm == 0.0 || holds(1e-10) {
-        return Ok(Some(()));
+    let mut low = slack;
+    while norm > 0.0 && !holds(low) {
+        low *= 10.0;
+        if low > 10.0 {
+            break;
+        }
     }
-    let low = (-9..=0).map(|e| 10f64.powi(e)).find(|s| holds(*s));
-    Err(CoarsenError::Unstable {
-        low: -low.unwrap_or(1.0) / 10.0,
-    })
+    match low > slack {
+        true => Err(CoarsenError::Unstable { low: -low / 10.0 }),
+        false => Ok(true),
+    }
 }
 
 /// `Σ_ij V_i C_ij[a][b] ξ_c ξ_d`, `[a][c][b][d]`: four times the energy of affine displacements.

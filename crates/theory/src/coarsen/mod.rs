@@ -71,9 +71,6 @@ pub struct Options {
     pub volume: Volume,
     /// Makes action reaction where the rows do not: `K_ij ← ½ (K_ij + K_jiᵀ)`.
     pub symmetrise: bool,
-    /// Micromoduli below this part of the largest are left out, in pairs: shorter bonds, against a rotation that is free of force to
-    /// that part only. 0: none.
-    pub drop: f64,
     /// Largest force under a rigid rotation that is accepted, as [`Soundness::rotation`], beyond that of the body below.
     pub rotation: f64,
 }
@@ -85,7 +82,6 @@ impl Default for Options {
             radius: Radius::Tolerance(0.01),
             volume: Volume::default(),
             symmetrise: true,
-            drop: 0.0,
             rotation: 1e-3,
         }
     }
@@ -120,7 +116,7 @@ pub struct Report {
     pub asymmetry: f64,
     /// Of the coarse body.
     pub soundness: Soundness,
-    /// Were all energies found to be at least 0? `false`: more than [`DEFINITE_LIMIT`] unknowns, not looked at.
+    /// Were all energies found to be at least 0, but for what a rotation meets? `false`: more than [`DEFINITE_LIMIT`] unknowns, not looked at.
     pub definite: bool,
     pub lumping: Lumping,
     /// Mass of the body below and of the coarse one.
@@ -166,7 +162,6 @@ pub fn coarsen<const D: usize>(
     };
     let (made, radius, convergence) = plan.converged()?;
     check::connected(&made.coupling, &retained, &parts, radius)?;
-    let definite = check::definite(&made.coupling.symmetrised())?.is_some();
     let soundness = made.body.soundness();
     let allowed = options.rotation + 2.0 * below.rotation;
     // bonds of half a period have no one direction
@@ -182,6 +177,9 @@ pub fn coarsen<const D: usize>(
             allowed,
         });
     }
+    // where a rotation meets forces, its energy may be as much below 0
+    let slack = soundness.rotation.max(1e-10);
+    let definite = check::definite(&made.coupling.symmetrised(), slack)?;
     let (mass, centre) = mass_and_centre(body);
     let (coarse, moved) = mass_and_centre(&made.body);
     let shift = (0..D).filter(|a| body.period[*a].is_none());
@@ -306,11 +304,10 @@ impl<const D: usize> Plan<'_, D> {
         let body =
             |c: &Coupling<D>| c.body(task.body, task.retained, volume.clone(), &self.lumped.mass);
         let asymmetry = body(&coupling).soundness().asymmetry;
-        let mut coupling = match self.options.symmetrise && asymmetry > 0.0 {
+        let coupling = match self.options.symmetrise && asymmetry > 0.0 {
             true => coupling.symmetrised(),
             false => coupling,
         };
-        coupling.drop_below(self.options.drop);
         let body = body(&coupling);
         Ok(Made {
             coupling,
@@ -354,9 +351,9 @@ impl<const D: usize> Plan<'_, D> {
         let span = lump::extents(self.task.body);
         let span = span.iter().map(|x| x * x).sum::<f64>().sqrt();
         // shapes from the energy fall off sooner than rows
-        let (first, step) = match self.options.scheme {
-            Scheme::Energy => (1.25 * coarse, 0.5 * coarse),
-            Scheme::Rows | Scheme::Schur => (2.0 * coarse, coarse),
+        let first = match self.options.scheme {
+            Scheme::Energy => 1.25 * coarse,
+            Scheme::Rows | Scheme::Schur => 2.0 * coarse,
         };
         let mut radius = self.task.range.max(first);
         let mut tried: Vec<Tried> = vec![];
@@ -390,7 +387,7 @@ impl<const D: usize> Plan<'_, D> {
                 Some(_) if change < 1e-13 => change,
                 // a geometric trend, but never one that ends at once
                 Some(last) if last.change > 0.0 => {
-                    let ratio = (change / last.change).clamp(0.3, 0.95);
+                    let ratio = (change / last.change).clamp(0.5, 0.95);
                     change * ratio / (1.0 - ratio)
                 }
                 Some(_) => f64::INFINITY,
@@ -405,7 +402,8 @@ impl<const D: usize> Plan<'_, D> {
                 return Ok((made, radius, tried));
             }
             before = affine;
-            radius = (radius + step).max(1.2 * radius);
+            // balls grow by whole coarse cells: less would show no trend
+            radius = (radius + coarse).max(1.2 * radius);
         }
     }
 }

@@ -41,10 +41,15 @@ fn the_radius_is_chosen_by_the_modulus() {
             "{scheme:?} {tolerance}: {off} {:?}",
             report.convergence
         );
-        // and not by far too much: a trend takes three radii
-        let tried = &report.convergence;
-        let far = |k: usize| (tried[k].modulus / modulus(&bar) - 1.0).abs() > 0.3 * tolerance;
-        assert!(tried.len() == 3 || far(tried.len() - 3), "{tried:?}");
+        // rows: and not by far too much; from the energy the first radius may do, but a trend takes three
+        if scheme == Scheme::Rows {
+            let before = report.convergence.iter().rev().nth(2).unwrap();
+            assert!(
+                (before.modulus / modulus(&bar) - 1.0).abs() > 0.3 * tolerance,
+                "{:?}",
+                report.convergence
+            );
+        }
     }
 }
 
@@ -153,26 +158,6 @@ fn two_levels_of_a_random_plate() {
         .collect();
     let off = apart(&pulled(&two), &at);
     assert!(off < 0.01, "{off}");
-}
-
-#[test]
-fn small_tails_can_be_dropped() {
-    let fine = random([28, 28], false, 10.0);
-    let keep = every(&fine, 3);
-    let whole = with(Scheme::Energy, Radius::Fixed(9.0));
-    let cut = Options {
-        drop: 1e-4,
-        ..whole
-    };
-    let (all, _) = coarsen(&fine, &keep, &whole).unwrap();
-    let (few, report) = coarsen(&fine, &keep, &cut).unwrap();
-    assert!(2 * few.partner.len() < all.partner.len() && report.range < 0.8 * all.range());
-    // what was left out: not more than that part of the stiffness
-    assert!(
-        report.soundness.asymmetry < 1e-15 && report.soundness.rotation < 1e-4 && report.definite
-    );
-    let affine = |body| check::affine(body)[0];
-    assert!((affine(&few) / affine(&all) - 1.0).abs() < 1e-2);
 }
 
 #[test]
