@@ -1,6 +1,6 @@
 //! Forces between the points of a coarse body per relative displacement, `K_ij = V_i C_ij`.
 
-use super::block::{Block, add, largest, scaled, transposed, zero};
+use super::block::{Block, add, scaled, transposed, zero};
 use peridyne::statics::LinearBody;
 
 /// Rows of partners, ascending, by number in the coarse body.
@@ -50,17 +50,6 @@ impl<const D: usize> Coupling<D> {
             row.sort_unstable_by_key(|r| r.0);
         }
         Coupling { rows }
-    }
-
-    /// Leaves out blocks smaller than a part of the largest.
-    pub fn drop_below(&mut self, part: f64) {
-        if part > 0.0 {
-            let most = self.rows.iter().flatten().map(|r| largest(&r.1));
-            let least = part * most.fold(0.0, f64::max);
-            for row in &mut self.rows {
-                row.retain(|r| largest(&r.1) >= least);
-            }
-        }
     }
 
     /// As a body of the points, with the volumes of that body.
