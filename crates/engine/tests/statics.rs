@@ -192,6 +192,45 @@ fn newton_and_relaxation_agree_where_strains_are_large() {
 }
 
 #[test]
+fn newton_converges_in_any_units() {
+    // steel in millimetres of metres: bond constants are twenty orders of magnitude from 1
+    let mut spec = block(
+        [12.0, 4.0, 0.0],
+        2,
+        LawSpec::Lps(Moduli {
+            young: 2e11,
+            poisson: 0.3,
+        }),
+    );
+    if let BodySpec::Lattice {
+        spacing, region, ..
+    } = &mut spec.body
+    {
+        *spacing = 1e-3;
+        *region = Region::Block {
+            low: [0.0; 3],
+            high: [12e-3, 4e-3, 0.0],
+        };
+    }
+    for (set, x) in spec.sets.iter_mut().zip([0.1e-3, 11.9e-3]) {
+        if let Members::Region(Region::HalfSpace { point, .. }) = &mut set.members {
+            point[0] = x;
+        }
+    }
+    spec.section = 1e-3;
+    spec.horizon = Horizon::Ratio(3);
+    spec.influence = Influence::Inverse;
+    hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+    hold(&mut spec, "high", [number(1e-5), number(4e-4), None]);
+    let mut sim = solved(&with(&spec, Method::Newton, Solver::Direct, 1e-10));
+    let iterations = sim.solved().unwrap().iterations;
+    assert!(iterations <= 5, "{iterations}");
+    let body = sim.linear_body().of::<2>().unwrap();
+    assert!(body.soundness().asymmetry < 1e-12, "{:?}", body.soundness());
+    assert!(sim.modes(4).unwrap()[0].square > 0.0);
+}
+
+#[test]
 fn modes_of_a_chain_are_the_closed_form() {
     // held at one end, free at the other: ω_k = 2 sin((2k−1)π / (2(2n+1)))
     let n = 40;

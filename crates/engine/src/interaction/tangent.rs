@@ -54,7 +54,8 @@ impl<const D: usize> BondTangent<D> {
         let n = y.map(|c| c / r);
         let (mut share, mut pull) = ([0.0; D], [0.0; D]);
         if W::SHARES {
-            let of = |scalar: f64| law.pull(k, g, [scalar, p[1]], [0.0, q[1]]);
+            // without the other fields, beside which a scalar of 1 would be lost
+            let of = |scalar: f64| law.pull(k, g, [scalar, 0.0], [0.0; 2]);
             let per_scalar = of(1.0) - of(0.0);
             share = n.map(|n| k * r0 * n);
             pull = y.map(|y| per_scalar * y);
