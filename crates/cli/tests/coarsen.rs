@@ -1,0 +1,80 @@
+//! `peridyne coarsen` as a user runs it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn deck(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../decks")
+        .join(name)
+}
+
+fn coarsen(name: &str, out: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .arg("coarsen")
+        .arg(deck(name))
+        .arg("--out")
+        .arg(out)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn a_plate_of_fibres_is_coarsened_and_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let done = coarsen(
+        "good/fibre_plate.toml",
+        dir.path(),
+        &["--every", "3", "--run"],
+    );
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert_eq!(
+        done.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    let json = std::fs::read_to_string(dir.path().join("level1.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(report["points"], 31 * 21);
+    assert!(report["asymmetry"].as_f64().unwrap() < 1e-12);
+    let mass: Vec<f64> = serde_json::from_value(report["mass"].clone()).unwrap();
+    assert!((mass[1] / mass[0] - 1.0).abs() < 1e-10);
+    // the ends are held at fewer points than they were, and the modulus is within its tolerance
+    let (_, after) = told.split_once("displacement error ").unwrap();
+    let error: f64 = after.split(' ').next().unwrap().parse().unwrap();
+    assert!(error < 5.0 && error > 1e-3, "{told}");
+}
+
+#[test]
+fn what_is_wrong_is_named_and_nothing_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    for (name, arguments, expected) in [
+        ("good/fibre_plate.toml", &[][..], "--every K"),
+        (
+            "good/fibre_plate.toml",
+            &["--keep", "nothing"],
+            "no such set",
+        ),
+        (
+            "good/fibre_plate.toml",
+            &["--every", "3", "--radius", "0.001"],
+            "below the longest bond",
+        ),
+        (
+            "good/fibre_plate.toml",
+            &["--every", "3", "--scheme", "rough"],
+            "energy, rows or schur",
+        ),
+        ("in.impact_disk", &["--every", "3"], "takes a deck"),
+    ] {
+        let done = coarsen(name, &out, arguments);
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {said}");
+        let flat: Vec<&str> = said.split_whitespace().filter(|w| *w != "│").collect();
+        assert!(flat.join(" ").contains(expected), "{arguments:?}: {said}");
+        assert!(!out.exists(), "{arguments:?}");
+    }
+}
