@@ -1,5 +1,7 @@
-//! Factors of sparse matrices and eigenvalues of small ones: faer behind a small face. A crate of its own, because faer is
+//! Factors of sparse and banded matrices and eigenvalues of small ones: faer behind a small face. A crate of its own, because faer is
 //! generic and slow to compile: here it is compiled once.
+
+pub mod banded;
 
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::linalg::solvers::Solve;

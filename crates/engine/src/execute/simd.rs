@@ -1,8 +1,8 @@
 //! The one place where an instruction set is chosen: detected at start, or asked for.
 
-use super::lane::{Lane, pair::Pair};
+use super::lane::{Lane, eight::Eight};
 #[cfg(target_arch = "x86_64")]
-use super::lane::{avx2::F64x4, avx512::F64x8};
+use super::lane::{avx2::F64x4, avx512::F64x8, pair::Pair};
 
 /// Instruction sets with a path of their own. All give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Simd {
             Simd::Avx2 if has_avx2() => unsafe { avx2(kernel, b) },
             #[cfg(target_arch = "x86_64")]
             Simd::Avx512 if has_avx512() => unsafe { avx512(kernel, b) },
-            _ => kernel.block::<Pair<Pair<Pair<f64>>>>(b),
+            _ => kernel.block::<Eight>(b),
         }
     }
 }

@@ -8,12 +8,16 @@
 //! | logic (0 or 1) | `< <= > >= == !=`, `&& \|\| !`; anything but 0 is true |
 //! | choice | `a ? b : c`, `if(a, b, c)` |
 //! | functions | `sin cos tan asin acos atan atan2 sinh cosh tanh exp log` (natural; also `ln`) `log10 sqrt abs min max floor ceil sign step clamp hypot` |
+//! | random fields | `random(a, b, c)`, `noise(a, b, c)` |
 //!
 //! `step(a)` is 0 for a < 0 and 1 otherwise; `clamp(a, low, high)`; `min` and `max` take two or more.
+//! `random` is uniform in [0, 1), one number per unit cell of its arguments; `noise` is smooth, in [−1, 1], with a correlation
+//! length of about one unit. Both are functions of place: other seeds are other places, `noise(x/l + 100, y/l, 0)`.
 //! Both sides of a choice are evaluated; the one not taken may be NaN without harm.
 
 mod op;
 mod parse;
+mod random;
 #[cfg(test)]
 mod tests;
 

@@ -1,6 +1,6 @@
 //! Operations of the stack machine.
 
-use super::STACK;
+use super::{STACK, random};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Op {
@@ -62,6 +62,8 @@ pub(super) enum Binary {
 pub(super) enum Ternary {
     Select,
     Clamp,
+    Random,
+    Noise,
 }
 
 /// What a function name stands for.
@@ -100,6 +102,8 @@ pub(super) const FUNCTIONS: &[(&str, Function)] = &[
     ("clamp", Function::Three(Ternary::Clamp)),
     ("hypot", Function::Two(Binary::Hypot)),
     ("if", Function::Three(Ternary::Select)),
+    ("random", Function::Three(Ternary::Random)),
+    ("noise", Function::Three(Ternary::Noise)),
 ];
 
 fn truth(condition: bool) -> f64 {
@@ -171,6 +175,8 @@ impl Ternary {
             }
             // f64::clamp panics where low > high
             Ternary::Clamp => a.max(b).min(c),
+            Ternary::Random => random::random([a, b, c]),
+            Ternary::Noise => random::noise([a, b, c]),
         }
     }
 }

@@ -255,24 +255,22 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     fn scale_bonds(
         &mut self,
         body: &Body<D>,
-        factor: &dyn Fn(usize, [i32; D]) -> f64,
+        factor: &dyn Fn(usize, usize, [i32; D]) -> f64,
     ) -> Result<(), BuildError> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
-        if grid.basis() > 1 {
-            return Err(BuildError::new(
-                "surface",
-                "factors of bonds need a chain, square or cubic lattice",
-            ));
-        }
         let links = &self.links;
-        self.scale = Scale::new(links.tiles.len(), links.links[0].len(), |n, k, l| {
+        let old = std::mem::take(&mut self.scale);
+        let width = links.links.iter().map(Vec::len).max().unwrap_or(0);
+        self.scale = Scale::new(links.tiles.len(), width, |n, k, l| {
             let tile = links.tile(grid, n);
-            match tile.bits.is_none_or(|bits| bits[k] >> l & 1 == 1) {
-                true => factor(tile.first + l, links.links[0][k].cell),
-                false => 1.0,
-            }
+            let here = tile.bits.is_none_or(|bits| bits[k] >> l & 1 == 1);
+            let link = tile.links.get(k).filter(|_| here);
+            let ends = link.and_then(|b| Some((b.cell, b.partner(grid, tile.first + l)?)));
+            ends.map_or(1.0, |(cell, j)| {
+                old.of(n, k, l) * factor(tile.first + l, j, cell)
+            })
         });
         Ok(())
     }

@@ -234,16 +234,18 @@ pub trait Interaction<const D: usize>: Send + Sync {
         0
     }
 
-    /// Multiply the force density at a slot, of its bond to the site `cell` cells away, by `factor(slot, cell)`; energies,
-    /// and what breaking releases, follow. Critical stretches stay. Call before the first sweep.
+    /// Multiply the force density at slot i, of its bond to slot j (an image, maybe) `cell` cells away, by
+    /// `factor(i, j, cell)`; energies,
+    /// and what breaking releases, follow. Critical stretches stay. Factors of several calls are multiplied. Call before the
+    /// first sweep.
     fn scale_bonds(
         &mut self,
         _body: &Body<D>,
-        _factor: &dyn Fn(usize, [i32; D]) -> f64,
+        _factor: &dyn Fn(usize, usize, [i32; D]) -> f64,
     ) -> Result<(), BuildError> {
         Err(BuildError::new(
-            "surface",
-            "factors of bonds need a bond-based law (pmb or springs) on a chain, square or cubic lattice",
+            "bonds",
+            "factors of bonds need a bond-based law (pmb or springs) on a lattice",
         ))
     }
 

@@ -409,24 +409,26 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn scale_bonds(
         &mut self,
         body: &Body<D>,
-        factor: &dyn Fn(usize, [i32; D]) -> f64,
+        factor: &dyn Fn(usize, usize, [i32; D]) -> f64,
     ) -> Result<(), BuildError> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
-        if W::SHARES || grid.basis() > 1 {
+        if W::SHARES {
             return Err(BuildError::new(
-                "surface",
-                "factors of bonds need a bond-based law (pmb or springs) on a chain, square or cubic lattice",
-            ));
+                "bonds",
+                "factors of bonds need a bond-based law: in a state-based one a bond also acts through the pressure of its ends",
+            )
+            .help("write law = { pmb = ... } or springs, or give parts of the body materials of their own"));
         }
+        let old = std::mem::take(&mut self.scale);
         self.scale = Scale::new(self.tiles.len(), self.width, |n, k, l| {
-            if self.row(n)[k] >> l & 1 == 1 {
-                let slot = grid.tile_slot(self.tiles[n] as usize) + l;
-                factor(slot, self.partners[0][k].cell)
-            } else {
-                1.0
-            }
+            let tile = self.tiles[n] as usize;
+            let i = grid.tile_slot(tile) + l;
+            let to = self.partners[grid.tile_sublattice(tile)].get(k);
+            let to = to.filter(|_| self.row(n)[k] >> l & 1 == 1);
+            let ends = to.and_then(|b| Some((b.cell, grid.neighbour(i, b.cell, b.to)?)));
+            ends.map_or(1.0, |(cell, j)| old.of(n, k, l) * factor(i, j, cell))
         });
         Ok(())
     }
@@ -440,7 +442,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         }
         let tile = (i - grid.guard) / TILE;
         let n = self.tiles.binary_search(&(tile as u32)).ok()?;
-        let k = self.bonds[0]
+        let k = self.bonds[grid.tile_sublattice(tile)]
             .iter()
             .position(|b| b.back.map(|x| -x) == xi)?;
         Some(self.volume * self.scale.of(n, k, (i - grid.guard) % TILE))

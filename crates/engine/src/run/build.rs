@@ -8,8 +8,8 @@ use super::probe;
 use super::recipe::{Laws, Recipe};
 use super::reference::{Reference, cell, current_neighbours, reference};
 use super::sets::{assign_materials, initial, sets};
-use super::surface;
 use super::{Info, Simulation};
+use super::{bonds, surface};
 use crate::body::{Values, zeros};
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
@@ -107,6 +107,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         surface::scale(factors, &mut body, interaction.as_mut())?;
         warnings.extend(factors.warning.clone());
     }
+    warnings.extend(bonds::scale(spec, &body, interaction.as_mut())?);
     // a ratio is meant inclusively; only a length leaves the decision to round-off
     let near_horizon = if recipe.ratio {
         0

@@ -2,6 +2,7 @@
 
 mod accounts;
 mod atoms;
+mod bonds;
 mod build;
 mod calibration;
 mod conditions;

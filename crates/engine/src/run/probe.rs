@@ -27,7 +27,8 @@ pub(super) fn stable_step<const D: usize>(
     cell_volume: Option<f64>,
 ) -> Result<f64, BuildError> {
     let lambda = match &body.layout {
-        Layout::Grid(grid) if body.points() > LARGE => {
+        // no block has all the factors of a body
+        Layout::Grid(grid) if body.points() > LARGE && spec.bonds.is_empty() => {
             let reach = recipe.stencil.as_ref().map_or(1, |s| s.reach);
             // in the plane and in space a block of many large families would cost more than the run
             let block = match D {

@@ -22,6 +22,7 @@ pub(super) fn sets<const D: usize>(
                 let slack = 1e-9 * body.spacing;
                 Box::new(move |_, x| region.contains(x) || near(region, x, slack))
             }
+            Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
             Members::Mark(mark) => {
                 Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark)
             }
@@ -38,7 +39,7 @@ pub(super) fn sets<const D: usize>(
                 format!("sets.{}", set.name),
                 format!("set `{}` has no points", set.name),
             )
-            .help("check its region against the body's extent: `peridyne check` prints it"));
+            .help("check it against the body's extent: `peridyne check` prints that"));
         }
         out.push((set.name.clone(), ids));
     }

@@ -43,13 +43,18 @@ pub(super) fn scale<const D: usize>(
                 .collect()
         })
         .collect();
-    interaction.scale_bonds(body, &|slot, to| {
-        let r = row[slot] as usize;
-        match (r, table[r].get(&to)) {
-            (_, Some(x)) => *x,
-            (r, None) => 1.0 / surface.part[r],
-        }
-    })?;
+    interaction
+        .scale_bonds(body, &|slot, _, to| {
+            let r = row[slot] as usize;
+            match (r, table[r].get(&to)) {
+                (_, Some(x)) => *x,
+                (r, None) => 1.0 / surface.part[r],
+            }
+        })
+        .map_err(|e| BuildError {
+            path: "surface".into(),
+            ..e
+        })?;
     if surface.part.iter().any(|p| *p != 1.0) {
         let mut volume = vec![0.0; body.len];
         for (slot, r) in body.slots.iter().zip(&surface.row) {

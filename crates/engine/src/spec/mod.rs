@@ -45,6 +45,8 @@ pub struct Spec {
     pub periodic: [Option<f64>; 3],
     /// Factors of bonds near the surface; `None`: all 1.
     pub surface: Option<SurfaceFactors>,
+    /// Factors of bonds anywhere; all that concern a bond are multiplied.
+    pub bonds: Vec<BondFactorSpec>,
     pub precracks: Vec<PrecrackSpec>,
     pub contact: Option<ContactSpec>,
     pub initial: Vec<InitialSpec>,
@@ -84,6 +86,7 @@ impl Spec {
             influence: Influence::Constant,
             periodic: [None; 3],
             surface: None,
+            bonds: vec![],
             precracks: vec![],
             contact: None,
             initial: vec![],
@@ -203,6 +206,8 @@ pub enum Members {
     Region(Region),
     /// Points whose mark is this number.
     Mark(i32),
+    /// Points at whose reference position this is not 0 (x, y, z; t = 0).
+    Where(Expression),
 }
 
 /// A material on a set of points.
@@ -330,6 +335,15 @@ pub enum Influence {
     Gaussian,
     /// Cubic B-spline with support δ, 1 at ξ = 0.
     CubicSpline,
+}
+
+/// A factor of the stiffness of bonds: heterogeneous bodies, weak planes.
+#[derive(Debug, Clone)]
+pub enum BondFactorSpec {
+    /// Every bond gets the mean, by [`Spec::interface`], of the factors at its ends' reference positions.
+    Field(Expression),
+    /// Bonds that cross this shape.
+    Crossing { shape: CrackShape, factor: f64 },
 }
 
 /// Bonds that a pre-crack cuts.

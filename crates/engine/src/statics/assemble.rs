@@ -44,7 +44,7 @@ pub fn linear_body<const D: usize>(
     let points: Vec<usize> = (0..n).collect();
     let parts: Vec<Part<D>> = points
         .par_chunks(CHUNK)
-        .map(|chunk| rows.part(chunk))
+        .map_init(|| Row::empty(n), |row, chunk| rows.part(chunk, row))
         .collect();
     let at = |s: u32| {
         let x = body.position(s as usize);
@@ -91,6 +91,13 @@ struct Row<const D: usize> {
 }
 
 impl<const D: usize> Row<D> {
+    fn empty(points: usize) -> Self {
+        Row {
+            place: vec![u32::MAX; points],
+            entries: vec![],
+        }
+    }
+
     fn add(&mut self, j: usize, block: impl Fn(usize, usize) -> f64) {
         if self.place[j] == u32::MAX {
             self.place[j] = self.entries.len() as u32;
@@ -110,18 +117,14 @@ impl<const D: usize> Rows<'_, D> {
         &self.bonds[self.first[i]..self.first[i + 1]]
     }
 
-    fn part(&self, points: &[usize]) -> Part<D> {
-        let mut row = Row {
-            place: vec![u32::MAX; self.gain.len()],
-            entries: vec![],
-        };
+    fn part(&self, points: &[usize], row: &mut Row<D>) -> Part<D> {
         let mut part = Part {
             end: vec![],
             partner: vec![],
             block: vec![],
         };
         for &i in points {
-            self.gather(i, &mut row);
+            self.gather(i, row);
             row.entries.sort_unstable_by_key(|e| e.0);
             for (j, block) in row.entries.drain(..) {
                 row.place[j as usize] = u32::MAX;

@@ -1,18 +1,22 @@
 //! Direct solution of the equations of a linear body: banded in one dimension, sparse (faer) otherwise.
 
-use super::SolveError;
-use super::banded::Banded;
 use super::linear_body::LinearBody;
+use super::operator::{Assembled, LinearOperator};
 use super::support::Support;
+use super::vectors::{add, norm};
+use super::{SolveError, Solved};
+use peridyne_algebra::banded::{Banded, Factored};
 use peridyne_algebra::{FactorError, Factors as Sparse};
 
 /// Asymmetry (see `Soundness`) up to which a body counts as symmetric.
 pub const SYMMETRIC: f64 = 1e-10;
 /// Widest band that is solved as one.
 const BAND: usize = 128;
+/// A pivot of a band below this part of its diagonal entry counts as 0.
+const PIVOT: f64 = 1e-14;
 
 enum Factors {
-    Banded(Banded),
+    Banded(Factored<f64>),
     Sparse(Sparse),
 }
 
@@ -61,14 +65,14 @@ impl<const D: usize> Direct<D> {
             usize::MAX
         };
         let factors = if width <= BAND {
-            let mut band = vec![0.0; unknowns * (width + 1)];
+            let mut band = Banded::zeros(unknowns, width);
             matrix.entries(|row, column, value| {
-                if column <= row {
-                    band[row * (width + 1) + row - column] += value;
+                if row <= column {
+                    band.add(row, column, value);
                 }
             });
-            let entry = |i: usize, j: usize| band[i * (width + 1) + i - j];
-            Factors::Banded(Banded::factor(unknowns, width, entry).map_err(named)?)
+            let factors = band.factor_if(|pivot, diagonal| *pivot > PIVOT * diagonal);
+            Factors::Banded(factors.map_err(|row| named(SolveError::Indefinite { point: row }))?)
         } else {
             let mut entries = vec![];
             matrix.entries(|row, column, value| {
@@ -109,6 +113,50 @@ impl<const D: usize> Direct<D> {
         }
         let of = |place: &[Option<usize>; D]| place.map(|n| n.map_or(0.0, |n| rhs[n]));
         self.place.iter().map(of).collect()
+    }
+
+    /// Solves `A x = b` for the free components, refined once; held ones keep their `x`. `body` is what was factored.
+    pub fn solve_held(
+        &self,
+        body: &LinearBody<D>,
+        support: &Support<D>,
+        b: &[[f64; D]],
+        x: &mut [[f64; D]],
+    ) -> Solved {
+        let mut operator = Assembled(body);
+        let mut product = vec![[0.0; D]; b.len()];
+        // what the held ones pull, and what the loads add
+        let mut left = |x: &[[f64; D]], b: &[[f64; D]]| {
+            operator.apply(x, &mut product);
+            let mut r: Vec<[f64; D]> = b
+                .iter()
+                .zip(&product)
+                .map(|(b, p)| std::array::from_fn(|a| b[a] - p[a]))
+                .collect();
+            support.mask(&mut r);
+            r
+        };
+        let mut held = x.to_vec();
+        for (h, free) in held.iter_mut().zip(&support.free) {
+            for a in (0..D).filter(|a| free[*a]) {
+                h[a] = 0.0;
+            }
+        }
+        let r = left(&held, b);
+        let start = norm(&r);
+        let mut solution = self.solve(&r);
+        let correction = self.solve(&left(&solution, &r));
+        add(&mut solution, 1.0, &correction);
+        let residual = norm(&left(&solution, &r));
+        for ((x, s), free) in x.iter_mut().zip(&solution).zip(&support.free) {
+            for a in (0..D).filter(|a| free[*a]) {
+                x[a] = s[a];
+            }
+        }
+        Solved {
+            iterations: 1,
+            residual: if start > 0.0 { residual / start } else { 0.0 },
+        }
     }
 }
 

@@ -5,11 +5,10 @@
 //! | which linear body is a law about a state? | [`assemble`], [`linear_body`] |
 //! | what does it do to a displacement, with or without a matrix? | [`operator`] |
 //! | is it held? | [`support`] |
-//! | where is it in equilibrium? | [`direct`] ([`banded`] in 1-D), [`cg`]; of any law [`relaxation`] |
+//! | where is it in equilibrium? | [`direct`] (banded in 1-D), [`cg`]; of any law [`relaxation`] |
 //! | how does it vibrate? | [`modes`] |
 
 pub mod assemble;
-pub mod banded;
 pub mod cg;
 pub mod direct;
 pub mod linear_body;

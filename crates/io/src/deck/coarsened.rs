@@ -5,7 +5,8 @@ use super::upscaled::{Rewritten, table};
 use toml::{Table, Value};
 
 /// What belongs to the old body and its law.
-const GONE: [&str; 12] = [
+const GONE: [&str; 13] = [
+    "bond_factor",
     "horizon",
     "influence",
     "volume_scaling",

@@ -3,8 +3,8 @@
 use super::units::{Dim, UnitSystem};
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec, MaterialSpec, Method,
-    Plane, PmbStiffness, Spec, TimeStep,
+    BodySpec, BondFactorSpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec,
+    MaterialSpec, Method, Plane, PmbStiffness, Spec, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -79,6 +79,18 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             surface.method,
             surface.rows.len() - 1
         ));
+    }
+    for bonds in &spec.bonds {
+        lines.push(match bonds {
+            BondFactorSpec::Field(field) => format!(
+                "bonds      stiffness times {}, between unlike ends {:?}",
+                field.source(),
+                spec.interface
+            ),
+            BondFactorSpec::Crossing { factor, .. } => {
+                format!("bonds      stiffness times {factor} across a flat shape")
+            }
+        });
     }
     if let Some(contact) = spec.contact {
         lines.push(format!(

@@ -55,6 +55,9 @@ pub struct Document {
     /// Factors of bonds near the surface of a lattice body with a bond-based law; none when left out. exact: every uniform
     /// strain is in equilibrium under its uniform traction, and the surface runs through the outermost points.
     pub surface: Option<At<SurfaceName>>,
+    /// Factors of the stiffness of bonds (bond-based laws on lattices); all that concern a bond are multiplied.
+    #[serde(default)]
+    pub bond_factor: Vec<At<BondFactor>>,
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,
     /// On when a material can fracture; false turns it off.
@@ -144,6 +147,8 @@ pub struct Set {
     pub region: Option<At<Shape>>,
     /// Number or name of a mark in the file.
     pub mark: Option<At<Mark>>,
+    /// Points where this expression of x, y, z is not 0, such as "noise(x/l, y/l, 0) > 0.2".
+    pub r#where: Option<Number>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -236,6 +241,29 @@ pub struct Periods {
     pub z: Option<Number>,
 }
 
+/// A heterogeneous body, or a weak plane.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BondFactor {
+    /// Expression of x, y, z; a bond gets the mean of both ends by the rule of `interface`. With crossing: a number.
+    pub value: Number,
+    /// Only bonds that cross this shape.
+    pub crossing: Option<At<FlatShape>>,
+}
+
+/// One of segment, disk, polygon, point.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlatShape {
+    /// 2-D, or endless along z.
+    pub segment: Option<Segment>,
+    pub disk: Option<Disk>,
+    /// Three or more corners.
+    pub polygon: Option<At<Vec<Vector>>>,
+    /// 1-D.
+    pub point: Option<Number>,
+}
+
 /// One of segment, disk, polygon, point.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -251,14 +279,14 @@ pub struct Precrack {
     pub kind: Option<CrackName>,
 }
 
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {
     pub from: Vector,
     pub to: Vector,
 }
 
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disk {
     pub center: Vector,

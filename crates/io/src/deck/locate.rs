@@ -55,6 +55,7 @@ fn deck_key(spec_key: &str) -> &str {
     match spec_key {
         "materials" => "material",
         "precracks" => "precrack",
+        "bonds" => "bond_factor",
         "conditions" => "condition",
         "indenters" => "indenter",
         "schedule" => "run",

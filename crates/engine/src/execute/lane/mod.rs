@@ -8,6 +8,8 @@ use std::ops::{Add, Mul, Sub};
 pub mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub mod avx512;
+pub mod eight;
+#[cfg(target_arch = "x86_64")]
 pub mod pair;
 pub mod scalar;
 pub mod series;

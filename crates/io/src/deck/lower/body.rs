@@ -292,12 +292,14 @@ pub(super) fn sets(
         let given = [
             ("region", set.value.region.is_some()),
             ("mark", set.value.mark.is_some()),
+            ("where", set.value.r#where.is_some()),
         ];
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
-        let members = match (&set.value.region, &set.value.mark) {
-            (Some(shape), _) => Members::Region(region(context, shape)?),
-            (_, Some(mark)) => Members::Mark(mark_number(context, mark, body)?),
-            (None, None) => Members::All,
+        let members = match (&set.value.region, &set.value.mark, &set.value.r#where) {
+            (Some(shape), _, _) => Members::Region(region(context, shape)?),
+            (_, Some(mark), _) => Members::Mark(mark_number(context, mark, body)?),
+            (_, _, Some(text)) => Members::Where(context.expression(text, Dim::NUMBER)?),
+            (None, None, None) => Members::All,
         };
         sets.push(SetSpec {
             name: name.clone(),

@@ -169,6 +169,11 @@ pub(super) fn lower(
         influence: influence(document.influence, &materials),
         periodic,
         surface: None,
+        bonds: document
+            .bond_factor
+            .iter()
+            .map(|b| motion::bond_factor(&context, b))
+            .collect::<Result<_>>()?,
         precracks: document
             .precrack
             .iter()

@@ -2,13 +2,15 @@
 
 use super::body::region;
 use super::context::{Context, Result};
-use crate::deck::document::{Condition, CrackName, Indenter, Initial, Precrack, Shape};
+use crate::deck::document::{
+    BondFactor, Condition, CrackName, FlatShape, Indenter, Initial, Precrack, Shape,
+};
 use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::expression::Expression;
 use peridyne::spec::{
-    ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion, IndenterSpec, InitialSpec,
-    Members, PrecrackSpec, SetSpec,
+    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion,
+    IndenterSpec, InitialSpec, Members, PrecrackSpec, SetSpec,
 };
 use std::ops::Range;
 
@@ -165,23 +167,61 @@ pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterS
 
 pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackSpec> {
     let p = &at.value;
+    let shape = FlatShape {
+        segment: p.segment.clone(),
+        disk: p.disk.clone(),
+        polygon: p.polygon.clone(),
+        point: p.point.clone(),
+    };
+    let kind = match p.kind {
+        Some(CrackName::Broken) => CrackKind::Broken,
+        Some(CrackName::Absent) | None => CrackKind::Absent,
+    };
+    let shape = flat_shape(context, &at.span, "a precrack", &shape)?;
+    Ok(PrecrackSpec { shape, kind })
+}
+
+pub(super) fn bond_factor(context: &Context, at: &At<BondFactor>) -> Result<BondFactorSpec> {
+    let written = &at.value;
+    let Some(shape) = &written.crossing else {
+        let field = context.expression(&written.value, Dim::NUMBER)?;
+        return Ok(BondFactorSpec::Field(field));
+    };
+    let factor = context.finite(&written.value, Dim::NUMBER)?;
+    if factor < 0.0 {
+        let message = format!("the factor is {factor}, expected 0 or a positive number");
+        return Err(context.error(&written.value.span, message));
+    }
+    Ok(BondFactorSpec::Crossing {
+        shape: flat_shape(context, &shape.span, "the shape to cross", &shape.value)?,
+        factor,
+    })
+}
+
+/// What cuts bonds: a segment, disk, polygon or point.
+fn flat_shape(
+    context: &Context,
+    span: &Range<usize>,
+    what: &str,
+    p: &FlatShape,
+) -> Result<CrackShape> {
     let given = [
         ("segment", p.segment.is_some()),
         ("disk", p.disk.is_some()),
         ("polygon", p.polygon.is_some()),
         ("point", p.point.is_some()),
     ];
-    context.one_of(&at.span, "a precrack", &given)?;
-    let only = |dimensions: &[usize], what: &str| {
+    context.one_of(span, what, &given)?;
+    let only = |dimensions: &[usize], name: &str| {
         if dimensions.contains(&context.dimension) {
             return Ok(());
         }
         let fitting = ["point", "segment", "disk, polygon or segment"][context.dimension - 1];
-        let message = format!("a {what} does not cut a body in {}-D", context.dimension);
-        Err(context.error_with(&at.span, message, format!("use {fitting}")))
+        let message = format!("a {name} does not cut a body in {}-D", context.dimension);
+        Err(context.error_with(span, message, format!("use {fitting}")))
     };
     let point = |v| context.finite_vector(v, Dim::LENGTH);
-    let shape = if let Some(s) = &p.segment {
+    Ok(if let Some(s) = &p.segment {
         only(&[2, 3], "segment")?;
         CrackShape::Segment {
             from: point(&s.from)?,
@@ -218,11 +258,6 @@ pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackS
             x: context.finite(x, Dim::LENGTH)?,
         }
     } else {
-        return Err(context.error(&at.span, "a precrack needs a shape"));
-    };
-    let kind = match p.kind {
-        Some(CrackName::Broken) => CrackKind::Broken,
-        Some(CrackName::Absent) | None => CrackKind::Absent,
-    };
-    Ok(PrecrackSpec { shape, kind })
+        return Err(context.error(span, format!("{what} needs a shape")));
+    })
 }

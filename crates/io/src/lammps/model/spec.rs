@@ -81,6 +81,7 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
         influence,
         periodic,
         surface: None,
+        bonds: vec![],
         precracks: vec![],
         contact: Some(CONTACT),
         initial: vec![],

@@ -11,9 +11,9 @@
 use super::stiffness::{Stiffness, common_denominator};
 use super::{Bar, Ends};
 use crate::exact::{Field, Q};
-use crate::homogenize::banded::Banded;
 use num_bigint::{BigInt, Sign};
 use num_traits::{FromPrimitive, One, Signed, ToPrimitive, Zero};
+use peridyne_algebra::banded::Banded;
 
 /// A number and how far it may be off.
 #[derive(Debug, Clone, PartialEq)]

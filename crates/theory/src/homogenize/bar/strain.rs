@@ -9,7 +9,7 @@
 use super::stiffness::Stiffness;
 use super::{Bar, Ends};
 use crate::exact::Field;
-use crate::homogenize::banded::Banded;
+use peridyne_algebra::banded::Banded;
 
 impl<F: Field> Stiffness<F> {
     /// G_ab of two interspaces 0…N−2.

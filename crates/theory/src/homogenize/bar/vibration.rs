@@ -5,7 +5,7 @@
 
 use super::stiffness::Stiffness;
 use super::{Bar, BarError, Ends};
-use crate::homogenize::banded::{Banded, Factored};
+use peridyne_algebra::banded::{Banded, Factored};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A bar of classical elasticity, fixed at x = 0 and free at x = length.

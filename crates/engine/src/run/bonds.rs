@@ -1,0 +1,83 @@
+//! Factors of bonds: heterogeneous bodies and weak planes.
+
+use crate::body::Body;
+use crate::error::BuildError;
+use crate::fracture::precrack::Crack;
+use crate::interaction::Interaction;
+use crate::spec::{BondFactorSpec, InterfaceRule, Spec};
+use std::cell::Cell;
+
+/// Scale the bonds of `interaction` as the spec says, and what to warn of. Call before [`Interaction::prepare`] and any
+/// sweep.
+pub(super) fn scale<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    interaction: &mut dyn Interaction<D>,
+) -> Result<Vec<String>, BuildError> {
+    let mut warnings = vec![];
+    for (n, factor) in spec.bonds.iter().enumerate() {
+        let path = format!("bonds[{n}]");
+        let named = |e: BuildError| BuildError {
+            path: path.clone(),
+            ..e
+        };
+        match factor {
+            BondFactorSpec::Field(field) => {
+                let mut at = vec![1.0; body.len];
+                for &s in &body.slots {
+                    let x = body.position(s as usize);
+                    let value = field.eval(&x, 0.0);
+                    if !(value >= 0.0 && value.is_finite()) {
+                        let message = format!(
+                            "the factor `{}` is {value} at {:?}, expected 0 or a positive number",
+                            field.source(),
+                            &x[..D]
+                        );
+                        return Err(BuildError::new(path, message)
+                            .help("exp(…) and max(…, 0) are never negative"));
+                    }
+                    at[s as usize] = value;
+                }
+                body.fill_images(&mut at);
+                let scaled = |i: usize, j: usize, _| mean(spec.interface, at[i], at[j]);
+                interaction.scale_bonds(body, &scaled).map_err(named)?;
+            }
+            BondFactorSpec::Crossing { shape, factor } => {
+                let crack = Crack::new(shape, body.period).map_err(named)?;
+                if !(*factor >= 0.0 && factor.is_finite()) {
+                    let message =
+                        format!("the factor is {factor}, expected 0 or a positive number");
+                    return Err(BuildError::new(path, message));
+                }
+                let found = Cell::new(false);
+                let scaled = |i: usize, j: usize, _| {
+                    let [x, y] = [i, j].map(|s| {
+                        let x = body.position(s);
+                        std::array::from_fn(|a| x[a])
+                    });
+                    let crosses = crack.crosses(&x, &y);
+                    found.set(found.get() || crosses);
+                    if crosses { *factor } else { 1.0 }
+                };
+                interaction.scale_bonds(body, &scaled).map_err(named)?;
+                if !found.get() {
+                    warnings.push(format!(
+                        "no bond crosses the shape of bonds entry {}",
+                        n + 1
+                    ));
+                }
+            }
+        }
+    }
+    Ok(warnings)
+}
+
+/// The same for both ends gives the same; 0 in series gives 0.
+fn mean(rule: InterfaceRule, a: f64, b: f64) -> f64 {
+    match rule {
+        InterfaceRule::Parallel => 0.5 * (a + b),
+        InterfaceRule::Series if a * b == 0.0 => 0.0,
+        InterfaceRule::Series => 2.0 * a * b / (a + b),
+        InterfaceRule::Minimum => a.min(b),
+    }
+}

@@ -1,0 +1,234 @@
+//! Statics of a model: every step is an increment of load, and ends in equilibrium.
+
+mod solve;
+
+use super::accounts::ledger_base;
+use super::model::Model;
+use crate::body::{Field, zeros};
+use crate::condition::load::LoadKind;
+use crate::error::{BuildError, RunError};
+use crate::fracture::fragments::Fragments;
+use crate::interaction::Sweep;
+use crate::run::Simulation;
+use crate::space::Point;
+use crate::spec::{Method, Statics};
+use crate::statics::modes::{self, Mode};
+use crate::statics::{self, Direct, LinearBody, SolveError, Solved, Support};
+
+/// Rounds of breaking and new equilibrium within one increment.
+const ROUNDS: usize = 10_000;
+
+/// What statics keeps between increments.
+pub(super) struct StaticState<const D: usize> {
+    pub options: Statics,
+    /// The linear body about the reference and its factors, as long as no bond broke.
+    factors: Option<(LinearBody<D>, Direct<D>)>,
+    /// Of the last increment.
+    pub solved: Solved,
+}
+
+impl<const D: usize> StaticState<D> {
+    pub fn new(options: Statics) -> Self {
+        StaticState {
+            options,
+            factors: None,
+            solved: Solved::default(),
+        }
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// Which components the conditions leave free.
+    pub(super) fn support(&self) -> Support<D> {
+        let mut id = vec![0u32; self.body.len];
+        for (n, &s) in self.body.slots.iter().enumerate() {
+            id[s as usize] = n as u32;
+        }
+        let mut support = Support::none(self.body.points());
+        for c in &self.constraints {
+            for (slot, held) in c.holds() {
+                for a in (0..D).filter(|a| held[*a]) {
+                    support.free[id[slot] as usize][a] = false;
+                }
+            }
+        }
+        support
+    }
+
+    /// The linear body about the displacements of now.
+    pub(super) fn linear_now(&mut self) -> LinearBody<D> {
+        self.refresh_images();
+        statics::linear_body(&self.body, self.interaction.as_mut(), &self.u)
+    }
+
+    /// The linear body about the reference.
+    fn reference_body(&mut self) -> LinearBody<D> {
+        statics::linear_body(&self.body, self.interaction.as_mut(), &self.body.at_rest())
+    }
+
+    /// Can this be brought into equilibrium at all?
+    pub(super) fn check_statics(&self, options: Statics) -> Result<(), BuildError> {
+        let support = self.support();
+        if support.unknowns() == 0 {
+            return Err(BuildError::new(
+                "conditions",
+                SolveError::NothingFree.to_string(),
+            ));
+        }
+        let position: Vec<[f64; D]> = self.by_id(|i| {
+            let x = self.body.position(i);
+            std::array::from_fn(|a| x[a])
+        });
+        let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
+        if let Some(loose) = support.loose(&position, &parts, &self.body.period).first() {
+            let x = position[loose.point];
+            return Err(BuildError::new(
+                "conditions",
+                format!(
+                    "the body is not held: {} of the part of {} points around {x:?} meets no resistance",
+                    loose.motion, loose.points
+                ),
+            )
+            .help("prescribe displacements that hold every connected part: D translations and its rotations"));
+        }
+        let moving = self.constraints.iter().any(|c| c.is_velocity());
+        let replaced = self
+            .loads
+            .iter()
+            .any(|l| matches!(l.kind, LoadKind::Replace(_)));
+        let wrong = match (moving, replaced) {
+            (true, _) => Some("a prescribed velocity has no meaning in statics"),
+            (_, true) => {
+                Some("a force that replaces all others keeps its points out of equilibrium")
+            }
+            _ => None,
+        };
+        if let Some(wrong) = wrong {
+            return Err(BuildError::new("conditions", wrong)
+                .help("prescribe a displacement, as a function of t from 0 to 1"));
+        }
+        if options.method != Method::Relaxation
+            && (self.contact.is_some() || !self.indenters.is_empty())
+        {
+            return Err(BuildError::new(
+                "statics.method",
+                "contact and indenters have no tangent here",
+            )
+            .help("write method = \"relaxation\", or contact = false"));
+        }
+        Ok(())
+    }
+
+    /// The state before any load: displacements as they are, forces of bonds alone.
+    pub(super) fn unloaded(&mut self) {
+        self.v.iter_mut().for_each(|c| c.fill(0.0));
+        self.refresh_images();
+        let (body, u) = (&self.body, &self.u);
+        self.interaction
+            .forces(body, u, &mut self.f, Sweep::Hold, None);
+        // energy that came in from outside counts as initial
+        let now = self.energy_now();
+        self.initial_energy = Some(ledger_base(&now));
+    }
+
+    /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.
+    pub(super) fn increment(&mut self) -> Result<(), RunError> {
+        let Some(mut state) = self.statics.take() else {
+            return Ok(());
+        };
+        let (u, f) = (self.u.clone(), self.f.clone());
+        // nothing acts before the first increment
+        let external = match self.step == self.origin.0 {
+            true => zeros(self.body.len),
+            false => self.external(),
+        };
+        self.step += 1;
+        let result = self.settle_increment(&mut state);
+        if let Err(error) = result {
+            self.step -= 1;
+            (self.u, self.f) = (u, f);
+            self.refresh_images();
+            self.statics = Some(state);
+            return Err(self.unsolved(error));
+        }
+        state.solved = result.unwrap_or_default();
+        self.statics = Some(state);
+        self.account(&u, &f, &external);
+        Ok(())
+    }
+
+    fn unsolved(&self, error: SolveError) -> RunError {
+        let place = match &error {
+            SolveError::Indefinite { point } => Some(*point),
+            SolveError::Loose(loose) => Some(loose.point),
+            _ => None,
+        };
+        RunError::Equilibrium {
+            step: self.step + 1,
+            position: place.map(|n| self.body.position(self.body.slots[n] as usize)),
+            error,
+        }
+    }
+
+    /// Equilibrium, and again after bonds broke, until none breaks.
+    fn settle_increment(&mut self, state: &mut StaticState<D>) -> Result<Solved, SolveError> {
+        let support = self.support();
+        let mut total = Solved::default();
+        for _ in 0..ROUNDS {
+            let t = self.time();
+            for c in &self.constraints {
+                c.place(&mut self.u, t);
+            }
+            let solved = match state.options.method {
+                Method::Linear => self.solve_linear(state, &support)?,
+                Method::Newton => self.solve_newton(state, &support)?,
+                Method::Relaxation => self.relax(state, &support)?,
+            };
+            total.iterations += solved.iterations;
+            total.residual = solved.residual;
+            let before = self.broken;
+            self.forces(true, 0.0);
+            if self.broken == before {
+                return Ok(total);
+            }
+            state.factors = None;
+        }
+        Err(SolveError::StillBreaking { rounds: ROUNDS })
+    }
+
+    /// Work of loads and reactions over the increment, by the trapezoidal rule.
+    fn account(&mut self, u: &Field<D>, f: &Field<D>, external: &Field<D>) {
+        let support = self.support();
+        let now = self.external();
+        let mut work = 0.0;
+        for (n, &s) in self.body.slots.iter().enumerate() {
+            let i = s as usize;
+            for a in 0..D {
+                let force = if support.free[n][a] {
+                    external[a][i] + now[a][i]
+                } else {
+                    // loads and reaction together hold what the bonds pull
+                    external[a][i] + now[a][i] - f[a][i] - self.f[a][i]
+                };
+                work += 0.5 * self.body.volume.at(i) * force * (self.u[a][i] - u[a][i]);
+            }
+        }
+        self.past_work[1] += work;
+    }
+
+    /// The lowest modes of vibration about the state of now.
+    ///
+    /// # Errors
+    /// Those of the factorisation.
+    pub(super) fn lowest_modes(&mut self, count: usize) -> Result<Vec<Mode<D>>, SolveError> {
+        let support = self.support();
+        let body = self.linear_now();
+        modes::lowest(&body, &support, count)
+    }
+
+    pub(super) fn padded(x: &[[f64; D]]) -> Vec<Point> {
+        x.iter()
+            .map(|x| std::array::from_fn(|a| if a < D { x[a] } else { 0.0 }))
+            .collect()
+    }
+}

@@ -1,0 +1,279 @@
+//! How one increment finds its equilibrium: linear about the reference, Newton's method, dynamic relaxation.
+
+use super::StaticState;
+use crate::body::{Field, zeros};
+use crate::dynamics::stable_step::largest_ratio;
+use crate::interaction::Sweep;
+use crate::run::Simulation;
+use crate::run::model::Model;
+use crate::run::recipe::Laws;
+use crate::spec::{Solver, Statics};
+use crate::statics::cg::{self, Goal};
+use crate::statics::relaxation::relax;
+use crate::statics::{
+    self, Assembled, Direct, LinearBody, SolveError, Solved, Support, Swept, norm,
+};
+
+/// Unknowns up to which the equations are factored, per dimension.
+const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
+/// Newton's iterations at most.
+const NEWTON: usize = 50;
+/// How often a Newton step is halved.
+const HALVINGS: usize = 12;
+/// Residual at which conjugate gradients end within a Newton step.
+const ROUGH: f64 = 1e-4;
+/// Largest stretch up to which a linear solution is taken without a warning.
+const SMALL_STRETCH: f64 = 0.01;
+
+impl<const D: usize> Model<D> {
+    /// Force densities of the loads at this time.
+    pub(super) fn external(&mut self) -> Field<D> {
+        let mut f = zeros(self.body.len);
+        let (v, t) = (zeros(self.body.len), self.time());
+        for load in &mut self.loads {
+            load.add(&self.body, &v, &mut f, t, 0.0);
+        }
+        f
+    }
+
+    /// Forces per point of force densities.
+    fn per_point(&self, f: &Field<D>) -> Vec<[f64; D]> {
+        self.by_id(|i| {
+            let volume = self.body.volume.at(i);
+            std::array::from_fn(|a| volume * f[a][i])
+        })
+    }
+
+    fn values(&self, u: &Field<D>) -> Vec<[f64; D]> {
+        self.by_id(|i| std::array::from_fn(|a| u[a][i]))
+    }
+
+    fn set_values(&mut self, x: &[[f64; D]]) {
+        for (x, &s) in x.iter().zip(&self.body.slots) {
+            for a in 0..D {
+                self.u[a][s as usize] = x[a];
+            }
+        }
+        self.refresh_images();
+    }
+
+    fn factored(&self, options: Statics, support: &Support<D>) -> bool {
+        match options.solver {
+            Solver::Direct => true,
+            Solver::ConjugateGradients => false,
+            Solver::Auto => support.unknowns() <= DIRECT[D - 1],
+        }
+    }
+
+    fn goal(options: Statics) -> Goal {
+        Goal {
+            tolerance: options.tolerance,
+            most_iterations: options.most_iterations,
+        }
+    }
+
+    /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
+    fn at_peace(&self) -> bool {
+        !matches!(self.recipe.laws, Laws::Atoms(_))
+    }
+
+    /// `A u = F` about the reference, with A's factors or by conjugate gradients.
+    pub(super) fn solve_linear(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+    ) -> Result<Solved, SolveError> {
+        let mut load = self.external();
+        if !self.at_peace() {
+            let mut rest = zeros(self.body.len);
+            let u = self.body.at_rest();
+            self.interaction
+                .forces(&self.body, &u, &mut rest, Sweep::Hold, None);
+            for a in 0..D {
+                for (l, r) in load[a].iter_mut().zip(rest[a].iter()) {
+                    *l += r;
+                }
+            }
+        }
+        let b = self.per_point(&load);
+        let mut x = self.values(&self.u);
+        let solved = self.solve_about_reference(state, support, &b, &mut x)?;
+        self.set_values(&x);
+        let stretch = self.largest_stretch();
+        if stretch > SMALL_STRETCH
+            && !self
+                .info
+                .warnings
+                .iter()
+                .any(|w| w.contains("linear solution"))
+        {
+            self.info.warnings.push(format!(
+                "the linear solution stretches bonds by {:.1} %: write method = \"newton\" for large deformation",
+                100.0 * stretch
+            ));
+        }
+        Ok(solved)
+    }
+
+    fn solve_about_reference(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+        b: &[[f64; D]],
+        x: &mut [[f64; D]],
+    ) -> Result<Solved, SolveError> {
+        if self.factored(state.options, support) {
+            let (body, factors) = match state.factors.take() {
+                Some(kept) => kept,
+                None => {
+                    let body = self.reference_body();
+                    let factors = Direct::new(&body, support, 0.0)?;
+                    (body, factors)
+                }
+            };
+            let solved = factors.solve_held(&body, support, b, x);
+            state.factors = Some((body, factors));
+            return Ok(solved);
+        }
+        let goal = Self::goal(state.options);
+        if self.at_peace() {
+            let mut operator = Swept::new(&self.body, self.interaction.as_mut());
+            cg::solve(&mut operator, support, b, x, goal)
+        } else {
+            let body = self.reference_body();
+            solve_assembled(&body, support, b, x, goal)
+        }
+    }
+
+    /// Newton's method with the tangent of every state; where that is too large, with the tangent of the reference.
+    pub(super) fn solve_newton(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+    ) -> Result<Solved, SolveError> {
+        let goal = Self::goal(state.options);
+        let mut x = self.values(&self.u);
+        let mut r = vec![[0.0; D]; x.len()];
+        let mut scale = self.imbalance(&x, &mut r, support);
+        let mut iterations = 0;
+        for _ in 0..NEWTON {
+            let size = norm(&r);
+            if !size.is_finite() {
+                return Err(SolveError::NotFinite);
+            }
+            if size <= goal.tolerance * scale {
+                return Ok(Solved {
+                    iterations,
+                    residual: if scale > 0.0 { size / scale } else { 0.0 },
+                });
+            }
+            let mut step = vec![[0.0; D]; x.len()];
+            let rough = Goal {
+                tolerance: ROUGH,
+                ..goal
+            };
+            let solved = if self.factored(state.options, support) {
+                let body = self.linear_now();
+                Direct::new(&body, support, 0.0)?.solve_held(&body, support, &r, &mut step)
+            } else if self.at_peace() {
+                let mut operator = Swept::new(&self.body, self.interaction.as_mut());
+                cg::solve(&mut operator, support, &r, &mut step, rough)?
+            } else {
+                solve_assembled(&self.linear_now(), support, &r, &mut step, rough)?
+            };
+            iterations += solved.iterations.max(1);
+            // a full step, or as much of it as lowers the residual
+            let mut part = 1.0;
+            for halving in 0..=HALVINGS {
+                let tried: Vec<[f64; D]> = x
+                    .iter()
+                    .zip(&step)
+                    .map(|(x, s)| std::array::from_fn(|a| x[a] + part * s[a]))
+                    .collect();
+                let new = self.imbalance(&tried, &mut r, support);
+                if norm(&r) < size || halving == HALVINGS {
+                    (x, scale) = (tried, new);
+                    break;
+                }
+                part *= 0.5;
+            }
+        }
+        Err(SolveError::NotConverged {
+            iterations,
+            residual: norm(&r) / scale,
+            tolerance: goal.tolerance,
+        })
+    }
+
+    /// Forces on the free components at displacements `x`, and the size of the loads and reactions.
+    fn imbalance(&mut self, x: &[[f64; D]], r: &mut [[f64; D]], support: &Support<D>) -> f64 {
+        self.set_values(x);
+        self.forces_held();
+        let all = self.per_point(&self.f);
+        let loads = self.external();
+        let loads = self.per_point(&loads);
+        let mut scale = 0.0;
+        for i in 0..r.len() {
+            for a in 0..D {
+                let free = support.free[i][a];
+                r[i][a] = if free { all[i][a] } else { 0.0 };
+                let outside = if free { loads[i][a] } else { all[i][a] };
+                scale += outside * outside;
+            }
+        }
+        scale.sqrt()
+    }
+
+    pub(super) fn relax(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+    ) -> Result<Solved, SolveError> {
+        let goal = Self::goal(state.options);
+        // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
+        let mut sum = vec![0.0; self.body.len];
+        let rest = self.body.at_rest();
+        let body = &self.body;
+        self.interaction.tangents(body, &rest, &mut |bond| {
+            let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
+            sum[bond.i] += body.volume.at(bond.i) * trace;
+        });
+        let mut mass = self.by_id(|i| sum[i]);
+        let least = mass.iter().copied().fold(0.0, f64::max) * 1e-3;
+        mass.iter_mut().for_each(|m| *m = m.max(least));
+        let top = largest_ratio(&self.body, self.interaction.as_mut(), &mass);
+        // a step of 1 is stable to 4; half of that leaves room for stiffening and contact
+        mass.iter_mut().for_each(|m| *m *= 0.5 * top);
+        let mut x = self.values(&self.u);
+        let mut r = vec![[0.0; D]; x.len()];
+        relax(&mut x, &mass, support, goal, |x, f| {
+            let scale = self.imbalance(x, &mut r, support);
+            f.copy_from_slice(&r);
+            scale
+        })
+    }
+
+    fn largest_stretch(&self) -> f64 {
+        let mut worst = 0.0f64;
+        self.interaction.each_bond(&self.body, &mut |i, j, xi, _| {
+            let square: f64 = xi.iter().map(|c| c * c).sum();
+            let longer: f64 = (0..D).map(|a| (self.u[a][j] - self.u[a][i]) * xi[a]).sum();
+            worst = worst.max((longer / square).abs());
+        });
+        worst
+    }
+}
+
+fn solve_assembled<const D: usize>(
+    body: &LinearBody<D>,
+    support: &Support<D>,
+    b: &[[f64; D]],
+    x: &mut [[f64; D]],
+    goal: Goal,
+) -> Result<Solved, SolveError> {
+    let asymmetry = body.soundness().asymmetry;
+    if asymmetry > statics::SYMMETRIC {
+        return Err(SolveError::NotSymmetric { asymmetry });
+    }
+    cg::solve(&mut Assembled(body), support, b, x, goal)
+}
