@@ -15,6 +15,8 @@ mod figure_4;
 mod figure_5;
 #[path = "figure-7/mod.rs"]
 mod figure_7;
+#[path = "section-6/mod.rs"]
+mod section_6;
 
 use crate::Experiment;
 
@@ -24,6 +26,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &figure_4::Figure4,
         &figure_5::Figure5,
         &figure_7::Figure7,
+        &section_6::Section6,
         &beyond_plates::BeyondPlates,
         &beyond_block::BeyondBlock,
     ]

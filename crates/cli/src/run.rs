@@ -118,6 +118,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         steps,
         every: output.every,
         modes: deck.modes,
+        linear_body: output.linear_body,
         history: output.history.unwrap_or((steps / 200).max(1)),
         series: SeriesOptions {
             points: output.vtu,

@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 use peridyne::error::RunError;
 use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::{Simulation, SnapshotOptions};
-use peridyne::statics::SolveError;
+use peridyne::statics::{AnyLinearBody, SolveError};
 
 use crate::read::{Atoms, Species};
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
+use crate::write::linear::write_linear;
 use crate::write::run_json::{self, EnergyReport, RunReport, Status};
 use crate::write::table::Table;
 use crate::write::trajectory::{Format, Trajectory};
@@ -30,6 +31,8 @@ pub struct Plan {
     pub history: u64,
     /// Modes of vibration about the last state.
     pub modes: usize,
+    /// Write `linear_body.npz` about the last state.
+    pub linear_body: bool,
     pub series: SeriesOptions,
     pub snapshot: SnapshotOptions,
     /// Units of time and energy, for headers.
@@ -221,6 +224,14 @@ pub fn drive(
     history.finish()?;
     if plan.modes > 0 && stopped.is_none() {
         write_modes(sim, plan, &snapshot)?;
+    }
+    if plan.linear_body {
+        let path = plan.dir.join("linear_body.npz");
+        match sim.linear_body() {
+            AnyLinearBody::One(body) => write_linear(&path, &body)?,
+            AnyLinearBody::Two(body) => write_linear(&path, &body)?,
+            AnyLinearBody::Three(body) => write_linear(&path, &body)?,
+        }
     }
     let status = match &stopped {
         None => Status::Done,

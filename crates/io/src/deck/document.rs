@@ -416,6 +416,9 @@ pub struct Output {
     /// Unbroken bonds as lines, too.
     #[serde(default)]
     pub bonds: bool,
+    /// The linear body about the last state as linear_body.npz (NumPy): points and micromoduli.
+    #[serde(default)]
+    pub linear_body: bool,
     /// LAMMPS dump file of this name.
     pub dump: Option<String>,
     /// Steps between rows of history.csv; a hundredth of the run when left out.

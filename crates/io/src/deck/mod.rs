@@ -64,6 +64,8 @@ pub struct OutputSpec {
     pub vtu: bool,
     /// Unbroken bonds in the VTU.
     pub bonds: bool,
+    /// The linear body about the last state.
+    pub linear_body: bool,
     /// LAMMPS dump of this name.
     pub dump: Option<PathBuf>,
     /// Steps between rows of `history.csv`; `None`: chosen by the caller.

@@ -222,6 +222,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         fields: written.fields.clone().unwrap_or(all.to_vec()),
         vtu: written.vtu.unwrap_or(true),
         bonds: written.bonds,
+        linear_body: written.linear_body,
         dump: written.dump.clone().map(Into::into),
         history: positive(&written.history, "history")?,
         picture: written.picture.unwrap_or(!atoms),
