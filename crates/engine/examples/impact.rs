@@ -63,6 +63,7 @@ fn main() {
         },
         periodic: [None; 3],
         surface: None,
+        bonds: vec![],
         precracks: vec![],
         contact: Some(ContactSpec {
             bonded: 0.9,

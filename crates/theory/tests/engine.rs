@@ -91,6 +91,7 @@ fn case(
         influence,
         periodic,
         surface: None,
+        bonds: vec![],
         precracks: vec![],
         contact: None,
         initial: vec![],

@@ -3,6 +3,7 @@
 use peridyne::execute::simd::Simd;
 use peridyne::family::volume_fraction;
 use peridyne::law::influence::influence;
+use peridyne::law::solid::eam_like::Solid;
 use peridyne::observe::Ledger;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
@@ -75,15 +76,12 @@ fn strains(d: usize) -> Vec<[[f64; 3]; 3]> {
     all
 }
 
-/// Stress at a strain: `½ Σ c ω ν V r (n·ε n) n⊗n` over a full family.
+/// Stress at a strain: `½ Σ t V r n⊗n` over a full family, `t` the force per volumes of a bond.
 fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let mut pmb = spec.clone();
-    pmb.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(3.0));
-    let c = at_rest(&pmb, None).info().micromodulus[0];
     let (d, m) = (spec.dimension, m as i32);
     let horizon = f64::from(m) * H;
     let side = 2 * m + 1;
-    let mut sigma = [[0.0; 3]; 3];
+    let mut bonds = vec![];
     for k in 0..side.pow(d as u32) {
         let o: [f64; 3] = std::array::from_fn(|a| {
             if a < d {
@@ -102,7 +100,25 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
             1.0
         };
         let weight = nu * influence(spec.influence, r, horizon) * H.powi(d as i32) * spec.section;
-        let n = o.map(|x| x / r);
+        bonds.push((r, o.map(|x| x / r), weight));
+    }
+    let tension: Box<dyn Fn(f64, f64) -> f64> =
+        match Solid::of_law(d, spec.plane, spec.materials[0].law) {
+            Some(solid) => {
+                let m: f64 = bonds.iter().map(|(r, _, w)| w * r * r).sum();
+                let theta: f64 = (0..3).map(|a| strain[a][a]).sum();
+                let pressure = solid.n * solid.kappa * theta / m;
+                Box::new(move |r, stretch| 2.0 * r * (pressure + solid.beta / m * stretch))
+            }
+            None => {
+                let mut pmb = spec.clone();
+                pmb.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(3.0));
+                let c = at_rest(&pmb, None).info().micromodulus[0];
+                Box::new(move |_, stretch| c * stretch)
+            }
+        };
+    let mut sigma = [[0.0; 3]; 3];
+    for (r, n, weight) in bonds {
         let mut stretch = 0.0;
         for a in 0..3 {
             for b in 0..3 {
@@ -111,7 +127,7 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         }
         for a in 0..3 {
             for b in 0..3 {
-                sigma[a][b] += 0.5 * c * weight * r * stretch * n[a] * n[b];
+                sigma[a][b] += 0.5 * tension(r, stretch) * weight * r * n[a] * n[b];
             }
         }
     }
@@ -192,6 +208,33 @@ fn springs_and_influence_functions_are_exact_too() {
     assert!(misfit(&with(spec, SurfaceMethod::Exact), 3, n) < 1e-12);
 }
 
+const LPS: LawSpec = LawSpec::Lps(Moduli {
+    young: 3.0,
+    poisson: 0.15,
+});
+
+#[test]
+fn state_based_solids_are_exact_in_every_strain() {
+    for (d, n, m) in [
+        (1, [30, 1, 1], 2),
+        (2, [17, 14, 1], 2),
+        (2, [17, 14, 1], 3),
+        (3, [9, 11, 10], 2),
+        (3, [13, 13, 14], 3),
+    ] {
+        for kind in [Influence::Constant, Influence::Inverse] {
+            let mut plain = body(d, &points(n), m);
+            plain.materials[0].law = LPS;
+            (plain.influence, plain.volume_scaling) = (kind, true);
+            let exact = misfit(&with(plain.clone(), SurfaceMethod::Exact), m, n);
+            let without = misfit(&plain, m, n);
+            println!("{d}-D, horizon {m}, {kind:?}: {exact:.1e}, without {without:.2}");
+            assert!(exact < 1e-11, "{d}-D, horizon {m}: {exact:e}");
+            assert!(without > 0.1);
+        }
+    }
+}
+
 /// Residual at inner points and resultants of the surface, for bodies whose areas are not written out here.
 fn residual_inside(spec: &Spec) -> f64 {
     let mut sim = at_rest(spec, None);
@@ -253,10 +296,14 @@ fn total(l: &Ledger) -> f64 {
 
 /// A plate and a block with factors, cracks, contact; and displacements that break some bonds and bring points close.
 fn worn() -> Vec<(Spec, Vec<Point>)> {
-    [(2, [21, 13, 1]), (3, [11, 8, 9])]
+    let pmb = LawSpec::Pmb(PmbStiffness::Young(3.0));
+    let (plate, block) = ((2, [21, 13, 1]), (3, [11, 8, 9]));
+    [(plate, pmb), (block, pmb), (plate, LPS), (block, LPS)]
         .into_iter()
-        .map(|(d, n)| {
-            let mut spec = with(body(d, &points(n), 2), SurfaceMethod::Exact);
+        .map(|((d, n), law)| {
+            let mut spec = body(d, &points(n), 2);
+            spec.materials[0].law = law;
+            let mut spec = with(spec, SurfaceMethod::Exact);
             spec.materials[0].fracture = Some(FractureSpec {
                 criterion: Criterion::Stretch(0.06),
                 alpha: 0.25,
@@ -326,10 +373,15 @@ fn force_is_the_derivative_of_energy_and_momentum_is_kept() {
 }
 
 #[test]
-fn breaking_keeps_the_balance_and_all_widths_agree_bitwise() {
+fn breaking_keeps_the_balance_and_all_widths_and_threads_agree_bitwise() {
     for (spec, u) in worn() {
         let mut first: Option<Vec<Point>> = None;
-        for simd in Simd::available() {
+        let widths = Simd::available().into_iter().map(|simd| (simd, 1));
+        for (simd, threads) in widths.chain([(Simd::detect(), 3)]) {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
             let mut spec = spec.clone();
             spec.schedule.time_step = TimeStep::Fixed(2e-3);
             let mut sim = at_rest(&spec, Some(simd));
@@ -337,9 +389,7 @@ fn breaking_keeps_the_balance_and_all_widths_agree_bitwise() {
             sim.set_displacements(&small);
             sim.start(true);
             let before = total(&sim.ledger().unwrap());
-            for _ in 0..40 {
-                sim.step().unwrap();
-            }
+            pool.install(|| (0..40).for_each(|_| sim.step().unwrap()));
             assert!(sim.broken() > 0);
             let after = sim.ledger().unwrap();
             let change = (total(&after) - before).abs() / before.abs();

@@ -3,7 +3,7 @@
 //! Springs are `C = c ω ν V_j ξ⊗ξ/|ξ|³`, the bond-based solid linearised about the reference (seleson2009 (A.2)); they pull
 //! along their reference direction and may go through each other.
 
-use super::scale::Scale;
+use super::scale::{Scale, TileFactors};
 use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Grid, Layout, Values};
 use crate::error::BuildError;
@@ -11,6 +11,7 @@ use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::{Links, Tile, Tiles};
+use crate::law::BondFactors;
 
 /// Micromoduli on a lattice.
 pub struct LinearInteraction<const D: usize> {
@@ -43,7 +44,7 @@ impl<const D: usize> LinearInteraction<D> {
     fn factor(&self, grid: &Grid<D>, slot: usize, k: usize) -> f64 {
         let at = slot - grid.guard;
         match self.links.tiles.binary_search(&((at / TILE) as u32)) {
-            Ok(n) => self.scale.of(n, k, at % TILE),
+            Ok(n) => self.scale.of(n, k, at % TILE).pair,
             Err(_) => 1.0,
         }
     }
@@ -81,7 +82,7 @@ impl<const D: usize> View<'_, D> {
         &self,
         tile: &Tile<D>,
         bits: &[u8],
-        scale: &[f64],
+        scale: TileFactors,
     ) -> ([L; D], L) {
         let i = self.tiles.own::<L>(tile);
         let mut force = [L::splat(0.0); D];
@@ -98,7 +99,7 @@ impl<const D: usize> View<'_, D> {
             }
             // SAFETY: eight numbers per bond
             let factor: L = match SCALED {
-                true => unsafe { L::load(scale.as_ptr().add(k * TILE)) },
+                true => unsafe { scale.pair(k) },
                 false => L::splat(1.0),
             };
             for a in 0..D {
@@ -124,7 +125,7 @@ impl<const D: usize> View<'_, D> {
         let scaled = self.scale.is_scaled(tile.number);
         let scale = match scaled {
             true => self.scale.tile(tile.number),
-            false => &[],
+            false => TileFactors::NONE,
         };
         let (mut force, energy) = match (tile.bits, scaled) {
             (None, false) => self.sum::<L, true, ENERGY, false>(tile, &[], scale),
@@ -255,7 +256,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
     fn scale_bonds(
         &mut self,
         body: &Body<D>,
-        factor: &dyn Fn(usize, usize, [i32; D]) -> f64,
+        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) -> Result<(), BuildError> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
@@ -263,13 +264,13 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         let links = &self.links;
         let old = std::mem::take(&mut self.scale);
         let width = links.links.iter().map(Vec::len).max().unwrap_or(0);
-        self.scale = Scale::new(links.tiles.len(), width, |n, k, l| {
+        self.scale = Scale::new(links.tiles.len(), width, false, |n, k, l| {
             let tile = links.tile(grid, n);
             let here = tile.bits.is_none_or(|bits| bits[k] >> l & 1 == 1);
             let link = tile.links.get(k).filter(|_| here);
             let ends = link.and_then(|b| Some((b.cell, b.partner(grid, tile.first + l)?)));
-            ends.map_or(1.0, |(cell, j)| {
-                old.of(n, k, l) * factor(tile.first + l, j, cell)
+            ends.map_or(BondFactors::ONE, |(cell, j)| {
+                old.of(n, k, l).times(factors(tile.first + l, j, cell))
             })
         });
         Ok(())

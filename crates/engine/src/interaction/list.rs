@@ -14,6 +14,7 @@ use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
+use crate::law::BondFactors;
 use crate::law::Law;
 use crate::spec::CrackKind;
 use kernel::{BLOCK, Energies, Forces, Pack, Share, View};
@@ -305,6 +306,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     self.law,
                     [i, j],
                     share / xi.iter().map(|x| x * x).sum::<f64>(),
+                    BondFactors::ONE,
                     xi,
                     std::array::from_fn(|a| u[a][j] - u[a][i]),
                     [i, j].map(|s| [field(0, s), field(1, s)]),

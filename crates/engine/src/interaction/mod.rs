@@ -16,6 +16,7 @@ pub mod weight;
 use crate::body::{Body, Field};
 use crate::error::BuildError;
 use crate::execute::blocks::Shared;
+use crate::law::BondFactors;
 use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::CrackKind;
@@ -234,23 +235,27 @@ pub trait Interaction<const D: usize>: Send + Sync {
         0
     }
 
-    /// Multiply the force density at slot i, of its bond to slot j (an image, maybe) `cell` cells away, by
-    /// `factor(i, j, cell)`; energies,
-    /// and what breaking releases, follow. Critical stretches stay. Factors of several calls are multiplied. Call before the
-    /// first sweep.
+    /// Multiply the parts of the force density at slot i, of its bond to slot j (an image, maybe) `cell` cells away, by
+    /// `factors(i, j, cell)`; energies, and what breaking releases, follow. Weighted volumes become those of full families,
+    /// critical stretches stay. Factors of several calls are multiplied. Call before the first sweep.
     fn scale_bonds(
         &mut self,
         _body: &Body<D>,
-        _factor: &dyn Fn(usize, usize, [i32; D]) -> f64,
+        _factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) -> Result<(), BuildError> {
         Err(BuildError::new(
             "bonds",
-            "factors of bonds need a bond-based law (pmb or springs) on a lattice",
+            "factors of bonds need a solid (pmb, lps) or springs on a lattice",
         ))
     }
 
-    /// Volume with which the bond along ξ acts on slot i, where that is not the volume of its partner.
-    fn reached_volume(&self, _body: &Body<D>, _i: usize, _xi: [f64; D]) -> Option<f64> {
+    /// Volume with which the bond along ξ acts on slot i, and its factors, where there are any.
+    fn reached(
+        &self,
+        _body: &Body<D>,
+        _i: usize,
+        _xi: [f64; D],
+    ) -> Option<(f64, BondFactors<f64>)> {
         None
     }
 

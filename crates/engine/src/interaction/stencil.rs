@@ -16,6 +16,7 @@ use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
+use crate::law::BondFactors;
 use crate::law::Law;
 use crate::spec::CrackKind;
 pub use assemble::StencilParts;
@@ -271,7 +272,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                     visit(BondTangent::of_law(
                         self.law,
                         [i, original(j)],
-                        b.k * self.scale.of(n, b.number as usize, i - first),
+                        b.k,
+                        self.scale.of(n, b.number as usize, i - first),
                         b.back.map(|x| -x),
                         std::array::from_fn(|a| u[a][j] - u[a][i]),
                         [i, j].map(|s| [field(0, s), field(1, s)]),
@@ -409,31 +411,26 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     fn scale_bonds(
         &mut self,
         body: &Body<D>,
-        factor: &dyn Fn(usize, usize, [i32; D]) -> f64,
+        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) -> Result<(), BuildError> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
-        if W::SHARES {
-            return Err(BuildError::new(
-                "bonds",
-                "factors of bonds need a bond-based law: in a state-based one a bond also acts through the pressure of its ends",
-            )
-            .help("write law = { pmb = ... } or springs, or give parts of the body materials of their own"));
-        }
         let old = std::mem::take(&mut self.scale);
-        self.scale = Scale::new(self.tiles.len(), self.width, |n, k, l| {
+        self.scale = Scale::new(self.tiles.len(), self.width, W::SHARES, |n, k, l| {
             let tile = self.tiles[n] as usize;
             let i = grid.tile_slot(tile) + l;
             let to = self.partners[grid.tile_sublattice(tile)].get(k);
             let to = to.filter(|_| self.row(n)[k] >> l & 1 == 1);
             let ends = to.and_then(|b| Some((b.cell, grid.neighbour(i, b.cell, b.to)?)));
-            ends.map_or(1.0, |(cell, j)| old.of(n, k, l) * factor(i, j, cell))
+            ends.map_or(BondFactors::ONE, |(cell, j)| {
+                old.of(n, k, l).times(factors(i, j, cell))
+            })
         });
         Ok(())
     }
 
-    fn reached_volume(&self, body: &Body<D>, i: usize, xi: [f64; D]) -> Option<f64> {
+    fn reached(&self, body: &Body<D>, i: usize, xi: [f64; D]) -> Option<(f64, BondFactors<f64>)> {
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };
@@ -445,7 +442,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let k = self.bonds[grid.tile_sublattice(tile)]
             .iter()
             .position(|b| b.back.map(|x| -x) == xi)?;
-        Some(self.volume * self.scale.of(n, k, (i - grid.guard) % TILE))
+        Some((self.volume, self.scale.of(n, k, (i - grid.guard) % TILE)))
     }
 
     fn prepare(&mut self, body: &Body<D>) {
@@ -471,9 +468,10 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 for (n, &t) in self.tiles.iter().enumerate() {
                     let first = grid.tile_slot(t as usize);
                     let bonds = &self.bonds[grid.tile_sublattice(t as usize)];
+                    let whole = !self.scale.is_empty();
                     for (b, bits) in bonds.iter().zip(self.row(n)) {
                         for l in 0..TILE {
-                            if bits >> l & 1 == 1 {
+                            if whole || bits >> l & 1 == 1 {
                                 m[first + l] += b.share;
                             }
                         }

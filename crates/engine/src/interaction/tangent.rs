@@ -1,11 +1,11 @@
 //! What small changes do: the tangent of a law about a state, bond by bond. Statics assembles it.
 //!
-//! With `η` the change of `u_j − u_i`: `δf_i = Σ_j C_ij η + Σ_j (δp_i + δp_j) pull_ij`, `δp_i = gain_i Σ_j share_ij · η`.
+//! With `η` the change of `u_j − u_i`: `δf_i = Σ_j C_ij η + Σ_j (δp_i pull_ij + δp_j pull'_ij)`, `δp_i = gain_i Σ_j share_ij · η`.
 //! The scalar p is the pressure of state-based solids, F′ of embedded atoms; pair laws have none.
 
-use crate::law::Law;
 use crate::law::jet::{self, Jet};
 use crate::law::potential::Potential;
+use crate::law::{BondFactors, Law};
 
 /// A directed bond between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,8 +17,8 @@ pub struct BondTangent<const D: usize> {
     pub stiffness: [[f64; D]; D],
     /// What the bond adds to the scalar of i.
     pub share: [f64; D],
-    /// What the scalars of both ends add to the force density on i.
-    pub pull: [f64; D],
+    /// What the scalars of i and of j add to the force density on i.
+    pub pull: [[f64; D]; 2],
 }
 
 impl<const D: usize> BondTangent<D> {
@@ -29,15 +29,16 @@ impl<const D: usize> BondTangent<D> {
             j,
             stiffness,
             share: [0.0; D],
-            pull: [0.0; D],
+            pull: [[0.0; D]; 2],
         }
     }
 
-    /// Of a peridynamic law with bond constant `k`, at the relative displacement η of a bond ξ; `fields` of both ends.
+    /// Of a peridynamic law with bond constant `k` and factors, at the relative displacement η of a bond ξ; `fields` of both ends.
     pub(super) fn of_law<W: Law>(
         law: W,
         [i, j]: [usize; 2],
         k: f64,
+        factors: BondFactors<f64>,
         xi: [f64; D],
         eta: [f64; D],
         fields: [[f64; 2]; 2],
@@ -48,17 +49,17 @@ impl<const D: usize> BondTangent<D> {
         let longer: f64 = (0..D).map(|a| (xi[a] + y[a]) * eta[a]).sum();
         let g = longer / (r * (r + r0));
         let [p, q] = fields;
-        let tension = law.pull(k, g, p, q);
+        let tension = law.scaled_pull(k, g, p, q, factors);
         // a law's pull is linear in g: its slope is a difference
-        let slope = law.pull(k, 1.0, p, q) - law.pull(k, 0.0, p, q);
+        let slope = law.scaled_pull(k, 1.0, p, q, factors) - law.scaled_pull(k, 0.0, p, q, factors);
         let n = y.map(|c| c / r);
-        let (mut share, mut pull) = ([0.0; D], [0.0; D]);
+        let (mut share, mut pull) = ([0.0; D], [[0.0; D]; 2]);
         if W::SHARES {
             // without the other fields, beside which a scalar of 1 would be lost
             let of = |scalar: f64| law.pull(k, g, [scalar, 0.0], [0.0; 2]);
             let per_scalar = of(1.0) - of(0.0);
-            share = n.map(|n| k * r0 * n);
-            pull = y.map(|y| per_scalar * y);
+            share = n.map(|n| factors.own * k * r0 * n);
+            pull = [factors.own, factors.other].map(|f| y.map(|y| f * per_scalar * y));
         }
         BondTangent {
             i,
@@ -80,13 +81,13 @@ impl<const D: usize> BondTangent<D> {
         let q: f64 = y.iter().map(|c| c * c).sum();
         let at = Jet::<3>::variable(q);
         let [_, mut first, mut second] = potential.pair(at).derivatives();
-        let (mut share, mut pull) = ([0.0; D], [0.0; D]);
+        let (mut share, mut pull) = ([0.0; D], [[0.0; D]; 2]);
         if P::EMBEDDED {
             let [_, f, curvature] = potential.density(at).derivatives();
             first += slopes * f;
             second += slopes * curvature;
             share = y.map(|y| 2.0 * f * y);
-            pull = y.map(|y| scale * f * y);
+            pull = [y.map(|y| scale * f * y); 2];
         }
         BondTangent {
             i,

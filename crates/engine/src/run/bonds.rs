@@ -4,7 +4,9 @@ use crate::body::Body;
 use crate::error::BuildError;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
-use crate::spec::{BondFactorSpec, InterfaceRule, Spec};
+use crate::law::BondFactors;
+use crate::law::solid::eam_like::Solid;
+use crate::spec::{BondFactorSpec, InterfaceRule, MaterialSpec, Spec};
 use std::cell::Cell;
 
 /// Scale the bonds of `interaction` as the spec says, and what to warn of. Call before [`Interaction::prepare`] and any
@@ -15,6 +17,14 @@ pub(super) fn scale<const D: usize>(
     interaction: &mut dyn Interaction<D>,
 ) -> Result<Vec<String>, BuildError> {
     let mut warnings = vec![];
+    let solid = |m: &MaterialSpec| Solid::of_law(D, spec.plane, m.law).is_some();
+    if !spec.bonds.is_empty() && spec.materials.iter().any(solid) {
+        return Err(BuildError::new(
+            "bonds[0]",
+            "factors of bonds need a bond-based law: in a state-based one a bond also acts through the pressure of its ends",
+        )
+        .help("write law = { pmb = ... } or springs, or give parts of the body materials of their own"));
+    }
     for (n, factor) in spec.bonds.iter().enumerate() {
         let path = format!("bonds[{n}]");
         let named = |e: BuildError| BuildError {
@@ -39,7 +49,7 @@ pub(super) fn scale<const D: usize>(
                     at[s as usize] = value;
                 }
                 body.fill_images(&mut at);
-                let scaled = |i: usize, j: usize, _| mean(spec.interface, at[i], at[j]);
+                let scaled = |i: usize, j: usize, _| pair(mean(spec.interface, at[i], at[j]));
                 interaction.scale_bonds(body, &scaled).map_err(named)?;
             }
             BondFactorSpec::Crossing { shape, factor } => {
@@ -57,7 +67,7 @@ pub(super) fn scale<const D: usize>(
                     });
                     let crosses = crack.crosses(&x, &y);
                     found.set(found.get() || crosses);
-                    if crosses { *factor } else { 1.0 }
+                    pair(if crosses { *factor } else { 1.0 })
                 };
                 interaction.scale_bonds(body, &scaled).map_err(named)?;
                 if !found.get() {
@@ -70,6 +80,13 @@ pub(super) fn scale<const D: usize>(
         }
     }
     Ok(warnings)
+}
+
+fn pair(factor: f64) -> BondFactors<f64> {
+    BondFactors {
+        pair: factor,
+        ..BondFactors::ONE
+    }
 }
 
 /// The same for both ends gives the same; 0 in series gives 0.

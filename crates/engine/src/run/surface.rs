@@ -3,6 +3,7 @@
 use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
 use crate::interaction::Interaction;
+use crate::law::BondFactors;
 use crate::spec::SurfaceFactors;
 use std::collections::HashMap;
 
@@ -32,23 +33,32 @@ pub(super) fn scale<const D: usize>(
     for (slot, r) in body.slots.iter().zip(&surface.row) {
         row[*slot as usize] = *r;
     }
-    let table: Vec<HashMap<[i32; D], f64>> = surface
+    for &(copy, original) in &body.images {
+        row[copy as usize] = row[original as usize];
+    }
+    let table: Vec<HashMap<[i32; D], [f64; 2]>> = surface
         .rows
         .iter()
-        .zip(&surface.part)
-        .map(|(bonds, part)| {
+        .map(|bonds| {
             bonds
                 .iter()
-                .map(|(o, x)| (std::array::from_fn(|a| o[a]), x / part))
+                .map(|(o, x)| (std::array::from_fn(|a| o[a]), *x))
                 .collect()
         })
         .collect();
+    let of = |slot: usize, to: [i32; D]| {
+        let r = row[slot] as usize;
+        let [pair, share] = table[r].get(&to).copied().unwrap_or([1.0; 2]);
+        (pair, share, surface.part[r])
+    };
     interaction
-        .scale_bonds(body, &|slot, _, to| {
-            let r = row[slot] as usize;
-            match (r, table[r].get(&to)) {
-                (_, Some(x)) => *x,
-                (r, None) => 1.0 / surface.part[r],
+        .scale_bonds(body, &|i, j, to| {
+            let (pair, own, part) = of(i, to);
+            let (_, other, beyond) = of(j, to.map(|c| -c));
+            BondFactors {
+                pair: pair / part,
+                own,
+                other: beyond * other / part,
             }
         })
         .map_err(|e| BuildError {

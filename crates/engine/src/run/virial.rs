@@ -3,6 +3,7 @@
 use super::model::Model;
 use super::recipe::Laws;
 use crate::interaction::{BondState, PointEnergies};
+use crate::law::BondFactors;
 use crate::law::Law;
 use crate::law::solid::bond_based::BondBasedMixed;
 use crate::law::solid::eam_like::EamLike;
@@ -66,17 +67,20 @@ impl<const D: usize> Model<D> {
                 if state == BondState::Whole {
                     let (g, weight) = (e / (w * (1.0 + w)), recipe.weight(r0));
                     let (fi, fj) = (fields(i), fields(j));
+                    let reached = self.interaction.reached(&self.body, i, xi);
+                    let (volume, factors) = reached.unwrap_or((volumes[1], BondFactors::ONE));
                     pull = match &recipe.laws {
                         Laws::Bond(_) => {
                             let law = BondBasedMixed { rule: recipe.rule };
-                            law.pull(law.constant(r0, r0.recip(), weight), g, fi, fj)
+                            let k = law.constant(r0, r0.recip(), weight);
+                            law.scaled_pull(k, g, fi, fj, factors)
                         }
                         Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => 0.0,
-                        Laws::Solid(_) => EamLike { ratio: 0.0 }.pull(weight, g, fi, fj),
+                        Laws::Solid(_) => {
+                            EamLike { ratio: 0.0 }.scaled_pull(weight, g, fi, fj, factors)
+                        }
                     };
-                }
-                if let Some(reached) = self.interaction.reached_volume(&self.body, i, xi) {
-                    pull *= reached / volumes[1];
+                    pull *= volume / volumes[1];
                 }
                 if let Some(repulsion) = recipe.repulsion {
                     let (r, d) = (r0 * w, repulsion.distance(r0));

@@ -20,9 +20,10 @@ pub struct SurfaceFactors {
     pub method: SurfaceMethod,
     /// `[N]`: which of `rows` and `part` a point has.
     pub row: Vec<u32>,
-    /// `[rows]` bonds of such a point whose factor is not 1: cells to the partner, and the factor of the force between two
-    /// whole cells. It must be the same from the other end.
-    pub rows: Vec<Vec<([i32; 3], f64)>>,
+    /// `[rows]` bonds of such a point with factors other than 1: cells to the partner, the factor of the pair force between two
+    /// whole cells, which must be the same from the other end, and that of what the bond adds to the dilatation of this end (1
+    /// for laws without).
+    pub rows: Vec<Vec<([i32; 3], [f64; 2])>>,
     /// `[rows]` part of its cell that such a point holds: its volume and mass (0–1].
     pub part: Vec<f64>,
     /// What a user should know about them.

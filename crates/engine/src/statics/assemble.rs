@@ -145,18 +145,18 @@ impl<const D: usize> Rows<'_, D> {
         for bond in self.of(i) {
             row.add(bond.j, |a, b| bond.stiffness[a][b]);
             for a in 0..D {
-                pulls[a] += bond.pull[a];
+                pulls[a] += bond.pull[0][a];
             }
             let gain = self.gain[bond.j];
             if gain != 0.0 {
                 let mut shares = [0.0; D];
                 for far in self.of(bond.j) {
-                    row.add(far.j, |a, b| gain * bond.pull[a] * far.share[b]);
+                    row.add(far.j, |a, b| gain * bond.pull[1][a] * far.share[b]);
                     for b in 0..D {
                         shares[b] += far.share[b];
                     }
                 }
-                row.add(bond.j, |a, b| -gain * bond.pull[a] * shares[b]);
+                row.add(bond.j, |a, b| -gain * bond.pull[1][a] * shares[b]);
             }
         }
         let gain = self.gain[i];

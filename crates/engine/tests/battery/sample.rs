@@ -206,6 +206,7 @@ impl Case {
             influence: self.material.influence,
             periodic: [None; 3],
             surface: None,
+            bonds: vec![],
             precracks: vec![],
             contact: None,
             initial: vec![],

@@ -72,10 +72,17 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         }
     }
     if let Some(surface) = &spec.surface {
-        let all = surface.rows.iter().flatten().map(|(_, x)| *x);
-        let (low, high) = all.fold((1.0f64, 1.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        let range = |which: usize| {
+            let all = surface.rows.iter().flatten().map(|(_, x)| x[which]);
+            all.fold((1.0f64, 1.0f64), |(a, b), x| (a.min(x), b.max(x)))
+        };
+        let ((low, high), (least, most)) = (range(0), range(1));
+        let shares = match least < most {
+            true => format!(", of the dilatation {least:.2} to {most:.2}"),
+            false => String::new(),
+        };
         lines.push(format!(
-            "surface    {:?}: {} kinds of points, factors of bonds {low:.2} to {high:.2}",
+            "surface    {:?}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{shares}",
             surface.method,
             surface.rows.len() - 1
         ));

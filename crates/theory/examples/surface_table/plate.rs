@@ -114,7 +114,9 @@ impl Plate {
                 .rows
                 .iter()
                 .flatten()
-                .fold((1.0f64, 1.0f64), |(a, b), (_, x)| (a.min(*x), b.max(*x))),
+                .fold((1.0f64, 1.0f64), |(a, b), (_, x)| {
+                    (a.min(x[0]), b.max(x[0]))
+                }),
         };
         let sim = build(&spec, Options::default()).expect("the plate is sound");
         let moduli = moduli(sim.info().micromodulus[0], m);

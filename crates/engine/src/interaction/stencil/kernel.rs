@@ -194,14 +194,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     /// Has any bond of the `n`-th active tile a factor?
     #[inline(always)]
     fn is_scaled(&self, n: usize) -> bool {
-        !W::SHARES && self.scale.is_scaled(n)
-    }
-
-    /// Factors of bond `b` of the points of a tile whose factors are `scale`.
-    #[inline(always)]
-    unsafe fn factor<L: Lane>(b: &Bond<D>, scale: &[f64]) -> L {
-        // SAFETY: eight numbers per bond of the stencil
-        unsafe { L::load(scale.as_ptr().add(b.number as usize * TILE)) }
+        self.scale.is_scaled(n)
     }
 
     /// Bond bits of the `n`-th active tile.

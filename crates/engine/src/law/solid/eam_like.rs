@@ -9,7 +9,7 @@
 //! The energy is the one whose derivative is the force, also after bonds broke.
 
 use crate::execute::lane::Lane;
-use crate::law::Law;
+use crate::law::{BondFactors, Law};
 use crate::spec::{LawSpec, Plane};
 
 /// Field 0: pressure `P`; field 1: `B = β/m`. Bond constant `k = ω ν V_j`.
@@ -32,6 +32,11 @@ impl Law for EamLike {
         // r0/r = 1 − g and e/r = g
         let p = i[0] + j[0];
         k * g.fma((i[1] + j[1]) - p, p)
+    }
+    #[inline(always)]
+    fn scaled_pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2], f: BondFactors<L>) -> L {
+        let end = |x: [L; 2], pressure: L| [x[0] * pressure, x[1] * f.pair];
+        self.pull(k, g, end(i, f.own), end(j, f.other))
     }
     #[inline(always)]
     fn pair_energy<L: Lane>(self, x: L, i: [L; 2], _: [L; 2]) -> L {

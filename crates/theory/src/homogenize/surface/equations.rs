@@ -3,9 +3,15 @@
 //! Bond constant `c ω ν` and cells of edge 1. Under the strain ε, bond i–j with factor λ pulls with
 //! `λ ω ν (n·ε n) n`; a point with outward area `a` needs `Σ_j λ_ij ω ν n⊗n⊗n = −C·a`, with
 //! `C = ½ Σ ω ν r n⊗n⊗n⊗n` over a full family: the stiffness that this lattice really has. Both sides are symmetric in all
-//! indices: 1, 4 or 10 equations per point hold for all 1, 3 or 6 strains at once.
+//! indices: 1, 4 or 10 equations per point hold for all 1, 3 or 6 strains at once. In a state-based solid the pair forces
+//! are `λ ω ν (e/r) r n`: the same with `ω r` for ω.
+//!
+//! Of the dilatation `θ_i = (D/m) Σ_j η_ij ω ν r e_ij`, with the m of a full family and a factor η of every directed bond,
+//! is asked that it is the trace of any uniform strain, and that its forces `κ θ (D/m) ω ν r (v_i η_ij + v_j η_ji) n` (v:
+//! parts of cells) sum to those of the pressure κθ on the area: `Σ_j η_ij ω ν r² n⊗n = (m/D) 1` and
+//! `Σ_j (v_i η_ij + v_j η_ji) ω ν r n = −(m/D) a`.
 
-use super::neighbourhoods::{Kinds, Neighbourhoods};
+use super::neighbourhoods::{Bonds, Kinds, Neighbourhoods};
 use super::sites::Sites;
 use std::collections::{BTreeMap, HashSet};
 
@@ -13,8 +19,10 @@ use std::collections::{BTreeMap, HashSet};
 #[derive(Debug, Clone, Copy)]
 pub struct StencilBond {
     pub offset: [i32; 3],
-    /// ω ν
+    /// ω ν, of state-based solids times r: of the pair force.
     pub weight: f64,
+    /// ω ν r: of the dilatation.
+    pub share: f64,
 }
 
 impl StencilBond {
@@ -100,8 +108,7 @@ pub fn equations(
     let triples = triples(d);
     let c = stiffness(bonds);
     let tiny = 1e-12 * c[0][0][0][0];
-    let mut made = Equations::default();
-    let mut seen: HashSet<Vec<(usize, i64)>> = HashSet::new();
+    let mut made = Collected::new(tiny);
     for place in kinds.examples() {
         let own = around.of(place);
         let own_near = around.near(own, layers);
@@ -117,7 +124,7 @@ pub fn equations(
             };
             let other = around.of(to);
             let unknown = own_near || around.near(other, layers);
-            let class = unknown.then(|| around.class(own, other, bond.offset));
+            let class = unknown.then(|| around.class(Bonds::Mutual, own, other, bond.offset));
             let (_, n) = bond.direction();
             for (e, [i, j, k]) in triples.iter().enumerate() {
                 let pull = bond.weight * n[*i] * n[*j] * n[*k];
@@ -127,6 +134,81 @@ pub fn equations(
                 }
             }
         }
+        made.add(place, left, right);
+    }
+    made.finish(around.classes(Bonds::Mutual))
+}
+
+/// The equations of the factors η of the dilatation.
+pub fn shares(
+    sites: &Sites,
+    bonds: &[StencilBond],
+    around: &mut Neighbourhoods,
+    kinds: &Kinds,
+    layers: i32,
+) -> Equations {
+    let d = sites.dimension;
+    let pairs: Vec<[usize; 2]> = (0..d).flat_map(|a| (a..d).map(move |b| [a, b])).collect();
+    let third = bonds.iter().map(|b| b.share * b.direction().0).sum::<f64>() / d as f64;
+    let mut made = Collected::new(1e-12 * third);
+    for place in kinds.examples() {
+        let own = around.of(place);
+        let own_near = around.near(own, layers);
+        let (part, area) = sites.cell_share(place);
+        let mut left = vec![BTreeMap::<usize, f64>::new(); pairs.len() + d];
+        let mut right: Vec<f64> = pairs
+            .iter()
+            .map(|[a, b]| if a == b { third } else { 0.0 })
+            .chain((0..d).map(|a| -third * area[a]))
+            .collect();
+        for bond in bonds {
+            let Some(to) = sites.step(place, bond.offset) else {
+                continue;
+            };
+            let other = around.of(to);
+            let beyond = sites.cell_share(to).0;
+            let (r, n) = bond.direction();
+            let unknown = own_near || around.near(other, layers);
+            let ends = unknown.then(|| {
+                let back = bond.offset.map(|c| -c);
+                let mut class = |from, to, o| around.class(Bonds::Directed, from, to, o);
+                [class(own, other, bond.offset), class(other, own, back)]
+            });
+            let mut add = |e: usize, end: usize, x: f64| match ends {
+                Some(class) => *left[e].entry(class[end]).or_default() += x,
+                None => right[e] -= x,
+            };
+            for (e, [a, b]) in pairs.iter().enumerate() {
+                add(e, 0, bond.share * r * n[*a] * n[*b]);
+            }
+            for a in 0..d {
+                add(pairs.len() + a, 0, part * bond.share * n[a]);
+                add(pairs.len() + a, 1, beyond * bond.share * n[a]);
+            }
+        }
+        made.add(place, left, right);
+    }
+    made.finish(around.classes(Bonds::Directed))
+}
+
+/// Equations, each once.
+struct Collected {
+    tiny: f64,
+    seen: HashSet<Vec<(usize, i64)>>,
+    made: Equations,
+}
+
+impl Collected {
+    fn new(tiny: f64) -> Collected {
+        Collected {
+            tiny,
+            seen: HashSet::new(),
+            made: Equations::default(),
+        }
+    }
+
+    fn add(&mut self, place: usize, left: Vec<BTreeMap<usize, f64>>, right: Vec<f64>) {
+        let tiny = self.tiny;
         for (row, b) in left.into_iter().zip(right) {
             let row: Vec<(usize, f64)> = row.into_iter().filter(|(_, a)| a.abs() > tiny).collect();
             let b = if b.abs() > tiny { b } else { 0.0 };
@@ -138,13 +220,16 @@ pub fn equations(
             let mut key: Vec<(usize, i64)> =
                 row.iter().map(|(k, a)| (*k, round(sign * a))).collect();
             key.push((usize::MAX, round(sign * b)));
-            if seen.insert(key) {
-                made.rows.push(row);
-                made.right.push(b);
-                made.place.push(place as u32);
+            if self.seen.insert(key) {
+                self.made.rows.push(row);
+                self.made.right.push(b);
+                self.made.place.push(place as u32);
             }
         }
     }
-    made.unknowns = around.classes();
-    made
+
+    fn finish(mut self, unknowns: usize) -> Equations {
+        self.made.unknowns = unknowns;
+        self.made
+    }
 }

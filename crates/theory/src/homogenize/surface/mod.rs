@@ -1,4 +1,4 @@
-//! Corrections of bonds near the surface of a lattice body with a bond-based law.
+//! Corrections of bonds near the surface of a lattice body.
 //!
 //! [`SurfaceMethod::Exact`]: one factor per bond near the surface, so that *every* uniform strain is in equilibrium
 //! under its own uniform traction: no residual at inner points, and at points of the surface the exact traction times
@@ -6,7 +6,8 @@
 //! inside ([`sites`]); docs/decisions/0003-surface.md says why no such factors exist for a surface half a spacing
 //! outside. The equations ([`equations`]) are solved for the factors nearest to 1 that are not negative ([`solve`]), one
 //! unknown per kind of bond ([`neighbourhoods`]): the size of the body does not count, only how many different places
-//! its surface has. [`published`] has what users know already.
+//! its surface has. State-based solids have a second factor per directed bond, of what it adds to the dilatation; these
+//! may be negative, because the energy `½κθ²` is not. [`published`] has what users know already, for bond-based laws.
 
 mod equations;
 mod neighbourhoods;
@@ -14,15 +15,16 @@ mod published;
 mod sites;
 mod solve;
 
-use equations::{Equations, StencilBond, equations};
-use neighbourhoods::{Kinds, Neighbourhoods};
+use equations::{Equations, StencilBond, equations, shares};
+use neighbourhoods::{Bonds, Kinds, Neighbourhoods};
 use peridyne::family::stencil::Stencil;
 use peridyne::family::volume_fraction;
 use peridyne::law::influence::influence;
+use peridyne::law::solid::eam_like::Solid;
 use peridyne::space::fill::fill;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{
-    BodySpec, FamilyChoice, Horizon, LawSpec, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, FamilyChoice, Horizon, LawSpec, MaterialSpec, Spec, SurfaceFactors, SurfaceMethod,
 };
 use sites::Sites;
 
@@ -35,9 +37,13 @@ const ONE: f64 = 1e-15;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     #[error(
-        "a surface correction needs a bond-based law (pmb or springs); the bonds of a state-based solid or of atoms do not act alone"
+        "a surface correction needs a solid (pmb, lps) or springs: bonds of atoms have no horizon to be missing in"
     )]
     Law,
+    #[error(
+        "this surface correction is for bond-based laws (pmb or springs); the bonds of a state-based solid do not act alone"
+    )]
+    Published,
     #[error(
         "a surface correction needs points on a chain, square or cubic lattice: a cloud has no surface that could be known exactly"
     )]
@@ -58,7 +64,8 @@ impl SurfaceError {
     /// What to do about it.
     pub fn help(&self) -> &'static str {
         match self {
-            SurfaceError::Law => "leave surface out, or take pmb",
+            SurfaceError::Law => "leave surface out, or take pmb or lps",
+            SurfaceError::Published => "write surface = \"exact\", or take pmb",
             SurfaceError::Lattice => {
                 "take a lattice body without perturbation and without family = \"list\", or leave surface out"
             }
@@ -91,6 +98,8 @@ pub struct Report {
     pub vanishing: usize,
     pub lowest: f64,
     pub highest: f64,
+    /// Lowest and highest factor of the dilatation; of laws without one `None`.
+    pub shares: Option<[f64; 2]>,
     /// Largest residual over the largest stiffness coefficient, and the point where it is left (length).
     pub residual: f64,
     pub worst: [f64; 3],
@@ -101,12 +110,16 @@ struct LatticeBody {
     lattice: Lattice,
     sites: Sites,
     bonds: Vec<StencilBond>,
+    /// Does the law have a dilatation?
+    state_based: bool,
 }
 
 impl LatticeBody {
     fn new(spec: &Spec) -> Result<LatticeBody, SurfaceError> {
-        let bond_based = |law: &LawSpec| matches!(law, LawSpec::Pmb(_) | LawSpec::Springs(_));
-        if !spec.materials.iter().all(|m| bond_based(&m.law)) {
+        let solid = |m: &MaterialSpec| Solid::of_law(spec.dimension, spec.plane, m.law).is_some();
+        let bond_based = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_) | LawSpec::Springs(_));
+        let state_based = spec.materials.iter().all(solid);
+        if !state_based && !spec.materials.iter().all(bond_based) {
             return Err(SurfaceError::Law);
         }
         if !matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Stencil) {
@@ -163,9 +176,11 @@ impl LatticeBody {
                     true => volume_fraction(r, horizon, h),
                     false => 1.0,
                 };
+                let (weight, length) = (nu * influence(spec.influence, r, horizon), r / h);
                 StencilBond {
                     offset: o.cell,
-                    weight: nu * influence(spec.influence, r, horizon),
+                    weight: if state_based { weight * length } else { weight },
+                    share: weight * length,
                 }
             })
             .collect();
@@ -178,6 +193,7 @@ impl LatticeBody {
             sites: Sites::new(spec.dimension, &points, periodic),
             lattice,
             bonds,
+            state_based,
         })
     }
 
@@ -215,6 +231,8 @@ struct Attempt {
     around: Neighbourhoods,
     kinds: Kinds,
     system: Equations,
+    /// Of the factors of the dilatation, and these.
+    shares: Option<(Equations, Vec<f64>)>,
     layers: i32,
 }
 
@@ -227,25 +245,39 @@ impl Attempt {
             around,
             kinds,
             system,
+            shares: None,
             layers,
         }
     }
 
+    /// Finds the factors of the dilatation, where there is one: are they exact?
+    fn share(&mut self, body: &LatticeBody) -> bool {
+        if !body.state_based {
+            return true;
+        }
+        let around = &mut self.around;
+        let system = shares(&body.sites, &body.bonds, around, &self.kinds, self.layers);
+        let (x, exact) = solve::shortest(&system);
+        self.shares = Some((system, x));
+        exact
+    }
+
     /// Factors of the bonds of the point at `place`.
-    fn row(&mut self, body: &LatticeBody, x: &[f64], place: usize) -> Vec<f64> {
+    fn row(&mut self, body: &LatticeBody, x: &[f64], place: usize) -> Vec<[f64; 2]> {
         let own = self.around.of(place);
         let own_near = self.around.near(own, self.layers);
         let mut row = Vec::with_capacity(body.bonds.len());
         for bond in &body.bonds {
-            let factor = body.sites.step(place, bond.offset).map_or(1.0, |to| {
+            let factors = body.sites.step(place, bond.offset).map_or([1.0; 2], |to| {
                 let other = self.around.of(to);
-                if own_near || self.around.near(other, self.layers) {
-                    x[self.around.class(own, other, bond.offset)]
-                } else {
-                    1.0
+                if !own_near && !self.around.near(other, self.layers) {
+                    return [1.0; 2];
                 }
+                let mut class = |bonds| self.around.class(bonds, own, other, bond.offset);
+                let share = self.shares.as_ref().map(|(_, y)| y[class(Bonds::Directed)]);
+                [x[class(Bonds::Mutual)], share.unwrap_or(1.0)]
             });
-            row.push(factor);
+            row.push(factors);
         }
         row
     }
@@ -261,9 +293,15 @@ pub fn correct(
 ) -> Result<(SurfaceFactors, Option<Report>), SurfaceError> {
     let body = LatticeBody::new(spec)?;
     if method != SurfaceMethod::Exact {
+        if body.state_based {
+            return Err(SurfaceError::Published);
+        }
         let around = Neighbourhoods::new(&body.sites, body.longest());
         let kinds = Kinds::new(&body.sites, &around, &body.offsets());
-        let row = |place: usize| published::row(&body.sites, &body.bonds, method, place);
+        let row = |place: usize| {
+            let row = published::row(&body.sites, &body.bonds, method, place);
+            row.into_iter().map(|x| [x, 1.0]).collect()
+        };
         return Ok((table(&body, method, &kinds, row, |_| 1.0, None), None));
     }
     body.loose()?;
@@ -282,6 +320,9 @@ pub fn correct(
         if unknowns > MOST_UNKNOWNS {
             continue;
         }
+        if !attempt.share(&body) {
+            continue;
+        }
         if let Some(found) = solve::exact(&attempt.system).map_err(SurfaceError::Solver)? {
             let report = report(&body, &attempt, &found.factors, Some(found.floor));
             return Ok((
@@ -294,6 +335,7 @@ pub fn correct(
         return Err(SurfaceError::TooManyKinds(fewest));
     }
     let mut attempt = Attempt::new(&body, 1, longest);
+    attempt.share(&body);
     let x = solve::nearest(&attempt.system).map_err(SurfaceError::Solver)?;
     let report = report(&body, &attempt, &x, None);
     let [a, b, c] = report.worst;
@@ -318,16 +360,23 @@ pub fn renew(spec: &mut Spec) -> Result<(), SurfaceError> {
 fn report(body: &LatticeBody, attempt: &Attempt, x: &[f64], floor: Option<f64>) -> Report {
     let system = &attempt.system;
     let scale = equations::stiffness(&body.bonds)[0][0][0][0];
-    let residual = system.residual(x);
-    let worst = (0..residual.len())
-        .max_by(|a, b| residual[*a].abs().total_cmp(&residual[*b].abs()))
-        .map(|n| {
-            (
-                residual[n].abs() / scale,
-                body.position(system.place[n] as usize),
-            )
-        });
+    let third: f64 = body.bonds.iter().map(|b| b.share * b.direction().0).sum();
+    let third = third / body.sites.dimension as f64;
+    let mut left = vec![(system, system.residual(x), scale)];
+    left.extend((attempt.shares.iter()).map(|(system, y)| (system, system.residual(y), third)));
+    let worst = left
+        .iter()
+        .flat_map(|(system, r, scale)| {
+            let place = system.place.iter();
+            r.iter().zip(place).map(move |(r, p)| (r.abs() / scale, *p))
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(r, place)| (r, body.position(place as usize)));
     let (residual, worst) = worst.unwrap_or_default();
+    let range = |y: &Vec<f64>| {
+        let low = y.iter().copied().fold(f64::INFINITY, f64::min);
+        [low, y.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+    };
     Report {
         exact: floor.is_some(),
         layers: attempt.layers,
@@ -337,6 +386,7 @@ fn report(body: &LatticeBody, attempt: &Attempt, x: &[f64], floor: Option<f64>) 
         vanishing: x.iter().filter(|x| **x == 0.0).count(),
         lowest: x.iter().copied().fold(f64::INFINITY, f64::min),
         highest: x.iter().copied().fold(0.0, f64::max),
+        shares: attempt.shares.as_ref().map(|(_, y)| range(y)),
         residual,
         worst,
     }
@@ -361,7 +411,7 @@ fn table(
     body: &LatticeBody,
     method: SurfaceMethod,
     kinds: &Kinds,
-    mut row: impl FnMut(usize) -> Vec<f64>,
+    mut row: impl FnMut(usize) -> Vec<[f64; 2]>,
     part: impl Fn(usize) -> f64,
     warning: Option<String>,
 ) -> SurfaceFactors {
@@ -372,7 +422,7 @@ fn table(
         let changed = body.bonds.iter().zip(factors);
         rows.push(
             changed
-                .filter(|(_, x)| (x - 1.0).abs() > ONE)
+                .filter(|(_, x)| x.iter().any(|x| (x - 1.0).abs() > ONE))
                 .map(|(b, x)| (b.offset, x))
                 .collect(),
         );

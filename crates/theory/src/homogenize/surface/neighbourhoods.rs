@@ -60,8 +60,23 @@ pub struct Neighbourhoods {
     turned: Vec<Vec<u32>>,
     /// `[places]`: name of the pattern around each; 0 is full.
     of_place: Vec<u32>,
-    classes: HashMap<(u32, u32, [i32; 3]), u32>,
+    classes: [Classes; 2],
+}
+
+/// Kinds of bonds by the names of their ends.
+#[derive(Default)]
+struct Classes {
+    first: HashMap<(u32, u32, [i32; 3]), u32>,
     known: HashMap<(u32, u32, [i32; 3]), u32>,
+}
+
+/// What makes two bonds alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bonds {
+    /// A symmetry, or reading one from its other end.
+    Mutual,
+    /// A symmetry.
+    Directed,
 }
 
 impl Neighbourhoods {
@@ -99,8 +114,7 @@ impl Neighbourhoods {
             patterns: vec![],
             turned: vec![],
             of_place: vec![VOID; sites.places()],
-            classes: HashMap::new(),
-            known: HashMap::new(),
+            classes: Default::default(),
         };
         let mut full = vec![0u64; count.div_ceil(64)];
         for k in 0..count {
@@ -165,9 +179,9 @@ impl Neighbourhoods {
     }
 
     /// Kind of the bond along `o` between points of these names: the same for all bonds that a symmetry of the lattice
-    /// or reading them from the other end carries into each other.
-    pub fn class(&mut self, from: u32, to: u32, o: [i32; 3]) -> usize {
-        if let Some(class) = self.known.get(&(from, to, o)) {
+    /// carries into each other, and of [`Bonds::Mutual`] those read from the other end.
+    pub fn class(&mut self, bonds: Bonds, from: u32, to: u32, o: [i32; 3]) -> usize {
+        if let Some(class) = self.classes[bonds as usize].known.get(&(from, to, o)) {
             return *class as usize;
         }
         self.turn(from);
@@ -177,19 +191,24 @@ impl Neighbourhoods {
         let first = all
             .flat_map(|((s, &i), &j)| {
                 let xi = s.of(o);
-                [(i, j, xi), (j, i, xi.map(|c| -c))]
+                let here = (i, j, xi);
+                match bonds {
+                    Bonds::Mutual => [here, (j, i, xi.map(|c| -c))],
+                    Bonds::Directed => [here; 2],
+                }
             })
             .min()
             .unwrap_or((from, to, o));
-        let new = self.classes.len() as u32;
-        let class = *self.classes.entry(first).or_insert(new);
-        self.known.insert((from, to, o), class);
+        let classes = &mut self.classes[bonds as usize];
+        let new = classes.first.len() as u32;
+        let class = *classes.first.entry(first).or_insert(new);
+        classes.known.insert((from, to, o), class);
         class as usize
     }
 
     /// Number of kinds of bonds that were asked for.
-    pub fn classes(&self) -> usize {
-        self.classes.len()
+    pub fn classes(&self, bonds: Bonds) -> usize {
+        self.classes[bonds as usize].first.len()
     }
 }
 
@@ -251,7 +270,7 @@ mod tests {
         assert_ne!(around.of(at(0, 0)), around.of(at(11, 0)));
         let mut class = |a: usize, b: usize, o| {
             let (a, b) = (around.of(a), around.of(b));
-            around.class(a, b, o)
+            around.class(Bonds::Mutual, a, b, o)
         };
         let corner = class(at(0, 0), at(1, 0), [1, 0, 0]);
         assert_eq!(corner, class(at(11, 11), at(11, 10), [0, -1, 0]));

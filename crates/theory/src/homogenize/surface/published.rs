@@ -118,6 +118,7 @@ mod tests {
         let points: Vec<[i32; 3]> = (0..25).map(|n| [n % 5, n / 5, 0]).collect();
         let sites = Sites::new(2, &points, [false; 3]);
         let bonds = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]].map(|offset| StencilBond {
+            share: 1.0,
             offset,
             weight: 1.0,
         });

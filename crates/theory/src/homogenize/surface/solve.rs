@@ -203,3 +203,10 @@ pub fn nearest(equations: &Equations) -> Result<Vec<f64>, String> {
     let (_, x) = programme(equations, &vec![0.0; equations.unknowns], true)?;
     Ok(x.iter().map(|x| x.max(0.0)).collect())
 }
+
+/// The numbers of any sign nearest to 1 that satisfy the equations, or leave the least squares of residuals; do they satisfy?
+pub fn shortest(equations: &Equations) -> (Vec<f64>, bool) {
+    let mut x = vec![1.0; equations.unknowns];
+    let exact = polish(equations, &mut x, &vec![true; equations.unknowns]);
+    (x, exact)
+}

@@ -65,7 +65,7 @@ fn horizon_two_in_the_plane_is_the_closed_form_along_an_edge() {
         assert_eq!(factors.part[row], 0.5);
         let of = |o: [i32; 3]| {
             let found = factors.rows[row].iter().find(|(offset, _)| *offset == o);
-            found.map_or(1.0, |(_, x)| *x)
+            found.map_or(1.0, |(_, x)| x[0])
         };
         let near = |x: f64, y: f64| assert!((x - y).abs() < 1e-9, "{x} is not {y}");
         // ½ on average over the bonds in the edge; the solver shares it out among one and two spacings
@@ -86,15 +86,43 @@ fn chains_carry_what_missing_bonds_would() {
     }
 }
 
+const LPS: LawSpec = LawSpec::Lps(peridyne::spec::Moduli {
+    young: 1.0,
+    poisson: 0.3,
+});
+
+#[test]
+fn state_based_plates_and_blocks_are_exact_with_factors_of_any_sign() {
+    for (d, n, m) in [
+        (1, [40, 1, 1], 3),
+        (2, [24, 20, 1], 2),
+        (2, [24, 20, 1], 3),
+        (2, [24, 20, 1], 4),
+        (3, [10, 11, 12], 2),
+        (3, [13, 13, 13], 3),
+    ] {
+        let mut spec = block(d, n, m);
+        spec.materials[0].law = LPS;
+        spec.influence = peridyne::spec::Influence::Inverse;
+        let report = found(&spec);
+        let [low, high] = report.shares.unwrap();
+        assert!(
+            report.exact && report.residual < 1e-12,
+            "{d} {m} {report:?}"
+        );
+        assert!(low > -10.0 && high < 20.0, "{d} {m} {report:?}");
+    }
+}
+
 #[test]
 fn refused_with_a_reason() {
     let mut spec = block(2, [10, 10, 1], 2);
-    spec.materials[0].law = LawSpec::Lps(peridyne::spec::Moduli {
-        young: 1.0,
-        poisson: 0.3,
-    });
+    spec.materials[0].law = LawSpec::Atoms;
     let refused = |spec: &Spec| correct(spec, SurfaceMethod::Exact).unwrap_err();
     assert_eq!(refused(&spec), SurfaceError::Law);
+    spec.materials[0].law = LPS;
+    let volume = correct(&spec, SurfaceMethod::Volume).unwrap_err();
+    assert_eq!(volume, SurfaceError::Published);
     let mut spec = block(2, [10, 10, 1], 2);
     spec.family = FamilyChoice::List;
     assert_eq!(refused(&spec), SurfaceError::Lattice);

@@ -7,6 +7,7 @@ use crate::execute::lane::Lane;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::simd::Kernel;
 use crate::interaction::EnergyFields;
+use crate::interaction::scale::TileFactors;
 use crate::law::Law;
 
 /// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds. Sums are returned,
@@ -84,7 +85,11 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
         unsafe {
             let ui = v.displacement::<L>(i);
             let own = v.fields::<L>(i);
-            let scale = if SCALED { v.scale.tile(n) } else { &[] };
+            let scale = if SCALED {
+                v.scale.tile(n)
+            } else {
+                TileFactors::NONE
+            };
             let mut word = 0;
             while word < v.reach(n).len() {
                 let (bonds, next) = offsets.stretch(v.stencil(n), v.reach(n), word);
@@ -96,9 +101,13 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                     for (c, b) in bonds.iter().enumerate() {
                         let mut s = stretch.get(c);
                         let gone = s.is_nan();
-                        let mut kr = L::splat(b.share);
+                        let (mut kr, mut kr_share) = (L::splat(b.share), L::splat(b.share));
                         if SCALED {
-                            kr = kr * View::<D, W>::factor::<L>(b, scale);
+                            kr = kr * scale.pair(b.number as usize);
+                            kr_share = match W::SHARES {
+                                true => kr_share * scale.own(b.number as usize),
+                                false => kr,
+                            };
                         }
                         if MASKED {
                             s = s.zero_if(gone);
@@ -110,7 +119,7 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                             x = x.zero_if(gone);
                         }
                         strain = strain + x;
-                        share = kr.fma(s, share);
+                        share = kr_share.fma(s, share);
                     }
                     if v.repulsion.is_some() && L::any(near) {
                         for b in bonds {
@@ -126,7 +135,7 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                         for b in bonds {
                             let mut kr = L::splat(b.share);
                             if SCALED {
-                                kr = kr * View::<D, W>::factor::<L>(b, scale);
+                                kr = kr * scale.pair(b.number as usize);
                             }
                             if MASKED {
                                 kr = kr.zero_if(L::dead(*v.row(n).add(b.number as usize)));

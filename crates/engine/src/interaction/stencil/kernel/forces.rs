@@ -8,6 +8,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
+use crate::interaction::scale::TileFactors;
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::Law;
 use std::mem::MaybeUninit;
@@ -104,7 +105,11 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     zero
                 },
             };
-            let scale = if SCALED { v.scale.tile(tile) } else { &[] };
+            let scale = if SCALED {
+                v.scale.tile(tile)
+            } else {
+                TileFactors::NONE
+            };
             let (lower, upper) = (L::splat(self.lower), L::splat(self.upper));
             let mut lowest = L::splat(f64::INFINITY);
             let (mut acc, mut total) = ([zero; D], zero);
@@ -172,7 +177,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         &self,
         at: &Points<L, D>,
         bonds: &[Bond<D>],
-        scale: &[f64],
+        scale: TileFactors,
         answer: &Chunk<L>,
         acc: &mut [L; D],
         total: &mut L,
@@ -188,10 +193,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 } else {
                     v.fields::<L>(b.to(at.i))
                 };
-                let mut pull = v.law.pull(L::splat(b.k), g, at.own, other);
-                if SCALED {
-                    pull = pull * View::<D, W>::factor::<L>(b, scale);
-                }
+                let mut pull = self.pull::<L, SCALED>(b, g, at.own, other, scale);
                 if MASKED {
                     pull = pull.zero_if(g.is_nan());
                 }
@@ -203,6 +205,28 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             }
         }
         (*acc, *total) = (sum, all);
+    }
+
+    /// Coefficient of `ξ + η`.
+    #[inline(always)]
+    unsafe fn pull<L: Lane, const SCALED: bool>(
+        &self,
+        b: &Bond<D>,
+        g: L,
+        own: [L; 2],
+        other: [L; 2],
+        scale: TileFactors,
+    ) -> L {
+        let (law, k) = (self.view.law, L::splat(b.k));
+        let n = b.number as usize;
+        // SAFETY: a bond of the stencil, of a tile with factors where they are read
+        unsafe {
+            match (SCALED, W::SHARES) {
+                (false, _) => law.pull(k, g, own, other),
+                (true, true) => law.scaled_pull(k, g, own, other, scale.all(n)),
+                (true, false) => law.pull(k, g, own, other) * scale.pair(n),
+            }
+        }
     }
 
     /// Lanes whose bond breaks, or whose ends are too close, whole or not; `e` where the bond is whole, `raw` always.
@@ -220,7 +244,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         &self,
         at: &Points<L, D>,
         rare: &[MaybeUninit<u16>],
-        scale: &[f64],
+        scale: TileFactors,
         acc: &mut [L; D],
         tally: &mut Tally,
     ) {
@@ -245,12 +269,9 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let aside = self.aside(at, b, e, raw);
                 let other = v.fields::<L>(j);
                 let g = Extension::exact(e);
-                let mut own_pull = v.law.pull(L::splat(b.k), g, own, other).zero_if(dead);
-                let mut share = L::splat(b.share);
-                if SCALED {
-                    let factor = View::<D, W>::factor::<L>(b, scale);
-                    (own_pull, share) = (own_pull * factor, share * factor);
-                }
+                let own_pull = self
+                    .pull::<L, SCALED>(b, g, own, other, scale)
+                    .zero_if(dead);
                 let mut pull = L::select(aside, own_pull, zero);
                 let close = raw.lt(L::splat(b.contact_e));
                 if L::any(close) {
@@ -265,9 +286,16 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                         *v.state.at(at.tile) = 0;
                         tally.broken += which.count_ones() as u64;
                         let s = Stretch::exact(e);
-                        let share = share * s;
-                        let held = v.law.pair_energy(share * s, own, other)
-                            + self.farewell(own_pull, y, i, j);
+                        let mut share = L::splat(b.share) * s;
+                        let mut pair = share * s;
+                        if SCALED {
+                            pair = pair * scale.pair(n);
+                            if W::SHARES {
+                                share = share * scale.own(n);
+                            }
+                        }
+                        let held =
+                            v.law.pair_energy(pair, own, other) + self.farewell(own_pull, y, i, j);
                         let sum = lost.unwrap_or([zero; 2]);
                         lost = Some([
                             sum[0] + L::select(breaks, held, zero),
