@@ -10,6 +10,7 @@ use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
+use peridyne::statics::AnyLinearBody;
 use peridyne_theory::homogenize::surface::{correct, renew};
 
 const H: f64 = 0.5;
@@ -446,4 +447,49 @@ fn other_bodies_get_their_own_factors() {
     renew(&mut spec).unwrap();
     assert_eq!(spec.surface.as_ref().unwrap().row.len(), 33 * 25);
     assert!(build(&spec, Options::default()).is_ok());
+}
+
+#[test]
+fn tangents_are_differences_of_forces() {
+    for (mut spec, u) in worn() {
+        spec.materials[0].fracture = None;
+        spec.contact = None;
+        let mut sim = at_rest(&spec, None);
+        let u: Vec<Point> = u.iter().map(|u| u.map(|c| 0.5 * c)).collect();
+        sim.set_displacements(&u);
+        let direction = |k: usize| -> Point {
+            std::array::from_fn(|a| match a < spec.dimension {
+                true => ((3 * k + a) as f64 * 1.7).sin(),
+                false => 0.0,
+            })
+        };
+        let linear = |sim: &mut dyn Simulation| -> Vec<Point> {
+            let all: Vec<Point> = (0..u.len()).map(direction).collect();
+            match sim.linear_body() {
+                AnyLinearBody::One(_) => unreachable!("plates and blocks"),
+                AnyLinearBody::Two(body) => {
+                    let d: Vec<[f64; 2]> = all.iter().map(|d| [d[0], d[1]]).collect();
+                    let of = |i| body.force(&d, i);
+                    (0..d.len()).map(of).map(|f| [f[0], f[1], 0.0]).collect()
+                }
+                AnyLinearBody::Three(body) => (0..all.len()).map(|i| body.force(&all, i)).collect(),
+            }
+        };
+        let answer = linear(sim.as_mut());
+        let step = 1e-6 * H;
+        let mut moved = |by: f64| {
+            let x: Vec<Point> = (u.iter().enumerate())
+                .map(|(k, u)| std::array::from_fn(|a| u[a] + by * direction(k)[a]))
+                .collect();
+            sim.forces_under(&x)
+        };
+        let (more, less) = (moved(step), moved(-step));
+        let size = answer.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for ((t, a), b) in answer.iter().zip(&more).zip(&less) {
+            for k in 0..3 {
+                let slope = (a[k] - b[k]) / (2.0 * step);
+                assert!((slope - t[k]).abs() < 1e-7 * size, "{slope} {}", t[k]);
+            }
+        }
+    }
 }

@@ -1,14 +1,14 @@
 //! Plates of the engine, their equilibrium by conjugate gradients, their lowest frequency.
 
 use crate::classical::{Load, Moduli};
+use peridyne::law::solid::eam_like::Solid;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
+use peridyne::statics::cg::{self, Goal};
+use peridyne::statics::{Assembled, LinearBody, Support};
 use peridyne_theory::homogenize::surface::correct;
-
-/// Largest displacement that the operator is asked for: forces are linear to round-off.
-const SMALL: f64 = 1e-11;
 
 pub struct Plate {
     sim: Box<dyn Simulation>,
@@ -27,6 +27,7 @@ fn spec(
     points: &[[i32; 2]],
     m: u32,
     periodic: [Option<f64>; 3],
+    law: LawSpec,
     method: Option<SurfaceMethod>,
 ) -> Spec {
     let body = BodySpec::Sites {
@@ -36,11 +37,11 @@ fn spec(
         quarters: points.iter().map(|p| [4 * p[0], 4 * p[1], 0]).collect(),
         volume: None,
     };
-    let mut spec = Spec::new(2, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    let mut spec = Spec::new(2, body, 1.0, law);
     spec.horizon = Horizon::Ratio(m);
     spec.periodic = periodic;
     spec.surface = method.map(|method| {
-        let (factors, report) = correct(&spec, method).expect("a lattice body of pmb");
+        let (factors, report) = correct(&spec, method).expect("a lattice body");
         if let Some(report) = report.filter(|r| !r.exact) {
             eprintln!("not exact: {report:?}");
         }
@@ -56,48 +57,28 @@ fn dot(a: &[Point], b: &[Point]) -> f64 {
         .sum()
 }
 
-/// Forces that hold displacements: `K u`.
-fn stiffness(sim: &mut dyn Simulation, volumes: &[f64], u: &[Point]) -> Vec<Point> {
-    let largest = u.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
-    let scale = SMALL / largest.max(f64::MIN_POSITIVE);
-    let small: Vec<Point> = u.iter().map(|u| u.map(|x| scale * x)).collect();
-    let f = sim.forces_under(&small);
-    f.iter()
-        .zip(volumes)
-        .map(|(f, v)| f.map(|f| -f * v / scale))
-        .collect()
-}
-
 /// Solve `K u = b` for loads in equilibrium; rigid motion is left as it comes.
 fn equilibrium(sim: &mut dyn Simulation, b: &[Point]) -> Vec<Point> {
-    let volumes = sim.volumes();
-    let mut u = vec![[0.0; 3]; b.len()];
-    let mut r = b.to_vec();
-    let mut p = r.clone();
-    let (mut rr, start) = (dot(&r, &r), dot(b, b));
-    for _ in 0..20_000 {
-        if rr <= 1e-24 * start {
-            break;
-        }
-        let q = stiffness(sim, &volumes, &p);
-        let alpha = rr / dot(&p, &q);
-        for i in 0..b.len() {
-            for a in 0..2 {
-                u[i][a] += alpha * p[i][a];
-                r[i][a] -= alpha * q[i][a];
-            }
-        }
-        let new = dot(&r, &r);
-        for (p, r) in p.iter_mut().zip(&r) {
-            *p = std::array::from_fn(|a| r[a] + new / rr * p[a]);
-        }
-        rr = new;
-    }
-    u
+    let body: LinearBody<2> = sim.linear_body().of().expect("a plate");
+    let b: Vec<[f64; 2]> = b.iter().map(|b| [b[0], b[1]]).collect();
+    let mut u = vec![[0.0; 2]; b.len()];
+    let goal = Goal {
+        tolerance: 1e-12,
+        most_iterations: 20_000,
+    };
+    let free = Support::none(b.len());
+    cg::solve(&mut Assembled(&body), &free, &b, &mut u, goal).expect("the plate is sound");
+    u.iter().map(|u| [u[0], u[1], 0.0]).collect()
 }
 
 impl Plate {
-    pub fn new(size: [i32; 2], m: u32, hole: Option<f64>, method: Option<SurfaceMethod>) -> Plate {
+    pub fn new(
+        size: [i32; 2],
+        m: u32,
+        law: LawSpec,
+        hole: Option<f64>,
+        method: Option<SurfaceMethod>,
+    ) -> Plate {
         let middle = size.map(|n| 0.5 * f64::from(n - 1));
         let place = |p: &[i32; 2]| [f64::from(p[0]) - middle[0], f64::from(p[1]) - middle[1]];
         let points: Vec<[i32; 2]> = (0..size[1])
@@ -107,7 +88,7 @@ impl Plate {
                 hole.is_none_or(|r| x[0].hypot(x[1]) >= r)
             })
             .collect();
-        let spec = spec(&points, m, [None; 3], method);
+        let spec = spec(&points, m, [None; 3], law, method);
         let factors = match &spec.surface {
             None => (1.0, 1.0),
             Some(s) => s
@@ -115,11 +96,11 @@ impl Plate {
                 .iter()
                 .flatten()
                 .fold((1.0f64, 1.0f64), |(a, b), (_, x)| {
-                    (a.min(x[0]), b.max(x[0]))
+                    (a.min(x[0]).min(x[1]), b.max(x[0]).max(x[1]))
                 }),
         };
         let sim = build(&spec, Options::default()).expect("the plate is sound");
-        let moduli = moduli(sim.info().micromodulus[0], m);
+        let moduli = moduli(sim.as_ref(), law, m);
         let whole_cells = method != Some(SurfaceMethod::Exact);
         let box_area: f64 = size
             .iter()
@@ -214,27 +195,31 @@ impl Plate {
 }
 
 /// Stiffness of a full family.
-fn moduli(c: f64, m: u32) -> Moduli {
+fn moduli(sim: &dyn Simulation, law: LawSpec, m: u32) -> Moduli {
     let m = m as i32;
-    let mut sum = Moduli {
-        c11: 0.0,
-        c12: 0.0,
-        c66: 0.0,
-    };
-    for y in -m..=m {
-        for x in -m..=m {
-            let r2 = f64::from(x * x + y * y);
-            if r2 == 0.0 || r2 > f64::from(m * m) {
-                continue;
-            }
-            let w = 0.5 * c * r2.sqrt() / (r2 * r2);
-            let (x, y) = (f64::from(x), f64::from(y));
-            sum.c11 += w * x.powi(4);
-            sum.c12 += w * x * x * y * y;
-        }
+    let family = (-m..=m).flat_map(|y| (-m..=m).map(move |x| (f64::from(x), f64::from(y))));
+    let within = |(x, y): &(f64, f64)| *x * x + y * y > 0.0 && *x * x + y * y <= f64::from(m * m);
+    let family: Vec<(f64, f64)> = family.filter(within).collect();
+    let solid = Solid::of_law(2, Plane::Stress, law);
+    let weighted: f64 = family.iter().map(|(x, y)| x * x + y * y).sum();
+    let (mut c11, mut c12) = (0.0, 0.0);
+    for (x, y) in family {
+        let r2 = x * x + y * y;
+        // ½ t r n⊗n⊗n⊗n, t the force of a bond per its stretch
+        let tension = match solid {
+            Some(solid) => 2.0 * solid.beta / weighted * r2.sqrt(),
+            None => sim.info().micromodulus[0],
+        };
+        let w = 0.5 * tension * r2.sqrt() / (r2 * r2);
+        c11 += w * x.powi(4);
+        c12 += w * x * x * y * y;
     }
-    sum.c66 = sum.c12;
-    sum
+    let kappa = solid.map_or(0.0, |s| s.kappa);
+    Moduli {
+        c11: c11 + kappa,
+        c12: c12 + kappa,
+        c66: c12,
+    }
 }
 
 fn without_rigid_motion(place: &[[f64; 2]], u: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -262,9 +247,9 @@ fn without_rigid_motion(place: &[[f64; 2]], u: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 /// Error of the lowest frequency of a strip of `n` points between free faces, along the other axis endless:
 /// `ω = π √(c11/ρ) / L`. With exact factors the strip ends at its outermost points, else half a spacing outside.
-pub fn frequency_error(n: i32, m: u32, method: Option<SurfaceMethod>) -> f64 {
+pub fn frequency_error(n: i32, m: u32, law: LawSpec, method: Option<SurfaceMethod>) -> f64 {
     let points: Vec<[i32; 2]> = (0..8).flat_map(|y| (0..n).map(move |x| [x, y])).collect();
-    let spec = spec(&points, m, [None, Some(8.0), None], method);
+    let spec = spec(&points, m, [None, Some(8.0), None], law, method);
     let mut sim = build(&spec, Options::default()).expect("the strip is sound");
     let (volumes, densities) = (sim.volumes(), sim.densities());
     let mass: Vec<f64> = volumes.iter().zip(&densities).map(|(v, d)| v * d).collect();
@@ -304,7 +289,7 @@ pub fn frequency_error(n: i32, m: u32, method: Option<SurfaceMethod>) -> f64 {
         let size = u.iter().fold(0.0f64, |s, u| s.max(u[0].abs()));
         u.iter_mut().for_each(|u| u[0] /= size);
     }
-    let c11 = moduli(sim.info().micromodulus[0], m).c11;
+    let c11 = moduli(sim.as_ref(), law, m).c11;
     let classical = std::f64::consts::PI * c11.sqrt() / length;
     (square.sqrt() / classical - 1.0).abs()
 }
