@@ -33,8 +33,6 @@ pub struct Crystal<const D: usize> {
     pub spacing: f64,
     /// Largest displacement of the relaxation (spacings).
     pub moved: f64,
-    /// Newton's iterations.
-    pub iterations: usize,
     /// Atoms of the deck's sets `left` and `right`.
     pub ends: [Vec<u32>; 2],
 }
@@ -49,7 +47,7 @@ impl<const D: usize> Crystal<D> {
             ..Options::default()
         };
         let mut sim = build(&spec, options).map_err(failed)?;
-        let iterations = sim.relax(RELAXED).map_err(failed)?.iterations;
+        sim.relax(RELAXED).map_err(failed)?;
         let body = sim.linear_body().of::<D>();
         let mut body =
             body.ok_or_else(|| Failure::new(format!("the deck is not {D}-dimensional")))?;
@@ -71,7 +69,6 @@ impl<const D: usize> Crystal<D> {
             sites,
             spacing,
             moved: far.sqrt() / spacing,
-            iterations,
             ends: [end("left")?, end("right")?],
         })
     }

@@ -85,7 +85,8 @@ fn a_crystal_with_a_vacancy_is_relaxed_coarsened_twice_and_runs() {
         .map(|rest| rest.split(' ').next().unwrap().parse::<f64>().unwrap());
     let errors: Vec<f64> = errors.collect();
     assert_eq!(errors.len(), 2, "{told}");
-    assert!(errors.iter().all(|e| *e < 3.0 && *e > 1e-4), "{told}");
+    // all levels are held at the same atoms: what is left is the radius of balls
+    assert!(errors.iter().all(|e| *e < 0.1), "{told}");
 }
 
 #[test]

@@ -68,8 +68,8 @@ fn lennard_jones(small: bool) -> Study {
     };
     let at = |x: String, y: String, radius: &str| {
         hole(&[
-            ("constants.x", x.as_str()),
-            ("constants.y", y.as_str()),
+            ("constants.hole_x", x.as_str()),
+            ("constants.hole_y", y.as_str()),
             ("constants.hole", radius),
         ])
     };
@@ -106,9 +106,9 @@ fn copper(small: bool) -> Study {
     let (x, y) = (cells / 2, side / 2);
     let at = |x: String, radius: &str| {
         hole(&[
-            ("constants.x", x.as_str()),
-            ("constants.y", &(f64::from(y) + 0.5).to_string()),
-            ("constants.z", &y.to_string()),
+            ("constants.hole_x", x.as_str()),
+            ("constants.hole_y", &(f64::from(y) + 0.5).to_string()),
+            ("constants.hole_z", &y.to_string()),
             ("constants.hole", radius),
         ])
     };
