@@ -52,7 +52,8 @@ impl<const D: usize> Crystal<D> {
         let mut body =
             body.ok_or_else(|| Failure::new(format!("the deck is not {D}-dimensional")))?;
         let sites = body.position.clone();
-        let spacing = sim.info().spacing;
+        let spacing =
+            (spec.body.spacing()).ok_or_else(|| Failure::new("the deck has no lattice"))?;
         let mut far = 0.0f64;
         for (x, u) in body.position.iter_mut().zip(sim.displacements()) {
             far = far.max(u.iter().map(|c| c * c).sum());

@@ -125,7 +125,7 @@ fn relaxed(sim: &mut dyn Simulation, deck: &Deck) -> Result<Vec<Point>, Failure>
     let far = u.iter().map(|u| u.iter().map(|c| c * c).sum::<f64>());
     say(&format!(
         "relaxed without load: atoms move by at most {:.2e} spacings, {:.2} s",
-        far.fold(0.0, f64::max).sqrt() / sim.info().spacing,
+        far.fold(0.0, f64::max).sqrt() / deck.spec.body.spacing().unwrap_or(sim.info().spacing),
         began.elapsed().as_secs_f64()
     ));
     Ok(u)

@@ -13,7 +13,7 @@ mod case;
 experiment!(
     BeyondAtoms,
     "beyond-atoms",
-    "Atoms coarsened 2, 4 and 8 times",
+    "Atoms coarsened",
     [
         "../compare.rs",
         "../crystal.rs",
@@ -33,8 +33,8 @@ struct Study {
     holes: Vec<(&'static str, Vec<(&'static str, String)>)>,
     levels: usize,
     radius: Radius,
-    /// Largest error of displacement, of stiffness, and of the stiffness that a hole takes, relative, of any level.
-    allowed: [f64; 3],
+    /// Largest error of any level, relative: of displacements pulled and pinched, of stiffness, and of what a hole changes.
+    allowed: [f64; 4],
 }
 
 impl Study {
@@ -97,7 +97,7 @@ fn lennard_jones(small: bool) -> Study {
         ],
         levels: if small { 2 } else { 3 },
         radius: Radius::Tolerance(if small { 0.02 } else { 0.003 }),
-        allowed: [0.02, 0.01, 0.2],
+        allowed: [0.001, 0.002, 0.002, 0.02],
     }
 }
 
@@ -124,9 +124,11 @@ fn copper(small: bool) -> Study {
             ("vacancy", at(format!("{x}.5"), "'0.5*a'")),
             ("void", at(format!("{x}.5"), "'0.95*a'")),
         ],
-        levels: if small { 1 } else { 2 },
-        radius: Radius::Tolerance(if small { 0.2 } else { 0.02 }),
-        allowed: [0.02, 0.02, 0.3],
+        // one level: its bonds reach around the period
+        levels: 1,
+        // just above two cut-offs, the range of the Hessian
+        radius: Radius::Fixed(if small { 10.5 } else { 12.0 }),
+        allowed: [0.02, 0.15, 0.06, 0.3],
     }
 }
 
@@ -205,7 +207,9 @@ fn studied<const D: usize>(
             for (column, x) in rows.number.iter_mut().zip(numbers) {
                 column.push(x);
             }
-            sound &= soundness.rotation < 1e-7
+            // a film of fixed period keeps stresses in its plane, which a rotation meets
+            let free = body.period.iter().all(Option::is_none);
+            sound &= (!free || soundness.rotation < 1e-7)
                 && soundness.asymmetry < 1e-9
                 && report.is_none_or(|r| r.definite);
             let lost = match cases.is_empty() {
@@ -238,12 +242,12 @@ fn studied<const D: usize>(
     found.holds(
         &format!("{key}-pinched"),
         format!("{} at most", percent(worst[1])),
-        worst[1] < 5.0 * study.allowed[0],
+        worst[1] < study.allowed[1],
     );
     found.holds(
         &format!("{key}-stiffness"),
         format!("{} at most", percent(worst[2])),
-        worst[2] < study.allowed[1],
+        worst[2] < study.allowed[2],
     );
     found.holds(
         &format!("{key}-hole"),
@@ -252,7 +256,7 @@ fn studied<const D: usize>(
             percent(worst[3]),
             percent(worst[4])
         ),
-        worst[3] < study.allowed[2] && worst[4] < study.allowed[2],
+        worst[3] < study.allowed[3] && worst[4] < study.allowed[3],
     );
     Ok(cases)
 }
