@@ -54,20 +54,37 @@ pub struct Levels<const D: usize> {
     pub point: Vec<Vec<usize>>,
     /// Of levels 1, 2, …
     pub report: Vec<Report>,
+    /// Time of making levels 1, 2, …
+    pub seconds: Vec<f64>,
 }
 
 impl<const D: usize> Levels<D> {
     /// Every third point of the level before, so many times.
     pub fn thirds(fine: LinearBody<D>, times: usize, options: &Options) -> Result<Self, Failure> {
+        Levels::made(fine, times, options, |below, _| {
+            Selection::every(3).choose(below).map_err(failed)
+        })
+    }
+
+    /// The points that `choose` takes of a level, given also their numbers in the finest body; so many times.
+    pub fn made(
+        fine: LinearBody<D>,
+        times: usize,
+        options: &Options,
+        choose: impl Fn(&LinearBody<D>, &[usize]) -> Result<Vec<u32>, Failure>,
+    ) -> Result<Self, Failure> {
         let mut levels = Levels {
             point: vec![(0..fine.points()).collect()],
             body: vec![fine],
             report: vec![],
+            seconds: vec![],
         };
         for m in 0..times {
             let (below, point) = (&levels.body[m], &levels.point[m]);
-            let keep = Selection::every(3).choose(below).map_err(failed)?;
+            let keep = choose(below, point)?;
+            let begin = Instant::now();
             let (body, report) = coarsen(below, &keep, options).map_err(failed)?;
+            levels.seconds.push(begin.elapsed().as_secs_f64());
             let point = keep.iter().map(|k| point[*k as usize]).collect();
             levels.body.push(body);
             levels.point.push(point);
@@ -84,24 +101,50 @@ impl<const D: usize> Levels<D> {
         let ends: Vec<usize> = (self.point[last].iter().copied())
             .filter(|k| x(k) < 1e-9 * far || x(k) > far * (1.0 - 1e-9))
             .collect();
+        let stretched = |k: &usize| {
+            let mut u = [0.0; D];
+            u[0] = strain * x(k);
+            (*k, u)
+        };
+        let held: Vec<_> = ends.iter().map(stretched).collect();
+        self.solved(&held, &[])
+    }
+
+    /// Displacements of every level, displacements and forces given at points of the last level, by their numbers in the finest body.
+    pub fn solved(
+        &self,
+        held: &[(usize, [f64; D])],
+        force: &[(usize, [f64; D])],
+    ) -> Result<Pulled<D>, Failure> {
         let mut pulled = Pulled {
             u: vec![],
             seconds: vec![],
         };
         for (body, point) in self.body.iter().zip(&self.point) {
-            let held: Vec<(usize, [f64; D])> = (point.iter().enumerate())
-                .filter(|(_, k)| ends.contains(k))
-                .map(|(i, k)| {
-                    let mut u = [0.0; D];
-                    u[0] = strain * x(k);
-                    (i, u)
-                })
+            let here = |(k, x): &(usize, [f64; D])| {
+                let i = point.binary_search(k);
+                i.map(|i| (i, *x))
+                    .map_err(|_| Failure::new(format!("point {k} is not in every level")))
+            };
+            let held: Vec<_> = held.iter().map(here).collect::<Result<_, _>>()?;
+            let force: Vec<_> = force.iter().map(here).collect::<Result<_, _>>()?;
+            let density: Vec<_> = (force.iter())
+                .map(|(i, f)| (*i, f.map(|f| f / body.volume[*i])))
                 .collect();
             let begin = Instant::now();
-            pulled.u.push(equilibrium(body, &held, &[])?);
+            pulled.u.push(equilibrium(body, &held, &density)?);
             pulled.seconds.push(begin.elapsed().as_secs_f64());
         }
         Ok(pulled)
+    }
+
+    /// The force along x that holds some points of a level, by their numbers in the finest body.
+    pub fn reaction(&self, pulled: &Pulled<D>, m: usize, points: &[usize]) -> f64 {
+        let (body, u) = (&self.body[m], &pulled.u[m]);
+        let held = points
+            .iter()
+            .filter_map(|k| self.point[m].binary_search(k).ok());
+        held.map(|i| -body.volume[i] * body.force(u, i)[0]).sum()
     }
 
     /// Largest difference of the points of a level from the finest body's, over the largest displacement.

@@ -2,7 +2,10 @@
 
 mod bar;
 mod compare;
+mod crystal;
 
+#[path = "beyond-atoms/mod.rs"]
+mod beyond_atoms;
 #[path = "beyond-block/mod.rs"]
 mod beyond_block;
 #[path = "beyond-plates/mod.rs"]
@@ -29,5 +32,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &section_6::Section6,
         &beyond_plates::BeyondPlates,
         &beyond_block::BeyondBlock,
+        &beyond_atoms::BeyondAtoms,
     ]
 }

@@ -5,7 +5,8 @@ use crate::deck;
 use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use crate::side_by_side::{compare, run, save};
-use peridyne::run::{Options, build};
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::Point;
 use peridyne::spec::{Method, TimeStep};
 use peridyne::statics::{AnyLinearBody, LinearBody};
 use peridyne_io::deck::Deck;
@@ -21,10 +22,11 @@ use std::time::Instant;
 
 #[derive(clap::Args)]
 pub struct CoarsenArguments {
-    /// Deck of any law; what is coarsened is its linear body about the reference.
+    /// Deck of any law; what is coarsened is its linear body about the reference. Atoms, whose lattice pulls at surfaces and
+    /// vacancies, are relaxed first, and displacements are counted from there.
     #[command(flatten)]
     pub input: Input,
-    /// Retain every k-th point of the lattice along each axis.
+    /// Retain every k-th point of the lattice along each axis; of a triangular or centred lattice the one with k times its spacing.
     #[arg(long, value_name = "K", conflicts_with_all = ["spacing", "keep"])]
     pub every: Option<u32>,
     /// Retain points no two of which are nearer than this (in units of the deck), evenly spread; for clouds.
@@ -66,7 +68,9 @@ pub fn coarsen(arguments: &CoarsenArguments) -> Result<(), Failure> {
 
 fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
     let mut spec = deck.spec.clone();
-    // conditions and steps play no part in the linear body
+    // motion, conditions and steps play no part in the linear body
+    spec.initial.clear();
+    spec.thermal = None;
     spec.conditions.clear();
     spec.schedule.statics = None;
     spec.schedule.time_step = TimeStep::Fixed(1.0);
@@ -86,6 +90,10 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         let name = name.map_or("deck".into(), |n| n.to_string_lossy());
         Path::new("out").join(format!("{name}-coarsened"))
     });
+    let relaxed = match spec.potential {
+        None => None,
+        Some(_) => Some(relaxed(sim.as_mut(), deck)?),
+    };
     let began = Instant::now();
     let body = sim.linear_body();
     say(&format!(
@@ -95,10 +103,32 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
     ));
     drop(sim);
     match body {
-        AnyLinearBody::One(body) => levels(arguments, deck, &out, body, kept),
-        AnyLinearBody::Two(body) => levels(arguments, deck, &out, body, kept),
-        AnyLinearBody::Three(body) => levels(arguments, deck, &out, body, kept),
+        AnyLinearBody::One(body) => levels(arguments, deck, &out, body, relaxed, kept),
+        AnyLinearBody::Two(body) => levels(arguments, deck, &out, body, relaxed, kept),
+        AnyLinearBody::Three(body) => levels(arguments, deck, &out, body, relaxed, kept),
     }
+}
+
+/// Residual forces over those at the lattice sites.
+const RELAXED: f64 = 1e-10;
+
+/// Displacements of a crystal that is left to itself.
+fn relaxed(sim: &mut dyn Simulation, deck: &Deck) -> Result<Vec<Point>, Failure> {
+    let began = Instant::now();
+    sim.relax(RELAXED).map_err(|e| {
+        Failure::input(format!(
+            "{}: the crystal does not come to rest by itself, so that there is no linear body ({e}): take the lattice spacing at which it has no pressure, and a potential that ends smoothly",
+            deck.file()
+        ))
+    })?;
+    let u = sim.displacements();
+    let far = u.iter().map(|u| u.iter().map(|c| c * c).sum::<f64>());
+    say(&format!(
+        "relaxed without load: atoms move by at most {:.2e} spacings, {:.2} s",
+        far.fold(0.0, f64::max).sqrt() / deck.spec.body.spacing().unwrap_or(sim.info().spacing),
+        began.elapsed().as_secs_f64()
+    ));
+    Ok(u)
 }
 
 fn levels<const D: usize>(
@@ -106,10 +136,19 @@ fn levels<const D: usize>(
     deck: &Deck,
     out: &Path,
     mut body: LinearBody<D>,
+    relaxed: Option<Vec<Point>>,
     kept: Option<Vec<u32>>,
 ) -> Result<(), Failure> {
+    // atoms are where they rest; files, sets and conditions know them by their sites
+    let mut sites = body.position.clone();
+    for (x, u) in body.position.iter_mut().zip(relaxed.iter().flatten()) {
+        for a in 0..D {
+            x[a] += u[a];
+        }
+    }
+    let level0 = relaxed.is_some().then(|| at_sites(&body, &sites));
     let selection = match (arguments.every, arguments.spacing, kept) {
-        (Some(k), _, _) => Selection::every(k),
+        (Some(every), _, _) => Selection::Sublattice { every, through: 0 },
         (_, Some(spacing), _) => Selection::BlueNoise { spacing, seed: 1 },
         (_, _, Some(points)) => Selection::Marked(points),
         _ => {
@@ -153,19 +192,30 @@ fn levels<const D: usize>(
             ..coarsen::Options::default()
         };
         let began = Instant::now();
-        let retained = selection.choose(&body).map_err(wrong)?;
+        std::mem::swap(&mut body.position, &mut sites);
+        let chosen = selection.choose(&body);
+        std::mem::swap(&mut body.position, &mut sites);
+        let retained = chosen.map_err(wrong)?;
         let (coarse, report) = coarsen::coarsen(&body, &retained, &options).map_err(wrong)?;
         let seconds = began.elapsed().as_secs_f64();
         let name = format!("level{level}");
         let text = coarsened(deck, &format!("{name}.npz"), level).map_err(Failure::input)?;
         say(&told(level, &coarse, &report, seconds));
-        made.push((name, coarse.clone(), report, text, seconds));
+        sites = retained.iter().map(|i| sites[*i as usize]).collect();
+        made.push((name, at_sites(&coarse, &sites), report, text, seconds));
         body = coarse;
     }
     create_directory(out).map_err(|e| Failure::Run(e.to_string()))?;
-    save(out, "level0.toml", &copied(deck).map_err(Failure::input)?)?;
+    let failed = |e: peridyne_io::write::WriteError| Failure::Run(e.to_string());
+    let finest = match &level0 {
+        None => copied(deck),
+        Some(body) => {
+            write_linear(&out.join("level0.npz"), body).map_err(failed)?;
+            coarsened(deck, "level0.npz", 0)
+        }
+    };
+    save(out, "level0.toml", &finest.map_err(Failure::input)?)?;
     for (name, body, report, text, seconds) in &made {
-        let failed = |e: peridyne_io::write::WriteError| Failure::Run(e.to_string());
         write_linear(&out.join(format!("{name}.npz")), body).map_err(failed)?;
         save(out, &format!("{name}.toml"), text)?;
         let json = serde_json::to_string_pretty(&record(body, report, *seconds))
@@ -183,7 +233,9 @@ fn levels<const D: usize>(
     if !arguments.run {
         return Ok(());
     }
-    if deck
+    if level0.is_some() {
+        say("note: level 0 is the linear body about the relaxed crystal");
+    } else if deck
         .spec
         .schedule
         .statics
@@ -205,6 +257,14 @@ fn levels<const D: usize>(
         ));
     }
     Ok(())
+}
+
+/// A body whose points are looked for at other places.
+fn at_sites<const D: usize>(body: &LinearBody<D>, sites: &[[f64; D]]) -> LinearBody<D> {
+    LinearBody {
+        position: sites.to_vec(),
+        ..body.clone()
+    }
 }
 
 fn told<const D: usize>(

@@ -48,6 +48,48 @@ fn a_plate_of_fibres_is_coarsened_and_runs() {
 }
 
 #[test]
+fn a_crystal_with_a_vacancy_is_relaxed_coarsened_twice_and_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let done = coarsen(
+        "good/crystal_with_vacancy.toml",
+        dir.path(),
+        &["--every", "2", "--levels", "2", "--run"],
+    );
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert_eq!(
+        done.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    assert!(told.contains("relaxed without load"), "{told}");
+    let read = |name: &str| -> serde_json::Value {
+        let json = std::fs::read_to_string(dir.path().join(name)).unwrap();
+        serde_json::from_str(&json).unwrap()
+    };
+    // of 13 × 33 + 12 × 32 − 1 atoms the triangular lattices of twice and four times the spacing
+    for (name, points) in [
+        ("level1.json", 7 * 17 + 6 * 16),
+        ("level2.json", 4 * 9 + 3 * 8),
+    ] {
+        let report = read(name);
+        assert_eq!(report["points"], points, "{name}");
+        for what in ["asymmetry", "rotation"] {
+            assert!(report[what].as_f64().unwrap() < 1e-8, "{name}: {report}");
+        }
+        assert_eq!(report["checked_positive_semidefinite"], true);
+    }
+    let errors = told
+        .split("displacement error ")
+        .skip(1)
+        .map(|rest| rest.split(' ').next().unwrap().parse::<f64>().unwrap());
+    let errors: Vec<f64> = errors.collect();
+    assert_eq!(errors.len(), 2, "{told}");
+    // all levels are held at the same atoms: what is left is the radius of balls
+    assert!(errors.iter().all(|e| *e < 0.1), "{told}");
+}
+
+#[test]
 fn what_is_wrong_is_named_and_nothing_is_written() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out");

@@ -7,6 +7,7 @@ mod build;
 mod calibration;
 mod conditions;
 mod equilibrium;
+mod free;
 mod model;
 mod motion;
 mod probe;
@@ -191,6 +192,12 @@ pub trait Simulation: Send {
     fn drive(&mut self, index: usize, value: &Drive) -> bool;
     /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
     fn reaction(&self, index: usize) -> Reaction;
+    /// Brings the bodies into equilibrium without loads and constraints, from the displacements of now: residual forces fall to
+    /// `tolerance` of those at the lattice sites. Velocities stay. Afterwards displacements are those of the relaxed state.
+    ///
+    /// # Errors
+    /// The state is unstable, or there is contact; displacements are those of before.
+    fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError>;
     /// The linear body about the displacements of now: stiffness block by block, without contact and loads.
     fn linear_body(&mut self) -> AnyLinearBody;
     /// What the solver did in the last increment; `None`: steps are steps in time.

@@ -378,6 +378,11 @@ impl<const D: usize> Simulation for Model<D> {
             .map_or_else(Reaction::default, Driven::reaction)
     }
 
+    fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError> {
+        self.finish();
+        self.settle_free(tolerance)
+    }
+
     fn linear_body(&mut self) -> AnyLinearBody {
         AnyLinearBody::new(self.linear_now()).expect("there are three dimensions")
     }

@@ -61,6 +61,8 @@ pub enum SolveError {
     },
     #[error("bonds still break after {rounds} rounds of one increment: the body falls apart")]
     StillBreaking { rounds: usize },
+    #[error("contact has no tangent here: leave it out of a body that relaxes by itself")]
+    Contact,
     #[error("a force or displacement is not a number")]
     NotFinite,
 }

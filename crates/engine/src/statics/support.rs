@@ -31,6 +31,53 @@ impl<const D: usize> Support<D> {
         }
     }
 
+    /// As few components held as hold every part, so that reactions to forces that balance are 0.
+    pub fn just_enough(position: &[[f64; D]], part: &[u32], period: &[Option<f64>; D]) -> Self {
+        let mut support = Support::none(position.len());
+        for members in members(part).iter().filter(|m| !m.is_empty()) {
+            let rigid = Rigid::of(position, members, period);
+            let count = rigid.motions.len();
+            // a basis of the motions that are left
+            let mut left: Vec<Vec<f64>> = (0..count)
+                .map(|k| (0..count).map(|m| f64::from(m == k)).collect())
+                .collect();
+            while !left.is_empty() {
+                let felt = |i: usize, a: usize, motion: &[f64]| -> f64 {
+                    let at = rigid.motions.iter().zip(motion);
+                    at.map(|(m, w)| w * rigid.value(m.1, &position[i], a)).sum()
+                };
+                // the component that moves most is held; of equal ones the first
+                let mut most = (0.0, (members[0], 0));
+                for &i in members {
+                    for a in (0..D).filter(|a| support.free[i][*a]) {
+                        let moves: f64 = left.iter().map(|m| felt(i, a, m).powi(2)).sum();
+                        if moves > most.0 * (1.0 + 1e-9) {
+                            most = (moves, (i, a));
+                        }
+                    }
+                }
+                let (moves, (i, a)) = most;
+                if moves < 1e-18 {
+                    break;
+                }
+                support.free[i][a] = false;
+                let felt: Vec<f64> = left.iter().map(|m| felt(i, a, m)).collect();
+                let held = (0..felt.len())
+                    .max_by(|p, q| felt[*p].abs().total_cmp(&felt[*q].abs()))
+                    .unwrap_or(0);
+                let gone = left.swap_remove(held);
+                let mut others = felt.clone();
+                others.swap_remove(held);
+                for (m, f) in left.iter_mut().zip(others) {
+                    for (m, g) in m.iter_mut().zip(&gone) {
+                        *m -= f / felt[held] * g;
+                    }
+                }
+            }
+        }
+        support
+    }
+
     /// Number of free components.
     pub fn unknowns(&self) -> usize {
         self.free.iter().flatten().filter(|f| **f).count()
@@ -54,12 +101,7 @@ impl<const D: usize> Support<D> {
         part: &[u32],
         period: &[Option<f64>; D],
     ) -> Vec<Loose> {
-        let parts = part.iter().max().map_or(0, |m| *m as usize + 1);
-        let mut members = vec![vec![]; parts];
-        for (i, p) in part.iter().enumerate() {
-            members[*p as usize].push(i);
-        }
-        members
+        members(part)
             .iter()
             .filter(|m| !m.is_empty())
             .flat_map(|m| self.loose_part(position, m, period))
@@ -72,38 +114,9 @@ impl<const D: usize> Support<D> {
         members: &[usize],
         period: &[Option<f64>; D],
     ) -> Vec<Loose> {
-        let n = members.len() as f64;
-        let center: [f64; D] =
-            std::array::from_fn(|a| members.iter().map(|i| position[*i][a]).sum::<f64>() / n);
-        let arm = |i: usize, a: usize| position[i][a] - center[a];
-        let size = members
-            .iter()
-            .map(|i| (0..D).map(|a| arm(*i, a).powi(2)).sum::<f64>())
-            .fold(0.0, f64::max)
-            .sqrt();
-        // a motion, as its component `a` at point i
-        let mut motions: Vec<(&'static str, [usize; 2])> =
-            (0..D).map(|a| (TRANSLATIONS[a], [a, a])).collect();
-        let planes = [
-            ("rotation about z", [0, 1]),
-            ("rotation about x", [1, 2]),
-            ("rotation about y", [2, 0]),
-        ];
-        for (name, [m, n]) in planes.into_iter().take(D * (D - 1) / 2) {
-            // about the line through all points nothing turns: a bar in the plane still turns about its centre
-            let turns = members
-                .iter()
-                .any(|i| arm(*i, m).abs().max(arm(*i, n).abs()) > 1e-9 * size);
-            if size > 0.0 && turns && period[m].is_none() && period[n].is_none() {
-                motions.push((name, [m, n]));
-            }
-        }
-        let value = |[m, n]: [usize; 2], i: usize, a: usize| match (m == n, a) {
-            (true, a) => f64::from(a == m),
-            (false, a) if a == m => -arm(i, n) / size,
-            (false, a) if a == n => arm(i, m) / size,
-            _ => 0.0,
-        };
+        let rigid = Rigid::of(position, members, period);
+        let motions = &rigid.motions;
+        let value = |axes, i: usize, a: usize| rigid.value(axes, &position[i], a);
         let count = motions.len();
         let mut gram = vec![0.0; count * count];
         for &i in members {
@@ -134,6 +147,71 @@ impl<const D: usize> Support<D> {
             motion: motions[n].0,
         };
         found.into_iter().map(named).collect()
+    }
+}
+
+/// Points of each part.
+fn members(part: &[u32]) -> Vec<Vec<usize>> {
+    let parts = part.iter().max().map_or(0, |m| *m as usize + 1);
+    let mut members = vec![vec![]; parts];
+    for (i, p) in part.iter().enumerate() {
+        members[*p as usize].push(i);
+    }
+    members
+}
+
+/// The rigid motions of some points, of size 1.
+struct Rigid<const D: usize> {
+    center: [f64; D],
+    /// From the centre to the farthest point.
+    size: f64,
+    /// By axes: a translation along the first if both are the same, else a rotation from the first to the second.
+    motions: Vec<(&'static str, [usize; 2])>,
+}
+
+impl<const D: usize> Rigid<D> {
+    fn of(position: &[[f64; D]], members: &[usize], period: &[Option<f64>; D]) -> Self {
+        let n = members.len() as f64;
+        let center: [f64; D] =
+            std::array::from_fn(|a| members.iter().map(|i| position[*i][a]).sum::<f64>() / n);
+        let arm = |i: usize, a: usize| position[i][a] - center[a];
+        let size = members
+            .iter()
+            .map(|i| (0..D).map(|a| arm(*i, a).powi(2)).sum::<f64>())
+            .fold(0.0, f64::max)
+            .sqrt();
+        let mut motions: Vec<(&'static str, [usize; 2])> =
+            (0..D).map(|a| (TRANSLATIONS[a], [a, a])).collect();
+        let planes = [
+            ("rotation about z", [0, 1]),
+            ("rotation about x", [1, 2]),
+            ("rotation about y", [2, 0]),
+        ];
+        for (name, [m, n]) in planes.into_iter().take(D * (D - 1) / 2) {
+            // about the line through all points nothing turns: a bar in the plane still turns about its centre
+            let turns = members
+                .iter()
+                .any(|i| arm(*i, m).abs().max(arm(*i, n).abs()) > 1e-9 * size);
+            if size > 0.0 && turns && period[m].is_none() && period[n].is_none() {
+                motions.push((name, [m, n]));
+            }
+        }
+        Rigid {
+            center,
+            size,
+            motions,
+        }
+    }
+
+    /// Component `a` of a motion at `x`.
+    fn value(&self, [m, n]: [usize; 2], x: &[f64; D], a: usize) -> f64 {
+        let arm = |a: usize| (x[a] - self.center[a]) / self.size;
+        match (m == n, a) {
+            (true, a) => f64::from(a == m),
+            (false, a) if a == m => -arm(n),
+            (false, a) if a == n => arm(m),
+            _ => 0.0,
+        }
     }
 }
 
@@ -188,5 +266,24 @@ mod tests {
         let found = support.loose(&position, &[0, 0, 1, 1], &[None]);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].point, found[0].points), (2, 2));
+    }
+
+    #[test]
+    fn just_enough_is_held() {
+        fn held<const D: usize>(parts: usize, period: [Option<f64>; D]) -> usize {
+            let per = 1usize << D;
+            let position: Vec<[f64; D]> = (0..parts * per)
+                .map(|i| std::array::from_fn(|a| (i >> a & 1) as f64 + 3.0 * (i / per) as f64))
+                .collect();
+            let part: Vec<u32> = (0..parts * per).map(|i| (i / per) as u32).collect();
+            let support = Support::just_enough(&position, &part, &period);
+            assert!(support.loose(&position, &part, &period).is_empty());
+            D * position.len() - support.unknowns()
+        }
+        assert_eq!(held::<1>(1, [None]), 1);
+        assert_eq!(held::<2>(1, [None; 2]), 3);
+        assert_eq!(held::<2>(1, [Some(2.0), None]), 2);
+        assert_eq!(held::<3>(1, [None; 3]), 6);
+        assert_eq!(held::<3>(2, [None; 3]), 12);
     }
 }

@@ -2,5 +2,6 @@
 
 mod chain;
 mod crystal;
+mod relax;
 mod sample;
 mod tangents;

@@ -33,6 +33,10 @@ pub fn coarsened(deck: &Deck, file: &str, level: usize) -> Result<Rewritten, Str
     for key in GONE {
         table.remove(key);
     }
+    // files of atoms are not written of points
+    if let Some(output) = table.get_mut("output").and_then(Value::as_table_mut) {
+        output.remove("trajectory");
+    }
     let title = &deck.spec.title;
     let comma = if title.is_empty() { "" } else { ", " };
     table.insert(

@@ -30,6 +30,7 @@ mod select;
 mod signature;
 mod small;
 mod solve;
+mod sublattice;
 #[cfg(test)]
 mod tests;
 

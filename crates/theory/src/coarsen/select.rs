@@ -2,6 +2,7 @@
 
 use super::error::CoarsenError;
 use super::near::Near;
+use super::sublattice::Sublattice;
 use peridyne::statics::LinearBody;
 
 /// A choice of points.
@@ -10,6 +11,10 @@ pub enum Selection<const D: usize> {
     /// Points of a lattice whose `(n − offset)` is a multiple of `every` along all axes, n counted from the lowest point in
     /// steps of the lattice along that axis.
     Every { every: [u32; D], offset: [u32; D] },
+    /// Points that whole steps of k times the Bravais lattice lead to, from point `through`: of the lattice on which the points lie,
+    /// of which some may be missing. On a square or cubic lattice every k-th along all axes; on a triangular or centred one a
+    /// lattice of the same kind, with one of k^D points.
+    Sublattice { every: u32, through: u32 },
     /// These.
     Marked(Vec<u32>),
     /// No two nearer than `spacing`, none farther from all: in an order drawn from a seed (a Poisson disk).
@@ -34,6 +39,7 @@ impl<const D: usize> Selection<D> {
     pub fn choose(&self, body: &LinearBody<D>) -> Result<Vec<u32>, CoarsenError> {
         let mut retained = match self {
             Selection::Every { every, offset } => every_nth(body, *every, *offset)?,
+            Selection::Sublattice { every, through } => sublattice(body, *every, *through)?,
             Selection::Marked(marked) => marked.clone(),
             Selection::BlueNoise { spacing, seed } => blue_noise(body, *spacing, *seed)?,
             Selection::Farthest { count, seed } => farthest(body, *count, *seed)?,
@@ -104,6 +110,36 @@ fn every_nth<const D: usize>(
         }
     }
     Ok((0..).zip(kept).filter(|k| k.1).map(|k| k.0).collect())
+}
+
+fn sublattice<const D: usize>(
+    body: &LinearBody<D>,
+    every: u32,
+    through: u32,
+) -> Result<Vec<u32>, CoarsenError> {
+    if every == 0 {
+        return Err(CoarsenError::EveryZero { axis: 0 });
+    }
+    check(&[through], body.points())?;
+    let mut place = vec![[0; D]; body.points()];
+    for axis in 0..D {
+        for (place, n) in place.iter_mut().zip(steps(body, axis)?) {
+            place[axis] = n;
+        }
+    }
+    let first = place[through as usize];
+    for n in &mut place {
+        for a in 0..D {
+            n[a] -= first[a];
+        }
+    }
+    let lattice = Sublattice::spanned(place.iter().copied());
+    let kept = |n: &[i64; D]| lattice.has_multiple(*n, i64::from(every));
+    Ok((0..)
+        .zip(&place)
+        .filter(|k| kept(k.1))
+        .map(|k| k.0)
+        .collect())
 }
 
 /// Well-mixed bits of a number (splitmix64).

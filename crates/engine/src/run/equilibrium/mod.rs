@@ -157,7 +157,7 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
-    fn unsolved(&self, error: SolveError) -> RunError {
+    pub(super) fn unsolved(&self, error: SolveError) -> RunError {
         let place = match &error {
             SolveError::Indefinite { point } => Some(*point),
             SolveError::Loose(loose) => Some(loose.point),

@@ -11,13 +11,17 @@ use crate::spec::{Solver, Statics};
 use crate::statics::cg::{self, Goal};
 use crate::statics::relaxation::relax;
 use crate::statics::{
-    self, Assembled, Direct, LinearBody, SolveError, Solved, Support, Swept, norm,
+    self, Assembled, Direct, LinearBody, LinearOperator, SolveError, Solved, Support, Swept, norm,
 };
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
 /// Newton's iterations at most.
 const NEWTON: usize = 50;
+/// A Newton step of so many spacings is round-off: forces of a crystal in equilibrium are never exactly 0.
+const LEAST_STEP: f64 = 1e-14;
+/// Longest step (spacings) from a state that is no minimum of the energy.
+const LONGEST_STEP: f64 = 0.1;
 /// How often a Newton step is halved.
 const HALVINGS: usize = 12;
 /// Residual at which conjugate gradients end within a Newton step.
@@ -146,7 +150,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Newton's method with the tangent of every state; where that is too large, with the tangent of the reference.
-    pub(super) fn solve_newton(
+    pub(in crate::run) fn solve_newton(
         &mut self,
         state: &mut StaticState<D>,
         support: &Support<D>,
@@ -154,7 +158,16 @@ impl<const D: usize> Model<D> {
         let goal = Self::goal(state.options);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
-        let mut scale = self.imbalance(&x, &mut r, support);
+        // atoms pull at each other without any load
+        let rest = match self.at_peace() {
+            true => 0.0,
+            false => {
+                let sites = vec![[0.0; D]; x.len()];
+                self.imbalance(&sites, &mut r, support);
+                norm(&r)
+            }
+        };
+        let mut scale = self.imbalance(&x, &mut r, support).hypot(rest);
         let mut iterations = 0;
         for _ in 0..NEWTON {
             let size = norm(&r);
@@ -172,9 +185,17 @@ impl<const D: usize> Model<D> {
                 tolerance: ROUGH,
                 ..goal
             };
+            let mut unstable = false;
             let solved = if self.factored(state.options, support) {
                 let body = self.linear_now();
-                Direct::new(&body, support, 0.0)?.solve_held(&body, support, &r, &mut step)
+                let factors = match Direct::new(&body, support, 0.0) {
+                    Err(SolveError::Indefinite { .. }) if !self.at_peace() => {
+                        unstable = true;
+                        downhill(&body, support)?
+                    }
+                    made => made?,
+                };
+                factors.solve_held(&body, support, &r, &mut step)
             } else if self.at_peace() {
                 let mut operator = Swept::new(&self.body, self.interaction.as_mut());
                 cg::solve(&mut operator, support, &r, &mut step, rough)?
@@ -182,8 +203,21 @@ impl<const D: usize> Model<D> {
                 solve_assembled(&self.linear_now(), support, &r, &mut step, rough)?
             };
             iterations += solved.iterations.max(1);
-            // a full step, or as much of it as lowers the residual
-            let mut part = 1.0;
+            let far = step
+                .as_flattened()
+                .iter()
+                .fold(0.0f64, |m, s| m.max(s.abs()));
+            if far < LEAST_STEP * self.body.spacing {
+                return Ok(Solved {
+                    iterations,
+                    residual: size / scale,
+                });
+            }
+            // a full step, or as much of it as lowers the residual; downhill that may grow
+            let mut part = match unstable {
+                true => (LONGEST_STEP * self.body.spacing / far).min(1.0),
+                false => 1.0,
+            };
             for halving in 0..=HALVINGS {
                 let tried: Vec<[f64; D]> = x
                     .iter()
@@ -191,8 +225,8 @@ impl<const D: usize> Model<D> {
                     .map(|(x, s)| std::array::from_fn(|a| x[a] + part * s[a]))
                     .collect();
                 let new = self.imbalance(&tried, &mut r, support);
-                if norm(&r) < size || halving == HALVINGS {
-                    (x, scale) = (tried, new);
+                if norm(&r) < size || unstable || halving == HALVINGS {
+                    (x, scale) = (tried, new.hypot(rest));
                     break;
                 }
                 part *= 0.5;
@@ -261,6 +295,32 @@ impl<const D: usize> Model<D> {
             worst = worst.max((longer / square).abs());
         });
         worst
+    }
+}
+
+/// Factors of a tangent that is not positive definite with enough of the masses added that steps lower the energy.
+fn downhill<const D: usize>(
+    body: &LinearBody<D>,
+    support: &Support<D>,
+) -> Result<Direct<D>, SolveError> {
+    let stiff = Assembled(body).diagonal();
+    let stiff: f64 = stiff
+        .iter()
+        .map(|k| (0..D).map(|a| k[a][a]).sum::<f64>())
+        .sum();
+    let mass: f64 = body
+        .volume
+        .iter()
+        .zip(&body.density)
+        .map(|(v, rho)| v * rho)
+        .sum();
+    let typical = stiff / (D as f64 * mass);
+    let mut shift = 1e-2 * typical;
+    loop {
+        match Direct::new(body, support, shift) {
+            Err(SolveError::Indefinite { .. }) if shift < 10.0 * typical => shift *= 4.0,
+            made => return made,
+        }
     }
 }
 

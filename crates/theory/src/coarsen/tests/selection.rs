@@ -41,6 +41,42 @@ fn every_nth_point_with_an_offset() {
 }
 
 #[test]
+fn a_sublattice_of_a_crystal_with_a_vacancy() {
+    let mut plane = lattice([8, 8], 1.0, false, |_, _| 1.0);
+    let every = |k, through| Selection::Sublattice { every: k, through };
+    assert_eq!(
+        every(2, 0).choose(&plane).unwrap(),
+        Selection::every(2).choose(&plane).unwrap()
+    );
+    // rows shifted by half a step and nearer to each other: a triangular lattice
+    for x in &mut plane.position {
+        *x = [x[0] + 0.5 * (x[1] % 2.0), 0.75f64.sqrt() * x[1]];
+    }
+    let kept = every(2, 0).choose(&plane).unwrap();
+    assert_eq!(
+        kept,
+        [0, 2, 4, 6, 17, 19, 21, 23, 32, 34, 36, 38, 49, 51, 53, 55]
+    );
+    let through = every(2, 9).choose(&plane).unwrap();
+    assert!(through.contains(&9) && !through.contains(&0), "{through:?}");
+    // without a point the others are still the same
+    let mut vacant = plane.clone();
+    vacant.position.remove(17);
+    vacant.volume.remove(17);
+    vacant.density.remove(17);
+    vacant.start.truncate(64);
+    let kept = every(2, 0).choose(&vacant).unwrap();
+    assert_eq!(
+        kept,
+        [0, 2, 4, 6, 18, 20, 22, 31, 33, 35, 37, 48, 50, 52, 54]
+    );
+    assert_eq!(
+        every(0, 0).choose(&plane),
+        Err(CoarsenError::EveryZero { axis: 0 })
+    );
+}
+
+#[test]
 fn blue_noise_fills_without_crowding() {
     let cube = lattice([9, 9, 9], 1.0, true, |_, _| 1.0);
     for selection in [
