@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub struct UpscaleArguments {
     /// Deck of atoms or fine points on a lattice; or a law and a lattice, see below.
-    #[arg(required_unless_present = "potential", conflicts_with = "potential")]
+    #[arg(conflicts_with = "potential")]
     pub file: Option<PathBuf>,
     /// Set a key of the deck, e.g. `--set run.steps=100`; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = crate::pair)]
@@ -70,8 +70,11 @@ pub fn upscale(arguments: &UpscaleArguments) -> Result<(), Failure> {
             found.iter().for_each(|line| say(line));
             (deck, Some(law.name().to_string()))
         }
-        // clap asks for one of them
-        (None, None) => return Err(Failure::input("give a deck, or --potential and --lattice")),
+        (None, None) => {
+            return Err(Failure::input(
+                "upscale takes a deck (.toml), or a law and a lattice: --potential LAW --lattice NAME",
+            ));
+        }
     };
     let name = name.unwrap_or_else(|| "deck".into());
     with_threads(arguments.threads, |_| all(arguments, &fine, &name))
@@ -89,7 +92,13 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
     // everything that can be wrong is found before anything is written
     let mut made = vec![];
     for &factor in &arguments.factor {
-        let wrong = |m: String| Failure::input(format!("{}, factor {factor}: {m}", fine.file()));
+        let wrong = |m: String| match arguments.file {
+            Some(_) => Failure::input(format!("{}, factor {factor}: {m}", fine.file())),
+            None => Failure::input(format!(
+                "--factor {factor}: {}",
+                m.replace("body.cells", "--cells")
+            )),
+        };
         let (spec, rule) =
             upscale::upscale_keeping(&fine.spec, factor, keep).map_err(|e| wrong(e.to_string()))?;
         let mut card = card(&fine.spec, &spec, factor, rule).map_err(|e| wrong(e.to_string()))?;

@@ -278,7 +278,10 @@ pub fn deck(
     }
     let deck = understood(&whole, &flags)?;
     let block = block(&deck.spec, factors);
-    let size = arguments.cells.clone().unwrap_or_else(|| cells(block));
+    let size = match &arguments.cells {
+        Some(written) => format!("[{written}]"),
+        None => cells(block),
+    };
     flags.push(flag("cells", "body.cells", size));
     flags.push(flag(
         "cells",
@@ -310,7 +313,7 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         return [1; 3];
     };
     let most = factors.iter().copied().max().unwrap_or(1);
-    let whole = factors.iter().fold(1, |l, f| l / gcd(l, *f) * f).max(1);
+    let whole = factors.iter().fold(1u32, |l, f| (l / gcd(l, *f)).saturating_mul(*f)).max(1);
     let reach = match (&spec.potential, spec.family, spec.horizon) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours, _) => REACH * p.cut_off(),
         (_, _, Horizon::Ratio(m)) => f64::from(m) * spacing,
@@ -326,7 +329,9 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         };
         // twice the reach, and a cell to spare
         let length = (2.0 * reach).max(long) / (spacing * edges[a]);
-        let cells = (length.min(1e6) as u32 + 1).div_ceil(whole) * whole;
+        let cells = (length.min(1e6) as u32 + 1)
+            .div_ceil(whole)
+            .saturating_mul(whole);
         cells.max(whole)
     })
 }

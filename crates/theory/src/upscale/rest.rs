@@ -6,8 +6,8 @@ use peridyne::law::potential::{Form, Potential, PotentialSpec, Visitor};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::Spec;
 
-/// The largest spacing at which the spec's lattice of atoms has no pressure and expands under compression; `None` if there
-/// is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
+/// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
+/// energy; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
 pub fn rest_spacing(spec: &Spec) -> Option<f64> {
     struct At {
         kind: LatticeKind,
@@ -23,9 +23,9 @@ pub fn rest_spacing(spec: &Spec) -> Option<f64> {
                 length,
             } = self;
             match kind.dimension() {
-                1 => outermost::<1>(&potential, kind, reach, length),
-                2 => outermost::<2>(&potential, kind, reach, length),
-                _ => outermost::<3>(&potential, kind, reach, length),
+                1 => lowest::<1>(&potential, kind, reach, length),
+                2 => lowest::<2>(&potential, kind, reach, length),
+                _ => lowest::<3>(&potential, kind, reach, length),
             }
         }
     }
@@ -55,7 +55,7 @@ const STEP: f64 = 0.98;
 const FROM: f64 = 2.5;
 const TO: f64 = 0.3;
 
-fn outermost<const D: usize>(
+fn lowest<const D: usize>(
     potential: &impl Potential,
     kind: LatticeKind,
     reach: Reach,
@@ -67,21 +67,25 @@ fn outermost<const D: usize>(
     };
     let mut a = FROM * length / kind.nearest();
     let mut attracts = false;
+    let mut best: Option<(f64, f64)> = None;
     while a > TO * length / kind.nearest() {
         // too far apart there are no neighbours, too near the embedding energy may have no value
-        if let Some(now) = reference(a) {
-            if attracts && now.pressure >= 0.0 {
-                let rest = equilibrium::<D>(potential, kind, reach, [a, a / STEP])?;
-                // not where the pressure jumps at a cut-off
-                let scale = now.pressure.abs();
-                let left = reference(rest)?.pressure.abs();
-                return (left <= 1e-6 * scale).then_some(rest);
+        let pressure = reference(a).map(|r| r.pressure);
+        if attracts && pressure.is_some_and(|p| p >= 0.0) {
+            let rest = equilibrium::<D>(potential, kind, reach, [a, a / STEP]);
+            let state = rest.and_then(|rest| Some((rest, reference(rest)?)));
+            // not where the pressure jumps at a cut-off
+            if let Some((rest, r)) = state
+                && r.pressure.abs() <= 1e-6 * pressure.unwrap_or(0.0)
+                && best.is_none_or(|(_, energy)| r.energy < energy)
+            {
+                best = Some((rest, r.energy));
             }
-            attracts = now.pressure < 0.0;
         }
+        attracts = pressure.is_some_and(|p| p < 0.0);
         a *= STEP;
     }
-    None
+    best.map(|(rest, _)| rest)
 }
 
 #[cfg(test)]
