@@ -1,5 +1,7 @@
 //! `peridyne upscale`: decks of coarse models with the same dynamics, and how far they agree.
 
+mod crystal;
+
 use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
@@ -8,50 +10,97 @@ use crate::side_by_side::{compare, run, save};
 use peridyne_io::deck::upscaled::{copied, upscaled};
 use peridyne_io::deck::{Deck, UnitSystem};
 use peridyne_io::write::card;
-use peridyne_theory::upscale::{self, card::card};
+use peridyne_theory::upscale::{self, Keep, card::card};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct UpscaleArguments {
-    /// Deck of atoms or fine points on a lattice.
-    #[command(flatten)]
-    pub input: Input,
+    /// Deck of atoms or fine points on a lattice; or a law and a lattice, see below.
+    #[arg(conflicts_with = "potential")]
+    pub file: Option<PathBuf>,
+    /// Set a key of the deck, e.g. `--set run.steps=100`; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = crate::pair)]
+    pub set: Vec<(String, String)>,
     /// Coarse spacing in fine spacings; may be repeated, e.g. `--factor 2 --factor 4`.
     #[arg(long, default_values_t = [2])]
     pub factor: Vec<u32>,
+    /// What is kept: the reach of the points (springs, solids, Lennard-Jones chains), or the number of shells of neighbours
+    /// (every law). By the law if not given: the reach where it can be kept.
+    #[arg(long, value_enum)]
+    pub keep: Option<KeepName>,
     /// Run the deck and its coarse models, and measure error and speed-up.
     #[arg(long)]
     pub run: bool,
-    /// Folder for the results; `out/<name of the deck>-upscaled` if not given.
+    /// Folder for the results; `out/<name of the deck or law>-upscaled` if not given.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads; all cores if not given.
     #[arg(long)]
     pub threads: Option<usize>,
+    #[command(flatten)]
+    pub crystal: crystal::CrystalArguments,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub enum KeepName {
+    Reach,
+    Shells,
 }
 
 pub fn upscale(arguments: &UpscaleArguments) -> Result<(), Failure> {
-    if !deck::is_deck(&arguments.input) {
-        return Err(Failure::input(
-            "upscale takes a deck (.toml): a lattice body with a law of springs, solids or atoms",
-        ));
-    }
-    let fine = deck::read(&arguments.input)?;
-    with_threads(arguments.threads, |_| all(arguments, &fine))
+    let (fine, name) = match (&arguments.file, &arguments.crystal.potential) {
+        (Some(file), _) => {
+            let input = Input {
+                file: file.clone(),
+                set: arguments.set.clone(),
+                var: vec![],
+                simd: None,
+            };
+            if !deck::is_deck(&input) {
+                return Err(Failure::input(
+                    "upscale takes a deck (.toml): a lattice body with a law of springs, solids or atoms",
+                ));
+            }
+            let name = file.file_stem().map(|n| n.to_string_lossy().into_owned());
+            (deck::read(&input)?, name)
+        }
+        (None, Some(law)) => {
+            let (deck, found) =
+                crystal::deck(&arguments.crystal, law, &arguments.set, &arguments.factor)?;
+            found.iter().for_each(|line| say(line));
+            (deck, Some(law.name().to_string()))
+        }
+        (None, None) => {
+            return Err(Failure::input(
+                "upscale takes a deck (.toml), or a law and a lattice: --potential LAW --lattice NAME",
+            ));
+        }
+    };
+    let name = name.unwrap_or_else(|| "deck".into());
+    with_threads(arguments.threads, |_| all(arguments, &fine, &name))
 }
 
-fn all(arguments: &UpscaleArguments, fine: &Deck) -> Result<(), Failure> {
+fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| {
-        let name = arguments.input.file.file_stem();
-        let name = name.map_or("deck".into(), |n| n.to_string_lossy());
-        Path::new("out").join(format!("{name}-upscaled"))
+        let name = format!("{name}-upscaled");
+        Path::new("out").join(name)
+    });
+    let keep = arguments.keep.map(|k| match k {
+        KeepName::Reach => Keep::Reach,
+        KeepName::Shells => Keep::Shells,
     });
     // everything that can be wrong is found before anything is written
     let mut made = vec![];
     for &factor in &arguments.factor {
-        let wrong = |m: String| Failure::input(format!("{}, factor {factor}: {m}", fine.file()));
+        let wrong = |m: String| match arguments.file {
+            Some(_) => Failure::input(format!("{}, factor {factor}: {m}", fine.file())),
+            None => Failure::input(format!(
+                "--factor {factor}: {}",
+                m.replace("body.cells", "--cells")
+            )),
+        };
         let (spec, rule) =
-            upscale::upscale(&fine.spec, factor).map_err(|e| wrong(e.to_string()))?;
+            upscale::upscale_keeping(&fine.spec, factor, keep).map_err(|e| wrong(e.to_string()))?;
         let mut card = card(&fine.spec, &spec, factor, rule).map_err(|e| wrong(e.to_string()))?;
         let text = upscaled(fine, &spec, factor).map_err(wrong)?;
         card.notes.extend(text.notes.iter().cloned());

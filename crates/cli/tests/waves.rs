@@ -147,3 +147,41 @@ fn what_has_no_plane_waves_says_what_to_do_and_writes_nothing() {
     assert!(said.contains("several materials"), "{said}");
     assert!(!out.exists());
 }
+
+#[test]
+fn a_chain_of_atoms_has_its_nonlinear_equation() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("chain.toml");
+    let text = "units = \"none\"\nfamily = \"stencil\"\nhorizon = { m_ratio = 1 }\nperiodic = [\"x\"]\n\
+                body = { lattice = \"chain\", spacing = 1.25, cells = [20] }\n\
+                material = { mass = 1, law = { morse = { depth = 2, alpha = 1.5, distance = 1.2 } } }\n\
+                run = { steps = 1, time_step = 0.01 }\n";
+    std::fs::write(&file, text).unwrap();
+    let found = survey(file.to_str().unwrap(), &[], &dir.path().join("out"));
+    for (n, stretch) in [0.98, 1.0, 1.02].into_iter().enumerate() {
+        let at = |path: &str| format!("/nonlinear_gradient_equation/{n}/{path}");
+        assert_eq!(number(&found, &at("stretch")), stretch);
+        // derivatives of D [e^(−2α(r − r0)) − 2 e^(−α(r − r0))] by hand
+        let a = 1.25f64;
+        let slope = |order: i32| {
+            let e = (-1.5 * (a * stretch - 1.2)).exp();
+            2.0 * ((-3f64).powi(order) * e * e - 2.0 * (-1.5f64).powi(order) * e)
+        };
+        let terms = found.pointer(&at("terms")).unwrap().as_array().unwrap();
+        assert_eq!(terms.len(), 1 + 3 + 7);
+        for (term, expected) in [
+            ("y''", a * slope(2)),
+            ("y(4)", a.powi(3) * slope(2) / 12.0),
+            ("y''' y''", a.powi(4) * slope(3) / 6.0),
+            ("y''^3", a.powi(5) * slope(4) / 24.0),
+            ("y(6)", a.powi(5) * slope(2) / 360.0),
+        ] {
+            let row = terms.iter().find(|t| t["term"] == term).unwrap();
+            let c = number(row, "/coefficient");
+            assert!((c / expected - 1.0).abs() < 1e-12, "{term}: {c} {expected}");
+        }
+    }
+    let said = waves(&file, &[], &dir.path().join("out"));
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(said.contains("nonlinear gradient equation"), "{said}");
+}

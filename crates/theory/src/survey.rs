@@ -6,6 +6,7 @@ use crate::crystal::{Crystal, LatticeSolid, Reference};
 use crate::dispersion::verlet_frequency;
 use crate::dispersion::zone::{SpecialPoint, path, special_points};
 use crate::gradient::linear::LinearChain;
+use crate::gradient::{Expansion, nonlinear};
 use crate::lattice_elastic::continuum;
 use crate::stability::Limit;
 use crate::stiffness::Stiffness;
@@ -116,12 +117,17 @@ pub struct Survey {
     /// Largest net force on a site.
     pub residual: f64,
     pub reference: Option<Reference>,
+    /// Of a chain of atoms: stretches y′ and the nonlinear gradient equation there.
+    pub nonlinear: Vec<(f64, Expansion<f64>)>,
 }
 
 /// Steps along each line of the path.
 const STEPS: usize = 80;
 /// Gradient coefficients per direction.
 const TERMS: usize = 4;
+/// Stretches and gradient orders of nonlinear equations.
+pub const STRETCHES: [f64; 3] = [0.98, 1.0, 1.02];
+pub const NONLINEAR_TERMS: usize = 3;
 
 /// What waves a lattice spec carries, with steps of `time_step`.
 pub fn survey(spec: &Spec, time_step: f64) -> Result<Survey, UpscaleError> {
@@ -201,6 +207,10 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleErro
         asked,
         pressure: crystal.pressure() / section,
         residual: crystal.residual(),
+        nonlinear: match (D, &reference) {
+            (1, Some(_)) => nonlinear::of_spec(spec, &STRETCHES, NONLINEAR_TERMS)?,
+            _ => vec![],
+        },
         reference,
     })
 }

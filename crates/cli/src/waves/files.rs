@@ -196,6 +196,14 @@ pub fn json(found: &Found) -> Value {
             "gradient_coefficients": d.gradients,
             "longitudinal_gradient_coefficients": d.longitudinal(),
         })).collect::<Vec<_>>(),
+        "nonlinear_gradient_equation": s.nonlinear.iter().map(|(stretch, equation)| json!({
+            "stretch": stretch,
+            "terms": equation.orders.iter().enumerate().flat_map(|(p, order)| {
+                order.terms().map(move |(m, c)| json!({
+                    "order": 2 * p + 2, "term": m.to_string(), "coefficient": c,
+                }))
+            }).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "stability": {
             "unstable_part": s.unstable_part,
             "growing_waves": s.growing.iter().map(|g| json!({

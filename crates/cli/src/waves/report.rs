@@ -72,6 +72,7 @@ pub fn text(found: &Found) -> String {
     stability(&mut t, found);
     elastic(&mut t, found);
     gradients(&mut t, found);
+    nonlinear(&mut t, found);
     t
 }
 
@@ -226,5 +227,31 @@ fn gradients(t: &mut String, found: &Found) {
             })
             .collect();
         let _ = writeln!(t, "  {}  {}", d.name, each.join(", "));
+    }
+}
+
+/// Of a chain of atoms.
+fn nonlinear(t: &mut String, found: &Found) {
+    let s = &found.survey;
+    if s.nonlinear.is_empty() {
+        return;
+    }
+    *t += "\nnonlinear gradient equation, ρ ÿ = Σ c (y″, y‴, … at the stretch y′), as c/c₂ in powers of the spacing\n";
+    let first = s.stiffness.c[0][0];
+    for (stretch, equation) in &s.nonlinear {
+        let orders = equation.orders.iter().enumerate().map(|(p, order)| {
+            let unit = s.spacing.powi(2 * p as i32) * first;
+            let terms: Vec<String> = order
+                .terms()
+                .map(|(m, c)| format!("{:.6} {m}", c / unit))
+                .collect();
+            let power = match p {
+                0 => String::new(),
+                p => format!("a^{} ", 2 * p),
+            };
+            format!("{power}({})", terms.join(" + "))
+        });
+        let orders: Vec<String> = orders.collect();
+        let _ = writeln!(t, "  y′ = {stretch}: {}", orders.join(" + "));
     }
 }

@@ -11,7 +11,7 @@ pub struct DeckError {
     pub message: String,
     /// What to write instead.
     pub help: Option<String>,
-    /// File name, or the override (`--set body.spacing`).
+    /// File name, or the override (`--set body.spacing`, `--spacing`).
     pub file: String,
     /// Line (1-based) in the file; `None` for an override or when no place is to blame.
     pub line: Option<usize>,
@@ -29,7 +29,7 @@ impl DeckError {
         help: Option<String>,
     ) -> Self {
         let span = span.map(|s| s.start.min(text.len())..s.end.min(text.len()));
-        let is_override = file.starts_with("--set");
+        let is_override = file.starts_with("--");
         let line = span
             .as_ref()
             .filter(|_| !is_override)

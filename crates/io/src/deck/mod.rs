@@ -22,6 +22,7 @@ pub use describe::describe;
 pub use document::FieldName;
 pub use error::DeckError;
 pub use schema::schema;
+pub use source::Flag;
 pub use units::{Dim, UnitSystem};
 
 use crate::write::trajectory::Format;
@@ -87,12 +88,27 @@ impl Deck {
         file_name: &str,
         overrides: &[(String, String)],
     ) -> Result<Deck, DeckError> {
-        let source = Source::new(source, file_name, overrides);
+        Self::of_source(Source::new(source, file_name, overrides))
+    }
+
+    /// The deck that a command line says, key by key; files are relative to the working folder.
+    ///
+    /// # Errors
+    /// The first mistake found, with the flag that made it.
+    pub fn of_flags(flags: &[Flag]) -> Result<Deck, DeckError> {
+        Self::of_source(Source::with_flags(
+            "",
+            "the command line",
+            flags.iter().cloned(),
+        ))
+    }
+
+    fn of_source(source: Source) -> Result<Deck, DeckError> {
         let mut tree = source.tree()?;
         locate::name_material(tree.get_mut());
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
             .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
-        let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
+        let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
         let lowered = lower::lower(&source, &document, &Files { folder })?;
         Ok(Deck {
             spec: lowered.spec,

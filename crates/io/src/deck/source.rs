@@ -16,9 +16,19 @@ pub struct Source {
     overrides: Vec<Override>,
 }
 
+/// A key of a deck with its value, and what said so (`--spacing`).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Flag {
+    pub name: String,
+    pub key: String,
+    /// TOML, or a bare word.
+    pub value: String,
+}
+
 #[derive(Debug, Clone)]
 struct Override {
-    key: String,
+    /// What it is called in errors.
+    name: String,
     line: String,
     /// The line behind as many blanks as there are bytes before it.
     padded: String,
@@ -28,14 +38,23 @@ pub(super) type Tree<'a> = Spanned<DeTable<'a>>;
 
 impl Source {
     pub fn new(text: &str, file: &str, overrides: &[(String, String)]) -> Self {
+        let flag = |(key, value): &(String, String)| Flag {
+            name: format!("--set {key}"),
+            key: key.clone(),
+            value: value.clone(),
+        };
+        Self::with_flags(text, file, overrides.iter().map(flag))
+    }
+
+    pub fn with_flags(text: &str, file: &str, flags: impl Iterator<Item = Flag>) -> Self {
         let mut start = text.len() + 1;
         let mut lines = Vec::new();
-        for (key, value) in overrides {
-            let line = line(key, value);
+        for flag in flags {
+            let line = line(&flag.key, &flag.value);
             let padded = format!("{}{line}", " ".repeat(start));
             start = padded.len() + 1;
             lines.push(Override {
-                key: key.clone(),
+                name: flag.name,
                 line,
                 padded,
             });
@@ -63,7 +82,7 @@ impl Source {
             .find(|o| at > self.text.len() && at <= o.padded.len());
         match over {
             Some(o) => (
-                format!("--set {}", o.key),
+                o.name.clone(),
                 &o.line,
                 o.padded.len() - o.line.len(),
             ),

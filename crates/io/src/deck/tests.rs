@@ -250,3 +250,29 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn flags_make_a_deck_and_are_named_where_they_are_wrong() {
+    let flags = |spacing: &str| {
+        [
+            ("--lattice", "body.lattice", "chain"),
+            ("--cells", "body.cells", "[8]"),
+            ("--spacing", "body.spacing", spacing),
+            ("--m-ratio", "horizon.m_ratio", "2"),
+            ("--law", "material.law.springs", "{ young = 3 }"),
+            ("--density", "material.density", "1"),
+            ("--steps", "run.steps", "5"),
+        ]
+        .map(|(name, key, value)| Flag {
+            name: name.into(),
+            key: key.into(),
+            value: value.into(),
+        })
+    };
+    let deck = Deck::of_flags(&flags("0.25")).unwrap();
+    assert_eq!((deck.spec.dimension, deck.spec.schedule.steps), (1, 5));
+    let text = upscaled::copied(&deck).unwrap().text;
+    assert_eq!(parse(&text).spec, deck.spec);
+    let error = Deck::of_flags(&flags("-1")).unwrap_err();
+    assert_eq!((&*error.file, error.line), ("--spacing", None));
+}

@@ -48,6 +48,9 @@ fn json(card: &Card, measured: Option<&Measured>) -> Value {
         "gradient_coefficients": card.gradients.iter().map(|g| json!({
             "derivative": g.order, "fine": g.fine, "coarse": g.coarse,
         })).collect::<Vec<_>>(),
+        "nonlinear_gradient_equation": card.nonlinear.iter().map(|g| json!({
+            "stretch": g.stretch, "order": g.order, "term": g.term, "fine": g.fine, "coarse": g.coarse,
+        })).collect::<Vec<_>>(),
         "dispersion": card.dispersion.iter().map(|d| json!({
             "direction": d.direction,
             "wave_number": d.wave,
@@ -155,6 +158,16 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
             e.fine,
             e.coarse,
             (e.coarse - e.fine) / e.fine
+        );
+    }
+    if !card.nonlinear.is_empty() {
+        t += "\nThe nonlinear gradient equation ρ ÿ = Σ c · term, at the stretch y':\n\n| y' | order | term | fine | coarse |\n|---:|---:|---|---:|---:|\n";
+    }
+    for g in &card.nonlinear {
+        let _ = writeln!(
+            t,
+            "| {} | {} | {} | {:.6e} | {:.6e} |",
+            g.stretch, g.order, g.term, g.fine, g.coarse
         );
     }
     if let Some(m) = measured {

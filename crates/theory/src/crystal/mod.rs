@@ -86,6 +86,8 @@ pub enum CrystalError {
     NoNeighbours { reach: f64, nearest: f64 },
     #[error("at most {most} shells of neighbours are counted, {asked} were asked for")]
     TooManyShells { asked: u32, most: u32 },
+    #[error("at most {most} gradient orders are derived, {asked} were asked for")]
+    TooManyTerms { asked: usize, most: usize },
     #[error(
         "the embedding energy has no value at the reference density {density}: the state is outside of what the \
          potential describes"

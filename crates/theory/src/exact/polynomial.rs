@@ -1,8 +1,27 @@
 //! Polynomials in the derivatives y′, y″, y‴, … of a deformation y(x); y′ may have negative powers.
 
 use super::Field;
+use num_traits::{One, Zero};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Neg;
+
+/// What stands before a monomial: a number, or something that depends on y′ itself.
+pub trait Coefficient: Clone + PartialEq + fmt::Debug + Zero + One + Neg<Output = Self> {
+    /// `n/d`.
+    fn rational(n: i64, d: i64) -> Self;
+    /// Derivative by y′.
+    fn by_slope(&self) -> Self;
+}
+
+impl<F: Field> Coefficient for F {
+    fn rational(n: i64, d: i64) -> Self {
+        F::ratio(n, d)
+    }
+    fn by_slope(&self) -> Self {
+        F::zero()
+    }
+}
 
 /// Powers of y′, y″, y‴, …, without zeros at the end.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -71,7 +90,7 @@ impl fmt::Display for Monomial {
 #[derive(Debug, Clone, PartialEq)]
 pub struct JetPolynomial<F>(BTreeMap<Monomial, F>);
 
-impl<F: Field> JetPolynomial<F> {
+impl<F: Coefficient> JetPolynomial<F> {
     pub fn zero() -> Self {
         JetPolynomial(BTreeMap::new())
     }
@@ -110,8 +129,12 @@ impl<F: Field> JetPolynomial<F> {
 
     /// Coefficient of `y′^{powers[0]} y″^{powers[1]} …`
     pub fn coefficient(&self, powers: &[i32]) -> F {
-        let m = Monomial::new(powers);
-        self.0.get(&m).cloned().unwrap_or_else(F::zero)
+        self.of(&Monomial::new(powers))
+    }
+
+    /// Coefficient of a monomial.
+    pub fn of(&self, m: &Monomial) -> F {
+        self.0.get(m).cloned().unwrap_or_else(F::zero)
     }
 
     pub fn add(&self, o: &Self) -> Self {
@@ -150,7 +173,13 @@ impl<F: Field> JetPolynomial<F> {
         for (m, c) in &self.0 {
             let power = m.power(order);
             if power != 0 {
-                p.accumulate(m.shifted(order, -1), c.clone() * F::whole(power as i64));
+                p.accumulate(
+                    m.shifted(order, -1),
+                    c.clone() * F::rational(power as i64, 1),
+                );
+            }
+            if order == 1 {
+                p.accumulate(m.clone(), c.by_slope());
             }
         }
         p
@@ -164,9 +193,10 @@ impl<F: Field> JetPolynomial<F> {
                 let power = m.power(order);
                 if power != 0 {
                     let n = m.shifted(order, -1).shifted(order + 1, 1);
-                    p.accumulate(n, c.clone() * F::whole(power as i64));
+                    p.accumulate(n, c.clone() * F::rational(power as i64, 1));
                 }
             }
+            p.accumulate(m.shifted(2, 1), c.by_slope());
         }
         p
     }
@@ -176,6 +206,17 @@ impl<F: Field> JetPolynomial<F> {
         self.0.keys().map(Monomial::highest).max().unwrap_or(0)
     }
 
+    /// Coefficients of another kind.
+    pub fn map<G: Coefficient>(&self, f: impl Fn(&F) -> G) -> JetPolynomial<G> {
+        let mut p = JetPolynomial::zero();
+        for (m, c) in &self.0 {
+            p.accumulate(m.clone(), f(c));
+        }
+        p
+    }
+}
+
+impl<F: Field> JetPolynomial<F> {
     /// Value where `jet = [y′, y″, …]`; derivatives beyond it are 0.
     pub fn at(&self, jet: &[f64]) -> f64 {
         self.0
@@ -187,18 +228,9 @@ impl<F: Field> JetPolynomial<F> {
             })
             .sum()
     }
-
-    /// Coefficients in another field.
-    pub fn map<G: Field>(&self, f: impl Fn(&F) -> G) -> JetPolynomial<G> {
-        let mut p = JetPolynomial::zero();
-        for (m, c) in &self.0 {
-            p.accumulate(m.clone(), f(c));
-        }
-        p
-    }
 }
 
-impl<F: Field + fmt::Display> fmt::Display for JetPolynomial<F> {
+impl<F: Coefficient + fmt::Display> fmt::Display for JetPolynomial<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.is_zero() {
             return f.write_str("0");

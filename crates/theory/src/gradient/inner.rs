@@ -6,7 +6,7 @@
 
 use super::Expansion;
 use super::power_law::{PowerLawChain, SymbolicOrder, binomial};
-use crate::exact::polynomial::JetPolynomial;
+use crate::exact::polynomial::{Coefficient, JetPolynomial};
 use crate::exact::{Field, factorial};
 
 /// Energy density of `r^{−n}` with amplitude 1, by powers Δx⁰, Δx², ….
@@ -30,9 +30,10 @@ pub fn energy_orders<F: Field>(n: i32, terms: usize) -> Vec<SymbolicOrder<F>> {
 }
 
 /// `Σ_k (−1)^{k+1} (d/dx)^k ∂W/∂y⁽ᵏ⁾`.
-pub fn variation<F: Field>(energy: &JetPolynomial<F>) -> JetPolynomial<F> {
+pub fn variation<F: Coefficient>(energy: &JetPolynomial<F>) -> JetPolynomial<F> {
     let mut force = JetPolynomial::zero();
-    for k in 1..=energy.highest() {
+    // y′ may be in the coefficients only
+    for k in 1..=energy.highest().max(1) {
         let derivative = (0..k).fold(energy.partial(k), |p, _| p.total());
         let sign = if k % 2 == 1 { F::one() } else { -F::one() };
         force = force.add(&derivative.scale(&sign));

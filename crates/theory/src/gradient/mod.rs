@@ -4,9 +4,12 @@
 //! `ρ ÿ = Σ_p P_p(y′, y″, …)`, where P_p is of gradient order 2p + 2 (seleson2009 sections 3–5).
 
 pub mod inner;
+pub mod law_sum;
 pub mod linear;
 pub mod matrix;
+pub mod nonlinear;
 pub mod power_law;
+pub mod universal;
 
 use crate::exact::Field;
 use crate::exact::polynomial::JetPolynomial;

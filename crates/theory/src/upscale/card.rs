@@ -2,8 +2,12 @@
 
 use super::{Rule, UpscaleError, crystal, lattice};
 use crate::crystal::Crystal;
+use crate::exact::polynomial::Monomial;
+use crate::gradient::nonlinear;
+use crate::survey::{NONLINEAR_TERMS, STRETCHES};
 use peridyne::run::{Options, build};
 use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec, Spec, TimeStep};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// One of the two models.
@@ -45,6 +49,17 @@ pub struct GradientRow {
     pub coarse: f64,
 }
 
+/// A term of the nonlinear gradient equation of a chain of atoms, `ρ ÿ = Σ P(y′, y″, …)`, at a stretch y′.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NonlinearRow {
+    pub stretch: f64,
+    pub order: usize,
+    /// As `y(4) y''`.
+    pub term: String,
+    pub fine: f64,
+    pub coarse: f64,
+}
+
 /// Frequencies of all branches along a direction, from long waves to the coarse model's shortest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dispersion {
@@ -67,6 +82,7 @@ pub struct Card {
     pub coarse: Side,
     pub energies: Vec<EnergyRow>,
     pub gradients: Vec<GradientRow>,
+    pub nonlinear: Vec<NonlinearRow>,
     pub dispersion: Vec<Dispersion>,
     /// Points × bonds × steps of the fine model over those of the coarse, both at their stable steps.
     pub cost: f64,
@@ -125,7 +141,7 @@ fn card_in<const D: usize>(
     if rule == Rule::Reduced {
         notes.push("The length scale of Lennard-Jones is the spacing: shocks and their oscillations change with h.".into());
     }
-    if rule == Rule::Shells {
+    if rule == Rule::Shells && a_reference.is_some() {
         notes.push("Neighbours are those of the reference: beyond a compression of a tenth some that would enter are missing; bonds never change partners (no diffusion, melting, slip).".into());
     }
     let energies = energies(fine, coarse, &mut notes);
@@ -173,9 +189,37 @@ fn card_in<const D: usize>(
         coarse: right,
         energies,
         gradients,
+        nonlinear: match (D, &a_reference) {
+            (1, Some(_)) => nonlinear_rows(fine, coarse)?,
+            _ => vec![],
+        },
         dispersion,
         notes,
     })
+}
+
+/// Of both models, where both have a value.
+fn nonlinear_rows(fine: &Spec, coarse: &Spec) -> Result<Vec<NonlinearRow>, UpscaleError> {
+    let [fine, coarse] =
+        [fine, coarse].map(|spec| nonlinear::of_spec(spec, &STRETCHES, NONLINEAR_TERMS));
+    let coarse = coarse?;
+    let mut rows = vec![];
+    for (stretch, fine) in fine? {
+        let Some((_, coarse)) = coarse.iter().find(|(s, _)| *s == stretch) else {
+            continue;
+        };
+        for (p, (a, b)) in fine.orders.iter().zip(&coarse.orders).enumerate() {
+            let terms: BTreeSet<&Monomial> = a.terms().chain(b.terms()).map(|(m, _)| m).collect();
+            rows.extend(terms.into_iter().map(|m| NonlinearRow {
+                stretch,
+                order: 2 * p + 2,
+                term: m.to_string(),
+                fine: a.of(m),
+                coarse: b.of(m),
+            }));
+        }
+    }
+    Ok(rows)
 }
 
 fn unit<const D: usize>(v: &[f64]) -> [f64; D] {

@@ -5,8 +5,13 @@
 //! | springs, pmb, lps, eam-like on a lattice | horizon δ, moduli | m_ratio = N/n (seleson2009 (A.2), seleson2014 (4.10)) |
 //! | Lennard-Jones on fixed neighbours, without cut-off | σ̄, ε̄, reach | M = N/n (seleson2009 (5.3)) |
 //! | any other potential | energy density under every homogeneous strain, number of shells | lengths times n, energies times n^D (seleson2014 (3.3)) |
+//!
+//! [`upscale_keeping`] asks for one of the two: [`Keep::Shells`] goes with every law.
 
 pub mod card;
+mod rest;
+
+pub use rest::rest_spacing;
 
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
 use peridyne::family::stencil::Stencil;
@@ -14,7 +19,9 @@ use peridyne::law::potential::cut::End;
 use peridyne::law::potential::mei::Mei;
 use peridyne::law::potential::{Form, Potential, PotentialSpec, Visitor};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec, Schedule, Spec, TimeStep};
+use peridyne::spec::{
+    BodySpec, FamilyChoice, Horizon, LawSpec, PmbStiffness, Schedule, Spec, TimeStep,
+};
 use std::sync::Arc;
 
 /// How many cut-offs of reference neighbours an upscaled potential keeps: those that a compression of a tenth brings in.
@@ -44,10 +51,31 @@ pub enum UpscaleError {
         horizon: f64,
         most: u32,
     },
+    #[error("nonlinear gradient equations are those of a chain of atoms")]
+    NoChain,
+    #[error(
+        "only springs, solids, and Lennard-Jones on fixed neighbours without a cut-off keep their reach: a potential with \
+         lengths of its own has one spacing, and keeps its shells"
+    )]
+    NoReach,
+    #[error(
+        "a micromodulus belongs to its horizon, which grows with the spacing where shells are kept: give the law `young` or \
+         `bulk` instead"
+    )]
+    Micromodulus,
     #[error(transparent)]
     Crystal(#[from] CrystalError),
     #[error(transparent)]
     Surface(#[from] crate::homogenize::surface::SurfaceError),
+}
+
+/// What can be asked to be kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// The distance up to which points talk: nonlocality in units of length, with fewer neighbours.
+    Reach,
+    /// The number of shells of neighbours: the length scale grows with the spacing.
+    Shells,
 }
 
 /// What an upscaling keeps.
@@ -93,6 +121,14 @@ fn current(spec: &Spec) -> bool {
     spec.potential.is_some() && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
 }
 
+/// Which neighbours of a perfect crystal count.
+pub(crate) fn reach(spec: &Spec) -> Reach {
+    match current(spec) {
+        true => Reach::Cutoff,
+        false => Reach::Horizon(spec.horizon),
+    }
+}
+
 /// Divisors of n from 2 on.
 fn divisors(n: u32) -> String {
     let all: Vec<String> = (2..=n)
@@ -114,8 +150,23 @@ fn lattice_sum(stencil: &Stencil, p: i32) -> f64 {
         .sum()
 }
 
-/// The model at `factor` times the spacing.
+/// The model at `factor` times the spacing, by the rule of its law.
+///
+/// # Errors
+/// Why it has none.
 pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
+    upscale_keeping(spec, factor, None)
+}
+
+/// The same, keeping what is asked for.
+///
+/// # Errors
+/// Why it has none.
+pub fn upscale_keeping(
+    spec: &Spec,
+    factor: u32,
+    keep: Option<Keep>,
+) -> Result<(Spec, Rule), UpscaleError> {
     if factor < 2 {
         return Err(UpscaleError::Factor(factor));
     }
@@ -149,11 +200,16 @@ pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
             length => Ok(length),
         }
     };
+    let grown = |horizon: Horizon| match horizon {
+        Horizon::Length(d) => Horizon::Length(n * d),
+        ratio => ratio,
+    };
+    let shells = keep == Some(Keep::Shells);
     let rule = match (&spec.potential, spec.materials[0].law) {
         (Some(potential), LawSpec::Atoms) => {
             let fixed = !current(spec) && potential.cutoff.is_infinite();
             match &potential.form {
-                Form::LennardJones(lj) if fixed => {
+                Form::LennardJones(lj) if fixed && !shells => {
                     coarse.horizon = divided(spec.horizon)?;
                     let sums = |spacing: f64, horizon| {
                         let stencil = Stencil::new(kind, spacing, horizon);
@@ -171,16 +227,25 @@ pub fn upscale(spec: &Spec, factor: u32) -> Result<(Spec, Rule), UpscaleError> {
                     });
                     Rule::Reduced
                 }
+                _ if keep == Some(Keep::Reach) => return Err(UpscaleError::NoReach),
                 _ => {
                     coarse.potential = Some(scaled(potential, n, n.powi(kind.dimension() as i32)));
-                    coarse.horizon = match (current(spec), spec.horizon) {
-                        (true, _) => Horizon::Length(REACH * n * potential.cut_off()),
-                        (false, Horizon::Length(d)) => Horizon::Length(n * d),
-                        (false, ratio) => ratio,
+                    coarse.horizon = match current(spec) {
+                        true => Horizon::Length(REACH * n * potential.cut_off()),
+                        false => grown(spec.horizon),
                     };
                     Rule::Shells
                 }
             }
+        }
+        (_, LawSpec::Pmb(c) | LawSpec::Springs(c))
+            if shells && matches!(c, PmbStiffness::Micromodulus(_)) =>
+        {
+            return Err(UpscaleError::Micromodulus);
+        }
+        _ if shells => {
+            coarse.horizon = grown(spec.horizon);
+            Rule::Shells
         }
         _ => {
             coarse.horizon = divided(spec.horizon)?;
@@ -276,10 +341,7 @@ pub fn crystal<const D: usize>(
                 kind,
                 spacing,
                 mass: density * volume,
-                reach: match current(spec) {
-                    true => Reach::Cutoff,
-                    false => Reach::Horizon(spec.horizon),
-                },
+                reach: reach(spec),
             })?;
             Ok((crystal, Some(reference)))
         }

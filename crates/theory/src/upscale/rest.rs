@@ -1,0 +1,149 @@
+//! Where a crystal rests: the lattice spacing without pressure.
+
+use super::{lattice, reach};
+use crate::crystal::{Crystal, Reach, potential::equilibrium};
+use peridyne::law::potential::{Form, Potential, PotentialSpec, Visitor};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::Spec;
+
+/// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
+/// energy; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
+pub fn rest_spacing(spec: &Spec) -> Option<f64> {
+    struct At {
+        kind: LatticeKind,
+        reach: Reach,
+        length: f64,
+    }
+    impl Visitor for At {
+        type Out = Option<f64>;
+        fn visit<P: Potential>(self, potential: P) -> Option<f64> {
+            let At {
+                kind,
+                reach,
+                length,
+            } = self;
+            match kind.dimension() {
+                1 => lowest::<1>(&potential, kind, reach, length),
+                2 => lowest::<2>(&potential, kind, reach, length),
+                _ => lowest::<3>(&potential, kind, reach, length),
+            }
+        }
+    }
+    let (kind, _) = lattice(spec).ok()?;
+    let potential = spec.potential.as_ref()?;
+    potential.apply(At {
+        kind,
+        reach: reach(spec),
+        length: length(potential),
+    })
+}
+
+/// A length of a potential in the order of the nearest distance.
+fn length(potential: &PotentialSpec) -> f64 {
+    match &potential.form {
+        Form::LennardJones(p) => p.sigma,
+        Form::Morse(p) => p.distance,
+        // repulsion over attraction balances at several ranges
+        Form::Buckingham(p) => 8.0 * p.range,
+        Form::Mei(p) => p.spec().nearest,
+        Form::Tabulated(_) => 0.5 * potential.cut_off(),
+    }
+}
+
+/// Steps inwards, each by this factor, from the first factor times the length to the last.
+const STEP: f64 = 0.98;
+const FROM: f64 = 2.5;
+const TO: f64 = 0.3;
+
+fn lowest<const D: usize>(
+    potential: &impl Potential,
+    kind: LatticeKind,
+    reach: Reach,
+    length: f64,
+) -> Option<f64> {
+    let reference = |a: f64| {
+        let crystal = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach);
+        crystal.ok().map(|(_, reference)| reference)
+    };
+    let mut a = FROM * length / kind.nearest();
+    let mut attracts = false;
+    let mut best: Option<(f64, f64)> = None;
+    while a > TO * length / kind.nearest() {
+        // too far apart there are no neighbours, too near the embedding energy may have no value
+        let pressure = reference(a).map(|r| r.pressure);
+        if attracts && pressure.is_some_and(|p| p >= 0.0) {
+            let rest = equilibrium::<D>(potential, kind, reach, [a, a / STEP]);
+            let state = rest.and_then(|rest| Some((rest, reference(rest)?)));
+            // not where the pressure jumps at a cut-off
+            if let Some((rest, r)) = state
+                && r.pressure.abs() <= 1e-6 * pressure.unwrap_or(0.0)
+                && best.is_none_or(|(_, energy)| r.energy < energy)
+            {
+                best = Some((rest, r.energy));
+            }
+        }
+        attracts = pressure.is_some_and(|p| p < 0.0);
+        a *= STEP;
+    }
+    best.map(|(rest, _)| rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use peridyne::law::potential::buckingham::Buckingham;
+    use peridyne::law::potential::cut::End;
+    use peridyne::law::potential::lennard_jones::LennardJones;
+    use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec};
+
+    fn spec(kind: LatticeKind, form: Form, cutoff: f64) -> Spec {
+        let body = BodySpec::Sites {
+            kind,
+            spacing: 1.0,
+            origin: [0.0; 3],
+            quarters: vec![[0; 3]],
+            volume: None,
+        };
+        let mut spec = Spec::new(kind.dimension(), body, 1.0, LawSpec::Atoms);
+        spec.potential = Some(PotentialSpec {
+            form,
+            cutoff,
+            end: End::Truncated,
+        });
+        spec
+    }
+
+    #[test]
+    fn lennard_jones_crystals_rest_where_tables_say() {
+        let lj = Form::LennardJones(LennardJones {
+            epsilon: 0.3,
+            sigma: 2.0,
+        });
+        // lattice sums of the endless fcc crystal: nearest distance 1.0902 σ (2 Z12/Z6)^(1/6)
+        let a = rest_spacing(&spec(LatticeKind::Fcc, lj.clone(), 16.0)).unwrap();
+        assert!((a / (2.0 * 1.0902 * 2f64.sqrt()) - 1.0).abs() < 2e-3, "{a}");
+        let mut chain = spec(LatticeKind::Chain, lj, f64::INFINITY);
+        chain.family = FamilyChoice::Stencil;
+        chain.horizon = Horizon::Ratio(1);
+        let a = rest_spacing(&chain).unwrap();
+        assert!(
+            (a / (2.0 * 2f64.powf(1.0 / 6.0)) - 1.0).abs() < 1e-12,
+            "{a}"
+        );
+    }
+
+    #[test]
+    fn the_inner_collapse_of_buckingham_is_no_rest() {
+        let form = |dispersion| {
+            Form::Buckingham(Buckingham {
+                strength: 1000.0,
+                range: 0.3,
+                dispersion,
+            })
+        };
+        let a = rest_spacing(&spec(LatticeKind::Fcc, form(50.0), 9.0)).unwrap();
+        assert!((2.0..6.0).contains(&a), "{a}");
+        // repulsion alone
+        assert_eq!(rest_spacing(&spec(LatticeKind::Fcc, form(0.0), 9.0)), None);
+    }
+}
