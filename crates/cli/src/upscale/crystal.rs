@@ -25,10 +25,15 @@ pub struct CrystalArguments {
     #[arg(long, requires = "potential")]
     pub lattice: Option<String>,
     /// Edge of the lattice cell; of atoms, if not given, that without pressure.
-    #[arg(long, requires = "potential")]
+    #[arg(long, allow_negative_numbers = true, requires = "potential")]
     pub spacing: Option<String>,
     /// Neighbours up to so many spacings. Atoms then keep those of the lattice.
-    #[arg(long, value_name = "N", requires = "potential")]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        value_name = "N",
+        requires = "potential"
+    )]
     pub m_ratio: Option<String>,
     /// The same as a length.
     #[arg(
@@ -39,10 +44,15 @@ pub struct CrystalArguments {
     )]
     pub horizon: Option<String>,
     /// Of an atom; from the file, and 1 in reduced or no units, if not given.
-    #[arg(long, requires = "potential")]
+    #[arg(long, allow_negative_numbers = true, requires = "potential")]
     pub mass: Option<String>,
     /// Instead of a mass; 1 in reduced or no units, if not given.
-    #[arg(long, requires = "potential", conflicts_with = "mass")]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        requires = "potential",
+        conflicts_with = "mass"
+    )]
     pub density: Option<String>,
     /// Cells of the periodic block along each axis, e.g. `80,8,8`; if not given, as many as the coarse models need.
     #[arg(long, value_name = "N,N,N", requires = "potential")]
@@ -313,7 +323,10 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         return [1; 3];
     };
     let most = factors.iter().copied().max().unwrap_or(1);
-    let whole = factors.iter().fold(1u32, |l, f| (l / gcd(l, *f)).saturating_mul(*f)).max(1);
+    let whole = factors
+        .iter()
+        .fold(1u32, |l, f| (l / gcd(l, *f)).saturating_mul(*f))
+        .max(1);
     let reach = match (&spec.potential, spec.family, spec.horizon) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours, _) => REACH * p.cut_off(),
         (_, _, Horizon::Ratio(m)) => f64::from(m) * spacing,

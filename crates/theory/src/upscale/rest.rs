@@ -7,12 +7,13 @@ use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::Spec;
 
 /// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
-/// energy; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
+/// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
 pub fn rest_spacing(spec: &Spec) -> Option<f64> {
     struct At {
         kind: LatticeKind,
         reach: Reach,
         length: f64,
+        made_for: Option<f64>,
     }
     impl Visitor for At {
         type Out = Option<f64>;
@@ -21,11 +22,13 @@ pub fn rest_spacing(spec: &Spec) -> Option<f64> {
                 kind,
                 reach,
                 length,
+                made_for,
             } = self;
+            let range = [FROM, TO].map(|x| x * length / kind.nearest());
             match kind.dimension() {
-                1 => lowest::<1>(&potential, kind, reach, length),
-                2 => lowest::<2>(&potential, kind, reach, length),
-                _ => lowest::<3>(&potential, kind, reach, length),
+                1 => best::<1>(&potential, kind, reach, range, made_for),
+                2 => best::<2>(&potential, kind, reach, range, made_for),
+                _ => best::<3>(&potential, kind, reach, range, made_for),
             }
         }
     }
@@ -35,6 +38,11 @@ pub fn rest_spacing(spec: &Spec) -> Option<f64> {
         kind,
         reach: reach(spec),
         length: length(potential),
+        // its embedding energy says nothing far from there
+        made_for: match &potential.form {
+            Form::Mei(p) => Some(p.spec().nearest / kind.nearest()),
+            _ => None,
+        },
     })
 }
 
@@ -55,20 +63,21 @@ const STEP: f64 = 0.98;
 const FROM: f64 = 2.5;
 const TO: f64 = 0.3;
 
-fn lowest<const D: usize>(
+fn best<const D: usize>(
     potential: &impl Potential,
     kind: LatticeKind,
     reach: Reach,
-    length: f64,
+    [from, to]: [f64; 2],
+    made_for: Option<f64>,
 ) -> Option<f64> {
     let reference = |a: f64| {
         let crystal = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach);
         crystal.ok().map(|(_, reference)| reference)
     };
-    let mut a = FROM * length / kind.nearest();
+    let mut a = from;
     let mut attracts = false;
     let mut best: Option<(f64, f64)> = None;
-    while a > TO * length / kind.nearest() {
+    while a > to {
         // too far apart there are no neighbours, too near the embedding energy may have no value
         let pressure = reference(a).map(|r| r.pressure);
         if attracts && pressure.is_some_and(|p| p >= 0.0) {
@@ -77,9 +86,11 @@ fn lowest<const D: usize>(
             // not where the pressure jumps at a cut-off
             if let Some((rest, r)) = state
                 && r.pressure.abs() <= 1e-6 * pressure.unwrap_or(0.0)
-                && best.is_none_or(|(_, energy)| r.energy < energy)
             {
-                best = Some((rest, r.energy));
+                let cost = made_for.map_or(r.energy, |aim| (rest - aim).abs());
+                if best.is_none_or(|(_, least)| cost < least) {
+                    best = Some((rest, cost));
+                }
             }
         }
         attracts = pressure.is_some_and(|p| p < 0.0);
