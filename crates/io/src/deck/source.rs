@@ -81,11 +81,7 @@ impl Source {
             .iter()
             .find(|o| at > self.text.len() && at <= o.padded.len());
         match over {
-            Some(o) => (
-                o.name.clone(),
-                &o.line,
-                o.padded.len() - o.line.len(),
-            ),
+            Some(o) => (o.name.clone(), &o.line, o.padded.len() - o.line.len()),
             None => (self.file.clone(), &self.text, 0),
         }
     }
