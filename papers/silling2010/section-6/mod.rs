@@ -103,7 +103,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.number("elimination", exponent(&nodes[0], &products[0]));
     found.number("making", exponent(&nodes[0], &effort[0]));
     found.number("making-2", exponent(&nodes[1], &effort[1]));
-    found.number("gain", products[0][last] / products[2][last]);
+    if !context.small {
+        found.number("gain", products[0][last] / products[2][last]);
+    }
     let (zero, two) = (solving[0][last], solving[2][last]);
     let made = making[0][last] + making[1][last];
     found.measured(

@@ -39,7 +39,7 @@ fn check<const D: usize>(name: &str, spec: &Spec) {
         "{name}: {before:e} to {after:e}"
     );
     assert!(solved.iterations > 1, "{name}: {solved:?}");
-    // the relaxed crystal may turn without force, about where its atoms are now
+    // the relaxed crystal, if it is free, may turn without force, about where its atoms are now
     let mut body: LinearBody<D> = model.linear_body().of().unwrap();
     let about_sites = body.soundness().rotation;
     for (x, u) in body.position.iter_mut().zip(&u) {
@@ -48,8 +48,9 @@ fn check<const D: usize>(name: &str, spec: &Spec) {
         }
     }
     let rotation = body.soundness().rotation;
+    let turns = spec.periodic.iter().all(Option::is_none);
     assert!(
-        rotation < 1e-9 && about_sites > 1e-6,
+        !turns || rotation < 1e-9 && about_sites > 1e-6,
         "{name}: {rotation:e}, {about_sites:e}"
     );
     // again: nothing is left to do
@@ -67,8 +68,10 @@ fn crystals_with_a_vacancy_relax() {
                 let spec = atoms(Triangular, 6, &potential, family, false);
                 check::<2>(&name, &with_vacancy(spec));
             }
-            if smooth.iter().any(|s| name.starts_with(s)) || name.starts_with("eam, closed form") {
-                let spec = atoms(Fcc, 3, &potential, family, false);
+            // small free crystals of this embedding do not keep their corners
+            let embedded = name.starts_with("eam, closed form");
+            if smooth.iter().any(|s| name.starts_with(s)) || embedded {
+                let spec = atoms(Fcc, 3, &potential, family, embedded);
                 check::<3>(&name, &with_vacancy(spec));
             }
         }

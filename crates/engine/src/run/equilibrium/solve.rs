@@ -158,15 +158,7 @@ impl<const D: usize> Model<D> {
         let goal = Self::goal(state.options);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
-        // atoms pull at each other without any load
-        let rest = match self.at_peace() {
-            true => 0.0,
-            false => {
-                let sites = vec![[0.0; D]; x.len()];
-                self.imbalance(&sites, &mut r, support);
-                norm(&r)
-            }
-        };
+        let rest = self.rest(support);
         let mut scale = self.imbalance(&x, &mut r, support).hypot(rest);
         let mut iterations = 0;
         for _ in 0..NEWTON {
@@ -239,6 +231,18 @@ impl<const D: usize> Model<D> {
         })
     }
 
+    /// What atoms at their sites pull at each other without any load; 0 of other laws.
+    fn rest(&mut self, support: &Support<D>) -> f64 {
+        if self.at_peace() {
+            return 0.0;
+        }
+        let before = self.values(&self.u);
+        let mut r = vec![[0.0; D]; before.len()];
+        self.imbalance(&vec![[0.0; D]; before.len()], &mut r, support);
+        self.set_values(&before);
+        norm(&r)
+    }
+
     /// Forces on the free components at displacements `x`, and the size of the loads and reactions.
     fn imbalance(&mut self, x: &[[f64; D]], r: &mut [[f64; D]], support: &Support<D>) -> f64 {
         self.set_values(x);
@@ -278,10 +282,11 @@ impl<const D: usize> Model<D> {
         let top = largest_ratio(&self.body, self.interaction.as_mut(), &mass);
         // a step of 1 is stable to 4; half of that leaves room for stiffening and contact
         mass.iter_mut().for_each(|m| *m *= 0.5 * top);
+        let rest = self.rest(support);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
         relax(&mut x, &mass, support, goal, |x, f| {
-            let scale = self.imbalance(x, &mut r, support);
+            let scale = self.imbalance(x, &mut r, support).hypot(rest);
             f.copy_from_slice(&r);
             scale
         })
