@@ -59,7 +59,7 @@ fn check<const D: usize>(name: &str, spec: &Spec) {
 
 #[test]
 fn crystals_with_a_vacancy_relax() {
-    // ends that jump, or crystals far from equilibrium, have no state nearby to relax to
+    // ends that jump have no state nearby to relax to
     let smooth = ["lj, shifted force", "morse, shifted force"];
     for (name, potential) in potentials() {
         for family in [FamilyChoice::Stencil, FamilyChoice::Neighbours] {
@@ -68,7 +68,7 @@ fn crystals_with_a_vacancy_relax() {
                 let spec = atoms(Triangular, 6, &potential, family, false);
                 check::<2>(&name, &with_vacancy(spec));
             }
-            // small free crystals of this embedding do not keep their corners
+            // on small free blocks of embedded atoms Newton's method does not converge: their corners move far
             let embedded = name.starts_with("eam, closed form");
             if smooth.iter().any(|s| name.starts_with(s)) || embedded {
                 let spec = atoms(Fcc, 3, &potential, family, embedded);
