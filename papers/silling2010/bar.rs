@@ -100,7 +100,7 @@ pub enum Way {
 /// Radii of levels 1 and 2 (v): not given; these reproduce the figures (erratum 4).
 pub const RADII: [i64; 2] = [40, 80];
 /// Of [`Way::Energy`]: coarse bonds are as long as two balls.
-const ENERGY_RADII: [i64; 2] = [16, 48];
+pub const ENERGY_RADII: [i64; 2] = [16, 48];
 
 /// Options of a level of a given radius (v).
 pub fn options(scheme: Scheme, radius: i64) -> Options {

@@ -8,7 +8,7 @@ use peridyne_io::write::table::Table;
 use peridyne_theory::coarsen::lattice::LatticeBlock;
 use peridyne_theory::coarsen::{Scheme, Selection, coarsen};
 
-use super::bar::{RADII, REACH, V, options};
+use super::bar::{ENERGY_RADII, REACH, V, options};
 use super::compare::failed;
 use crate::{Context, Failure, Findings};
 
@@ -87,7 +87,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             if level > 0 {
                 let begin = Instant::now();
                 let keep = Selection::every(3).choose(&body).map_err(failed)?;
-                let way = options(Scheme::Rows, RADII[level - 1]);
+                let way = options(Scheme::Energy, ENERGY_RADII[level - 1]);
                 let (coarse, report) = coarsen(&body, &keep, &way).map_err(failed)?;
                 effort[level - 1][s] = report.work.flops;
                 making[level - 1][s] = begin.elapsed().as_secs_f64();
