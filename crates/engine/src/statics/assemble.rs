@@ -18,33 +18,35 @@ pub fn linear_body<const D: usize>(
     for (n, &s) in body.slots.iter().enumerate() {
         id[s as usize] = n as u32;
     }
-    let mut bonds: Vec<BondTangent<D>> = vec![];
+    let mut bonds = Bonds::default();
     interaction.tangents(body, u, &mut |mut bond| {
         (bond.i, bond.j) = (id[bond.i] as usize, id[bond.j] as usize);
-        bonds.push(bond);
+        bonds.push(&bond);
     });
-    bonds.sort_by_key(|b| b.i);
+    bonds.sort();
     let n = body.points();
     let mut first = vec![0; n + 1];
-    for b in &bonds {
-        first[b.i + 1] += 1;
+    for b in &bonds.direct {
+        first[b.i as usize + 1] += 1;
     }
     for i in 0..n {
         first[i + 1] += first[i];
     }
+    let gain: Vec<f64> = match bonds.scalar.is_empty() {
+        true => vec![],
+        false => (body.slots.iter())
+            .map(|s| interaction.gain(*s as usize))
+            .collect(),
+    };
     let rows = Rows {
         bonds: &bonds,
         first: &first,
-        gain: body
-            .slots
-            .iter()
-            .map(|s| interaction.gain(*s as usize))
-            .collect(),
+        gain,
     };
     let points: Vec<usize> = (0..n).collect();
     let parts: Vec<Part<D>> = points
         .par_chunks(CHUNK)
-        .map_init(|| Row::empty(n), |row, chunk| rows.part(chunk, row))
+        .map_init(|| rows.row(), |row, chunk| rows.part(chunk, row))
         .collect();
     let at = |s: u32| {
         let x = body.position(s as usize);
@@ -70,6 +72,65 @@ pub fn linear_body<const D: usize>(
     made
 }
 
+/// What a bond does by itself.
+#[derive(Debug, Clone, Copy)]
+struct DirectBond<const D: usize> {
+    i: u32,
+    j: u32,
+    stiffness: [[f64; D]; D],
+}
+
+/// What a bond does through the scalars of its ends, as in [`BondTangent`].
+#[derive(Debug, Clone, Copy)]
+struct ScalarBond<const D: usize> {
+    share: [f64; D],
+    pull: [[f64; D]; 2],
+}
+
+/// All bonds.
+#[derive(Default)]
+struct Bonds<const D: usize> {
+    direct: Vec<DirectBond<D>>,
+    /// Of laws without a scalar: empty.
+    scalar: Vec<ScalarBond<D>>,
+}
+
+impl<const D: usize> Bonds<D> {
+    fn push(&mut self, bond: &BondTangent<D>) {
+        let scalar = ScalarBond {
+            share: bond.share,
+            pull: bond.pull,
+        };
+        if !self.scalar.is_empty() || scalar.share != [0.0; D] || scalar.pull != [[0.0; D]; 2] {
+            // those before had none
+            let none = ScalarBond {
+                share: [0.0; D],
+                pull: [[0.0; D]; 2],
+            };
+            self.scalar.resize(self.direct.len(), none);
+            self.scalar.push(scalar);
+        }
+        self.direct.push(DirectBond {
+            i: bond.i as u32,
+            j: bond.j as u32,
+            stiffness: bond.stiffness,
+        });
+    }
+
+    /// Into the order of i; most interactions come in it.
+    fn sort(&mut self) {
+        if self.direct.is_sorted_by_key(|b| b.i) {
+            return;
+        }
+        let mut order: Vec<usize> = (0..self.direct.len()).collect();
+        order.sort_by_key(|k| self.direct[*k].i);
+        self.direct = order.iter().map(|k| self.direct[*k]).collect();
+        if !self.scalar.is_empty() {
+            self.scalar = order.iter().map(|k| self.scalar[*k]).collect();
+        }
+    }
+}
+
 /// Rows of some points.
 struct Part<const D: usize> {
     end: Vec<usize>,
@@ -79,25 +140,20 @@ struct Part<const D: usize> {
 
 struct Rows<'a, const D: usize> {
     /// In order of i.
-    bonds: &'a [BondTangent<D>],
+    bonds: &'a Bonds<D>,
     first: &'a [usize],
+    /// Of laws without a scalar: empty.
     gain: Vec<f64>,
 }
 
-/// One row in the making: which place each partner has.
+/// One row in the making.
 struct Row<const D: usize> {
+    /// Which place each partner has, where a partner may come from several bonds.
     place: Vec<u32>,
     entries: Vec<(u32, [[f64; D]; D])>,
 }
 
 impl<const D: usize> Row<D> {
-    fn empty(points: usize) -> Self {
-        Row {
-            place: vec![u32::MAX; points],
-            entries: vec![],
-        }
-    }
-
     fn add(&mut self, j: usize, block: impl Fn(usize, usize) -> f64) {
         if self.place[j] == u32::MAX {
             self.place[j] = self.entries.len() as u32;
@@ -113,8 +169,17 @@ impl<const D: usize> Row<D> {
 }
 
 impl<const D: usize> Rows<'_, D> {
-    fn of(&self, i: usize) -> &[BondTangent<D>] {
-        &self.bonds[self.first[i]..self.first[i + 1]]
+    fn row(&self) -> Row<D> {
+        Row {
+            place: vec![u32::MAX; self.gain.len()],
+            entries: vec![],
+        }
+    }
+
+    fn of(&self, i: usize) -> impl Iterator<Item = (&DirectBond<D>, &ScalarBond<D>)> {
+        let range = self.first[i]..self.first[i + 1];
+        let scalar = &self.bonds.scalar[range.clone()];
+        self.bonds.direct[range].iter().zip(scalar)
     }
 
     fn part(&self, points: &[usize], row: &mut Row<D>) -> Part<D> {
@@ -124,10 +189,15 @@ impl<const D: usize> Rows<'_, D> {
             block: vec![],
         };
         for &i in points {
-            self.gather(i, row);
+            match self.gain.is_empty() {
+                true => self.gather_direct(i, row),
+                false => self.gather(i, row),
+            }
             row.entries.sort_unstable_by_key(|e| e.0);
             for (j, block) in row.entries.drain(..) {
-                row.place[j as usize] = u32::MAX;
+                if let Some(place) = row.place.get_mut(j as usize) {
+                    *place = u32::MAX;
+                }
                 // a point does not pull itself
                 if j as usize != i {
                     part.partner.push(j);
@@ -139,30 +209,53 @@ impl<const D: usize> Rows<'_, D> {
         part
     }
 
+    /// Bonds alone; a partner that is met twice, across two borders of a small periodic body, has one block.
+    fn gather_direct(&self, i: usize, row: &mut Row<D>) {
+        for bond in &self.bonds.direct[self.first[i]..self.first[i + 1]] {
+            row.entries.push((bond.j, bond.stiffness));
+        }
+        // stable: sums have one order
+        row.entries.sort_by_key(|e| e.0);
+        row.entries.dedup_by(|again, kept| {
+            let same = again.0 == kept.0;
+            if same {
+                for a in 0..D {
+                    for b in 0..D {
+                        kept.1[a][b] += again.1[a][b];
+                    }
+                }
+            }
+            same
+        });
+    }
+
     /// Every `η_jk` is `(u_k − u_i) − (u_j − u_i)`.
     fn gather(&self, i: usize, row: &mut Row<D>) {
         let mut pulls = [0.0; D];
-        for bond in self.of(i) {
-            row.add(bond.j, |a, b| bond.stiffness[a][b]);
+        for (bond, scalar) in self.of(i) {
+            let j = bond.j as usize;
+            row.add(j, |a, b| bond.stiffness[a][b]);
             for a in 0..D {
-                pulls[a] += bond.pull[0][a];
+                pulls[a] += scalar.pull[0][a];
             }
-            let gain = self.gain[bond.j];
+            let gain = self.gain[j];
             if gain != 0.0 {
                 let mut shares = [0.0; D];
-                for far in self.of(bond.j) {
-                    row.add(far.j, |a, b| gain * bond.pull[1][a] * far.share[b]);
+                for (far, beyond) in self.of(j) {
+                    row.add(far.j as usize, |a, b| {
+                        gain * scalar.pull[1][a] * beyond.share[b]
+                    });
                     for b in 0..D {
-                        shares[b] += far.share[b];
+                        shares[b] += beyond.share[b];
                     }
                 }
-                row.add(bond.j, |a, b| -gain * bond.pull[1][a] * shares[b]);
+                row.add(j, |a, b| -gain * scalar.pull[1][a] * shares[b]);
             }
         }
         let gain = self.gain[i];
         if gain != 0.0 {
-            for bond in self.of(i) {
-                row.add(bond.j, |a, b| gain * pulls[a] * bond.share[b]);
+            for (bond, scalar) in self.of(i) {
+                row.add(bond.j as usize, |a, b| gain * pulls[a] * scalar.share[b]);
             }
         }
     }
