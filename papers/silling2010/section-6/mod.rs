@@ -147,7 +147,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         .log_x()
         .log_y()
         // room for the legend
-        .y_range(1e-6, 1e3)
+        .y_range(1e-6, 1e5)
         .line("elimination, level 0", &nodes[0], &solving[0])
         .line("elimination, level 1", &nodes[0], &solving[1])
         .line("elimination, level 2", &nodes[0], &solving[2])
