@@ -23,8 +23,8 @@ pub enum FactorError {
 
 /// A factored sparse matrix.
 pub enum Factors {
-    Symmetric(Llt<usize, f64>),
-    General(Lu<usize, f64>),
+    Symmetric(Box<Llt<usize, f64>>),
+    General(Box<Lu<usize, f64>>),
 }
 
 fn matrix(
@@ -45,12 +45,14 @@ impl Factors {
     /// A pivot that is not positive, by its row (in an order that may be the solver's own); no memory.
     pub fn symmetric(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
         let factors = matrix(n, entries)?.sp_cholesky(Side::Lower);
-        factors.map(Factors::Symmetric).map_err(|e| match e {
-            LltError::Numeric(Pivot::NonPositivePivot { index }) => {
-                FactorError::NotPositive { row: index }
-            }
-            LltError::Generic(_) => FactorError::TooLarge,
-        })
+        factors
+            .map(|f| Factors::Symmetric(Box::new(f)))
+            .map_err(|e| match e {
+                LltError::Numeric(Pivot::NonPositivePivot { index }) => {
+                    FactorError::NotPositive { row: index }
+                }
+                LltError::Generic(_) => FactorError::TooLarge,
+            })
     }
 
     /// LU of any matrix.
@@ -60,7 +62,7 @@ impl Factors {
     pub fn general(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
         let factors = matrix(n, entries)?.sp_lu();
         factors
-            .map(Factors::General)
+            .map(|f| Factors::General(Box::new(f)))
             .map_err(|_| FactorError::Singular)
     }
 

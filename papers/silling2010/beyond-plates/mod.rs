@@ -39,7 +39,7 @@ impl Plate {
     }
 
     /// Four times the square of the distance from the middle.
-    fn from_middle(&self, [x, y]: [i64; 2]) -> i64 {
+    fn off_middle(&self, [x, y]: [i64; 2]) -> i64 {
         (2 * x - self.side).pow(2) + (2 * y - self.side).pow(2)
     }
 
@@ -67,7 +67,7 @@ impl Plate {
             // bits of a multiplicative hash
             let h =
                 ((x / 3 * 7919 + y / 3 * 104_729 + 1) as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            (h >> 40) % 2 == 0
+            (h >> 40).is_multiple_of(2)
         };
         self.body(|_| true, |i, j| if hard(i) && hard(j) { 10.0 } else { 1.0 })
     }
@@ -75,7 +75,7 @@ impl Plate {
     /// A round hole of a sixth of the width, between the points that are retained last.
     fn hole(&self) -> LinearBody<2> {
         let radius = self.side / 13;
-        self.body(|i| self.from_middle(i) > (2 * radius).pow(2), |_, _| 1.0)
+        self.body(|i| self.off_middle(i) > (2 * radius).pow(2), |_, _| 1.0)
     }
 
     /// Bonds across a segment in the middle, a third of the width long, are cut.

@@ -41,7 +41,7 @@ pub fn lowest<const D: usize>(
     // a bound on ω², for the shift that makes rigid motions harmless
     let stiffest = (0..body.points())
         .map(|i| {
-            let sum: f64 = body.row(i).1.iter().map(|c| largest(c)).sum();
+            let sum: f64 = body.row(i).1.iter().map(largest).sum();
             2.0 * sum / body.density[i]
         })
         .fold(0.0, f64::max);

@@ -42,7 +42,7 @@ fn apart<const D: usize>(model: &mut dyn Simulation, u: &[Point]) -> f64 {
         .map(|c| std::array::from_fn(|a| c[a]))
         .collect();
     let step = 1e-4;
-    let mut at = |s: f64| {
+    let at = |s: f64| {
         let moved: Vec<Point> = u
             .iter()
             .zip(&change)
@@ -51,9 +51,9 @@ fn apart<const D: usize>(model: &mut dyn Simulation, u: &[Point]) -> f64 {
         model.forces_under(&moved)
     };
     // Richardson: fourth order
-    let f = [-2.0, -1.0, 1.0, 2.0].map(|s| at(s));
+    let f = [-2.0, -1.0, 1.0, 2.0].map(at);
     let (mut worst, mut most) = (0.0f64, 0.0f64);
-    for i in 0..n {
+    (0..n).for_each(|i| {
         let exact = body.force(&linear, i);
         for a in 0..D {
             let slope =
@@ -61,7 +61,7 @@ fn apart<const D: usize>(model: &mut dyn Simulation, u: &[Point]) -> f64 {
             worst = worst.max((slope - exact[a]).abs());
             most = most.max(exact[a].abs());
         }
-    }
+    });
     worst / most
 }
 
