@@ -106,14 +106,11 @@ fn moved(spec: &Spec) -> (Vec<[f64; 3]>, f64, f64) {
     let bump = "0.01*exp(-((x-4)^2 + (y-4)^2 + (z-4)^2)/4)";
     spec.initial = vec![InitialSpec {
         set: "all".into(),
-        displacement: [Some(text(bump)), Some(text(bump)), Some(text(bump))].map(|c| c),
+        displacement: std::array::from_fn(|_| Some(text(bump))),
         velocity: [None, None, None],
     }];
-    for (a, c) in spec.initial[0].displacement.iter_mut().enumerate() {
-        if a >= spec.dimension {
-            *c = None;
-        }
-    }
+    let unused = &mut spec.initial[0].displacement[spec.dimension..];
+    unused.iter_mut().for_each(|c| *c = None);
     spec.schedule.time_step = TimeStep::Fixed(0.05);
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
@@ -145,7 +142,7 @@ fn a_periodic_field_moves_with_the_body() {
         let mut spec = block(LatticeKind::Square, [15.0, 7.0, 0.0], LawSpec::Springs(ONE));
         spec.horizon = Horizon::Ratio(2);
         spec.periodic = [Some(16.0), None, None];
-        let place = format!("(x - {cells} + 32) % 16").replace("% 16", "");
+        let place = format!("(x - {cells} + 32)");
         // a random factor per point, by a whole number that the shift keeps
         let wrapped = format!("({place}) - 16*floor(({place})/16)");
         let field = format!("1 + random({wrapped} + 0.5, y + 0.5, 0)");
