@@ -150,7 +150,11 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
                 pressure_scale: 1.0 / deck.units.plain_factor(Dim::PRESSURE),
                 pressure_unit: pressure_unit.to_string(),
                 trajectory: output.trajectory.clone(),
+                data: output.data.clone(),
                 species: deck.species.clone().unwrap_or_else(|| "X".into()),
+                density: deck.spec.materials[0].density,
+                mass_scale: 1.0 / deck.units.plain_factor(Dim::MASS),
+                corner: deck.corner,
                 periodic: deck.spec.periodic,
             }
         }),

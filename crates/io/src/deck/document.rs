@@ -90,9 +90,12 @@ pub struct Body {
     pub region: Option<At<Shape>>,
     /// Whole cells along each axis from the origin on, instead of a region.
     pub cells: Option<At<Vec<At<u32>>>>,
-    /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), a linear body with its micromoduli (.npz), or LAMMPS data of `atom_style peri` (.data, .lmp: volume
-    /// and density of each point, the atom type as mark), relative to the deck.
+    /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
+    /// and density of each point, the atom type as mark), or atoms: LAMMPS data of `atom_style atomic`, a LAMMPS dump
+    /// (.lammpstrj, .dump), extended XYZ (.extxyz). Relative to the deck.
     pub file: Option<At<String>>,
+    /// Time step of the frame to take from a dump or extended XYZ; the last frame when left out.
+    pub file_step: Option<At<u64>>,
     /// What one unit of the file's coordinates is; the deck's unit of length when left out. Densities of a file are in
     /// the deck's units.
     pub file_unit: Option<Number>,
@@ -428,6 +431,8 @@ pub struct Output {
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
     /// LAMMPS dump.
     pub trajectory: Option<At<String>>,
+    /// Atoms only: LAMMPS data file (`atom_style atomic`, with velocities) of the last state.
+    pub data: Option<At<String>>,
 }
 
 macro_rules! names {

@@ -42,6 +42,8 @@ pub struct Deck {
     pub output: OutputSpec,
     /// Name of the atoms, where a file says it.
     pub species: Option<String>,
+    /// Lower corner of the periods.
+    pub corner: [f64; 3],
     pub units: UnitSystem,
     /// Threads asked for.
     pub threads: Option<usize>,
@@ -75,6 +77,8 @@ pub struct OutputSpec {
     pub picture: bool,
     /// File of all frames of atoms.
     pub trajectory: Option<(PathBuf, Format)>,
+    /// LAMMPS data file of the last state of atoms.
+    pub data: Option<PathBuf>,
 }
 
 impl Deck {
@@ -114,6 +118,7 @@ impl Deck {
             spec: lowered.spec,
             output: lowered.output,
             species: lowered.species,
+            corner: lowered.corner,
             units: document.units.map(|u| u.value).unwrap_or_default(),
             threads: lowered.threads,
             duration: lowered.duration,

@@ -42,6 +42,8 @@ pub struct Points {
 /// Box and mass of a file of atoms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtomsFile {
+    /// Lower corner of the box.
+    pub corner: [f64; 3],
     /// Lengths of the box.
     pub cell: [f64; 3],
     /// Periodic axes, where the file says it.
@@ -62,17 +64,29 @@ pub struct ReadError {
     pub message: String,
 }
 
-const EXTENSIONS: [&str; 10] = [
-    "npz", "inp", "msh", "data", "lmp", "txt", "dat", "xyz", "csv", "extxyz",
+const EXTENSIONS: [&str; 12] = [
+    "npz",
+    "inp",
+    "msh",
+    "data",
+    "lmp",
+    "txt",
+    "dat",
+    "xyz",
+    "csv",
+    "extxyz",
+    "lammpstrj",
+    "dump",
 ];
 
-/// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), extended XYZ
-/// (`.extxyz`, and `.xyz` whose second line says so; the last frame), and plain text (`.txt`, `.xyz`, `.csv` with blanks,
-/// `.dat`).
+/// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), LAMMPS dumps of
+/// atoms (`.lammpstrj`, `.dump`), extended XYZ (`.extxyz`, and `.xyz` whose second line says so), and plain text (`.txt`,
+/// `.xyz`, `.csv` with blanks, `.dat`). `frame` is which of a dump's or of an `.extxyz` file's; others have one state.
 ///
 /// # Errors
-/// The file cannot be read, is of another kind, truncated, has NaN, cells without volume, or points that coincide.
-pub fn points(path: &Path) -> Result<Points, ReadError> {
+/// The file cannot be read, is of another kind, truncated, has NaN, cells without volume, points that coincide, or not
+/// this frame.
+pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     let name = path.display().to_string();
     let extension = path
         .extension()
@@ -86,7 +100,20 @@ pub fn points(path: &Path) -> Result<Points, ReadError> {
     };
     if !EXTENSIONS.contains(&extension.as_str()) {
         return Err(error(format!(
-            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .data, .extxyz or .npz"
+            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .data, .extxyz, .lammpstrj or .npz"
+        )));
+    }
+    // trajectories may be larger than memory
+    match extension.as_str() {
+        "extxyz" => return whole(sourced(extxyz::extxyz(path, frame)?, false, &name)?, &name),
+        "lammpstrj" | "dump" => {
+            return whole(sourced(dump::dump(path, frame)?, false, &name)?, &name);
+        }
+        _ => {}
+    }
+    if frame != Frame::Last {
+        return Err(error(format!(
+            "a file \".{extension}\" has one state: frames are in .lammpstrj and .extxyz"
         )));
     }
     if extension == "npz" {
@@ -98,7 +125,7 @@ pub fn points(path: &Path) -> Result<Points, ReadError> {
     parse(&text, &name, &extension)
 }
 
-/// The same from a text; `extension` decides the format.
+/// The same from a text, of the last frame; `extension` decides the format.
 pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadError> {
     let second = text.lines().nth(1).unwrap_or("");
     let extended = second.contains("Lattice=") || second.contains("Properties=");
@@ -108,11 +135,17 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
         "data" | "lmp" if lammps::file(text, name)?.style == crate::lammps::Style::Atomic => {
             sourced(data::parse_data(text, name)?, true, name)?
         }
+        "lammpstrj" | "dump" => sourced(dump::parse_dump(text, name, Frame::Last)?, false, name)?,
         "inp" => abaqus::parse(text, name)?,
         "msh" => gmsh::parse(text, name)?,
         "data" | "lmp" => lammps::parse(text, name)?,
         _ => text::parse(text, name)?,
     };
+    whole(points, name)
+}
+
+/// Refuses points that coincide.
+fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
     let mut seen = HashMap::with_capacity(points.cloud.position.len());
     for (i, (x, line)) in points.cloud.position.iter().zip(&points.lines).enumerate() {
         // + 0.0 makes −0 and 0 one
@@ -160,6 +193,7 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
     let volume = cell.iter().filter(|c| **c > 0.0).product::<f64>() / n as f64;
     Ok(Sourced {
         atoms: Some(AtomsFile {
+            corner: atoms.low,
             cell,
             periodic: (!lammps).then_some(atoms.periodic),
             mass,

@@ -186,13 +186,13 @@ fn what_is_wrong_is_said_with_its_line() {
         assert!(got.contains(message), "{message:?} is not in {got:?}");
     }
     assert!(
-        points(Path::new("no/such/file.txt"))
+        points(Path::new("no/such/file.txt"), Frame::Last)
             .unwrap_err()
             .message
             .contains("cannot read it")
     );
     assert!(
-        points(Path::new("mesh.vtk"))
+        points(Path::new("mesh.vtk"), Frame::Last)
             .unwrap_err()
             .message
             .contains("unknown kind of file")

@@ -63,6 +63,9 @@ pub(super) fn body(
             "file_unit belongs to a file; a lattice has its spacing",
         ));
     }
+    if let (Some(_), Some(step)) = (&written.lattice, &written.file_step) {
+        return Err(context.error(&step.span, "file_step belongs to a file with frames"));
+    }
     match (&written.lattice, spec) {
         (Some(kind), _) => lattice(context, body, LatticeKind::from(kind.value)),
         (None, Some(mut cloud)) => {
@@ -105,6 +108,7 @@ pub(super) fn body(
                 cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
                 cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
                 if let Some(atoms) = &mut context.atoms {
+                    atoms.corner = atoms.corner.map(|c| c * unit);
                     atoms.cell = atoms.cell.map(|c| c * unit);
                 }
             }
@@ -345,6 +349,20 @@ fn mark_number(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<i3
                 };
                 context.error_with(&mark.span, format!("the file has no mark \"{name}\""), help)
             }),
+    }
+}
+
+/// Lower corner of the periods: of the whole cells, of the region, or of the file's box.
+pub(super) fn corner(context: &Context, written: &Body, body: &BodySpec) -> [f64; 3] {
+    match body {
+        BodySpec::Lattice { origin, region, .. } => {
+            let low = match &written.cells {
+                Some(_) => *origin,
+                None => region.bounds().0,
+            };
+            low.map(|c| if c.is_finite() { c } else { 0.0 })
+        }
+        _ => context.atoms.as_ref().map_or([0.0; 3], |file| file.corner),
     }
 }
 

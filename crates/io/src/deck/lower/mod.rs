@@ -19,8 +19,8 @@ use super::error::DeckError;
 use super::source::Source;
 use super::units::{Dim, short};
 use super::value::{At, Or, Written};
-use crate::read::Points;
 use crate::read::eam::{self, EamFile};
+use crate::read::{Frame, Points};
 use context::{Context, Result};
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule,
@@ -46,7 +46,11 @@ impl Files<'_> {
             });
         };
         let path = self.folder.join(&file.value);
-        crate::read::points(&path).map_err(|e| context.error(&file.span, e.to_string()))
+        let (frame, span) = match &body.file_step {
+            Some(step) => (Frame::Step(step.value), &step.span),
+            None => (Frame::Last, &file.span),
+        };
+        crate::read::points(&path, frame).map_err(|e| context.error(span, e.to_string()))
     }
 
     /// The table of an embedded-atom model.
@@ -64,6 +68,8 @@ pub(super) struct Lowered {
     pub spec: Spec,
     /// Name of the atoms, where a file says it.
     pub species: Option<String>,
+    /// Lower corner of the periods.
+    pub corner: [f64; 3],
     pub output: OutputSpec,
     pub threads: Option<usize>,
     pub duration: Option<f64>,
@@ -208,6 +214,7 @@ pub(super) fn lower(
         .as_ref()
         .and_then(|a| a.species.first().cloned());
     Ok(Lowered {
+        corner: body::corner(&context, &document.body.value, &spec.body),
         species: species.or(of_body.filter(|s| s.parse::<u32>().is_err())),
         spec,
         output,

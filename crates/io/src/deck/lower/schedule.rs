@@ -216,6 +216,16 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             ));
         }
     };
+    let data = match &written.data {
+        Some(name) if !atoms => {
+            return Err(context.error_with(
+                &name.span,
+                "a LAMMPS data file is one of atoms",
+                "points have VTU series and dumps: output.vtu, output.dump",
+            ));
+        }
+        name => name.as_ref().map(|n| n.value.clone().into()),
+    };
     Ok(OutputSpec {
         dir: written.dir.clone().map(Into::into),
         every: positive(&written.every, "every")?,
@@ -227,5 +237,6 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         history: positive(&written.history, "history")?,
         picture: written.picture.unwrap_or(!atoms),
         trajectory,
+        data,
     })
 }

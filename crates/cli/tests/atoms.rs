@@ -1,0 +1,153 @@
+//! Atoms through the program: LAMMPS dumps and data files in and out, and what is left of a run that stops.
+
+use peridyne_io::read::{Atoms, Frame, data::data, dump::dump, extxyz::extxyz};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+fn good(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../decks/good")
+        .join(name)
+}
+
+/// `peridyne run DECK --out OUT …`: exit code and messages.
+fn run(deck: &Path, out: &Path, more: &[&str]) -> (Option<i32>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .arg("run")
+        .arg(deck)
+        .arg("--out")
+        .arg(out)
+        .args(more)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), text)
+}
+
+/// Largest difference of the coordinates, less whole periods.
+fn apart(a: &Atoms, b: &[[f64; 3]], wrapped: bool) -> f64 {
+    let mut worst = 0.0f64;
+    for (x, y) in a.position.iter().zip(b) {
+        for c in 0..3 {
+            let period = a.high[c] - a.low[c];
+            let d = x[c] - y[c];
+            let whole = if wrapped {
+                (d / period).round() * period
+            } else {
+                0.0
+            };
+            worst = worst.max((d - whole).abs());
+        }
+    }
+    worst
+}
+
+/// The dump begins with atoms that have left their box; LAMMPS wrote its next frame 100 steps later.
+#[test]
+fn a_frame_of_a_lammps_dump_goes_on_as_lammps_did() {
+    let dir = TempDir::new().unwrap();
+    let (code, text) = run(&good("liquid_from_dump.toml"), dir.path(), &[]);
+    assert_eq!(code, Some(0), "{text}");
+    let file = good("liquid.lammpstrj");
+    let before = dump(&file, Frame::Step(2000)).unwrap();
+    let after = dump(&file, Frame::Step(2100)).unwrap();
+    let trajectory = dir.path().join("liquid.extxyz");
+    assert_eq!(
+        extxyz(&trajectory, Frame::Step(0)).unwrap().position,
+        before.position
+    );
+    let last = extxyz(&trajectory, Frame::Last).unwrap();
+    assert_eq!((last.step, last.low), (Some(100), after.low));
+    assert_eq!(last.periodic, [true; 3]);
+    let moved = apart(&after, &before.position, false);
+    assert!(moved > 0.5, "{moved}");
+    let worst = apart(&after, &last.position, false);
+    assert!(worst < 1e-9, "{worst}");
+    let (v, w) = (after.velocity.unwrap(), last.velocity.clone().unwrap());
+    for (v, w) in v.iter().flatten().zip(w.iter().flatten()) {
+        assert!((v - w).abs() < 1e-8, "{v} {w}");
+    }
+
+    // the same state as a data file: in the box
+    let path = dir.path().join("last.data");
+    let file = data(&path).unwrap();
+    assert_eq!(file.species[0].mass, Some(1.0));
+    assert_eq!(file.velocity, last.velocity);
+    assert!(apart(&last, &file.position, true) < 1e-14);
+    for x in &file.position {
+        assert!((0..3).all(|a| (file.low[a]..file.high[a]).contains(&x[a])));
+    }
+
+    // and 50 steps from there are those of a run that was not cut
+    let deck = dir.path().join("more.toml");
+    let text = std::fs::read_to_string(good("liquid_from_dump.toml")).unwrap();
+    let text = text.replace(
+        "body = { file = \"liquid.lammpstrj\", file_step = 2000 }",
+        "body = { file = \"last.data\" }\nperiodic = [\"x\", \"y\", \"z\"]",
+    );
+    std::fs::write(&deck, text).unwrap();
+    let more = dir.path().join("more");
+    let (code, text) = run(&deck, &more, &["--set", "run.steps=50"]);
+    assert_eq!(code, Some(0), "{text}");
+    let straight = dir.path().join("straight");
+    let (code, text) = run(
+        &good("liquid_from_dump.toml"),
+        &straight,
+        &["--set", "run.steps=150"],
+    );
+    assert_eq!(code, Some(0), "{text}");
+    let [more, straight] =
+        [more, straight].map(|d| extxyz(&d.join("liquid.extxyz"), Frame::Last).unwrap());
+    let worst = apart(&straight, &more.position, true);
+    assert!(worst < 1e-9, "{worst}");
+}
+
+/// A table in metal units: the mass comes back as it was read, and a chain's box has lengths along all axes.
+#[test]
+fn data_files_have_the_units_of_the_deck() {
+    let dir = TempDir::new().unwrap();
+    let table = good("copper.eam.alloy").canonicalize().unwrap();
+    let copper = format!(
+        "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
+         body = {{ lattice = \"fcc\", spacing = 3.615, origin = [1, 2, 3], cells = [4, 4, 4] }}\n\
+         material.law = {{ eam = {{ file = {table:?} }} }}\n\
+         run = {{ steps = 2, time_step = 0.001 }}\noutput = {{ data = \"last.data\", vtu = false }}\n"
+    );
+    let chain = "units = \"lj\"\nbody = { lattice = \"chain\", spacing = 1.1, cells = [10] }\n\
+         material = { mass = 2, law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5 } } }\n\
+         run = { steps = 2, time_step = 0.001 }\noutput = { data = \"last.data\", vtu = false }\n";
+    for (text, mass, name, length) in [
+        (copper.as_str(), 63.546, "Cu", 4.0 * 3.615),
+        (chain, 2.0, "X", 1.0),
+    ] {
+        let deck = dir.path().join("deck.toml");
+        std::fs::write(&deck, text).unwrap();
+        let (code, text) = run(&deck, dir.path(), &[]);
+        assert_eq!(code, Some(0), "{text}");
+        let file = data(&dir.path().join("last.data")).unwrap();
+        assert_eq!(file.species[0].mass, Some(mass));
+        assert_eq!(file.name(0), name);
+        assert!((file.high[2] - file.low[2] - length).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_run_that_stops_keeps_the_last_good_frame() {
+    let dir = TempDir::new().unwrap();
+    let deck = dir.path().join("deck.toml");
+    let text = "units = \"lj\"\nfamily = \"stencil\"\nhorizon = { m_ratio = 1 }\n\
+        body = { lattice = \"chain\", spacing = 1.1, cells = [10] }\n\
+        material = { mass = 1, law = { lennard_jones = { epsilon = 1, sigma = 1 } } }\n\
+        initial = [{ velocity = [\"-100*(x-5)\"] }]\n\
+        run = { steps = 50, time_step = 0.001 }\n\
+        output = { trajectory = \"t.extxyz\", data = \"last.data\", vtu = false }\n";
+    std::fs::write(&deck, text).unwrap();
+    let (code, text) = run(&deck, dir.path(), &[]);
+    assert_eq!(code, Some(1), "{text}");
+    let last = extxyz(&dir.path().join("t.extxyz"), Frame::Last).unwrap();
+    let step = last.step.unwrap();
+    assert!(step > 0 && step < 50, "{step}");
+    assert!(text.contains(&format!("step {step}")), "{text}");
+    assert!(data(&dir.path().join("last.data")).is_ok());
+}
