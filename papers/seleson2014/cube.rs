@@ -33,6 +33,8 @@ pub struct Wave {
     pub spacing: f64,
     /// Points along x.
     pub across: usize,
+    /// Displacements, in the precision that differences of runs need.
+    pub u: Vec<[f32; 3]>,
     /// Radial displacement at whole multiples of the spacing along +x, +y, +z, from the middle.
     pub radial: [Vec<f64>; 3],
     /// Strain energy density of the planes x = 0, y = 0, z = 0 where the other coordinates are not negative: those
@@ -106,6 +108,7 @@ impl Cube {
             bytes: info.bytes,
             steps: self.steps,
             record,
+            u: displacements(sim.as_mut()),
             spacing: h,
             across: n,
             radial,
@@ -114,7 +117,37 @@ impl Cube {
     }
 }
 
+/// Points that are read at once.
+const BLOCK: usize = 8192;
+
+fn displacements(sim: &mut dyn Simulation) -> Vec<[f32; 3]> {
+    let mut u = vec![[0.0; 3]; sim.info().points as usize];
+    let mut values = [0.0; BLOCK];
+    for (block, part) in u.chunks_mut(BLOCK).enumerate() {
+        for axis in 0..3 {
+            let values = &mut values[..part.len()];
+            sim.read(PointField::Displacement(axis), block * BLOCK, values);
+            for (u, x) in part.iter_mut().zip(values) {
+                u[axis] = *x as f32;
+            }
+        }
+    }
+    u
+}
+
 impl Wave {
+    /// `√(Σ |u − v|²/Σ |v|²)` over all points, v of the other run.
+    pub fn difference(&self, other: &Wave) -> f64 {
+        let pairs = self.u.as_flattened().iter().zip(other.u.as_flattened());
+        let (mut apart, mut size) = (0.0, 0.0);
+        for (u, v) in pairs {
+            let (u, v) = (f64::from(*u), f64::from(*v));
+            apart += (u - v) * (u - v);
+            size += v * v;
+        }
+        (apart / size).sqrt()
+    }
+
     /// Distance of the largest radial displacement beyond r = 0.05 along each axis.
     pub fn crests(&self) -> [f64; 3] {
         [0, 1, 2].map(|a| {

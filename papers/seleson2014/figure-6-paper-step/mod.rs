@@ -1,6 +1,5 @@
 //! Fig. 6 with the paper's 10,000 steps, in parts of 500 that are kept.
 
-use crate::measure::relative_difference;
 use crate::seleson2014::cube::Cube;
 use crate::{Context, Failure, Findings};
 
@@ -33,11 +32,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     wave.pictures(&context.out, &mut found)?;
     wave.judge(&mut found);
-    let d = relative_difference(&near.radial[0], &wave.radial[0]);
+    let d = near.difference(&wave);
     found.holds(
         "step",
         format!(
-            "{} and {} steps: radial displacements along x differ by {:.3} %",
+            "{} and {} steps: displacements differ by {:.3} %",
             wave.steps,
             near.steps,
             100.0 * d

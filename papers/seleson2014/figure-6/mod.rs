@@ -2,7 +2,7 @@
 
 use peridyne_io::write::run_json::peak_memory_bytes;
 
-use crate::seleson2014::cube::{self, Cube, family};
+use crate::seleson2014::cube::{self, Cube, Wave, family};
 use crate::seleson2014::deck;
 use crate::{Context, Failure, Findings};
 
@@ -30,6 +30,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     wave.pictures(&context.out, &mut found)?;
     wave.judge(&mut found);
+    let other = |steps| Cube { steps, ..cube }.run(context);
+    let [long, short] = [cube.steps / 2, cube.steps * 2].map(other);
+    limit([&long?, &wave, &short?], &mut found);
 
     // the fine-scale simulation that was not run: a = h/4, ε = 12a, Δt/4
     let deck = deck(cube::DECK, "cube.toml", &[])?;
@@ -66,4 +69,28 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         peak < 2_000_000_000,
     );
     Ok(found)
+}
+
+/// The claim `limit`: the same with twice and half the step, in order of falling steps.
+fn limit(waves: [&Wave; 3], found: &mut Findings) {
+    let [long, middle, short] = waves;
+    let [a, b] = [long, middle].map(|w| w.difference(short));
+    found.holds(
+        "limit",
+        format!(
+            "displacements of {} and {} steps differ from those of {} by {:.3} % and {:.3} %",
+            long.steps,
+            middle.steps,
+            short.steps,
+            100.0 * a,
+            100.0 * b
+        ),
+        a > 3.0 * b,
+    );
+    // an error of C/n² with n steps: C (1/n² − 1/(2n)²) is b
+    found.measured(
+        "error of the time step by that, of the run that is shown",
+        400.0 / 3.0 * b,
+        "%",
+    );
 }

@@ -36,6 +36,7 @@ pub fn coarsened(deck: &Deck, file: &str, level: usize) -> Result<Rewritten, Str
     // files of atoms are not written of points
     if let Some(output) = table.get_mut("output").and_then(Value::as_table_mut) {
         output.remove("trajectory");
+        output.remove("data");
     }
     let title = &deck.spec.title;
     let comma = if title.is_empty() { "" } else { ", " };
