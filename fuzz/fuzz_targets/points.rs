@@ -6,7 +6,7 @@ use peridyne_io::read::parse;
 
 fuzz_target!(|input: (u8, &str)| {
     let (kind, text) = input;
-    let extension = ["txt", "inp", "msh", "data"][kind as usize % 4];
+    let extension = ["txt", "inp", "msh", "data", "extxyz", "lammpstrj"][kind as usize % 6];
     if let Err(error) = parse(text, "fuzz", extension) {
         assert!(!error.message.is_empty());
     }

@@ -141,13 +141,33 @@ fn a_run_that_stops_keeps_the_last_good_frame() {
         material = { mass = 1, law = { lennard_jones = { epsilon = 1, sigma = 1 } } }\n\
         initial = [{ velocity = [\"-100*(x-5)\"] }]\n\
         run = { steps = 50, time_step = 0.001 }\n\
-        output = { trajectory = \"t.extxyz\", data = \"last.data\", vtu = false }\n";
+        output = { trajectory = \"t.xyz\", data = \"last.data\", vtu = false }\n";
     std::fs::write(&deck, text).unwrap();
     let (code, text) = run(&deck, dir.path(), &[]);
     assert_eq!(code, Some(1), "{text}");
-    let last = extxyz(&dir.path().join("t.extxyz"), Frame::Last).unwrap();
+    let last = extxyz(&dir.path().join("t.xyz"), Frame::Last).unwrap();
     let step = last.step.unwrap();
     assert!(step > 0 && step < 50, "{step}");
     assert!(text.contains(&format!("step {step}")), "{text}");
     assert!(data(&dir.path().join("last.data")).is_ok());
+
+    // a frame of it begins another run, whatever its ending is
+    let text = std::fs::read_to_string(&deck).unwrap();
+    let text = text
+        .replace(
+            "family = \"stencil\"\nhorizon = { m_ratio = 1 }\n",
+            "dimension = 1\n",
+        )
+        .replace(
+            "body = { lattice = \"chain\", spacing = 1.1, cells = [10] }",
+            "body = { file = \"t.xyz\", file_step = 0 }",
+        )
+        .replace("sigma = 1 }", "sigma = 1, cutoff = 2.5 }")
+        .replace("steps = 50", "steps = 1")
+        .replace("trajectory = \"t.xyz\"", "trajectory = \"again.xyz\"");
+    std::fs::write(&deck, text).unwrap();
+    let (code, text) = run(&deck, dir.path(), &[]);
+    assert_eq!(code, Some(0), "{text}");
+    let again = extxyz(&dir.path().join("again.xyz"), Frame::Step(0)).unwrap();
+    assert!((again.position[9][0] - 9.9).abs() < 1e-12);
 }

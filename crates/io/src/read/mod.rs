@@ -23,6 +23,7 @@ pub use atoms::{Atoms, Frame, Species};
 use peridyne::spec::Cloud;
 use peridyne::statics::AnyLinearBody;
 use std::collections::HashMap;
+use std::io::{BufRead, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -81,7 +82,7 @@ const EXTENSIONS: [&str; 12] = [
 
 /// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), LAMMPS dumps of
 /// atoms (`.lammpstrj`, `.dump`), extended XYZ (`.extxyz`, and `.xyz` whose second line says so), and plain text (`.txt`,
-/// `.xyz`, `.csv` with blanks, `.dat`). `frame` is which of a dump's or of an `.extxyz` file's; others have one state.
+/// `.xyz`, `.csv` with blanks, `.dat`). `frame` is which of a dump's or of an extended XYZ file's; others have one state.
 ///
 /// # Errors
 /// The file cannot be read, is of another kind, truncated, has NaN, cells without volume, points that coincide, or not
@@ -105,7 +106,9 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     }
     // trajectories may be larger than memory
     match extension.as_str() {
-        "extxyz" => return whole(sourced(extxyz::extxyz(path, frame)?, false, &name)?, &name),
+        "extxyz" | "xyz" if extension == "extxyz" || begins_extended(path) => {
+            return whole(sourced(extxyz::extxyz(path, frame)?, false, &name)?, &name);
+        }
         "lammpstrj" | "dump" => {
             return whole(sourced(dump::dump(path, frame)?, false, &name)?, &name);
         }
@@ -125,10 +128,26 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     parse(&text, &name, &extension)
 }
 
+/// Is the second line of a file that of extended XYZ?
+fn begins_extended(path: &Path) -> bool {
+    let Ok(file) = std::fs::File::open(path) else {
+        return false;
+    };
+    // a line of a frame is short; what is not a text file may have none
+    let head = std::io::BufReader::new(file.take(1 << 16));
+    head.lines()
+        .nth(1)
+        .is_some_and(|line| line.is_ok_and(|line| is_extended(&line)))
+}
+
+/// Is this the second line of extended XYZ?
+fn is_extended(line: &str) -> bool {
+    line.contains("Lattice=") || line.contains("Properties=")
+}
+
 /// The same from a text, of the last frame; `extension` decides the format.
 pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadError> {
-    let second = text.lines().nth(1).unwrap_or("");
-    let extended = second.contains("Lattice=") || second.contains("Properties=");
+    let extended = text.lines().nth(1).is_some_and(is_extended);
     let points = match extension {
         "extxyz" => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
         "xyz" if extended => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
