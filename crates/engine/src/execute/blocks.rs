@@ -5,17 +5,24 @@ use super::simd::{Kernel, Simd};
 use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// Do `work` for every number below `count`, on threads. One call through a pointer per block costs nothing; the machinery of
+/// threads compiled for each of hundreds of kernels was a third of this crate.
+fn spread(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    if rayon::current_num_threads() == 1 || count == 1 {
+        (0..count).for_each(work);
+    } else {
+        (0..count).into_par_iter().for_each(work);
+    }
+}
+
 /// Run `kernel` on every block and leave block `b`'s result in `out[b]`.
 pub fn for_each_block<K: Kernel>(simd: Simd, kernel: &K, out: &mut [K::Out]) {
-    if rayon::current_num_threads() == 1 || out.len() == 1 {
-        out.iter_mut()
-            .enumerate()
-            .for_each(|(b, o)| *o = simd.run(kernel, b));
-    } else {
-        out.par_iter_mut()
-            .enumerate()
-            .for_each(|(b, o)| *o = simd.run(kernel, b));
-    }
+    let place = Shared(out.as_mut_ptr());
+    spread(out.len(), &|b| {
+        let result = simd.run(kernel, b);
+        // SAFETY: each number below the length is asked for once, by one thread
+        unsafe { *place.at(b) = result };
+    });
 }
 
 /// Run `kernel`, which returns nothing, on so many blocks.
@@ -85,12 +92,15 @@ const PIECE: usize = 2048;
 /// Change an array piece by piece, on threads: `change(n, piece)`, where `n` is the number of the piece's first element.
 pub fn for_each_piece<T: Send>(data: &mut [T], change: impl Fn(usize, &mut [T]) + Sync) {
     if rayon::current_num_threads() == 1 || data.len() <= PIECE {
-        change(0, data);
-    } else {
-        data.par_chunks_mut(PIECE)
-            .enumerate()
-            .for_each(|(n, piece)| change(n * PIECE, piece));
+        return change(0, data);
     }
+    let (place, len) = (Shared(data.as_mut_ptr()), data.len());
+    spread(len.div_ceil(PIECE), &|n| {
+        let first = n * PIECE;
+        let count = PIECE.min(len - first);
+        // SAFETY: pieces lie inside the array and do not overlap; each is asked for once, by one thread
+        change(first, unsafe { std::slice::from_raw_parts_mut(place.at(first), count) });
+    });
 }
 
 /// A pointer that several blocks write through, each to its own points.
