@@ -68,7 +68,7 @@ fn main() {
         contact: Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
-            stiffness: None,
+            stiffness: ContactStiffness::Laws,
         }),
         initial: vec![],
         conditions: vec![],

@@ -70,11 +70,8 @@ impl Case {
     }
 
     fn repulsion(&self) -> Option<Repulsion> {
-        self.contact.then_some(Repulsion {
-            stiffness: 1e26,
-            bonded: 0.9,
-            range: 1.35 * H,
-        })
+        self.contact
+            .then(|| Repulsion::uniform(1e26, 0.9, 1.35 * H))
     }
 
     fn time(&self) {

@@ -30,11 +30,7 @@ fn steps_and_rebuilds_allocate_nothing() {
         .map(|x| [x[0], x[1], if x[2] < 10.0 { x[2] } else { x[2] + 4.0 }])
         .collect();
     let body = Body::<3>::from_cloud(&points, &[1.0; 2000], &[], 1.0, [None; 3]).unwrap();
-    let rule = Repulsion {
-        stiffness: 1.0,
-        bonded: 0.9,
-        range: 1.35,
-    };
+    let rule = Repulsion::uniform(1.0, 0.9, 1.35);
     let in_family = |i: usize, j: usize| {
         let (p, q) = (body.position(i), body.position(j));
         (0..3).map(|a| (p[a] - q[a]).powi(2)).sum::<f64>() <= 4.0

@@ -312,7 +312,7 @@ fn worn() -> Vec<(Spec, Vec<Point>)> {
             spec.contact = Some(ContactSpec {
                 bonded: 0.9,
                 free: 1.35,
-                stiffness: None,
+                stiffness: ContactStiffness::Laws,
             });
             let mut seed = 7u64;
             let mut random = move || {

@@ -1,9 +1,7 @@
 //! Contact: repulsion between points that are not in each other's family.
 //!
-//! A pair of reference distance r0 that is closer than `d = min(bonded r0, range)` repels with the force density
-//! `K V_j (r − d)` along its current direction; its energy is `½ K (r − d)² V_i V_j` (Parks et al. 2008 (3.0.6);
-//! LAMMPS's observed behaviour: the volumes are not scaled at the horizon). Pairs inside a family repel in the
-//! family's own sweep.
+//! A pair repels as its materials do ([`Repulsion`]); its energy is `½ K (r − d)² V_i V_j`, and volumes are not scaled at
+//! the horizon. Pairs inside a family repel in the family's own sweep.
 
 use super::Repulsion;
 use crate::body::{Body, Field};
@@ -16,6 +14,35 @@ struct Pair<const D: usize> {
     base: [f64; D],
     /// Distance below which they repel.
     distance: f64,
+    /// K (force / volume² / length).
+    stiffness: f64,
+}
+
+/// A pair that is closer than allowed.
+#[derive(Debug, Clone, Copy)]
+pub struct Touch<const D: usize> {
+    pub i: usize,
+    pub j: usize,
+    /// From i to j now, and its length.
+    pub y: [f64; D],
+    pub r: f64,
+    /// Allowed distance.
+    pub d: f64,
+    /// K (force / volume² / length).
+    pub stiffness: f64,
+}
+
+impl<const D: usize> Touch<D> {
+    /// `(i's − j's)` force density over the partner's volume, along y; `None`: two points on one spot have no
+    /// direction.
+    pub fn pull(&self) -> Option<f64> {
+        (self.r > 0.0).then(|| self.stiffness * (self.r - self.d) / self.r)
+    }
+
+    /// `½ K (r − d)²` (energy / volume²).
+    fn energy(&self) -> f64 {
+        0.5 * self.stiffness * (self.r - self.d) * (self.r - self.d)
+    }
 }
 
 /// Short-range repulsion outside the families.
@@ -35,7 +62,7 @@ impl<const D: usize> Contact<D> {
     pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64) -> Self {
         // two points out of a body that holds together come that close only if their displacements differ by the rest
         // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed
-        let range = repulsion.range;
+        let range = repulsion.range.highest();
         let skin = (0.5 * (horizon - range)).max(0.25 * range).min(0.5 * range);
         // bonds within round-off of the horizon may be in the family or not
         let apart = (horizon * (1.0 - 1e-6) - range - skin).max(0.0);
@@ -66,13 +93,9 @@ impl<const D: usize> Contact<D> {
         in_family: &dyn Fn(usize, usize) -> bool,
     ) {
         self.update(body, u, in_family);
-        let stiffness = self.repulsion.stiffness;
-        self.each_contact(u, |i, j, y, r, d| {
-            // two points on one spot have no direction
-            if r == 0.0 {
-                return;
-            }
-            let pull = stiffness * (r - d) / r;
+        self.each_contact(u, |touch| {
+            let Some(pull) = touch.pull() else { return };
+            let Touch { i, j, y, .. } = touch;
             let (vi, vj) = (body.volume.at(i), body.volume.at(j));
             for a in 0..D {
                 f[a][i] += pull * vj * y[a];
@@ -101,9 +124,11 @@ impl<const D: usize> Contact<D> {
                 let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
                 let (then, now) = (periods(body, &xi), periods(body, &now));
                 let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
+                let materials = [i, j].map(|s| body.material_of(s));
                 self.pairs.push(Pair {
                     base: std::array::from_fn(|a| xi[a] - now[a]),
-                    distance: self.repulsion.distance(square.sqrt()),
+                    distance: self.repulsion.distance(square.sqrt(), materials),
+                    stiffness: self.repulsion.of(materials),
                 });
             }
         }
@@ -112,13 +137,8 @@ impl<const D: usize> Contact<D> {
     /// Energy of all contacts (energy). `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].
     pub fn energy(&self, body: &Body<D>, u: &Field<D>) -> f64 {
         let mut energy = 0.0;
-        self.each_contact(u, |i, j, _, r, d| {
-            energy += 0.5
-                * self.repulsion.stiffness
-                * (r - d)
-                * (r - d)
-                * body.volume.at(i)
-                * body.volume.at(j);
+        self.each_contact(u, |touch| {
+            energy += touch.energy() * body.volume.at(touch.i) * body.volume.at(touch.j);
         });
         energy
     }
@@ -126,18 +146,17 @@ impl<const D: usize> Contact<D> {
     /// Add the energy density of all contacts to `out`, per slot, half of a pair's at each end (energy / volume).
     /// `u` as for [`Contact::energy`].
     pub fn add_energy_density(&self, body: &Body<D>, u: &Field<D>, out: &mut [f64]) {
-        let stiffness = self.repulsion.stiffness;
-        self.each_contact(u, |i, j, _, r, d| {
-            let quarter = 0.25 * stiffness * (r - d) * (r - d);
-            out[i] += quarter * body.volume.at(j);
-            out[j] += quarter * body.volume.at(i);
+        self.each_contact(u, |touch| {
+            let half = 0.5 * touch.energy();
+            out[touch.i] += half * body.volume.at(touch.j);
+            out[touch.j] += half * body.volume.at(touch.i);
         });
     }
 
     /// Number of pairs that repel, at the `u` of the last [`Contact::add_forces`] or [`Contact::update`].
     pub fn pairs_in_contact(&self, u: &Field<D>) -> usize {
         let mut count = 0;
-        self.each_contact(u, |_, _, _, _, _| count += 1);
+        self.each_contact(u, |_| count += 1);
         count
     }
 
@@ -151,12 +170,8 @@ impl<const D: usize> Contact<D> {
         self.neighbours.bytes() + size_of::<Pair<D>>() * self.pairs.capacity()
     }
 
-    /// Visit the pairs closer than allowed: slots, current vector and distance, allowed distance.
-    pub fn each_contact(
-        &self,
-        u: &Field<D>,
-        mut visit: impl FnMut(usize, usize, [f64; D], f64, f64),
-    ) {
+    /// Visit the pairs closer than allowed.
+    pub fn each_contact(&self, u: &Field<D>, mut visit: impl FnMut(Touch<D>)) {
         let mut pairs = self.pairs.iter();
         for (i, row) in self.neighbours.rows() {
             let ui: [f64; D] = std::array::from_fn(|a| u[a][i]);
@@ -165,7 +180,14 @@ impl<const D: usize> Contact<D> {
                 let y: [f64; D] = std::array::from_fn(|a| pair.base[a] + (u[a][j] - ui[a]));
                 let square: f64 = y.iter().map(|c| c * c).sum();
                 if square < pair.distance * pair.distance {
-                    visit(i, j, y, square.sqrt(), pair.distance);
+                    visit(Touch {
+                        i,
+                        j,
+                        y,
+                        r: square.sqrt(),
+                        d: pair.distance,
+                        stiffness: pair.stiffness,
+                    });
                 }
             }
         }

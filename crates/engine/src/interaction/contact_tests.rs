@@ -3,11 +3,13 @@ use crate::body::zeros;
 use crate::samples::{Random, lattice, sites};
 use crate::space::lattice::LatticeKind;
 
-const RULE: Repulsion = Repulsion {
-    stiffness: 3.0e5,
-    bonded: 0.9,
-    range: 1.35,
-};
+const STIFFNESS: f64 = 3.0e5;
+const BONDED: f64 = 0.9;
+const RANGE: f64 = 1.35;
+
+fn rule() -> Repulsion {
+    Repulsion::uniform(STIFFNESS, BONDED, RANGE)
+}
 
 /// Distance and vector in the reference (`u` 0) or now, to the nearest image.
 fn apart<const D: usize>(body: &Body<D>, u: &Field<D>, i: usize, j: usize) -> ([f64; D], f64) {
@@ -30,16 +32,16 @@ fn brute<const D: usize>(body: &Body<D>, u: &Field<D>, horizon: f64) -> (Field<D
             let (i, j) = (i as usize, j as usize);
             let r0 = apart(body, &rest, i, j).1;
             let (y, r) = apart(body, u, i, j);
-            let d = (RULE.bonded * r0).min(RULE.range);
+            let d = (BONDED * r0).min(RANGE);
             if r0 <= horizon * (1.0 + 1e-9) || r >= d {
                 continue;
             }
             let (vi, vj) = (body.volume.at(i), body.volume.at(j));
             for a in 0..D {
-                f[a][i] += RULE.stiffness * vj * (r - d) * y[a] / r;
-                f[a][j] -= RULE.stiffness * vi * (r - d) * y[a] / r;
+                f[a][i] += STIFFNESS * vj * (r - d) * y[a] / r;
+                f[a][j] -= STIFFNESS * vi * (r - d) * y[a] / r;
             }
-            energy += 0.5 * RULE.stiffness * (r - d) * (r - d) * vi * vj;
+            energy += 0.5 * STIFFNESS * (r - d) * (r - d) * vi * vj;
             count += 1;
         }
     }
@@ -59,7 +61,7 @@ fn check<const D: usize>(
     horizon: f64,
     configurations: &[Field<D>],
 ) -> u64 {
-    let mut contact = Contact::new(RULE, body, horizon);
+    let mut contact = Contact::new(rule(), body, horizon);
     let mut most = 0;
     for (n, u) in configurations.iter().enumerate() {
         contact.moved(longest(&configurations[n.saturating_sub(1)], u));
@@ -69,7 +71,7 @@ fn check<const D: usize>(
         most = most.max(count);
         assert_eq!(contact.pairs_in_contact(u), count, "configuration {n}");
         assert!((contact.energy(body, u) - energy).abs() <= 1e-9 * energy);
-        let scale = RULE.stiffness * RULE.range * body.volume.at(body.slots[0] as usize);
+        let scale = STIFFNESS * RANGE * body.volume.at(body.slots[0] as usize);
         for a in 0..D {
             let mut momentum = 0.0;
             for &s in &body.slots {
@@ -200,8 +202,8 @@ fn a_cloud_with_volumes_of_its_own() {
     // the same without the promise
     let steps = approach(&body, 8.0, |x| x[2] < 4.5);
     let (mut f, mut g) = (zeros::<3>(body.len), zeros::<3>(body.len));
-    Contact::new(RULE, &body, 0.0).add_forces(&body, &steps[35], &mut f, &in_family);
-    Contact::new(RULE, &body, 2.5).add_forces(&body, &steps[35], &mut g, &in_family);
+    Contact::new(rule(), &body, 0.0).add_forces(&body, &steps[35], &mut f, &in_family);
+    Contact::new(rule(), &body, 2.5).add_forces(&body, &steps[35], &mut g, &in_family);
     assert!(f == g && f[0].iter().any(|x| *x != 0.0));
 }
 
@@ -210,7 +212,7 @@ fn a_range_of_nothing_or_next_to_nothing_is_harmless() {
     let quarters = sites([30, 30, 1], |_| true);
     let (body, law) = lattice::<2>(LatticeKind::Square, &quarters, 1.0, 2, [false; 2]);
     for range in [0.0, -1.0, f64::NAN, 1e-9, 1e-300] {
-        let rule = Repulsion { range, ..RULE };
+        let rule = Repulsion::uniform(STIFFNESS, BONDED, range);
         let mut contact = Contact::new(rule, &body, 2.0);
         let mut f = zeros::<2>(body.len);
         let asked = std::cell::Cell::new(0);
@@ -229,7 +231,7 @@ fn force_is_the_gradient_of_energy() {
     let (body, law) = lattice::<2>(LatticeKind::Square, &quarters, 1.0, 3, [false; 2]);
     let in_family = |i: usize, j: usize| law.in_family(&body, i, j);
     let mut u = approach(&body, 6.6, |x| x[1] < 6.0)[37].clone();
-    let mut contact = Contact::new(RULE, &body, 3.0);
+    let mut contact = Contact::new(rule(), &body, 3.0);
     let mut f = zeros::<2>(body.len);
     contact.add_forces(&body, &u, &mut f, &in_family);
     let mut pushed = 0;
@@ -244,11 +246,8 @@ fn force_is_the_gradient_of_energy() {
             u[a][s] = x;
             let force = f[a][s] * body.volume.at(s);
             let slope = (up - down) / (2.0 * step);
-            assert!(
-                (force + slope).abs() < 1e-7 * RULE.stiffness,
-                "{force} {slope}"
-            );
-            pushed += usize::from(force.abs() > 1e-3 * RULE.stiffness);
+            assert!((force + slope).abs() < 1e-7 * STIFFNESS, "{force} {slope}");
+            pushed += usize::from(force.abs() > 1e-3 * STIFFNESS);
         }
     }
     assert!(pushed > 8, "{pushed}");
@@ -265,7 +264,7 @@ fn threads_do_not_show() {
             .build()
             .unwrap();
         pool.install(|| {
-            let mut contact = Contact::new(RULE, &body, 2.0);
+            let mut contact = Contact::new(rule(), &body, 2.0);
             let mut f = zeros::<3>(body.len);
             for (before, u) in steps[29..].iter().zip(&steps[30..]) {
                 contact.moved(longest(before, u));

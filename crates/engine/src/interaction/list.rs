@@ -40,6 +40,8 @@ pub struct ListInteraction<const D: usize, W: Law> {
     point_constants: PointConstants,
     toughness: Vec<Toughness>,
     repulsion: Option<Repulsion>,
+    /// `[slots]`, where repulsion depends on it; else empty.
+    materials: Vec<u8>,
     /// Critical `e` per slot, now and next.
     critical: Vec<f64>,
     next: Vec<f64>,
@@ -86,6 +88,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         } else {
             vec![]
         };
+        let alike = |r: &Repulsion| r.stiffness.one().is_some();
+        let materials = match repulsion.as_ref().is_none_or(alike) {
+            true => vec![],
+            false => body.material.clone(),
+        };
         let blocks = list.slices().div_ceil(BLOCK);
         ListInteraction {
             law,
@@ -100,6 +107,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             point_constants,
             toughness,
             repulsion,
+            materials,
             next: critical.clone(),
             critical,
             period: body.period.map(|p| p.unwrap_or(0.0)),
@@ -133,7 +141,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             pressure: &self.pressure,
             period: self.period,
             inv_period: self.inv_period,
-            repulsion: self.repulsion,
+            repulsion: self.repulsion.as_ref(),
+            materials: &self.materials,
             periodic: self.is_periodic(),
         }
     }

@@ -8,6 +8,7 @@ mod history;
 pub mod linear;
 pub mod list;
 pub mod micromoduli;
+pub mod repulsion;
 pub mod scale;
 pub mod stencil;
 pub mod tangent;
@@ -20,6 +21,7 @@ use crate::law::BondFactors;
 use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::CrackKind;
+pub use repulsion::{PairTable, Repulsion};
 use std::ops::AddAssign;
 pub use tangent::BondTangent;
 
@@ -62,24 +64,6 @@ impl AddAssign for Tally {
         self.released += o.released;
         self.least_critical = self.least_critical.min(o.least_critical);
         self.fault = self.fault.or(o.fault);
-    }
-}
-
-/// Short-range repulsion inside a family: `K V_j (r − d)` for `r < d = min(bonded r0, free h)`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Repulsion {
-    /// Force / volume² / length.
-    pub stiffness: f64,
-    /// Fraction of the reference distance.
-    pub bonded: f64,
-    /// Range of pairs that are far apart in the reference (length).
-    pub range: f64,
-}
-
-impl Repulsion {
-    /// The distance d below which a pair of reference distance r0 repels.
-    pub fn distance(&self, r0: f64) -> f64 {
-        (self.bonded * r0).min(self.range)
     }
 }
 

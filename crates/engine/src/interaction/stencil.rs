@@ -108,7 +108,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             u: std::array::from_fn(|a| &*u[a]),
             fields: [&self.fields[0], &self.fields[1]],
             pressure: &self.pressure,
-            repulsion: self.repulsion,
+            repulsion: self.repulsion.as_ref(),
             most_contact: self.most_contact,
         }
     }

@@ -240,7 +240,10 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         f: zeros(body.len),
         u,
         verlet: Verlet::new(simd, &body),
-        contact: recipe.repulsion.map(|r| Contact::new(r, &body, horizon)),
+        contact: recipe
+            .repulsion
+            .clone()
+            .map(|r| Contact::new(r, &body, horizon)),
         recipe,
         interaction,
         body,

@@ -14,13 +14,15 @@ use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::micromoduli::MicromoduliInteraction;
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
-use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
+use crate::interaction::{Interaction, PairTable, PointConstants, Repulsion, Toughness};
 use crate::law::influence::influence;
 use crate::law::micromodulus::{self, Moments, micromodulus};
 use crate::law::potential::{Potential, PotentialSpec, Visitor};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
 use crate::law::solid::eam_like::{EamLike, Solid};
-use crate::spec::{Calibration, Criterion, Influence, LawSpec, MaterialSpec, PmbStiffness, Spec};
+use crate::spec::{
+    Calibration, ContactStiffness, Criterion, Influence, LawSpec, MaterialSpec, PmbStiffness, Spec,
+};
 use crate::statics::AnyLinearBody;
 use std::sync::Arc;
 
@@ -73,7 +75,7 @@ impl Recipe {
         let mut springs = vec![];
         let mut atoms = vec![];
         let mut given = None;
-        let mut repulsive: f64 = 0.0;
+        let mut repulsive = vec![];
         for (n, m) in spec.materials.iter().enumerate() {
             solid.extend(Solid::of_law(D, spec.plane, m.law));
             if !(m.density > 0.0 && m.density.is_finite()) {
@@ -139,7 +141,7 @@ impl Recipe {
                         .help("check the moduli: K > 0, G > 0, −1 < ν < ½"),
                 );
             }
-            repulsive = repulsive.max(contact);
+            repulsive.push(15.0 * contact / horizon);
         }
         let kinds = [
             &bond.is_empty(),
@@ -182,11 +184,14 @@ impl Recipe {
             .enumerate()
             .map(|(n, m)| toughness::<D>(spec, m, moments, &at(n, "fracture")))
             .collect::<Result<Vec<_>, _>>()?;
-        let repulsion = spec.contact.map(|c| Repulsion {
-            stiffness: c.stiffness.unwrap_or(15.0 * repulsive / horizon),
-            bonded: c.bonded,
-            range: c.free * spacing,
-        });
+        let repulsion = match &spec.contact {
+            Some(contact) => Some(Repulsion {
+                stiffness: contact_stiffness(&contact.stiffness, &repulsive)?,
+                bonded: contact.bonded,
+                range: PairTable::uniform(contact.free * spacing),
+            }),
+            None => None,
+        };
         Ok(Recipe {
             laws,
             toughness,
@@ -226,6 +231,10 @@ impl Recipe {
             .filter(|(n, _)| pick(*n))
             .map(|(_, t)| *t)
             .collect();
+        let repulsion = match (&self.repulsion, only) {
+            (Some(all), Some(n)) => Some(all.only(n)),
+            (all, _) => all.clone(),
+        };
         match &self.laws {
             Laws::Springs(c) => {
                 let links = self.links(body)?;
@@ -281,13 +290,15 @@ impl Recipe {
                     .map(|(_, c)| *c)
                     .collect();
                 if c.iter().all(|x| *x == c[0]) {
-                    self.bind(body, BondBased { c: c[0] }, PointConstants::None, toughness)
+                    let law = BondBased { c: c[0] };
+                    self.bind(body, law, PointConstants::None, toughness, repulsion)
                 } else {
                     self.bind(
                         body,
                         BondBasedMixed { rule: self.rule },
                         PointConstants::PerMaterial(c),
                         toughness,
+                        repulsion,
                     )
                 }
             }
@@ -305,6 +316,7 @@ impl Recipe {
                     },
                     PointConstants::Solid(s),
                     toughness,
+                    repulsion,
                 )
             }
         }
@@ -327,6 +339,7 @@ impl Recipe {
         law: W,
         point_constants: PointConstants,
         toughness: Vec<Toughness>,
+        repulsion: Option<Repulsion>,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         match (&body.layout, &self.stencil) {
             (Layout::Grid(grid), Some(stencil)) => {
@@ -338,7 +351,7 @@ impl Recipe {
                     weight: &|r0| self.weight(r0),
                     point_constants,
                     toughness,
-                    repulsion: self.repulsion,
+                    repulsion,
                     simd: self.simd,
                 })))
             }
@@ -357,7 +370,7 @@ impl Recipe {
                     weight: BondWeight::new(self.influence, self.horizon, scaling),
                     point_constants,
                     toughness,
-                    repulsion: self.repulsion,
+                    repulsion,
                     simd: self.simd,
                 })))
             }
@@ -390,6 +403,36 @@ impl<const D: usize> Visitor for Current<'_, D> {
     fn visit<P: Potential>(self, potential: P) -> Self::Out {
         Box::new(CurrentAtoms::new(self.body, potential, self.simd))
     }
+}
+
+/// The table of all pairs of materials, whose own stiffnesses are `own`.
+fn contact_stiffness(asked: &ContactStiffness, own: &[f64]) -> Result<PairTable, BuildError> {
+    let table = match asked {
+        ContactStiffness::Same(stiffness) => PairTable::uniform(*stiffness),
+        ContactStiffness::Laws => PairTable::new(own.len(), |a, b| {
+            // two in series; alike ones exactly their own
+            if own[a] == own[b] {
+                own[a]
+            } else {
+                2.0 * own[a] * own[b] / (own[a] + own[b])
+            }
+        }),
+        ContactStiffness::Pairs(rows) => {
+            let fits = rows.len() == own.len() && rows.iter().all(|r| r.len() == own.len());
+            let symmetric = || (0..rows.len()).all(|a| (0..a).all(|b| rows[a][b] == rows[b][a]));
+            if !fits || !symmetric() {
+                return Err(BuildError::new(
+                    "contact.stiffness",
+                    format!(
+                        "expected a symmetric table of {0} by {0} numbers, one for every pair of materials",
+                        own.len()
+                    ),
+                ));
+            }
+            PairTable::new(own.len(), |a, b| rows[a][b])
+        }
+    };
+    Ok(table)
 }
 
 fn toughness<const D: usize>(

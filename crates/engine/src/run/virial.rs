@@ -47,7 +47,7 @@ impl<const D: usize> Model<D> {
         };
         // a state-based bond pulls at rest, too
         let at_rest_free = matches!(recipe.laws, Laws::Bond(_))
-            && recipe.repulsion.is_none_or(|c| c.bonded <= 1.0);
+            && recipe.repulsion.as_ref().is_none_or(|c| c.bonded <= 1.0);
         let mut virial = [0.0; 6];
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
@@ -82,10 +82,11 @@ impl<const D: usize> Model<D> {
                     };
                     pull *= volume / volumes[1];
                 }
-                if let Some(repulsion) = recipe.repulsion {
-                    let (r, d) = (r0 * w, repulsion.distance(r0));
+                if let Some(repulsion) = &recipe.repulsion {
+                    let materials = [i, j].map(|s| self.body.material_of(s));
+                    let (r, d) = (r0 * w, repulsion.distance(r0, materials));
                     if r < d {
-                        pull += repulsion.stiffness * (r - d) / r;
+                        pull += repulsion.of(materials) * (r - d) / r;
                     }
                 }
                 add(&mut virial, &y, pull, volumes);
@@ -95,14 +96,13 @@ impl<const D: usize> Model<D> {
 
     /// Adds repulsion between points that are in no common family, at the `u` of the contact's last update.
     pub(super) fn add_virial_of_contact(&self, virial: &mut [f64; 6]) {
-        let (Some(contact), Some(repulsion)) = (&self.contact, self.recipe.repulsion) else {
+        let Some(contact) = &self.contact else {
             return;
         };
-        contact.each_contact(&self.u, |i, j, y, r, d| {
-            // two points on one spot have no direction
-            if r > 0.0 {
-                let pull = repulsion.stiffness * (r - d) / r;
-                add(virial, &y, pull, [i, j].map(|s| self.body.volume.at(s)));
+        contact.each_contact(&self.u, |touch| {
+            if let Some(pull) = touch.pull() {
+                let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
+                add(virial, &touch.y, pull, volumes);
             }
         });
     }

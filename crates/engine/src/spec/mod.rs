@@ -337,6 +337,16 @@ pub enum Influence {
     CubicSpline,
 }
 
+impl Influence {
+    pub const ALL: [Influence; 5] = [
+        Influence::Constant,
+        Influence::Inverse,
+        Influence::Conical,
+        Influence::Gaussian,
+        Influence::CubicSpline,
+    ];
+}
+
 /// A factor of the stiffness of bonds: heterogeneous bodies, weak planes.
 #[derive(Debug, Clone)]
 pub enum BondFactorSpec {
@@ -380,14 +390,25 @@ pub enum CrackShape {
 
 /// Short-range repulsion (`lammps-peri` item 10): force density `stiffness V_j (r − d)`,
 /// `d = min(bonded r0, free h)` with `h` the spacing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ContactSpec {
     /// Fraction of the reference distance below which any pair repels; 0.9 in LAMMPS.
     pub bonded: f64,
     /// Range in spacings for pairs far apart in the reference; 1.35 in LAMMPS.
     pub free: f64,
-    /// Stiffness (force / volume² / length); `None`: `15 c/δ` (PMB), `15·18K/(πδ⁵)` (LPS).
-    pub stiffness: Option<f64>,
+    pub stiffness: ContactStiffness,
+}
+
+/// Stiffness of repulsion (force / volume² / length).
+#[derive(Debug, Clone, PartialEq)]
+pub enum ContactStiffness {
+    /// `15 c/δ` (PMB), `15·18K/(πδ⁵)` (LPS) of a material; between unlike ones the harmonic mean, which is that of the
+    /// two in series: each gives way by its own stiffness, and it is never above twice the softer one's.
+    Laws,
+    /// The same for all pairs.
+    Same(f64),
+    /// `[materials][materials]`, symmetric: of every pair of materials.
+    Pairs(Vec<Vec<f64>>),
 }
 
 /// Initial values on a set; components are expressions of x, y, z (t = 0); `None` leaves a component.

@@ -245,7 +245,7 @@ pub fn breaking(spec: &mut Spec, s00: f64) {
 pub const CONTACT: ContactSpec = ContactSpec {
     bonded: 0.9,
     free: 1.35,
-    stiffness: None,
+    stiffness: ContactStiffness::Laws,
 };
 
 pub fn made(spec: &Spec) -> Box<dyn Simulation> {

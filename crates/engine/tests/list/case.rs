@@ -70,11 +70,7 @@ impl<const D: usize> Case<D> {
         self
     }
     pub fn contact(mut self) -> Self {
-        self.repulsion = Some(Repulsion {
-            stiffness: 3.0,
-            bonded: 0.9,
-            range: 1.35 * H,
-        });
+        self.repulsion = Some(Repulsion::uniform(3.0, 0.9, 1.35 * H));
         self.amplitude = 0.15 * H;
         self
     }
@@ -145,7 +141,7 @@ impl<const D: usize> Case<D> {
             weight: BondWeight::new(self.influence, self.delta(), Some(H)),
             point_constants,
             toughness: self.toughness.clone(),
-            repulsion: self.repulsion,
+            repulsion: self.repulsion.clone(),
             simd,
         });
         it.prepare(body);

@@ -73,7 +73,7 @@ fn same_as_stencil<const D: usize, W: Law>(
         weight: &weight,
         point_constants: constants.clone(),
         toughness: case.toughness.clone(),
-        repulsion: case.repulsion,
+        repulsion: case.repulsion.clone(),
         simd: Simd::detect(),
     });
     let mut list = case.list(&cloud, law, constants, Simd::detect());

@@ -99,7 +99,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             }
         });
     }
-    if let Some(contact) = spec.contact {
+    if let Some(contact) = &spec.contact {
         lines.push(format!(
             "contact    below {} of the reference distance, within {} spacings",
             contact.bonded, contact.free

@@ -58,7 +58,7 @@ fn a_deck_becomes_a_spec() {
         Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
-            stiffness: None
+            stiffness: ContactStiffness::Laws
         })
     );
     assert_eq!(spec.schedule.time_step, TimeStep::Fixed(1e-7));

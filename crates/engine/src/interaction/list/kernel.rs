@@ -33,7 +33,9 @@ pub struct View<'a, const D: usize, W> {
     /// 0 on free axes.
     pub period: [f64; D],
     pub inv_period: [f64; D],
-    pub repulsion: Option<Repulsion>,
+    pub repulsion: Option<&'a Repulsion>,
+    /// `[slots]`, where repulsion depends on it.
+    pub materials: &'a [u8],
     pub periodic: bool,
 }
 
@@ -165,17 +167,23 @@ impl<const D: usize, W: Law> View<'_, D, W> {
 
     /// Which lanes of really there bonds are closer than repulsion allows, given that `e` may be low enough.
     #[inline(always)]
-    fn close<L: Lane>(&self, c: Repulsion, b: &Bond<L, D>) -> (L::Mask, L) {
-        let d = (b.r0 * L::splat(c.bonded)).min(L::splat(c.range));
+    fn close<L: Lane>(&self, c: &Repulsion, b: &Bond<L, D>) -> (L::Mask, L) {
+        let d = (b.r0 * L::splat(c.bonded)).min(L::splat(c.range.at(0, 0)));
         let limit = (d * b.inv_r0) * (d * b.inv_r0) - L::splat(1.0);
         // padding has length 0
         let real = L::select(L::splat(0.0).lt(b.r0_squared), b.e, L::splat(f64::NAN));
         (real.lt(limit), d)
     }
 
-    /// Coefficient of `ξ+η` from repulsion and its energy density.
+    /// Coefficient of `ξ+η` from repulsion and its energy density, of bonds between these slots.
     #[inline(always)]
-    fn repel<L: Lane>(&self, b: &Bond<L, D>, volume: L) -> (L, L) {
+    unsafe fn repel<L: Lane>(
+        &self,
+        b: &Bond<L, D>,
+        volume: L,
+        rows: *const u32,
+        partners: *const u32,
+    ) -> (L, L) {
         let zero = L::splat(0.0);
         let Some(c) = self.repulsion else {
             return (zero, zero);
@@ -185,7 +193,16 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             return (zero, zero);
         }
         let r = (b.r0_squared * (L::splat(1.0) + b.e)).sqrt();
-        let stiffness = L::splat(c.stiffness) * volume;
+        let mut material = [[0u8; TILE]; 2];
+        if !self.materials.is_empty() {
+            for l in 0..TILE {
+                // SAFETY: a slot per lane
+                let ends = unsafe { [*rows.add(l), *partners.add(l)] };
+                material[0][l] = self.materials[ends[0] as usize];
+                material[1][l] = self.materials[ends[1] as usize];
+            }
+        }
+        let stiffness = c.lanes::<L>(material[0], material[1]) * volume;
         let pull = (stiffness * (r - d)).div(r);
         let energy = L::splat(0.25) * stiffness * (r - d) * (r - d);
         (L::select(close, pull, zero), L::select(close, energy, zero))
@@ -316,7 +333,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     let breaks = j.critical.min(i.critical).lt(e);
                     lowest = e.min(lowest);
                     if L::any(L::or(breaks, b.e.lt(contact_e))) {
-                        pull = pull + v.repel(&b, j.volume).0;
+                        pull = pull + v.repel(&b, j.volume, rows, partners).0;
                         let which = if self.motion.is_some() {
                             L::bits(breaks)
                         } else {
@@ -449,7 +466,8 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                 let i = v.end::<L, true>(rows);
                 let (mut strain, mut repulsion, mut share, mut weight) = (zero, zero, zero, zero);
                 for line in v.list.start[slice]..v.list.start[slice + 1] {
-                    let j = v.end::<L, true>(v.partners(line));
+                    let partners = v.partners(line);
+                    let j = v.end::<L, true>(partners);
                     let b = v.bond::<L>(&i, &j);
                     let dead = L::dead(*v.alive.at(line));
                     let s = at(series, b.e.nan_if(dead)).zero_if(dead);
@@ -459,7 +477,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     share = kr.fma(s, share);
                     weight = weight + kr;
                     if v.repulsion.is_some() && L::any(b.e.lt(contact_e)) {
-                        repulsion = repulsion + v.repel(&b, j.volume).1;
+                        repulsion = repulsion + v.repel(&b, j.volume, rows, partners).1;
                     }
                 }
                 if W::SHARES {

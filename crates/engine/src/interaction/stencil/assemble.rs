@@ -50,7 +50,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             let back = std::array::from_fn(|a| h * edges[a] * (-o.quarter[a] as f64 / 4.0));
             let r0_squared = h * h * (o.squared as f64 / 16.0);
             let r0 = r0_squared.sqrt();
-            let d = repulsion.map_or(0.0, |c| c.distance(r0));
+            // the range is that of the body, whatever the materials
+            let d = repulsion.as_ref().map_or(0.0, |c| c.distance(r0, [0, 0]));
             let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
             let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
             let bond = Bond {

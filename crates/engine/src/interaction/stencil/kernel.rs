@@ -80,7 +80,7 @@ pub struct View<'a, const D: usize, W> {
     pub fields: [&'a [f64]; 2],
     /// Pressure factors per slot where materials differ; else empty: the law's own.
     pub pressure: &'a [f64],
-    pub repulsion: Option<Repulsion>,
+    pub repulsion: Option<&'a Repulsion>,
     /// The highest `e` at which any bond repels.
     pub most_contact: f64,
 }
@@ -230,6 +230,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         };
         let mut there = 0u8;
         let mut volume = [0.0; TILE];
+        let mut material = [[0u8; TILE]; 2];
         for l in 0..TILE {
             if L::bits(close) >> l & 1 == 1
                 && self.grid.is_owned(i + l)
@@ -237,6 +238,8 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             {
                 there |= 1 << l;
                 volume[l] = self.body.volume.at(j);
+                material[0][l] = self.body.material_of(i + l) as u8;
+                material[1][l] = self.body.material_of(j) as u8;
             }
         }
         let absent = L::dead(there);
@@ -244,8 +247,9 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         let d = L::splat(to.contact_distance);
         // SAFETY: a number per lane
         let volume = unsafe { L::load(volume.as_ptr()) };
-        let pull = (L::splat(c.stiffness) * volume * (r - d)).div(r);
-        let energy = L::splat(0.25 * c.stiffness) * volume * (r - d) * (r - d);
+        let stiffness = c.lanes::<L>(material[0], material[1]) * volume;
+        let pull = (stiffness * (r - d)).div(r);
+        let energy = L::splat(0.25) * stiffness * (r - d) * (r - d);
         (pull.zero_if(absent), energy.zero_if(absent))
     }
 }

@@ -23,8 +23,8 @@ use crate::read::eam::{self, EamFile};
 use crate::read::{Frame, Points};
 use context::{Context, Result};
 use peridyne::spec::{
-    BodySpec, Calibration, Cloud, ContactSpec, FamilyChoice, Horizon, Influence, InterfaceRule,
-    LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon, Influence,
+    InterfaceRule, LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
 };
 use std::path::Path;
 
@@ -353,7 +353,7 @@ fn contact(
     let standard = ContactSpec {
         bonded: 0.9,
         free: 1.35,
-        stiffness: None,
+        stiffness: ContactStiffness::Laws,
     };
     match &document.contact {
         Some(Or::Bare(false)) => Ok(None),
@@ -374,11 +374,14 @@ fn contact(
                     "the fraction of the reference distance",
                 )?,
                 free: get(&c.free, standard.free, "the range")?,
-                stiffness: c
-                    .stiffness
-                    .as_ref()
-                    .map(|n| context.positive(n, Dim::CONTACT_STIFFNESS, "the stiffness"))
-                    .transpose()?,
+                stiffness: match &c.stiffness {
+                    Some(n) => ContactStiffness::Same(context.positive(
+                        n,
+                        Dim::CONTACT_STIFFNESS,
+                        "the stiffness",
+                    )?),
+                    None => ContactStiffness::Laws,
+                },
             }))
         }
     }

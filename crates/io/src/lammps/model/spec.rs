@@ -2,8 +2,9 @@
 
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
-    BodySpec, Calibration, Cloud, ContactSpec, Criterion, FamilyChoice, FractureSpec, Horizon,
-    Influence, InterfaceRule, MaterialSpec, Members, Plane, Schedule, SetSpec, Spec, TimeStep,
+    BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, Criterion, FamilyChoice,
+    FractureSpec, Horizon, Influence, InterfaceRule, MaterialSpec, Members, Plane, Schedule,
+    SetSpec, Spec, TimeStep,
 };
 
 use super::in_plane;
@@ -15,7 +16,7 @@ use crate::lammps::host::{HostError, Pair, Setup};
 const CONTACT: ContactSpec = ContactSpec {
     bonded: 0.9,
     free: 1.35,
-    stiffness: None,
+    stiffness: ContactStiffness::Laws,
 };
 
 /// The specification of a script's model, without motion and conditions; `rule` says what bonds between unlike types
