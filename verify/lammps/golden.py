@@ -9,7 +9,6 @@ import data
 from make_golden import HERE, lammps, version
 
 CASES = os.path.join(HERE, "cases")
-SPACING = {"plate_pmb": 0.005, "plate_lps": 0.005}  # lattice constant (m); 0.0005 elsewhere
 
 # Ways to run the same case that differ in round-off only: name, change of the script's text, arguments of LAMMPS.
 VARIANTS = [
@@ -29,6 +28,16 @@ def skin(text, factor):
 def sort_bin(text):
     """A bin of 1.3 lattice constants for sorting, 1 step apart: particles change their order in memory."""
     return "0.0065" if "0.005\n" in text else "0.00065"
+
+
+def spacing(name):
+    """The lattice constant of a case: the number of its last `lattice` line, or of the variable named there."""
+    with open(os.path.join(CASES, "in." + name)) as file:
+        text = file.read()
+    word = re.findall(r"(?m)^lattice\s+\S+\s+(\S+)", text)[-1]
+    if "$" in word:
+        word = re.search(r"(?m)^variable\s+" + word.strip("${}") + r"\s+equal\s+(\S+)", text)[1]
+    return float(word)
 
 
 def names():
@@ -109,7 +118,7 @@ def write(name, path):
 
 def describe(name, frames, steps):
     """Print what happened: the largest displacement between the two frames and the broken part."""
-    h = SPACING.get(name, 0.0005)
+    h = spacing(name)
     first = frames[min(frames)]
     at = [first[0].index(k) for k in "xyz"]
     start = {i: [float(r[k]) for k in at] for i, r in first[1].items()}
@@ -139,7 +148,7 @@ def committed(name):
 
 def check(name, path):
     """Print how much LAMMPS's own variants differ from the committed data; answer the worst position (lc)."""
-    h = SPACING.get(name, 0.0005)
+    h = spacing(name)
     reference = committed(name)
     worst = 0.0
     text = f"{name:22}"

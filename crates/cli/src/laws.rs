@@ -25,6 +25,7 @@ influence functions (influence)
 
 fracture (material.fracture)
   critical_stretch or energy (per area), alpha: s0 = s00 − α s_min
+  release at_once (a bond past s0 pulls no more, as in CabanaPD) or after_force (once more, as in LAMMPS)
 
 lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)";
 

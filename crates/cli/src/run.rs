@@ -103,7 +103,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
     let output = &deck.output;
     let (length_unit, time_unit, energy_unit) = match deck.units {
         UnitSystem::Si => ("m", "s", "J"),
-        UnitSystem::Metal => ("Å", "ps", "eV"),
+        UnitSystem::Metal(_) => ("Å", "ps", "eV"),
         UnitSystem::Lj | UnitSystem::None => ("", "", ""),
     };
     let energies = output
@@ -141,7 +141,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         atoms: deck.spec.potential.as_ref().map(|_| {
             let (temperature_unit, pressure_unit) = match deck.units {
                 UnitSystem::Si => ("K", "Pa"),
-                UnitSystem::Metal => ("K", "bar"),
+                UnitSystem::Metal(_) => ("K", "bar"),
                 UnitSystem::Lj | UnitSystem::None => ("", ""),
             };
             AtomsPlan {

@@ -123,7 +123,7 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
         }
         let length = match fine.units {
             UnitSystem::Si => "m",
-            UnitSystem::Metal => "Å",
+            UnitSystem::Metal(_) => "Å",
             UnitSystem::Lj | UnitSystem::None => "",
         };
         card::write(&dir, &card, length, measured.as_ref())

@@ -41,7 +41,7 @@ struct Found<'a> {
 fn units(system: UnitSystem) -> [&'static str; 2] {
     match system {
         UnitSystem::Si => ["m", "s"],
-        UnitSystem::Metal => ["Å", "ps"],
+        UnitSystem::Metal(_) => ["Å", "ps"],
         UnitSystem::Lj | UnitSystem::None => ["", ""],
     }
 }

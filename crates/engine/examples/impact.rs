@@ -53,6 +53,8 @@ fn main() {
             }),
         }],
         interface: InterfaceRule::Series,
+        pairs: vec![],
+        release: Release::AfterForce,
         horizon: Horizon::Length(0.0015001),
         volume_scaling: true,
         calibration: Calibration::Continuum,

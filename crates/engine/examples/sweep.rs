@@ -11,7 +11,7 @@ use peridyne::interaction::*;
 use peridyne::law::Law;
 use peridyne::law::solid::{bond_based::BondBased, eam_like::*};
 use peridyne::space::lattice::*;
-use peridyne::spec::{Horizon, Influence};
+use peridyne::spec::{Horizon, Influence, Release};
 use std::time::Instant;
 
 /// Spacing (m).
@@ -165,7 +165,17 @@ impl Case {
         let mut best = f64::MAX;
         for _ in 0..if self.simd == Simd::Portable { 2 } else { 20 } {
             let start = Instant::now();
-            it.forces(body, &u, &mut f, Sweep::Evolve { v: &v, dt: 0.0 }, None);
+            it.forces(
+                body,
+                &u,
+                &mut f,
+                Sweep::Evolve {
+                    v: &v,
+                    dt: 0.0,
+                    release: Release::AfterForce,
+                },
+                None,
+            );
             best = best.min(start.elapsed().as_secs_f64());
         }
         println!(

@@ -1,7 +1,7 @@
 //! Atoms of `verify/lammps/atoms`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
 
 use peridyne::run::{Options, build};
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, Dim};
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -23,23 +23,28 @@ fn golden(name: &str) -> Vec<Vec<Vec<f64>>> {
     parts
 }
 
-/// What LAMMPS takes for 1 g/mol in eV ps²/Å² and for 1 eV/Å³ in bar.
+/// What LAMMPS takes for 1 g/mol in eV ps²/Å², for 1 eV/Å³ in bar and for kelvin in eV.
 const LAMMPS_MASS: f64 = 1.0364269e-4;
 const LAMMPS_BAR: f64 = 1.6021765e6;
+const LAMMPS_BOLTZMANN: f64 = 8.617343e-5;
 
-fn compare(name: &str, law: &str, extra: &str, mass: f64, pressure: f64) {
+/// `mass` takes the place of the deck's.
+fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
     let text = format!(
         "periodic = [\"x\", \"y\", \"z\"]\nbody.file = \"{name}.data\"\n{extra}\nmaterial.law = {law}\n"
     );
     let file = folder().join("deck.toml");
     let mut deck =
         Deck::parse(&text, file.to_str().unwrap(), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-    // the same mass to the last digit
     let volume = match &deck.spec.body {
         peridyne::spec::BodySpec::Cloud(c) => c.volume[0],
         _ => panic!(),
     };
-    deck.spec.materials[0].density = mass / volume;
+    if let Some(mass) = mass {
+        deck.spec.materials[0].density = mass / volume;
+    }
+    let mass = deck.spec.materials[0].density * volume;
+    let pressure = 1.0 / deck.units.plain_factor(Dim::PRESSURE);
     let mut sim = build(&deck.spec, Options::default()).unwrap();
     let golden = golden(name);
     sim.start(true);
@@ -115,8 +120,7 @@ fn a_lennard_jones_crystal_is_that_of_lammps() {
         "lj_crystal",
         "{ lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5 } }",
         "units = \"lj\"\nrun = { steps = 100, time_step = 0.003 }",
-        1.0,
-        1.0,
+        Some(1.0),
     );
 }
 
@@ -126,8 +130,7 @@ fn a_lennard_jones_liquid_is_that_of_lammps() {
         "lj_liquid",
         "{ lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5, end = \"shifted\" } }",
         "units = \"lj\"\nrun = { steps = 100, time_step = 0.003 }",
-        1.0,
-        1.0,
+        Some(1.0),
     );
 }
 
@@ -136,8 +139,41 @@ fn a_copper_block_is_that_of_lammps() {
     compare(
         "copper",
         "{ eam = { file = \"copper.eam.alloy\" } }",
-        "units = \"metal\"\nrun = { steps = 100, time_step = 0.002 }",
-        63.546 * LAMMPS_MASS,
-        LAMMPS_BAR,
+        "units = { system = \"metal\", constants = \"lammps\" }\nrun = { steps = 100, time_step = 0.002 }",
+        None,
     );
+}
+
+/// A deck may be computed with the constants of LAMMPS, and says which it has.
+#[test]
+fn physical_constants_are_chosen_and_named() {
+    let path = folder().join("deck.toml");
+    let deck = |units: &str| {
+        let text = format!(
+            "units = {units}\nperiodic = [\"x\", \"y\", \"z\"]\nbody.file = \"copper.data\"\n\
+             run = {{ steps = 1 }}\nmaterial.law = {{ eam = {{ file = \"copper.eam.alloy\" }} }}\n"
+        );
+        Deck::parse(&text, path.to_str().unwrap(), &[]).unwrap_or_else(|e| panic!("{e:?}"))
+    };
+    let lammps = deck("{ system = \"metal\", constants = \"lammps\" }");
+    assert_eq!(lammps.units.plain_factor(Dim::MASS), LAMMPS_MASS);
+    assert_eq!(lammps.boltzmann(), LAMMPS_BOLTZMANN);
+    let bar = 1.0 / lammps.units.plain_factor(Dim::PRESSURE);
+    assert!((bar / LAMMPS_BAR - 1.0).abs() < 1e-15);
+    assert!(
+        lammps
+            .describe()
+            .contains("physical constants: those of LAMMPS")
+    );
+    for newer in ["\"metal\"", "{ system = \"metal\" }"] {
+        let newer = deck(newer);
+        assert!(newer.describe().contains("CODATA 2018"));
+        let mass = lammps.spec.materials[0].density / newer.spec.materials[0].density;
+        assert!((mass - 1.0 + 6.4e-8).abs() < 1e-9, "{mass}");
+        let kelvin = lammps.boltzmann() / newer.boltzmann();
+        assert!(
+            (kelvin - 1.0).abs() > 5e-7 && (kelvin - 1.0).abs() < 2e-6,
+            "{kelvin}"
+        );
+    }
 }

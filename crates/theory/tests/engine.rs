@@ -85,6 +85,8 @@ fn case(
             fracture: None,
         }],
         interface: InterfaceRule::Series,
+        pairs: vec![],
+        release: Release::AtOnce,
         horizon: Horizon::Ratio(ratio),
         volume_scaling: true,
         calibration: Calibration::Discrete,

@@ -484,7 +484,7 @@ impl Scale {
                 };
                 Scale { factor, unit }
             }
-            UnitSystem::Metal => Scale {
+            UnitSystem::Metal(_) => Scale {
                 factor: 1.0 / 160.2176634,
                 unit: "GPa",
             },

@@ -14,7 +14,7 @@ use std::path::Path;
 fn length_unit(units: UnitSystem) -> &'static str {
     match units {
         UnitSystem::Si => "m",
-        UnitSystem::Metal => "Å",
+        UnitSystem::Metal(_) => "Å",
         UnitSystem::Lj | UnitSystem::None => "",
     }
 }
@@ -24,7 +24,7 @@ pub fn write(dir: &Path, f: &Finished, units: UnitSystem) -> Result<(), WriteErr
     let length = length_unit(units);
     let time = match units {
         UnitSystem::Si => "s",
-        UnitSystem::Metal => "ps",
+        UnitSystem::Metal(_) => "ps",
         UnitSystem::Lj | UnitSystem::None => "",
     };
     let column = |get: &dyn Fn(&Level) -> f64| -> Vec<f64> { f.levels.iter().map(get).collect() };

@@ -99,7 +99,9 @@ pub fn for_each_piece<T: Send>(data: &mut [T], change: impl Fn(usize, &mut [T]) 
         let first = n * PIECE;
         let count = PIECE.min(len - first);
         // SAFETY: pieces lie inside the array and do not overlap; each is asked for once, by one thread
-        change(first, unsafe { std::slice::from_raw_parts_mut(place.at(first), count) });
+        change(first, unsafe {
+            std::slice::from_raw_parts_mut(place.at(first), count)
+        });
     });
 }
 

@@ -37,6 +37,15 @@ impl HorizonList {
     /// A horizon of exactly m spacings on lattice sites should be passed times 1 + 1e-9, to include all of them.
     /// Refused: a period of at most two horizons, and points in one place.
     pub fn new<const D: usize>(body: &Body<D>, horizon: f64) -> Result<Self, BuildError> {
+        Self::within(body, horizon, |_, _| horizon)
+    }
+
+    /// All pairs of slots i and j with `r0 ≤ of(i, j)`, which is at most `horizon`.
+    pub fn within<const D: usize>(
+        body: &Body<D>,
+        horizon: f64,
+        of: impl Fn(usize, usize) -> f64 + Sync,
+    ) -> Result<Self, BuildError> {
         let Layout::Cloud(x) = &body.layout else {
             return Err(BuildError::new(
                 "family",
@@ -70,7 +79,10 @@ impl HorizonList {
                 format!("{} points are too many for a list (2²⁹)", body.len),
             ));
         }
-        let limit = horizon * horizon;
+        let limit = |i: usize, j: u32| {
+            let horizon = of(i, j as usize);
+            horizon * horizon
+        };
         let cells = Cells::new(
             std::array::from_fn(|a| x[a].as_slice()),
             body.points(),
@@ -78,7 +90,7 @@ impl HorizonList {
             horizon,
         );
 
-        let (size, near) = count(&cells, body, limit)?;
+        let (size, near) = count(&cells, body, horizon, &limit)?;
         let mut rows: Vec<u32> = (0..body.len as u32).collect();
         for window in rows.chunks_mut(WINDOW) {
             window.sort_by_key(|s| (std::cmp::Reverse(size[*s as usize]), *s));
@@ -97,12 +109,17 @@ impl HorizonList {
             directed: size.iter().map(|s| *s as u64).sum(),
             near_horizon: near,
         };
-        list.fill(&cells, body.points(), limit);
+        list.fill(&cells, body.points(), &limit);
         Ok(list)
     }
 
     /// Write the lines, slices in parallel.
-    fn fill<const D: usize>(&mut self, cells: &Cells<D>, points: usize, limit: f64) {
+    fn fill<const D: usize>(
+        &mut self,
+        cells: &Cells<D>,
+        points: usize,
+        limit: &(impl Fn(usize, u32) -> f64 + Sync),
+    ) {
         let mut slices = Vec::with_capacity(self.start.len() - 1);
         let (mut partner, mut present) = (self.partner.as_mut_slice(), self.present.as_mut_slice());
         for (slice, rows) in self.rows.chunks(TILE).enumerate() {
@@ -120,7 +137,7 @@ impl HorizonList {
                     family.clear();
                     if (i as usize) < points {
                         cells.candidates(i as usize, |j, square| {
-                            if square <= limit && j != i {
+                            if j != i && square <= limit(i as usize, j) {
                                 family.push(j);
                             }
                         });
@@ -171,7 +188,8 @@ impl HorizonList {
 fn count<const D: usize>(
     cells: &Cells<D>,
     body: &Body<D>,
-    limit: f64,
+    horizon: f64,
+    limit: &(impl Fn(usize, u32) -> f64 + Sync),
 ) -> Result<(Vec<u32>, u64), BuildError> {
     let mut size = vec![0u32; body.len];
     let near = size[..body.points()]
@@ -181,10 +199,10 @@ fn count<const D: usize>(
             let mut near = 0;
             let mut twin = None;
             cells.candidates(i, |j, square| {
-                let other = j as usize != i;
+                let (other, limit) = (j as usize != i, limit(i, j));
                 *size += (square <= limit && other) as u32;
-                near += ((square - limit).abs() <= 2e-9 * limit) as u64;
-                if square <= 1e-20 * limit && other {
+                near += (limit > 0.0 && (square - limit).abs() <= 2e-9 * limit) as u64;
+                if square <= 1e-20 * horizon * horizon && other {
                     twin = Some((i, j as usize));
                 }
             });

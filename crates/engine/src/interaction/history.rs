@@ -4,16 +4,44 @@ use super::Toughness;
 use crate::execute::lane::{Lane, TILE};
 use crate::law::Law;
 
+/// `s` of `e`.
+#[inline(always)]
+pub fn stretch<L: Lane>(e: L) -> L {
+    let one = L::splat(1.0);
+    e.div(one + (one + e).sqrt())
+}
+
+/// The critical `e` of a critical stretch.
+#[inline(always)]
+pub fn critical<L: Lane>(s0: L) -> L {
+    L::select(
+        s0.lt(L::splat(-1.0)),
+        L::splat(-1.0),
+        s0 * (L::splat(2.0) + s0),
+    )
+}
+
+/// What points without whole bonds have: nothing, of laws without a point scalar; of those with one what they had.
+/// No bond asks for it, but people do, and LAMMPS answers like this.
+#[inline(always)]
+pub fn alone<L: Lane, W: Law>(before: L) -> L {
+    if W::SHARES {
+        before
+    } else {
+        L::splat(f64::INFINITY)
+    }
+}
+
 /// The critical `e` of `s0 = s00 − α s_min` for the points of `material(lane)`, from the lowest `e` of their whole
-/// bonds (∞ where there are none: such a point has no say).
+/// bonds (∞ where there are none: those get what is said of points that are `alone`).
 #[inline(always)]
 pub fn next_critical<L: Lane>(
     toughness: &[Toughness],
     material: impl Fn(usize) -> usize,
     lowest: L,
+    alone: L,
 ) -> L {
-    let one = L::splat(1.0);
-    let smin = lowest.div(one + (one + lowest).sqrt());
+    let smin = stretch(lowest);
     let (s00, alpha) = match toughness {
         [t] => (L::splat(t.s00), L::splat(t.alpha)),
         many => {
@@ -27,11 +55,7 @@ pub fn next_critical<L: Lane>(
     };
     let lonely = lowest.ge(L::splat(f64::INFINITY));
     let s0 = s00 - alpha * L::select(lonely, L::splat(0.0), smin);
-    L::select(
-        s0.lt(L::splat(-1.0)),
-        L::splat(-1.0),
-        s0 * (L::splat(2.0) + s0),
-    )
+    L::select(lonely, alone, critical(s0))
 }
 
 /// Energy density that points lose with bonds, from `Σ x` and `Σ k r0² s` over those bonds, the points' fields and

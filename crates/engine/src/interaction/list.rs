@@ -4,10 +4,11 @@
 mod kernel;
 
 use super::bond::critical_stretch;
+use super::pairs::BondTable;
 use super::weight::BondWeight;
 use super::{
-    BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion,
-    Sweep, Tally, Toughness,
+    BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
+    Repulsion, Sweep, Tally, Toughness, add_virial,
 };
 use crate::body::{Body, Field, zeros};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -19,6 +20,7 @@ use crate::law::Law;
 use crate::spec::CrackKind;
 use kernel::{BLOCK, Energies, Forces, Pack, Share, View};
 use std::ops::AddAssign;
+use std::sync::Arc;
 
 /// A law on a horizon list.
 pub struct ListInteraction<const D: usize, W: Law> {
@@ -40,8 +42,10 @@ pub struct ListInteraction<const D: usize, W: Law> {
     point_constants: PointConstants,
     toughness: Vec<Toughness>,
     repulsion: Option<Repulsion>,
-    /// `[slots]`, where repulsion depends on it; else empty.
+    /// `[slots]`, where repulsion or the law depends on it; else empty.
     materials: Vec<u8>,
+    /// Of laws that read constants of pairs; else empty.
+    pairs: Arc<BondTable>,
     /// Critical `e` per slot, now and next.
     critical: Vec<f64>,
     next: Vec<f64>,
@@ -67,6 +71,11 @@ pub struct ListParts<'a, const D: usize, W> {
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
     pub fn new(parts: ListParts<D, W>) -> Self {
+        Self::of_pairs(parts, Arc::default())
+    }
+
+    /// With constants of pairs of materials, which the law reads.
+    pub fn of_pairs(parts: ListParts<D, W>, pairs: Arc<BondTable>) -> Self {
         let ListParts {
             body,
             list,
@@ -89,10 +98,14 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             vec![]
         };
         let alike = |r: &Repulsion| r.stiffness.one().is_some();
-        let materials = match repulsion.as_ref().is_none_or(alike) {
+        let materials: Vec<u8> = match !W::PAIRS && repulsion.as_ref().is_none_or(alike) {
             true => vec![],
-            false => body.material.clone(),
+            false => (0..body.len).map(|s| body.material_of(s) as u8).collect(),
         };
+        if W::PAIRS {
+            let known = |m: &u8| (*m as usize) < pairs.materials();
+            assert!(materials.iter().all(known), "constants of every material");
+        }
         let blocks = list.slices().div_ceil(BLOCK);
         ListInteraction {
             law,
@@ -108,6 +121,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             toughness,
             repulsion,
             materials,
+            pairs,
             next: critical.clone(),
             critical,
             period: body.period.map(|p| p.unwrap_or(0.0)),
@@ -144,6 +158,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             repulsion: self.repulsion.as_ref(),
             materials: &self.materials,
             periodic: self.is_periodic(),
+            pairs: &self.pairs,
         }
     }
 
@@ -170,7 +185,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         &mut self,
         body: &Body<D>,
         f: &mut Field<D>,
-        motion: Option<(&Field<D>, f64)>,
+        motion: Option<Motion<D>>,
     ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
@@ -190,14 +205,14 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         self.period.iter().any(|p| *p > 0.0)
     }
 
-    /// θ over `Σ k r0² s` at a slot: `n/m`, from `β/m`.
-    fn dilatation_factor(&self, body: &Body<D>, slot: usize) -> f64 {
+    /// n and 1/m at a slot, from `β/m`.
+    fn per_weight(&self, body: &Body<D>, slot: usize) -> [f64; 2] {
         match &self.point_constants {
             PointConstants::Solid(s) => {
                 let s = s[body.material_of(slot)];
-                s.n / s.beta * self.fields[2 * slot + 1]
+                [s.n, self.fields[2 * slot + 1] / s.beta]
             }
-            _ => 0.0,
+            PointConstants::None | PointConstants::PerMaterial(_) => [0.0; 2],
         }
     }
 
@@ -210,11 +225,10 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             .sum()
     }
 
-    /// Energies of all points, and `Σ k r0² s` in place of the dilatation. Returns `Σ k r0²` of laws that do not share.
-    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) -> Vec<f64> {
+    /// Energies of all points, with `Σ k r0² s` in place of the dilatation and `Σ k r0²` of what is whole.
+    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let mut moved = vec![0.0; 4 * body.len];
         self.pack(u, &mut moved);
-        let mut weight = vec![0.0; if W::SHARES { 0 } else { body.len }];
         out.zeros(body.len);
         let kernel = Energies {
             view: self.view(&moved),
@@ -222,11 +236,10 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
                 strain: Shared(out.strain.as_mut_ptr()),
                 repulsion: Shared(out.repulsion.as_mut_ptr()),
                 share: Shared(out.dilatation.as_mut_ptr()),
-                weight: Shared(weight.as_mut_ptr()),
+                weight: Shared(out.whole.as_mut_ptr()),
             }),
         };
         self.sums.sum(self.simd, &kernel);
-        weight
     }
 
     /// `P / Σ k r0² s` at a slot.
@@ -255,21 +268,18 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.pack(u, &mut moved);
         self.moved = moved;
         if let Some(seen) = seen {
-            let weight = self.sums(body, u, seen);
+            self.sums(body, u, seen);
             if W::SHARES {
                 for &slot in &body.slots {
                     let i = slot as usize;
                     self.fields[2 * i] = self.pressure_factor(i) * seen.dilatation[i];
                 }
             }
-            seen.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
+            seen.dilate::<W, D>(body, |i| self.per_weight(body, i));
         } else if W::SHARES {
             self.share();
         }
-        let motion = match sweep {
-            Sweep::Evolve { v, dt } => Some((v, dt)),
-            Sweep::Hold => None,
-        };
+        let motion = sweep.motion();
         let total = if self.critical.is_empty() {
             self.sweep::<false>(body, f, motion)
         } else {
@@ -293,8 +303,8 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
-        let weight = self.sums(body, u, out);
-        out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
+        self.sums(body, u, out);
+        out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
     fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
@@ -311,15 +321,29 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     continue;
                 }
                 let (xi, share) = view.constant(i, j);
-                visit(BondTangent::of_law(
+                let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
+                let mut fields = [i, j].map(|s| [field(0, s), field(1, s)]);
+                if W::PAIRS {
+                    let pair = self.pairs.get(body.material_of(i), body.material_of(j));
+                    k *= pair.stiffness;
+                    fields.iter_mut().for_each(|f| f[0] *= pair.ratio());
+                }
+                let mut tangent = BondTangent::of_law(
                     self.law,
                     [i, j],
-                    share / xi.iter().map(|x| x * x).sum::<f64>(),
+                    k,
                     BondFactors::ONE,
                     xi,
                     std::array::from_fn(|a| u[a][j] - u[a][i]),
-                    [i, j].map(|s| [field(0, s), field(1, s)]),
-                ));
+                    fields,
+                );
+                if W::PAIRS && W::SHARES {
+                    // the scalar is that of unit constants
+                    let pair = self.pairs.get(body.material_of(i), body.material_of(j));
+                    tangent.share = tangent.share.map(|x| x / pair.stiffness);
+                    tangent.pull = tangent.pull.map(|p| p.map(|x| x * pair.ratio()));
+                }
+                visit(tangent);
             }
         }
     }
@@ -330,6 +354,30 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         } else {
             0.0
         }
+    }
+
+    /// Of laws that read constants of pairs: their directed bonds need not pull with opposite forces.
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        if !W::PAIRS {
+            return None;
+        }
+        let mut moved = std::mem::take(&mut self.moved);
+        self.pack(u, &mut moved);
+        self.moved = moved;
+        if W::SHARES {
+            self.share();
+        }
+        let view = self.view(&self.moved);
+        let mut virial = [0.0; 6];
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            for (line, j) in self.list.partners(row) {
+                let alive = self.alive[line] >> (row % TILE) & 1 == 1;
+                let (pull, y) = view.pull_of(i as usize, j, alive);
+                let force = y.map(|c| pull * c);
+                add_virial(&mut virial, &force, &y, -0.5 * body.volume.at(i as usize));
+            }
+        }
+        Some(virial)
     }
 
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
@@ -466,6 +514,6 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             + self.pressure.len()
             + self.critical.len()
             + self.next.len();
-        self.list.bytes() + self.alive.len() + 8 * words
+        self.list.bytes() + self.alive.len() + self.materials.len() + self.pairs.bytes() + 8 * words
     }
 }

@@ -8,6 +8,7 @@ mod history;
 pub mod linear;
 pub mod list;
 pub mod micromoduli;
+pub mod pairs;
 pub mod repulsion;
 pub mod scale;
 pub mod stencil;
@@ -20,7 +21,7 @@ use crate::execute::blocks::Shared;
 use crate::law::BondFactors;
 use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
-use crate::spec::CrackKind;
+use crate::spec::{CrackKind, Release};
 pub use repulsion::{PairTable, Repulsion};
 use std::ops::AddAssign;
 pub use tangent::BondTangent;
@@ -77,9 +78,14 @@ pub struct Toughness {
 /// May bonds break in this sweep?
 #[derive(Debug, Clone, Copy)]
 pub enum Sweep<'a, const D: usize> {
-    /// Forces, then test and break, then the new critical stretch. A bond that breaks pulls once more, over half
-    /// the next step; `v` (velocity of the step's middle) and `dt` say what that costs.
-    Evolve { v: &'a Field<D>, dt: f64 },
+    /// Forces, test and break, then the new critical stretch. A bond that lets go at once missed the half step that
+    /// ends here, one that does after its force pulls over half the next step; `v` (velocity of the step's middle)
+    /// and `dt` say what that costs. The first evaluation of a run ends no step: `dt` is 0 there for the former.
+    Evolve {
+        v: &'a Field<D>,
+        dt: f64,
+        release: Release,
+    },
     /// Forces only; the memory stays as it is.
     Hold,
 }
@@ -102,6 +108,35 @@ pub enum BondState {
     Broken,
 }
 
+/// The motion of a sweep in which bonds break.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Motion<'a, const D: usize> {
+    v: &'a Field<D>,
+    dt: f64,
+    release: Release,
+}
+
+impl<const D: usize> Motion<'_, D> {
+    /// Time over which the pull of a bond that breaks counts as work on the motion, per end: half of half a step,
+    /// taken from what it releases where it missed that pull.
+    fn farewell(&self) -> f64 {
+        match self.release {
+            Release::AtOnce => -0.25 * self.dt,
+            Release::AfterForce => 0.25 * self.dt,
+        }
+    }
+}
+
+impl<'a, const D: usize> Sweep<'a, D> {
+    /// `None`: nothing breaks.
+    fn motion(self) -> Option<Motion<'a, D>> {
+        match self {
+            Sweep::Evolve { v, dt, release } => Some(Motion { v, dt, release }),
+            Sweep::Hold => None,
+        }
+    }
+}
+
 /// Energies and dilatation of all points, per slot.
 #[derive(Debug, Clone, Default)]
 pub struct PointEnergies {
@@ -111,30 +146,39 @@ pub struct PointEnergies {
     pub repulsion: Vec<f64>,
     /// Dilatation θ (–).
     pub dilatation: Vec<f64>,
+    /// `Σ k r0²` over whole bonds, of peridynamic laws: over the weighted volume m where there is one (–).
+    pub whole: Vec<f64>,
 }
 
 impl PointEnergies {
-    /// Make dilatations of `Σ k r0² s`: times a factor per slot for laws that share, else `D Σ k r0² s / Σ k r0²`.
+    /// Make dilatations of `Σ k r0² s`: times `n/m` for laws that share, else `D Σ k r0² s / Σ k r0²`. `factors` of a
+    /// slot are n and 1/m.
     fn dilate<W: Law, const D: usize>(
         &mut self,
         body: &Body<D>,
-        weight: &[f64],
-        factor: impl Fn(usize) -> f64,
+        factors: impl Fn(usize) -> [f64; 2],
     ) {
         for &slot in &body.slots {
             let i = slot as usize;
             let share = self.dilatation[i];
             if W::SHARES {
-                self.dilatation[i] = factor(i) * share;
-            } else if weight[i] > 0.0 {
-                self.dilatation[i] = D as f64 * share / weight[i];
+                let [n, per_m] = factors(i);
+                self.dilatation[i] = n * per_m * share;
+                self.whole[i] *= per_m;
+            } else if self.whole[i] > 0.0 {
+                self.dilatation[i] = D as f64 * share / self.whole[i];
             }
         }
     }
 
     /// All zero, for so many slots.
     pub fn zeros(&mut self, len: usize) {
-        for field in [&mut self.strain, &mut self.repulsion, &mut self.dilatation] {
+        for field in [
+            &mut self.strain,
+            &mut self.repulsion,
+            &mut self.dilatation,
+            &mut self.whole,
+        ] {
             field.clear();
             field.resize(len, 0.0);
         }
@@ -147,7 +191,6 @@ struct EnergyFields {
     strain: Shared,
     repulsion: Shared,
     share: Shared,
-    /// Not of laws that share.
     weight: Shared,
 }
 

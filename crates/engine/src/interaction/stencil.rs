@@ -7,8 +7,8 @@ mod kernel;
 use super::bond::critical_stretch;
 use super::scale::Scale;
 use super::{
-    BondState, BondTangent, EnergyFields, Interaction, PointConstants, PointEnergies, Repulsion,
-    Sweep, Tally, Toughness,
+    BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
+    Repulsion, Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Column, Field, Layout, field, zeros};
 use crate::error::BuildError;
@@ -118,7 +118,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         body: &Body<D>,
         u: &Field<D>,
         f: &mut Field<D>,
-        motion: Option<(&Field<D>, f64)>,
+        motion: Option<Motion<D>>,
     ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
         let state = Shared(self.state.as_mut_ptr());
@@ -137,14 +137,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         self.tallies.fold(self.simd, &kernel, Tally::add_assign)
     }
 
-    /// θ over `Σ k r0² s` at a slot: `n/m`, from `β/m`.
-    fn dilatation_factor(&self, body: &Body<D>, slot: usize) -> f64 {
+    /// n and 1/m at a slot, from `β/m`.
+    fn per_weight(&self, body: &Body<D>, slot: usize) -> [f64; 2] {
         match &self.point_constants {
             PointConstants::Solid(s) => {
                 let s = s[body.material_of(slot)];
-                s.n / s.beta * self.fields[1][slot]
+                [s.n, self.fields[1][slot] / s.beta]
             }
-            _ => 0.0,
+            PointConstants::None | PointConstants::PerMaterial(_) => [0.0; 2],
         }
     }
 
@@ -152,9 +152,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         &self.alive[n * self.width..(n + 1) * self.width]
     }
 
-    /// Energies of all points, and `Σ k r0² s` in place of the dilatation. Returns `Σ k r0²` of laws that do not share.
-    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) -> Vec<f64> {
-        let mut weight = vec![0.0; if W::SHARES { 0 } else { body.len }];
+    /// Energies of all points, with `Σ k r0² s` in place of the dilatation and `Σ k r0²` of what is whole.
+    fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
         let kernel = Energies {
             view: self.view(body, u),
@@ -162,11 +161,10 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 strain: Shared(out.strain.as_mut_ptr()),
                 repulsion: Shared(out.repulsion.as_mut_ptr()),
                 share: Shared(out.dilatation.as_mut_ptr()),
-                weight: Shared(weight.as_mut_ptr()),
+                weight: Shared(out.whole.as_mut_ptr()),
             }),
         };
         self.sums.sum(self.simd, &kernel);
-        weight
     }
 
     /// `P / Σ k r0² s` at a slot.
@@ -192,14 +190,14 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         seen: Option<&mut PointEnergies>,
     ) -> Tally {
         if let Some(seen) = seen {
-            let weight = self.sums(body, u, seen);
+            self.sums(body, u, seen);
             if W::SHARES {
                 for &slot in &body.slots {
                     let i = slot as usize;
                     self.fields[0][i] = self.pressure_factor(i) * seen.dilatation[i];
                 }
             }
-            seen.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
+            seen.dilate::<W, D>(body, |i| self.per_weight(body, i));
         } else if W::SHARES {
             let mut pressure = std::mem::take(&mut self.fields[0]);
             let kernel = Share {
@@ -212,10 +210,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         if W::SHARES {
             body.fill_images(&mut self.fields[0]);
         }
-        let motion = match sweep {
-            Sweep::Evolve { v, dt } => Some((v, dt)),
-            Sweep::Hold => None,
-        };
+        let motion = sweep.motion();
         let total = if self.critical.is_empty() {
             self.sweep::<false>(body, u, f, motion)
         } else {
@@ -234,6 +229,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             self.least_critical = total.least_critical;
             self.settled = self.toughness.iter().all(|t| t.alpha == 0.0);
         }
+        // a point may have lost its last bond
+        self.settled &= total.broken == 0;
         total
     }
 
@@ -246,8 +243,8 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
-        let weight = self.sums(body, u, out);
-        out.dilate::<W, D>(body, &weight, |i| self.dilatation_factor(body, i));
+        self.sums(body, u, out);
+        out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
     fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {

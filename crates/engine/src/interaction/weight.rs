@@ -27,8 +27,14 @@ impl BondWeight {
     /// `ω ν` of bonds of these lengths.
     #[inline(always)]
     pub fn at<L: Lane>(&self, r0: L, inv_r0: L) -> L {
+        self.within(r0, inv_r0, L::splat(self.cut))
+    }
+
+    /// The same where the partner's volume begins to fade elsewhere: `cut` is `½ + δ/h` of the bond's own horizon.
+    #[inline(always)]
+    pub fn within<L: Lane>(&self, r0: L, inv_r0: L, cut: L) -> L {
         let one = L::splat(1.0);
-        let fraction = r0.fma(L::splat(-self.rate), L::splat(self.cut)).min(one);
+        let fraction = r0.fma(L::splat(-self.rate), cut).min(one);
         self.influence.at(r0, inv_r0) * fraction
     }
 }

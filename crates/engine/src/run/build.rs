@@ -33,6 +33,12 @@ pub struct Options {
 
 /// Build the model of a spec.
 pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, BuildError> {
+    if !spec.pairs.is_empty() && spec.schedule.statics.is_some() {
+        return Err(BuildError::new(
+            "pairs",
+            "pairs of materials with constants of their own move in time; there is no statics of them",
+        ));
+    }
     if let Some(simd) = options.simd
         && !Simd::available().contains(&simd)
     {
@@ -240,10 +246,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         f: zeros(body.len),
         u,
         verlet: Verlet::new(simd, &body),
-        contact: recipe
-            .repulsion
-            .clone()
-            .map(|r| Contact::new(r, &body, horizon)),
+        contact: recipe.repulsion.clone().map(|r| {
+            let pairs = recipe.pairs.as_ref();
+            Contact::new(r, &body, pairs.map_or(horizon, |p| p.shortest()))
+        }),
+        release: spec.release,
         recipe,
         interaction,
         body,

@@ -95,6 +95,19 @@ pub struct Families {
     pub foreign: Vec<bool>,
 }
 
+/// What a force evaluation sees of every point, in order of point id.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Observed {
+    /// `[N]` strain energy densities of bonds (energy / volume).
+    pub strain: Vec<f64>,
+    /// `[N]` energy densities of repulsion, half of a pair's at either end (energy / volume).
+    pub repulsion: Vec<f64>,
+    /// `[N]` dilatations θ (–).
+    pub dilatation: Vec<f64>,
+    /// `[N]` weighted volume of whole bonds over that of the family, of state-based laws (–).
+    pub whole: Vec<f64>,
+}
+
 /// A mode of vibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModeShape {
@@ -175,8 +188,10 @@ pub trait Simulation: Send {
     /// Keep energies and dilatations of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its
     /// forces see them: with the bonds that break in it. LAMMPS prints these.
     fn watch_next(&mut self);
-    /// Strain and contact energy density and dilatation of the last force evaluation, if it was watched.
-    fn watched(&self) -> Option<(Vec<f64>, Vec<f64>)>;
+    /// What the last force evaluation saw, if it was watched.
+    fn watched(&self) -> Option<Observed>;
+    /// The same of the current state.
+    fn observed(&mut self) -> Observed;
 
     /// Keep the virial of the next force evaluation, with the bonds that break in it.
     fn watch_virial_next(&mut self);

@@ -2,7 +2,7 @@
 
 use super::equilibrium::StaticState;
 use super::recipe::Recipe;
-use super::{Families, Info, ModeShape, PointField, Simulation, SnapshotOptions};
+use super::{Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions};
 use crate::body::{Body, Field};
 use crate::condition::constraint::Constraint;
 use crate::condition::driven::{Drive, Driven, Reaction};
@@ -16,7 +16,7 @@ use crate::interaction::contact::Contact;
 use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
-use crate::spec::{ConditionSpec, IndenterSpec};
+use crate::spec::{ConditionSpec, IndenterSpec, Release};
 use crate::statics::{AnyLinearBody, SolveError, Solved};
 
 /// A model in D dimensions.
@@ -51,6 +51,8 @@ pub struct Model<const D: usize> {
     pub(super) origin: (u64, f64),
     /// Does `v` wait for the last half kick?
     pub(super) pending: bool,
+    /// When a bond past its critical stretch lets go.
+    pub(super) release: Release,
     pub(super) broken: u64,
     pub(super) released: f64,
     /// Work of conditions that were replaced since.
@@ -81,6 +83,16 @@ impl<const D: usize> Model<D> {
 
     pub(super) fn by_id<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
         self.body.slots.iter().map(|&s| value(s as usize)).collect()
+    }
+
+    fn observed_of(&self, energies: &PointEnergies) -> Observed {
+        let field = |f: &[f64]| self.by_id(|i| f.get(i).copied().unwrap_or(0.0));
+        Observed {
+            strain: field(&energies.strain),
+            repulsion: field(&energies.repulsion),
+            dilatation: field(&energies.dilatation),
+            whole: field(&energies.whole),
+        }
     }
 
     pub(super) fn vectors(&self, field: &Field<D>) -> Vec<Point> {
@@ -231,15 +243,9 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn energy_density(&mut self) -> Vec<f64> {
-        self.refresh_images();
-        let mut out = PointEnergies::default();
-        self.interaction.observe(&self.body, &self.u, &mut out);
-        if let Some(pairs) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
-        }
-        self.by_id(|i| out.strain[i] + out.repulsion[i])
+        let seen = self.observed();
+        let both = seen.strain.iter().zip(&seen.repulsion);
+        both.map(|(a, b)| a + b).collect()
     }
 
     fn critical_stretch(&self) -> Vec<f64> {
@@ -329,11 +335,20 @@ impl<const D: usize> Simulation for Model<D> {
         self.watch = true;
     }
 
-    fn watched(&self) -> Option<(Vec<f64>, Vec<f64>)> {
-        self.watched.as_ref().map(|w| {
-            let energy = self.by_id(|i| w.strain[i] + w.repulsion[i]);
-            (energy, self.by_id(|i| w.dilatation[i]))
-        })
+    fn watched(&self) -> Option<Observed> {
+        self.watched.as_ref().map(|w| self.observed_of(w))
+    }
+
+    fn observed(&mut self) -> Observed {
+        self.refresh_images();
+        let mut out = PointEnergies::default();
+        self.interaction.observe(&self.body, &self.u, &mut out);
+        if let Some(pairs) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
+        }
+        self.observed_of(&out)
     }
 
     fn watch_virial_next(&mut self) {

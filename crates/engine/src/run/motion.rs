@@ -8,6 +8,7 @@ use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::error::RunError;
 use crate::interaction::Sweep;
+use crate::spec::Release;
 
 impl<const D: usize> Model<D> {
     /// All forces at the current displacements, no bond breaking.
@@ -35,7 +36,12 @@ impl<const D: usize> Model<D> {
                 &mut self.f,
                 Sweep::Evolve {
                     v: &self.v,
-                    dt: self.dt,
+                    // a bond that lets go at once in the first evaluation of a run missed no half step
+                    dt: match self.release {
+                        Release::AtOnce => dt,
+                        Release::AfterForce => self.dt,
+                    },
+                    release: self.release,
                 },
                 watched.as_mut(),
             );

@@ -12,6 +12,7 @@ use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::interaction::linear::LinearInteraction;
 use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::micromoduli::MicromoduliInteraction;
+use crate::interaction::pairs::{BondConstants, BondTable, Paired};
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PairTable, PointConstants, Repulsion, Toughness};
@@ -51,6 +52,8 @@ pub(super) struct Recipe {
     /// Was the horizon given in spacings?
     pub ratio: bool,
     pub rule: crate::spec::InterfaceRule,
+    /// Constants of pairs of materials, where they do not follow from the two.
+    pub pairs: Option<Arc<BondTable>>,
     pub simd: Simd,
 }
 
@@ -192,6 +195,7 @@ impl Recipe {
             }),
             None => None,
         };
+        let pairs = bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
         Ok(Recipe {
             laws,
             toughness,
@@ -203,6 +207,7 @@ impl Recipe {
             scaling: spec.volume_scaling,
             ratio: matches!(spec.horizon, crate::spec::Horizon::Ratio(_)),
             rule: spec.interface,
+            pairs,
             simd,
         })
     }
@@ -231,6 +236,9 @@ impl Recipe {
             .filter(|(n, _)| pick(*n))
             .map(|(_, t)| *t)
             .collect();
+        if let (Some(pairs), None) = (&self.pairs, only) {
+            return self.interaction_of_pairs(body, pairs, toughness);
+        }
         let repulsion = match (&self.repulsion, only) {
             (Some(all), Some(n)) => Some(all.only(n)),
             (all, _) => all.clone(),
@@ -376,6 +384,131 @@ impl Recipe {
             }
         }
     }
+
+    /// Laws of unit constants, with what pairs of materials have.
+    fn interaction_of_pairs<const D: usize>(
+        &self,
+        body: &Body<D>,
+        pairs: &Arc<BondTable>,
+        toughness: Vec<Toughness>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        match &self.laws {
+            Laws::Solid(solids) => {
+                let unit = Solid {
+                    kappa: 1.0,
+                    beta: 1.0,
+                    ..solids[0]
+                };
+                let law = EamLike {
+                    ratio: unit.ratio(),
+                };
+                let constants = PointConstants::Solid(vec![unit; solids.len()]);
+                self.list_of_pairs(body, pairs, law, constants, toughness)
+            }
+            _ => self.list_of_pairs(
+                body,
+                pairs,
+                BondBased { c: 1.0 },
+                PointConstants::None,
+                toughness,
+            ),
+        }
+    }
+
+    fn list_of_pairs<const D: usize, W: crate::law::Law>(
+        &self,
+        body: &Body<D>,
+        pairs: &Arc<BondTable>,
+        law: W,
+        point_constants: PointConstants,
+        toughness: Vec<Toughness>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let horizon = |i: usize, j: usize| {
+            let pair = pairs.get(body.material_of(i), body.material_of(j));
+            pair.horizon
+        };
+        let scaling = self.scaling.then_some(self.spacing);
+        let parts = ListParts {
+            body,
+            list: HorizonList::within(body, self.horizon, horizon)?,
+            law: Paired(law),
+            weight: BondWeight::new(self.influence, self.horizon, scaling),
+            point_constants,
+            toughness,
+            repulsion: self.repulsion.clone(),
+            simd: self.simd,
+        };
+        Ok(Box::new(ListInteraction::of_pairs(parts, pairs.clone())))
+    }
+}
+
+/// What pairs of materials have, checked.
+fn bond_table(
+    spec: &Spec,
+    laws: &Laws,
+    horizon: f64,
+    spacing: f64,
+) -> Result<Option<BondTable>, BuildError> {
+    let materials = spec.materials.len();
+    if spec.pairs.is_empty() {
+        return Ok(None);
+    }
+    let error = |message: String| Err(BuildError::new("pairs", message));
+    if spec.pairs.len() != materials * materials {
+        return error(format!(
+            "{} pairs of {materials} materials, expected {}",
+            spec.pairs.len(),
+            materials * materials
+        ));
+    }
+    if !matches!(spec.influence, Influence::Constant | Influence::Inverse) {
+        return error(
+            "an influence function that ends at the horizon, with horizons of pairs".into(),
+        );
+    }
+    let mut pairs = vec![];
+    for (n, p) in spec.pairs.iter().enumerate() {
+        let (of, with) = (n / materials, n % materials);
+        let (stiffness, volume) = match (laws, p.law) {
+            (Laws::Bond(_), LawSpec::Pmb(PmbStiffness::Micromodulus(c))) => (c, 0.0),
+            (Laws::Solid(_), law @ LawSpec::LpsAsTyped { .. }) => {
+                let Some(solid) = Solid::of_law(spec.dimension, spec.plane, law) else {
+                    return error("a law that is no solid".into());
+                };
+                (solid.beta, solid.kappa)
+            }
+            _ => {
+                return error(
+                    "pairs have a micromodulus (pmb) or moduli as typed (lps), of the law of the materials"
+                        .into(),
+                );
+            }
+        };
+        let mirrored = &spec.pairs[with * materials + of];
+        let fine = |x: f64| x >= 0.0 && x.is_finite();
+        if !fine(stiffness) || !fine(p.horizon) || p.horizon > horizon * (1.0 + 1e-9) {
+            return error(format!(
+                "materials {of} and {with} have the stiffness {stiffness:e} and the horizon {:e}; that of the body is {horizon:e}",
+                p.horizon
+            ));
+        }
+        if p.horizon != mirrored.horizon {
+            return error(format!(
+                "materials {of} and {with} must have the same horizon both ways round"
+            ));
+        }
+        pairs.push(BondConstants {
+            horizon: p.horizon,
+            stiffness,
+            volume,
+            toughness: Toughness {
+                s00: p.critical_stretch,
+                alpha: p.alpha,
+            },
+        });
+    }
+    let scaling = spec.volume_scaling.then_some(spacing);
+    Ok(Some(BondTable::new(materials, pairs, scaling)))
 }
 
 /// Makes a potential an interaction on fixed lattice neighbours.

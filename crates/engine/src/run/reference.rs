@@ -158,7 +158,8 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         })
     };
     let list_if_asked = |r: Reference<D>| {
-        if spec.family == FamilyChoice::List || current_neighbours(spec) {
+        let list = spec.family == FamilyChoice::List || !spec.pairs.is_empty();
+        if list || current_neighbours(spec) {
             Ok(Reference {
                 body: r.body.to_cloud()?,
                 stencil: None,

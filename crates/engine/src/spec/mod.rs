@@ -34,6 +34,11 @@ pub struct Spec {
     pub micromoduli: Option<Arc<AnyLinearBody>>,
     /// How bonds between unlike materials get their stiffness.
     pub interface: InterfaceRule,
+    /// What pairs of materials have instead of what follows from the two, `[of][with]`; empty: nothing. Their bonds
+    /// are in lists.
+    pub pairs: Vec<PairSpec>,
+    /// When a bond past its critical stretch lets go.
+    pub release: Release,
     pub horizon: Horizon,
     /// Scale the partner's volume linearly where its cell straddles the horizon (`lammps-peri` item 3).
     pub volume_scaling: bool,
@@ -80,6 +85,8 @@ impl Spec {
             potential: None,
             micromoduli: None,
             interface: InterfaceRule::Series,
+            pairs: vec![],
+            release: Release::AtOnce,
             horizon: Horizon::Ratio(1),
             volume_scaling: false,
             calibration: Calibration::Discrete,
@@ -304,6 +311,30 @@ pub enum InterfaceRule {
     /// Arithmetic mean: in parallel.
     Parallel,
     Minimum,
+}
+
+/// When a bond past its critical stretch lets go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Release {
+    /// In the force evaluation that finds it there (CabanaPD). The dilatation of that evaluation still has it.
+    #[default]
+    AtOnce,
+    /// After the force of that evaluation: it pulls once more (LAMMPS).
+    AfterForce,
+}
+
+/// What points of one material have in their bonds with points of another (LAMMPS's `pair_coeff I J`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairSpec {
+    /// At most the horizon of the spec (length); 0: no bonds.
+    pub horizon: f64,
+    /// `Pmb` with a micromodulus; `LpsAsTyped`: moduli with which both scalars act on the point, whatever its partner
+    /// is made of. With unlike moduli forces are then not opposite, and no energy is conserved.
+    pub law: LawSpec,
+    /// Critical stretch s00 of those bonds, and how it depends on compression: a point's s0 is the greatest
+    /// `s00 − α s` of its whole bonds.
+    pub critical_stretch: f64,
+    pub alpha: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]

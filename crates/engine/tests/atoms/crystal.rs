@@ -211,7 +211,7 @@ fn watched_energies_are_the_observed_ones() {
             let fresh = sim.energy_density();
             sim.watch_next();
             sim.start(true);
-            let (seen, _) = sim.watched().unwrap();
+            let seen = sim.watched().unwrap().strain;
             assert_eq!(seen, sim.energy_density(), "{name}, {family:?}");
             let scale = seen.iter().fold(0.0f64, |m, e| m.max(e.abs()));
             for (x, y) in seen.iter().zip(&fresh) {

@@ -139,16 +139,22 @@ fn the_ledger_of_intact_bodies_closes_to_second_order() {
     }
 }
 
-/// Bonds that break give up what they held.
+/// Bonds that break give up what they held, whenever they let go.
 #[test]
 fn the_ledger_of_breaking_bodies_closes() {
     for kind in [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic] {
         for name in ["pmb", "lps", "lps mixed"] {
-            for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+            for (family, release) in [
+                (FamilyChoice::Stencil, Release::AtOnce),
+                (FamilyChoice::Stencil, Release::AfterForce),
+                (FamilyChoice::List, Release::AtOnce),
+                (FamilyChoice::List, Release::AfterForce),
+            ] {
                 let place = block(kind);
                 let case = Case::of(name, place);
                 let mut spec = case.spec();
                 spec.family = family;
+                spec.release = release;
                 ends(&mut spec, place.cells[0]);
                 spec.conditions = vec![
                     on(
@@ -170,7 +176,7 @@ fn the_ledger_of_breaking_bodies_closes() {
                 assert!(sim.fragments() > 1 && sim.broken() > 0, "{}", case.name());
                 let off = l.residual().abs() / work(&l);
                 println!(
-                    "{name} {kind:?} {family:?}, torn: residual {off:.1e} of the work, released {:.2} of it",
+                    "{name} {kind:?} {family:?} {release:?}, torn: residual {off:.1e} of the work, released {:.2} of it",
                     l.released / work(&l)
                 );
                 assert!(l.released > 0.02 * work(&l), "{}: {l:?}", case.name());

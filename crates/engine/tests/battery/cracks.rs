@@ -268,3 +268,45 @@ fn a_seed_gives_the_same_body_again() {
         );
     }
 }
+
+/// Two points fly apart: the bond pulls in the evaluation that finds it past its critical stretch, or no more.
+#[test]
+fn a_bond_lets_go_at_once_or_after_its_force() {
+    for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+        for name in ["pmb", "lps"] {
+            let mut held = vec![];
+            for release in [Release::AtOnce, Release::AfterForce] {
+                let place = Place {
+                    kind: LatticeKind::Chain,
+                    plane: Plane::Strain,
+                    ratio: 1,
+                    cells: [2, 1, 1],
+                };
+                let mut spec = Case::of(name, place).spec();
+                (spec.family, spec.release) = (family, release);
+                breaking(&mut spec, 0.05);
+                spec.schedule.time_step = TimeStep::Fixed(0.01);
+                let mut sim = made(&spec);
+                sim.set_velocities(&[[-0.4, 0.0, 0.0], [0.4, 0.0, 0.0]]);
+                sim.start(true);
+                let mut last = 0.0;
+                while sim.broken() == 0 {
+                    last = largest(&sim.force_densities());
+                    sim.step().unwrap();
+                    assert!(sim.step_number() < 100, "{name}: nothing breaks");
+                }
+                let now = largest(&sim.force_densities());
+                match release {
+                    Release::AtOnce => assert_eq!(now, 0.0, "{name} {family:?}"),
+                    Release::AfterForce => assert!(now > last, "{name} {family:?}: {now}"),
+                }
+                sim.step().unwrap();
+                assert_eq!(largest(&sim.force_densities()), 0.0);
+                held.push((sim.step_number(), sim.velocities()[1][0]));
+            }
+            // in the same step; what pulled once more is slower
+            assert_eq!(held[0].0, held[1].0);
+            assert!(held[1].1 < held[0].1, "{name}: {held:?}");
+        }
+    }
+}

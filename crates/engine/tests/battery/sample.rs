@@ -200,6 +200,8 @@ impl Case {
                 })
                 .collect(),
             interface: InterfaceRule::Series,
+            pairs: vec![],
+            release: Release::AtOnce,
             horizon: Horizon::Ratio(ratio),
             volume_scaling: true,
             calibration: Calibration::Discrete,

@@ -10,7 +10,7 @@ use peridyne::law::Law;
 use peridyne::law::solid::bond_based::BondBasedMixed;
 use peridyne::law::solid::eam_like::EamLike;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{Influence, InterfaceRule};
+use peridyne::spec::{Influence, InterfaceRule, Release};
 
 /// Everything that a few breaking steps leave behind.
 fn trace<W: Law>(law: W, constants: PointConstants, simd: Simd, threads: usize) -> Vec<u64> {
@@ -33,8 +33,9 @@ fn trace<W: Law>(law: W, constants: PointConstants, simd: Simd, threads: usize) 
                 &u,
                 &mut f,
                 Sweep::Evolve {
-                    v: &zeros(body.len),
-                    dt: 0.0,
+                    v: &displace(&body, case.amplitude, step + 7),
+                    dt: 0.3,
+                    release: [Release::AfterForce, Release::AtOnce][step as usize % 2],
                 },
                 None,
             );
@@ -98,7 +99,11 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         let mut f = zeros(body.len);
         let u = displace(&body, case.amplitude, 3);
         let still = zeros(body.len);
-        let evolve = Sweep::Evolve { v: &still, dt: 0.0 };
+        let evolve = Sweep::Evolve {
+            v: &still,
+            dt: 0.0,
+            release: Release::AfterForce,
+        };
         it.forces(&body, &u, &mut f, evolve, None);
         let before = allocations();
         it.forces(&body, &u, &mut f, evolve, None);

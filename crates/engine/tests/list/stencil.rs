@@ -11,7 +11,7 @@ use peridyne::law::influence::influence;
 use peridyne::law::solid::bond_based::{BondBased, BondBasedMixed};
 use peridyne::law::solid::eam_like::EamLike;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{CrackKind, Influence, InterfaceRule};
+use peridyne::spec::{CrackKind, Influence, InterfaceRule, Release};
 use std::collections::BTreeSet;
 
 /// Bonds as pairs of ids, and whether they are whole.
@@ -99,6 +99,7 @@ fn same_as_stencil<const D: usize, W: Law>(
     let mut f = (zeros(body.len), zeros(cloud.len));
     for step in 0..4 {
         let amplitude = case.amplitude * (1.0 + 0.5 * step as f64);
+        let release = [Release::AtOnce, Release::AfterForce][step as usize % 2];
         let u = (
             displace(&body, amplitude, step),
             displace(&cloud, amplitude, step),
@@ -110,8 +111,9 @@ fn same_as_stencil<const D: usize, W: Law>(
             &u.0,
             &mut f.0,
             Sweep::Evolve {
-                v: &zeros(body.len),
-                dt: 0.0,
+                v: &displace(&body, case.amplitude, step + 7),
+                dt: 0.3,
+                release,
             },
             None,
         );
@@ -120,8 +122,9 @@ fn same_as_stencil<const D: usize, W: Law>(
             &u.1,
             &mut f.1,
             Sweep::Evolve {
-                v: &zeros(cloud.len),
-                dt: 0.0,
+                v: &displace(&cloud, case.amplitude, step + 7),
+                dt: 0.3,
+                release,
             },
             None,
         );

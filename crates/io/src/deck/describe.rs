@@ -4,7 +4,7 @@ use super::units::{Dim, UnitSystem};
 use peridyne::space::region::Region;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Method, Plane, PmbStiffness, Spec, TimeStep,
+    MaterialSpec, Method, Plane, PmbStiffness, Release, Spec, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -12,6 +12,12 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     let mut lines = Vec::new();
     if !spec.title.is_empty() {
         lines.push(spec.title.clone());
+    }
+    if let UnitSystem::Metal(constants) = units {
+        lines.push(format!(
+            "units      metal, physical constants: {}",
+            constants.name()
+        ));
     }
     let plane = match (spec.dimension, spec.plane) {
         (2, Plane::Stress) => " plane stress",
@@ -33,6 +39,14 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             .iter()
             .map(|m| format!("material   {}", material(m, units))),
     );
+    if spec.materials.iter().any(|m| m.fracture.is_some()) {
+        lines.push(match spec.release {
+            Release::AtOnce => "release    bonds let go at once past their critical stretch".into(),
+            Release::AfterForce => {
+                "release    bonds pull once more past their critical stretch".into()
+            }
+        });
+    }
     let horizon = match spec.horizon {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),

@@ -2,7 +2,7 @@
 
 mod atoms;
 
-use super::units::UnitSystem;
+use super::units::{Constants, UnitSystem};
 use super::value::{At, Components, Number, Or, Vector, Written};
 pub use atoms::{Buckingham, Eam, EamForm, EndName, LennardJones, Morse, Thermal};
 use schemars::JsonSchema;
@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 pub struct Document {
     /// One line for headers and pictures.
     pub title: Option<String>,
-    /// What plain numbers mean; si when left out.
-    pub units: Option<At<UnitSystem>>,
+    /// What plain numbers mean: "si" when left out, or { system = "metal", constants = "lammps" }.
+    pub units: Option<At<Or<UnitName, Units>>>,
     /// Space dimensions, 1 to 3; follows from the lattice or the mesh when left out.
     pub dimension: Option<At<usize>>,
     /// 2-D only; stress when left out.
@@ -216,6 +216,50 @@ pub struct EamLike {
     pub volume: Number,
 }
 
+/// What plain numbers of a deck mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum UnitName {
+    /// m, kg, s
+    Si,
+    /// Å, ps, eV; masses in g/mol, densities in g/cm³, pressures in bar. Computed in Å, ps, eV throughout.
+    Metal,
+    /// Reduced units; numbers carry none.
+    Lj,
+    /// Any consistent units; numbers carry none.
+    None,
+}
+
+/// A system of units, and the physical constants of metal.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Units {
+    pub system: UnitName,
+    /// Of metal: codata2018 when left out; lammps gives LAMMPS's kinetic energies, temperatures and pressures.
+    pub constants: Option<At<Constants>>,
+}
+
+impl UnitName {
+    pub fn system(self, constants: Constants) -> UnitSystem {
+        match self {
+            UnitName::Si => UnitSystem::Si,
+            UnitName::Metal => UnitSystem::Metal(constants),
+            UnitName::Lj => UnitSystem::Lj,
+            UnitName::None => UnitSystem::None,
+        }
+    }
+}
+
+/// When a bond past its critical stretch lets go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ReleaseName {
+    /// In the force evaluation that finds it there, as in CabanaPD.
+    AtOnce,
+    /// After the force of that evaluation, as in LAMMPS: it pulls once more.
+    AfterForce,
+}
+
 /// One of critical_stretch and energy.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -225,6 +269,8 @@ pub struct Fracture {
     pub energy: Option<Number>,
     /// Strengthening under compression, s0 = s00 − α s_min; 0 when left out.
     pub alpha: Option<Number>,
+    /// at_once when left out; the same for all materials.
+    pub release: Option<At<ReleaseName>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -113,13 +113,14 @@ impl Deck {
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
             .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
+        let units = lower::units(&document);
         let lowered = lower::lower(&source, &document, &Files { folder })?;
         Ok(Deck {
             spec: lowered.spec,
             output: lowered.output,
             species: lowered.species,
             corner: lowered.corner,
-            units: document.units.map(|u| u.value).unwrap_or_default(),
+            units,
             threads: lowered.threads,
             duration: lowered.duration,
             modes: lowered.modes,

@@ -114,6 +114,33 @@ impl Session<'_> {
         moving
     }
 
+    /// LAMMPS moves the atoms of two such fixes twice in every step, and warns; nobody wants that.
+    ///
+    /// # Errors
+    /// An atom is in two.
+    pub fn nobody_twice(&self) -> Result<()> {
+        let all: Vec<_> = self
+            .fixes
+            .iter()
+            .filter(|f| f.kind == FixKind::Nve)
+            .collect();
+        for (k, a) in all.iter().enumerate() {
+            for b in &all[..k] {
+                let both = |i: &usize| a.members.contains(*i) && b.members.contains(*i);
+                if let Some(i) = (0..self.count()).find(both) {
+                    return Err(Problem::new(format!(
+                        "`fix nve` with the IDs `{}` and `{}` both move the atom with id {}",
+                        b.id,
+                        a.id,
+                        self.ids.get(i)
+                    ))
+                    .help("LAMMPS would move such atoms twice in every step: `unfix` one, or give each a group of its own"));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// `f_ID`, `f_ID[i]` of an indenter: its energy, and the force on it.
     ///
     /// # Errors

@@ -62,7 +62,7 @@ pub enum Quantity {
     Dilatation,
     /// s0, LAMMPS's `property/atom s0`.
     CriticalStretch,
-    /// Strain and contact energy density W, without the indenter (energy / volume).
+    /// Strain and contact energy density W as LAMMPS counts it, without the indenter (energy / volume).
     Energy,
 }
 
@@ -134,6 +134,16 @@ pub struct Setup {
 pub enum Pair {
     Pmb(PairTable<PmbCoefficients>),
     Lps(PairTable<LpsCoefficients>),
+}
+
+impl Pair {
+    /// Number of atom types.
+    pub fn types(&self) -> usize {
+        match self {
+            Pair::Pmb(table) => table.types(),
+            Pair::Lps(table) => table.types(),
+        }
+    }
 }
 
 /// Coefficients for every pair of atom types; symmetric, complete.

@@ -1,22 +1,30 @@
-//! Unit systems of LAMMPS: only what the `peri` output needs.
+//! Unit systems of LAMMPS, with the numbers that LAMMPS computes with: those of CODATA 2006 and older, which its own
+//! answers depend on from the sixth digit on.
 
-/// `units si | lj | metal | micro | nano | cgs`.
+/// `units lj | real | metal | si | cgs | electron | micro | nano`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Units {
     Lj,
-    Si,
+    Real,
     Metal,
+    Si,
     Cgs,
+    Electron,
     Micro,
     Nano,
 }
 
+/// kcal/mol per g/mol (Å/fs)² is the square of this.
+const REAL: f64 = 48.88821291;
+
 impl Units {
-    pub const ALL: [(&'static str, Units); 6] = [
+    pub const ALL: [(&'static str, Units); 8] = [
         ("lj", Units::Lj),
-        ("si", Units::Si),
+        ("real", Units::Real),
         ("metal", Units::Metal),
+        ("si", Units::Si),
         ("cgs", Units::Cgs),
+        ("electron", Units::Electron),
         ("micro", Units::Micro),
         ("nano", Units::Nano),
     ];
@@ -28,33 +36,48 @@ impl Units {
             .map_or("lj", |(n, _)| n)
     }
 
-    /// Boltzmann's constant.
+    /// Boltzmann's constant (energy / temperature).
     pub fn boltzmann(self) -> f64 {
         match self {
             Units::Lj => 1.0,
-            Units::Si => 1.3806504e-23,
+            Units::Real => 0.0019872067,
             Units::Metal => 8.617343e-5,
+            Units::Si => 1.3806504e-23,
             Units::Cgs => 1.3806504e-16,
+            Units::Electron => 3.16681534e-6,
             Units::Micro => 1.3806504e-8,
             Units::Nano => 0.013806504,
         }
     }
 
-    /// Converts mass · velocity² to energy.
+    /// Energy of mass · velocity² (LAMMPS's `mvv2e`).
     pub fn kinetic(self) -> f64 {
-        if self == Units::Metal {
-            1.0364269e-4
-        } else {
-            1.0
+        match self {
+            Units::Real => REAL * REAL,
+            Units::Metal => 1.0364269e-4,
+            Units::Electron => 1.06657236,
+            Units::Lj | Units::Si | Units::Cgs | Units::Micro | Units::Nano => 1.0,
         }
     }
 
-    /// Converts energy / volume to pressure.
+    /// Acceleration of force / mass (LAMMPS's `ftm2v`).
+    pub fn acceleration(self) -> f64 {
+        match self {
+            Units::Real => 1.0 / REAL / REAL,
+            Units::Metal => 1.0 / 1.0364269e-4,
+            // rounded by itself, not from the number above
+            Units::Electron => 0.937582899,
+            Units::Lj | Units::Si | Units::Cgs | Units::Micro | Units::Nano => 1.0,
+        }
+    }
+
+    /// Pressure of energy / volume (LAMMPS's `nktv2p`).
     pub fn pressure(self) -> f64 {
-        if self == Units::Metal {
-            1.6021765e6
-        } else {
-            1.0
+        match self {
+            Units::Real => 68568.415,
+            Units::Metal => 1.6021765e6,
+            Units::Electron => 2.94210108e13,
+            Units::Lj | Units::Si | Units::Cgs | Units::Micro | Units::Nano => 1.0,
         }
     }
 
@@ -62,8 +85,9 @@ impl Units {
     pub fn time_step(self) -> f64 {
         match self {
             Units::Lj => 0.005,
+            Units::Real => 1.0,
             Units::Si | Units::Cgs => 1e-8,
-            Units::Metal => 0.001,
+            Units::Metal | Units::Electron => 0.001,
             Units::Micro => 2.0,
             Units::Nano => 0.00045,
         }
@@ -74,7 +98,7 @@ impl Units {
         match self {
             Units::Lj => 0.3,
             Units::Si => 0.001,
-            Units::Metal => 2.0,
+            Units::Real | Units::Metal | Units::Electron => 2.0,
             Units::Cgs | Units::Micro | Units::Nano => 0.1,
         }
     }

@@ -1,16 +1,17 @@
 //! The sweeps over a horizon list: lanes run over the points of a slice, bonds in a fixed order. No closure touches a
 //! lane (see the stencil's kernel).
 
-use crate::body::Field;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
 use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::pairs::{BondLanes, BondTable};
 use crate::interaction::weight::BondWeight;
-use crate::interaction::{EnergyFields, Repulsion, Tally, Toughness, history};
+use crate::interaction::{EnergyFields, Motion, Repulsion, Tally, Toughness, history};
 use crate::law::Law;
+use crate::spec::Release;
 
 /// Slices per block of work.
 pub const BLOCK: usize = 32;
@@ -34,9 +35,11 @@ pub struct View<'a, const D: usize, W> {
     pub period: [f64; D],
     pub inv_period: [f64; D],
     pub repulsion: Option<&'a Repulsion>,
-    /// `[slots]`, where repulsion depends on it.
+    /// `[slots]`, where repulsion or the law depends on it.
     pub materials: &'a [u8],
     pub periodic: bool,
+    /// Constants of bonds of pairs of materials, of laws that read them.
+    pub pairs: &'a BondTable,
 }
 
 /// One end of a bond.
@@ -60,6 +63,8 @@ struct Bond<L, const D: usize> {
     inv_r0: L,
     /// The law's constant.
     k: L,
+    /// Number of the pair of materials, of laws that need it.
+    pair: [u32; TILE],
 }
 
 impl<const D: usize, W: Law> View<'_, D, W> {
@@ -123,8 +128,15 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         xi
     }
 
+    /// The bond of rows to partners.
     #[inline(always)]
-    fn bond<L: Lane>(&self, i: &End<L, D>, j: &End<L, D>) -> Bond<L, D> {
+    unsafe fn bond<L: Lane>(
+        &self,
+        i: &End<L, D>,
+        j: &End<L, D>,
+        rows: *const u32,
+        partners: *const u32,
+    ) -> Bond<L, D> {
         let xi = self.reference::<L>(&i.x, &j.x);
         let mut r0_squared = xi[0] * xi[0];
         for a in 1..D {
@@ -132,7 +144,17 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         }
         let inv_r0 = lane::inv_sqrt(r0_squared);
         let r0 = r0_squared * inv_r0;
-        let weight = self.weight.at(r0, inv_r0) * j.volume;
+        let mut pair = [0; TILE];
+        let weight = if W::PAIRS {
+            // SAFETY: rows and partners are slots
+            let cut = unsafe {
+                pair = self.pairs.numbers::<L>(self.materials, rows, partners);
+                self.pairs.law::<L>(&pair).cut
+            };
+            self.weight.within(r0, inv_r0, cut) * j.volume
+        } else {
+            self.weight.at(r0, inv_r0) * j.volume
+        };
         let mut eta = j.u;
         for a in 0..D {
             eta[a] = j.u[a] - i.u[a];
@@ -149,20 +171,49 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             r0,
             inv_r0,
             k: self.law.constant(r0, inv_r0, weight),
+            pair,
+        }
+    }
+
+    /// A bond's constant and its ends' fields as they pull: times those of the pair.
+    #[inline(always)]
+    unsafe fn acting<L: Lane>(&self, b: &Bond<L, D>, i: [L; 2], j: [L; 2]) -> (L, [L; 2], [L; 2]) {
+        if !W::PAIRS {
+            return (b.k, i, j);
+        }
+        // SAFETY: of this table
+        let BondLanes {
+            stiffness, ratio, ..
+        } = unsafe { self.pairs.law::<L>(&b.pair) };
+        (b.k * stiffness, [i[0] * ratio, i[1]], [j[0] * ratio, j[1]])
+    }
+
+    /// κ by which the scalar of eight rows stores energy, where the law is that of unit constants.
+    #[inline(always)]
+    unsafe fn volume<L: Lane>(&self, rows: *const u32) -> L {
+        if W::PAIRS {
+            // SAFETY: rows are slots
+            unsafe {
+                let own = self.pairs.numbers::<L>(self.materials, rows, rows);
+                self.pairs.law::<L>(&own).volume
+            }
+        } else {
+            L::splat(1.0)
         }
     }
 
     /// `k r0²` of the bond between two slots, and ξ.
     pub fn constant(&self, i: usize, j: usize) -> ([f64; D], f64) {
+        let (row, partner) = (i as u32, j as u32);
         // SAFETY: both are slots
-        let (i, j) = unsafe {
-            (
-                self.end::<f64, false>(&(i as u32)),
-                self.end::<f64, false>(&(j as u32)),
-            )
-        };
-        let b = self.bond::<f64>(&i, &j);
-        (self.reference::<f64>(&i.x, &j.x), b.k * b.r0_squared)
+        unsafe {
+            let (i, j) = (
+                self.end::<f64, false>(&row),
+                self.end::<f64, false>(&partner),
+            );
+            let b = self.bond::<f64>(&i, &j, &row, &partner);
+            (self.reference::<f64>(&i.x, &j.x), b.k * b.r0_squared)
+        }
     }
 
     /// Which lanes of really there bonds are closer than repulsion allows, given that `e` may be low enough.
@@ -173,6 +224,25 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         // padding has length 0
         let real = L::select(L::splat(0.0).lt(b.r0_squared), b.e, L::splat(f64::NAN));
         (real.lt(limit), d)
+    }
+
+    /// Coefficient of `ξ+η` at row i that its directed bond to slot j has as a whole one, with repulsion where there is
+    /// any, and the two vectors; `alive`: is it whole? Plain numbers.
+    pub fn pull_of(&self, i: usize, j: usize, alive: bool) -> (f64, [f64; D]) {
+        let (row, partner) = (i as u32, j as u32);
+        // SAFETY: both are slots
+        unsafe {
+            let (i, j) = (self.end::<f64, true>(&row), self.end::<f64, true>(&partner));
+            let b = self.bond::<f64>(&i, &j, &row, &partner);
+            let (rows, partners) = ([row; TILE], [partner; TILE]);
+            let repulsion = self.repel(&b, j.volume, rows.as_ptr(), partners.as_ptr());
+            let mut pull = repulsion.0;
+            if alive {
+                let (k, own, other) = self.acting(&b, i.field, j.field);
+                pull += self.law.pull(k, Extension::exact(b.e), own, other);
+            }
+            (pull, b.y)
+        }
     }
 
     /// Coefficient of `ξ+η` from repulsion and its energy density, of bonds between these slots.
@@ -282,8 +352,8 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub toughness: &'a [Toughness],
     /// Material per slot; empty when there is one.
     pub material: &'a [u8],
-    /// Velocity of the step's middle, and the step.
-    pub motion: Option<(&'a Field<D>, f64)>,
+    /// `None`: nothing breaks.
+    pub motion: Option<Motion<'a, D>>,
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
@@ -318,40 +388,48 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             let rows = v.rows(slice);
             let i = v.end::<L, true>(rows);
             let mut lowest = L::splat(f64::INFINITY);
+            // s0 of pairs of materials: the greatest of all whole bonds
+            let mut greatest = L::splat(f64::NEG_INFINITY);
             let mut acc = [zero; D];
             // broken bonds: Σ x and Σ k r0² s, rare
             let mut lost: Option<[L; 2]> = None;
             for line in lines {
                 let partners = v.partners(line);
                 let j = v.end::<L, true>(partners);
-                let b = v.bond::<L>(&i, &j);
+                let b = v.bond::<L>(&i, &j, rows, partners);
+                let (k, own, other) = v.acting(&b, i.field, j.field);
                 let dead = L::dead(*v.alive.at(line));
                 let e = b.e.nan_if(dead);
                 let g = at(series, e);
-                let mut pull = v.law.pull(b.k, g, i.field, j.field).zero_if(dead);
+                let mut pull = v.law.pull(k, g, own, other).zero_if(dead);
                 if FULL {
                     let breaks = j.critical.min(i.critical).lt(e);
                     lowest = e.min(lowest);
+                    if W::PAIRS {
+                        let [s00, alpha] = v.pairs.memory::<L>(&b.pair);
+                        greatest = (s00 - alpha * history::stretch(e)).max(greatest);
+                    }
                     if L::any(L::or(breaks, b.e.lt(contact_e))) {
-                        pull = pull + v.repel(&b, j.volume, rows, partners).0;
-                        let which = if self.motion.is_some() {
-                            L::bits(breaks)
-                        } else {
-                            0
-                        };
-                        if which != 0 {
+                        if let Some(motion) = self.motion
+                            && L::any(breaks)
+                        {
+                            let which = L::bits(breaks);
                             *v.alive.at(line) &= !(which as u8);
                             tally.broken += which.count_ones() as u64;
                             let s = Stretch::exact(e);
                             let share = b.k * b.r0_squared * s;
-                            let x = v.law.pair_energy(share * s, i.field, j.field)
-                                + self.farewell(pull, b.y, rows, partners);
+                            let x = v.law.pair_energy(k * b.r0_squared * s * s, own, other)
+                                + farewell(&motion, pull, b.y, rows, partners);
                             let sum = lost.unwrap_or([zero; 2]);
                             lost = Some([
                                 sum[0] + L::select(breaks, x, zero),
                                 sum[1] + L::select(breaks, share, zero),
                             ]);
+                            if motion.release == Release::AtOnce {
+                                pull = pull.zero_if(breaks);
+                            }
                         }
+                        pull = pull + v.repel(&b, j.volume, rows, partners).0;
                     }
                 }
                 for a in 0..D {
@@ -366,11 +444,19 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     let slot = *rows.add(l) as usize;
                     self.material.get(slot).map_or(0, |m| *m as usize)
                 };
-                let next = history::next_critical(self.toughness, material, lowest);
+                let alone = history::alone::<L, W>(i.critical);
+                let next = if W::PAIRS {
+                    let lonely = lowest.ge(L::splat(f64::INFINITY));
+                    L::select(lonely, alone, history::critical(greatest))
+                } else {
+                    history::next_critical(self.toughness, material, lowest, alone)
+                };
                 scatter(next, self.next, rows, 1);
                 if let Some(lost) = lost {
-                    let q = v.pressure_factor(rows, i.field[1]);
-                    let energy = history::released::<L, W>(q, i.field, lost) * i.volume;
+                    let kappa = v.volume::<L>(rows);
+                    let q = v.pressure_factor(rows, i.field[1]) * kappa;
+                    let own = [i.field[0] * kappa, i.field[1]];
+                    let energy = history::released::<L, W>(q, own, lost) * i.volume;
                     for x in &energy.to_array() {
                         tally.released += x;
                     }
@@ -399,8 +485,9 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                 let i = v.end::<L, false>(rows);
                 let mut sum = L::splat(0.0);
                 for line in v.list.start[slice]..v.list.start[slice + 1] {
-                    let j = v.end::<L, false>(v.partners(line));
-                    let b = v.bond::<L>(&i, &j);
+                    let partners = v.partners(line);
+                    let j = v.end::<L, false>(partners);
+                    let b = v.bond::<L>(&i, &j, rows, partners);
                     let dead = L::dead(*v.alive.at(line));
                     let e = b.e.nan_if(dead);
                     let s = at(series, e);
@@ -414,32 +501,28 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
     }
 }
 
-impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
-    /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner.
-    #[inline(always)]
-    unsafe fn farewell<L: Lane>(
-        &self,
-        pull: L,
-        y: [L; D],
-        rows: *const u32,
-        partners: *const u32,
-    ) -> L {
-        let Some((v, dt)) = self.motion else {
-            return L::splat(0.0);
-        };
-        let mut rate = L::splat(0.0);
-        for a in 0..D {
-            let mut relative = [0.0; TILE];
-            for (l, r) in relative.iter_mut().enumerate() {
-                // SAFETY: rows and partners are slots
-                unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
-            }
-            // SAFETY: a number per lane
-            rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
+/// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by
+/// not doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's.
+#[inline(always)]
+unsafe fn farewell<L: Lane, const D: usize>(
+    motion: &Motion<D>,
+    pull: L,
+    y: [L; D],
+    rows: *const u32,
+    partners: *const u32,
+) -> L {
+    let v = motion.v;
+    let mut rate = L::splat(0.0);
+    for a in 0..D {
+        let mut relative = [0.0; TILE];
+        for (l, r) in relative.iter_mut().enumerate() {
+            // SAFETY: rows and partners are slots
+            unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
         }
-        L::splat(0.25 * dt) * pull * rate
+        // SAFETY: a number per lane
+        rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
     }
+    L::splat(motion.farewell()) * pull * rate
 }
 
 /// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds.
@@ -468,11 +551,13 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                 for line in v.list.start[slice]..v.list.start[slice + 1] {
                     let partners = v.partners(line);
                     let j = v.end::<L, true>(partners);
-                    let b = v.bond::<L>(&i, &j);
+                    let b = v.bond::<L>(&i, &j, rows, partners);
+                    let (k, own, other) = v.acting(&b, i.field, j.field);
                     let dead = L::dead(*v.alive.at(line));
                     let s = at(series, b.e.nan_if(dead)).zero_if(dead);
                     let kr = (b.k * b.r0_squared).zero_if(dead);
-                    let x = v.law.pair_energy(kr * s * s, i.field, j.field);
+                    let kr_pair = (k * b.r0_squared).zero_if(dead);
+                    let x = v.law.pair_energy(kr_pair * s * s, own, other);
                     strain = strain + x.zero_if(dead);
                     share = kr.fma(s, share);
                     weight = weight + kr;
@@ -481,7 +566,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     }
                 }
                 if W::SHARES {
-                    let q = v.pressure_factor(rows, i.field[1]);
+                    let q = v.pressure_factor(rows, i.field[1]) * v.volume::<L>(rows);
                     strain = strain + L::splat(0.5) * q * share * share;
                 }
                 for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
@@ -492,9 +577,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     scatter(strain, out.strain, rows, 1);
                     scatter(repulsion, out.repulsion, rows, 1);
                     scatter(share, out.share, rows, 1);
-                    if !W::SHARES {
-                        scatter(weight, out.weight, rows, 1);
-                    }
+                    scatter(weight, out.weight, rows, 1);
                 }
             }
         }

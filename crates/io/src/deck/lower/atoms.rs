@@ -3,7 +3,7 @@
 use super::Files;
 use super::context::{Context, Result};
 use crate::deck::document::{Body, EamForm, EndName, Law, Material, Thermal};
-use crate::deck::units::{Dim, UnitSystem, short};
+use crate::deck::units::{BOLTZMANN, Dim, UnitSystem, short};
 use crate::deck::value::{At, Number, Written};
 use peridyne::family::stencil::Stencil;
 use peridyne::law::potential::buckingham::Buckingham;
@@ -18,8 +18,6 @@ use peridyne::spec::{BodySpec, Horizon, ThermalSpec};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Boltzmann's constant (J/K).
-const BOLTZMANN: f64 = 1.380649e-23;
 const EV: f64 = 1.602176634e-19;
 const AVOGADRO: f64 = 6.02214076e23;
 
@@ -94,7 +92,7 @@ pub(super) fn potential(
                 };
                 let (angstrom, ev, mass) = match context.units {
                     UnitSystem::Si => (1e-10, EV, Some(1e-3 / AVOGADRO)),
-                    UnitSystem::Metal => (1.0, 1.0, Some(context.units.plain_factor(Dim::MASS))),
+                    UnitSystem::Metal(_) => (1.0, 1.0, Some(context.units.plain_factor(Dim::MASS))),
                     UnitSystem::Lj | UnitSystem::None => (1.0, 1.0, None),
                 };
                 let pair = &file.pair[crate::read::eam::EamFile::pair_index(element, element)];
@@ -309,7 +307,7 @@ pub fn shells(kind: LatticeKind, limit: f64) -> Vec<(f64, f64)> {
 pub fn boltzmann(units: UnitSystem) -> f64 {
     match units {
         UnitSystem::Si => BOLTZMANN,
-        UnitSystem::Metal => BOLTZMANN / EV,
+        UnitSystem::Metal(constants) => constants.boltzmann(),
         UnitSystem::Lj | UnitSystem::None => 1.0,
     }
 }

@@ -2,12 +2,12 @@
 
 use super::atoms::AtomsPotential;
 use super::context::{Context, Result};
-use crate::deck::document::{Elastic, Fracture, Law, Material};
+use crate::deck::document::{Elastic, Fracture, Law, Material, ReleaseName};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number};
 use peridyne::spec::{
     BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, PmbStiffness,
-    SetSpec,
+    Release, SetSpec,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -280,6 +280,30 @@ fn moduli(context: &Context, span: &Range<usize>, e: &Elastic) -> Result<Moduli>
         return Err(context.error(span, message));
     }
     Ok(moduli)
+}
+
+/// When bonds of all materials let go.
+pub(super) fn release(
+    context: &Context,
+    written: &BTreeMap<String, At<Material>>,
+) -> Result<Release> {
+    let fracture = written.values().filter_map(|m| m.value.fracture.as_ref());
+    let mut all = fracture.map(|f| match &f.value.release {
+        None => (ReleaseName::AtOnce, &f.span),
+        Some(release) => (release.value, &release.span),
+    });
+    let first = all.next().map_or(ReleaseName::AtOnce, |(r, _)| r);
+    if let Some((_, span)) = all.find(|(r, _)| *r != first) {
+        return Err(context.error_with(
+            span,
+            "materials differ in fracture.release",
+            "give all materials with fracture the same: \"at_once\" (as when left out) or \"after_force\"",
+        ));
+    }
+    Ok(match first {
+        ReleaseName::AtOnce => Release::AtOnce,
+        ReleaseName::AfterForce => Release::AfterForce,
+    })
 }
 
 fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<FractureSpec> {

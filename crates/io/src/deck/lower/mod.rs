@@ -17,7 +17,7 @@ use super::document::{
 };
 use super::error::DeckError;
 use super::source::Source;
-use super::units::{Dim, short};
+use super::units::{Constants, Dim, UnitSystem, short};
 use super::value::{At, Or, Written};
 use crate::read::eam::{self, EamFile};
 use crate::read::{Frame, Points};
@@ -81,8 +81,9 @@ pub(super) fn lower(
     document: &Document,
     files: &Files,
 ) -> std::result::Result<Lowered, DeckError> {
-    let units = document.units.as_ref().map(|u| u.value).unwrap_or_default();
+    let units = units(document);
     let mut context = Context::new(source, units, &document.constants)?;
+    measured_constants(&context, document)?;
     let mut body = body::body(
         &mut context,
         &document.body,
@@ -167,6 +168,8 @@ pub(super) fn lower(
             Some(InterfaceName::Minimum) => InterfaceRule::Minimum,
             Some(InterfaceName::Series) | None => InterfaceRule::Series,
         },
+        pairs: vec![],
+        release: material::release(&context, &document.material)?,
         volume_scaling: document.volume_scaling.unwrap_or(true),
         calibration: match document.calibration {
             Some(CalibrationName::Continuum) => Calibration::Continuum,
@@ -343,6 +346,34 @@ fn surface_factors(
         Ok((factors, _)) => Ok(Some(factors)),
         Err(e) => Err(context.error_with(&asked.span, e.to_string(), e.help())),
     }
+}
+
+/// What plain numbers of the deck mean.
+pub(super) fn units(document: &Document) -> UnitSystem {
+    match document.units.as_ref().map(|u| &u.value) {
+        None => UnitSystem::default(),
+        Some(Or::Bare(name)) => name.system(Constants::default()),
+        Some(Or::Table(u)) => {
+            let constants = u.constants.as_ref().map(|c| c.value);
+            u.system.system(constants.unwrap_or_default())
+        }
+    }
+}
+
+/// Only metal is made of measured constants.
+fn measured_constants(context: &Context, document: &Document) -> Result<()> {
+    let written = document.units.as_ref().map(|u| &u.value);
+    if let Some(Or::Table(u)) = written
+        && let Some(constants) = &u.constants
+        && !matches!(context.units, UnitSystem::Metal(_))
+    {
+        return Err(context.error_with(
+            &constants.span,
+            format!("units = \"{}\" takes no constants", context.units.name()),
+            "constants are chosen for system = \"metal\": g/mol, bar and kelvin are made with them",
+        ));
+    }
+    Ok(())
 }
 
 fn contact(

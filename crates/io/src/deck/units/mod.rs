@@ -102,28 +102,70 @@ impl fmt::Display for Dim {
 }
 
 /// What plain numbers of a deck mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum UnitSystem {
     /// m, kg, s
     #[default]
     Si,
     /// Å, ps, eV; masses in g/mol, densities in g/cm³, pressures in bar. Computed in Å, ps, eV throughout.
-    Metal,
+    Metal(Constants),
     /// Reduced units; numbers carry none.
     Lj,
     /// Any consistent units; numbers carry none.
     None,
 }
 
+/// Physical constants with which g/mol, bar and kelvin become eV, Å and ps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Constants {
+    /// Exact since 2019.
+    #[default]
+    Codata2018,
+    /// The numbers of LAMMPS's `units metal` (CODATA 2006 and older): kinetic energies differ from the others by 6e-8,
+    /// temperatures by 1e-6 of themselves.
+    Lammps,
+}
+
+impl Constants {
+    pub fn name(self) -> &'static str {
+        match self {
+            Constants::Codata2018 => "CODATA 2018",
+            Constants::Lammps => "those of LAMMPS",
+        }
+    }
+
+    /// Boltzmann's constant (eV/K).
+    pub fn boltzmann(self) -> f64 {
+        match self {
+            Constants::Codata2018 => BOLTZMANN / EV,
+            Constants::Lammps => 8.617343e-5,
+        }
+    }
+
+    /// 1 g/mol in eV ps²/Å², 1 bar in eV/Å³ and 1 g/cm³ in eV ps²/Å⁵; `None` where units of SI say it.
+    fn factor(self, dim: Dim) -> Option<f64> {
+        const MASS: f64 = 1.0364269e-4;
+        match (self, dim) {
+            (Constants::Codata2018, _) => None,
+            (Constants::Lammps, Dim::MASS) => Some(MASS),
+            (Constants::Lammps, Dim::PRESSURE) => Some(1.0 / 1.6021765e6),
+            (Constants::Lammps, Dim::DENSITY) => Some(0.602214129 * MASS),
+            (Constants::Lammps, _) => None,
+        }
+    }
+}
+
 const EV: f64 = 1.602176634e-19;
 const AVOGADRO: f64 = 6.02214076e23;
+/// J/K
+pub(in crate::deck) const BOLTZMANN: f64 = 1.380649e-23;
 
 impl UnitSystem {
     pub fn name(self) -> &'static str {
         match self {
             UnitSystem::Si => "si",
-            UnitSystem::Metal => "metal",
+            UnitSystem::Metal(_) => "metal",
             UnitSystem::Lj => "lj",
             UnitSystem::None => "none",
         }
@@ -131,14 +173,14 @@ impl UnitSystem {
 
     /// Whether numbers may carry units.
     pub fn has_units(self) -> bool {
-        matches!(self, UnitSystem::Si | UnitSystem::Metal)
+        matches!(self, UnitSystem::Si | UnitSystem::Metal(_))
     }
 
     /// SI value of the unit in which quantities of this dimension are computed.
     fn computed(self, dim: Dim) -> f64 {
         match self {
             // powers of one number each, so that an energy is one eV to the last digit
-            UnitSystem::Metal => {
+            UnitSystem::Metal(_) => {
                 let [length, mass, time] = dim.0.map(i32::from);
                 EV.powi(mass) * 1e-10f64.powi(length - 2 * mass) * 1e-12f64.powi(time + 2 * mass)
             }
@@ -149,15 +191,20 @@ impl UnitSystem {
     /// SI value of the unit that a plain number of this dimension has.
     fn plain(self, dim: Dim) -> f64 {
         match (self, dim) {
-            (UnitSystem::Metal, Dim::MASS) => 1e-3 / AVOGADRO,
-            (UnitSystem::Metal, Dim::DENSITY) => 1e3,
-            (UnitSystem::Metal, Dim::PRESSURE) => 1e5,
+            (UnitSystem::Metal(_), Dim::MASS) => 1e-3 / AVOGADRO,
+            (UnitSystem::Metal(_), Dim::DENSITY) => 1e3,
+            (UnitSystem::Metal(_), Dim::PRESSURE) => 1e5,
             _ => self.computed(dim),
         }
     }
 
     /// Factor from plain numbers to computed ones.
     pub fn plain_factor(self, dim: Dim) -> f64 {
+        if let UnitSystem::Metal(constants) = self
+            && let Some(factor) = constants.factor(dim)
+        {
+            return factor;
+        }
         let (plain, computed) = (self.plain(dim), self.computed(dim));
         if plain == computed {
             1.0
@@ -227,13 +274,29 @@ mod tests {
 
     #[test]
     fn metal_numbers_become_consistent() {
-        let metal = UnitSystem::Metal;
+        let metal = UnitSystem::Metal(Constants::Codata2018);
         // 1 bar = 6.2415e-7 eV/Å³, 1 g/mol = 1.0364e-4 eV ps²/Å²
         assert!((metal.plain_factor(Dim::PRESSURE) - 6.241509074e-7).abs() < 1e-15);
         assert!((metal.plain_factor(Dim::MASS) - 1.036426966e-4).abs() < 1e-12);
         assert_eq!(metal.plain_factor(Dim::LENGTH), 1.0);
         assert_eq!(metal.plain_factor(Dim::ENERGY), 1.0);
         assert!((metal.from_si(Dim::ENERGY) * EV - 1.0).abs() < 1e-15);
+    }
+
+    /// Only masses, densities and pressures are made with measured constants.
+    #[test]
+    fn lammps_has_other_constants() {
+        let [new, old] = [Constants::Codata2018, Constants::Lammps].map(UnitSystem::Metal);
+        let off = |dim| old.plain_factor(dim) / new.plain_factor(dim) - 1.0;
+        assert!((off(Dim::MASS) + 6.4e-8).abs() < 1e-9, "{}", off(Dim::MASS));
+        assert!((off(Dim::PRESSURE) - 8.36e-8).abs() < 1e-9);
+        assert!((off(Dim::DENSITY) - 4.1e-8).abs() < 2e-8);
+        for dim in [Dim::LENGTH, Dim::ENERGY, Dim::TIME, Dim::VELOCITY] {
+            assert_eq!(old.plain_factor(dim), 1.0);
+        }
+        assert!(
+            (Constants::Lammps.boltzmann() / Constants::Codata2018.boltzmann() - 1.0).abs() < 2e-6
+        );
     }
 
     #[test]

@@ -8,11 +8,11 @@ impl UnitSystem {
         let si = value * self.computed(dim);
         let (scaled, unit): (f64, &str) = match (self, dim) {
             (UnitSystem::Lj | UnitSystem::None, _) | (_, Dim::NUMBER) => (value, ""),
-            (UnitSystem::Metal, Dim::LENGTH) => (value, "Å"),
-            (UnitSystem::Metal, Dim::TIME) => (value, "ps"),
-            (UnitSystem::Metal, Dim::ENERGY) => (value, "eV"),
-            (UnitSystem::Metal, Dim::VELOCITY) => (value, "Å/ps"),
-            (_, Dim::DENSITY) if self == UnitSystem::Metal => (si * 1e-3, "g/cm^3"),
+            (UnitSystem::Metal(_), Dim::LENGTH) => (value, "Å"),
+            (UnitSystem::Metal(_), Dim::TIME) => (value, "ps"),
+            (UnitSystem::Metal(_), Dim::ENERGY) => (value, "eV"),
+            (UnitSystem::Metal(_), Dim::VELOCITY) => (value, "Å/ps"),
+            (_, Dim::DENSITY) if matches!(self, UnitSystem::Metal(_)) => (si * 1e-3, "g/cm^3"),
             (_, Dim::LENGTH) => engineering(si, "m"),
             (_, Dim::TIME) => engineering(si, "s"),
             (_, Dim::PRESSURE) => engineering(si, "Pa"),

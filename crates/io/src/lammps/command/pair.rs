@@ -93,11 +93,13 @@ impl Session<'_> {
         };
         let mut v = Vec::new();
         for (k, name) in names.iter().enumerate() {
-            let needed = if k + 3 == names.len() {
-                args.positive(name)
-            } else {
-                args.number(name)
-            };
+            let needed = args.number(name).and_then(|x| match x {
+                // a horizon of 0 bonds nothing
+                x if k + 3 == names.len() && !(x >= 0.0) => Err(Problem::new(format!(
+                    "{name} must not be negative, it is {x}"
+                ))),
+                x => Ok(x),
+            });
             v.push(needed.map_err(|p| {
                 if p.help.is_some() {
                     return p;

@@ -131,6 +131,7 @@ impl Session<'_> {
     pub fn start_run(&mut self, plan: &RunPlan) -> Result<()> {
         self.progress.begin = self.progress.step;
         self.progress.end = self.progress.step + plan.steps;
+        self.nobody_twice()?;
         self.build()?;
         self.shrink_box()?;
         if self.moving().is_none() && plan.steps > 0 {

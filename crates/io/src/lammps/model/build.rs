@@ -1,17 +1,16 @@
 //! From a set-up to a model.
 
 use std::cell::RefCell;
-use std::collections::HashSet;
 
 use peridyne::error::BuildError;
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, PointField, Simulation, SnapshotOptions, build};
-use peridyne::spec::{InterfaceRule, Spec};
+use peridyne::run::{Options, PointField, Simulation, build};
+use peridyne::spec::Spec;
 
 use super::types::Types;
 use super::{ModelEngine, in_plane, spec};
 use crate::lammps::atoms::{Atoms, Column};
-use crate::lammps::host::{BLOCK, Engine, Host, HostError, Particles, Quantity, Setup};
+use crate::lammps::host::{BLOCK, Engine, Host, HostError, Pair, Particles, Quantity, Setup};
 
 /// Makes peridyne models of scripts.
 #[derive(Debug, Clone, Copy, Default)]
@@ -26,8 +25,10 @@ pub struct Prepared {
     pub simulation: Box<dyn Simulation>,
     /// What the user should know.
     pub notes: Vec<String>,
-    /// Must nothing repel?
-    guarded: bool,
+    /// Bulk and shear modulus for each atom type, from 1; nothing of PMB.
+    moduli: Vec<[f64; 2]>,
+    /// Pairs of atom types that repel without bounds.
+    unbonded: Vec<(usize, usize)>,
 }
 
 impl Host for ModelHost {
@@ -35,7 +36,8 @@ impl Host for ModelHost {
         let Prepared {
             simulation,
             notes,
-            guarded,
+            moduli,
+            unbonded,
             ..
         } = self.prepare(&setup)?;
         let Setup {
@@ -55,10 +57,12 @@ impl Host for ModelHost {
             domain,
             height,
             types: atoms.types,
+            density: atoms.density,
             derived: RefCell::default(),
             bonded: false,
             driven: Vec::new(),
-            guarded,
+            moduli,
+            unbonded,
             notes,
         }))
     }
@@ -71,63 +75,59 @@ impl ModelHost {
     /// Something that the engine has not.
     pub fn prepare(&self, setup: &Setup) -> Result<Prepared, HostError> {
         let types = Types::new(&setup.pair, &setup.atoms)?;
-        let (spec, mut simulation) = self.simulation(setup, &types)?;
-        write_velocities(simulation.as_mut(), setup.dimension, &setup.atoms)?;
-        let guarded = !types.repel_alike();
-        let mut notes = vec![];
-        if guarded {
-            notes.push("the atom types differ in stiffness: this run stops if points come so close that they repel, because only one stiffness of repulsion is supported".to_string());
-        }
-        if setup.atoms.moved.is_some() {
-            notes.push("atoms were moved before the first run: their positions now are the reference of the bonds, as in LAMMPS, and of the repulsion, for which LAMMPS keeps the positions at creation (write `run 0` before moving them if those are meant)".to_string());
-        }
-        Ok(Prepared {
-            spec,
-            simulation,
-            notes,
-            guarded,
-        })
-    }
-
-    fn simulation(
-        &self,
-        setup: &Setup,
-        types: &Types,
-    ) -> Result<(Spec, Box<dyn Simulation>), HostError> {
+        let spec = spec::spec(setup, &types)?;
         let options = Options {
             simd: self.simd,
             ..Options::default()
         };
-        let make = |rule| {
-            let spec = spec::spec(setup, types, rule)?;
-            let simulation = build(&spec, options).map_err(explain)?;
-            Ok((spec, simulation))
-        };
-        let first = match types.rule(|_, _| true) {
-            Ok(rule) => return make(rule),
-            Err(_) => InterfaceRule::Series,
-        };
-        // pairs that no bond joins may have any coefficients
-        let (spec, mut sim) = make(first)?;
-        let mut bonded = HashSet::new();
-        if sim.families().foreign.contains(&true) {
-            let kind = |i: u32| setup.atoms.types.get(i as usize) as usize;
-            let snapshot = sim.snapshot(SnapshotOptions {
-                bonds: true,
-                ..SnapshotOptions::default()
-            });
-            for (i, j) in snapshot.bonds.iter().flatten() {
-                let (a, b) = (kind(*i), kind(*j));
-                bonded.insert((a.min(b), a.max(b)));
-            }
-        }
-        let rule = types.rule(|i, j| bonded.contains(&(i, j)))?;
-        if rule == first {
-            Ok((spec, sim))
-        } else {
-            make(rule)
-        }
+        let mut simulation = build(&spec, options).map_err(explain)?;
+        write_velocities(simulation.as_mut(), setup.dimension, &setup.atoms)?;
+        let highest = setup.pair.types();
+        let moduli = types.moduli();
+        let of = |kind: usize| moduli.get(types.material_of(kind)).copied();
+        Ok(Prepared {
+            notes: notes(setup, &types, simulation.as_ref()),
+            moduli: (1..=highest).filter_map(of).collect(),
+            unbonded: types.unbonded(),
+            spec,
+            simulation,
+        })
     }
+}
+
+/// Where the run is not LAMMPS's, or LAMMPS's is not what one might think.
+fn notes(setup: &Setup, types: &Types, sim: &dyn Simulation) -> Vec<String> {
+    let mut notes = vec![];
+    let mut note = |text: &str| notes.push(text.to_string());
+    if let Pair::Lps(_) = setup.pair {
+        note(
+            "pe, E_pair, E_vdwl, etotal and pe/atom are LAMMPS's: its `peri/lps` counts half of the energy of changes of shape, so that their sum with ke is not conserved; the energies in run.json are whole",
+        );
+    }
+    if types.unlike_moduli() {
+        note(
+            "atom types differ in K or G: as in LAMMPS the force on an atom has the moduli of its own type for both ends of a bond, so that forces between unlike types are not opposite and no energy is conserved; where such atoms repel, LAMMPS takes the K of whichever comes first in its neighbour list, the mean of both is taken here",
+        );
+    }
+    if let Column::Each(v) = &setup.atoms.volume
+        && v.iter().any(|x| *x != v[0])
+    {
+        note(
+            "atoms differ in volume: where such atoms repel each other, LAMMPS gives both the volume of whichever comes second in its neighbour list; here each is pushed by the volume of the other, and momentum is conserved",
+        );
+    }
+    if setup.atoms.moved.is_some() {
+        note(
+            "atoms were moved before the first run: their positions now are the reference of the bonds, as in LAMMPS, and of the repulsion, for which LAMMPS keeps the positions at creation (write `run 0` before moving them if those are meant)",
+        );
+    }
+    let near = sim.info().near_horizon;
+    if near > 0 {
+        note(&format!(
+            "{near} directed pairs are within round-off of their horizon: as in LAMMPS, the positions as they are stored decide about each of them; a horizon between two distances, such as 3.01 lattice constants, leaves nothing to round-off"
+        ));
+    }
+    notes
 }
 
 fn explain(e: BuildError) -> HostError {

@@ -14,7 +14,8 @@ use std::any::Any;
 use std::cell::RefCell;
 
 use peridyne::condition::driven::Drive;
-use peridyne::run::{PointField, Simulation};
+use peridyne::error::RunError;
+use peridyne::run::{Observed, PointField, Simulation};
 
 use super::atoms::Column;
 use super::domain::SimBox;
@@ -49,12 +50,16 @@ pub struct ModelEngine {
     /// z of all points in two dimensions.
     height: f64,
     types: Column<u32>,
+    /// As the script has them; those of the model are inertias.
+    density: Column<f64>,
     derived: RefCell<Derived>,
     /// Were the bonds there in a force evaluation?
     bonded: bool,
     driven: Vec<Option<usize>>,
-    /// Must nothing repel?
-    guarded: bool,
+    /// Bulk and shear modulus for each atom type, from 1; nothing of PMB.
+    moduli: Vec<[f64; 2]>,
+    /// Pairs of atom types that repel without bounds.
+    unbonded: Vec<(usize, usize)>,
     notes: Vec<String>,
 }
 
@@ -69,27 +74,41 @@ impl ModelEngine {
     }
 
     fn keep_watched(&mut self) {
-        if let Some((energy, dilatation)) = self.sim.get_mut().watched() {
+        if let Some(seen) = self.sim.get_mut().watched() {
+            let energy = self.energy_of(&seen);
             let kept = self.derived.get_mut();
-            (kept.energy, kept.dilatation) = (Some(energy), Some(dilatation));
+            (kept.energy, kept.dilatation) = (Some(energy), Some(seen.dilatation));
         }
     }
 
-    /// Refuses a state in which points repel, if LAMMPS's types repel each in their own way.
-    fn guard(&mut self) -> Result<(), HostError> {
-        if !self.guarded {
-            return Ok(());
+    /// Energy densities as LAMMPS counts them. Its LPS has `½ K θ² + ½ (15 G/2m) Σ ω ν V e_d²`, with half of the deviatoric
+    /// energy and `e_d = e − θ r0/3`. From the whole `W = ½ (K − 5G/3) θ² + (15 G/2m) Σ ω ν V e²` and `Σ e r0 …= θ m/3` that
+    /// is `½ K θ² + ½ (W − ½ (K − 5G/3) θ²) + (5G/12) θ² (q − 2)`, q the whole part of m.
+    fn energy_of(&self, seen: &Observed) -> Vec<f64> {
+        let pairs = seen.strain.iter().zip(&seen.repulsion).enumerate();
+        pairs
+            .map(|(i, (w, repulsion))| {
+                let kind = self.types.get(i) as usize;
+                let Some([bulk, shear]) = self.moduli.get(kind - 1) else {
+                    return w + repulsion;
+                };
+                let square = seen.dilatation[i] * seen.dilatation[i];
+                let extensions = w - 0.5 * (bulk - 5.0 / 3.0 * shear) * square;
+                let mixed = 5.0 / 12.0 * shear * square * (seen.whole[i] - 2.0);
+                0.5 * bulk * square + 0.5 * extensions + mixed + repulsion
+            })
+            .collect()
+    }
+
+    /// A step's error, and what may be behind it.
+    fn explained(&self, e: &RunError) -> HostError {
+        let error = HostError::new(e.to_string());
+        match self.unbonded[..] {
+            [] => error,
+            [(i, j), ..] => error.help(format!(
+                "atoms of types {i} and {j} have a horizon of 0: as in LAMMPS they repel with 15 c/0, without bounds, where they come closer than 0.9 of their first distance or 1.35 lattice constants; a short horizon with s00 = 0 cuts bonds and leaves a contact"
+            )),
         }
-        let sim = self.sim.get_mut();
-        let ledger = sim.ledger().map_err(|e| HostError::new(e.to_string()))?;
-        if ledger.contact == 0.0 {
-            return Ok(());
-        }
-        Err(HostError::new(format!(
-            "points repel each other since step {}, and the types differ in stiffness: LAMMPS repels each pair of types with its own, only one is supported",
-            sim.step_number()
-        ))
-        .help("give all types the same c (K); points repel below 0.9 of their reference distance or 1.35 lattice constants"))
     }
 
     /// Hands the values of this instant to the model.
@@ -115,14 +134,15 @@ impl Particles for ModelEngine {
     fn read(&self, quantity: Quantity, first: usize, out: &mut [f64]) -> Result<(), HostError> {
         let mut sim = self.sim.borrow_mut();
         let mut kept = self.derived.borrow_mut();
-        let mut copy = |kept: &mut Option<Vec<f64>>, make: fn(&mut dyn Simulation) -> Vec<f64>| {
+        let mut copy = |kept: &mut Option<Vec<f64>>,
+                        make: &dyn Fn(&mut dyn Simulation) -> Vec<f64>| {
             let all = kept.get_or_insert_with(|| make(sim.as_mut()));
             out.copy_from_slice(&all[first..first + out.len()]);
         };
         match quantity {
-            Quantity::Damage => copy(&mut kept.damage, |s| s.damage()),
-            Quantity::Dilatation => copy(&mut kept.dilatation, |s| s.dilatation()),
-            Quantity::Energy => copy(&mut kept.energy, |s| s.energy_density()),
+            Quantity::Damage => copy(&mut kept.damage, &|s| s.damage()),
+            Quantity::Dilatation => copy(&mut kept.dilatation, &|s| s.dilatation()),
+            Quantity::Energy => copy(&mut kept.energy, &|s| self.energy_of(&s.observed())),
             Quantity::Type => {
                 for (k, x) in out.iter_mut().enumerate() {
                     *x = f64::from(self.types.get(first + k));
@@ -144,8 +164,18 @@ impl Particles for ModelEngine {
             Quantity::Velocity(a) => sim.read(PointField::Velocity(a), first, out),
             Quantity::Force(a) => sim.read(PointField::Force(a), first, out),
             Quantity::Volume => sim.read(PointField::Volume, first, out),
-            Quantity::Density => sim.read(PointField::Density, first, out),
-            Quantity::CriticalStretch => sim.read(PointField::CriticalStretch, first, out),
+            Quantity::Density => {
+                for (k, x) in out.iter_mut().enumerate() {
+                    *x = self.density.get(first + k);
+                }
+            }
+            Quantity::CriticalStretch => {
+                sim.read(PointField::CriticalStretch, first, out);
+                // nothing to break: LAMMPS has the largest number
+                out.iter_mut()
+                    .filter(|s0| **s0 == f64::INFINITY)
+                    .for_each(|s0| *s0 = f64::MAX);
+            }
         }
         Ok(())
     }
@@ -230,16 +260,18 @@ impl Engine for ModelEngine {
         sim.start(self.bonded);
         self.bonded = true;
         self.keep_watched();
-        self.guard()
+        Ok(())
     }
 
     fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
         self.changed();
         self.drive(conditions)?;
         let sim = self.sim.get_mut();
-        sim.step().map_err(|e| HostError::new(e.to_string()))?;
+        if let Err(e) = sim.step() {
+            return Err(self.explained(&e));
+        }
         self.keep_watched();
-        self.guard()
+        Ok(())
     }
 
     fn expect_output(&mut self) {
@@ -247,11 +279,13 @@ impl Engine for ModelEngine {
     }
 
     fn energies(&mut self) -> Result<Energies, HostError> {
-        let sim = self.sim.get_mut();
-        let kept = self.derived.get_mut();
-        let energy = kept.energy.get_or_insert_with(|| sim.energy_density());
+        if self.derived.get_mut().energy.is_none() {
+            let seen = self.sim.get_mut().observed();
+            self.derived.get_mut().energy = Some(self.energy_of(&seen));
+        }
+        let energy = self.derived.get_mut().energy.iter().flatten();
         Ok(Energies {
-            potential: energy.iter().sum(),
+            potential: energy.sum(),
         })
     }
 

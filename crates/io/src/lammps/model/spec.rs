@@ -1,10 +1,11 @@
 //! From a script's set-up to a specification.
 
+use peridyne::family::stencil::Stencil;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
-    BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, Criterion, FamilyChoice,
-    FractureSpec, Horizon, Influence, InterfaceRule, MaterialSpec, Members, Plane, Schedule,
-    SetSpec, Spec, TimeStep,
+    BodySpec, Calibration, Cloud, ContactSpec, Criterion, FamilyChoice, FractureSpec, Horizon,
+    Influence, InterfaceRule, MaterialSpec, Members, Plane, Release, Schedule, SetSpec, Spec,
+    TimeStep,
 };
 
 use super::in_plane;
@@ -12,19 +13,11 @@ use super::types::Types;
 use crate::lammps::atoms::{Atoms, Column, Reference};
 use crate::lammps::host::{HostError, Pair, Setup};
 
-/// Distances below which LAMMPS's points repel: fraction of the reference distance, and lattice constants.
-const CONTACT: ContactSpec = ContactSpec {
-    bonded: 0.9,
-    free: 1.35,
-    stiffness: ContactStiffness::Laws,
-};
-
-/// The specification of a script's model, without motion and conditions; `rule` says what bonds between unlike types
-/// have.
+/// The specification of a script's model, without motion and conditions.
 ///
 /// # Errors
 /// Something that the engine has not.
-pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, HostError> {
+pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
     let influence = match &setup.pair {
         Pair::Pmb(_) => Influence::Constant,
         Pair::Lps(_) => Influence::Inverse,
@@ -33,12 +26,12 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
     let periodic =
         [0, 1, 2].map(|a| (a < setup.dimension && domain.periodic(a)).then(|| domain.edge(a)));
     let several = types.materials().len() > 1;
-    let body = match sites(setup, periodic) {
+    let body = match sites(setup, periodic, types.horizon()) {
         // sites have no marks
         Some(body) if !several => body,
         _ => cloud(setup, several)?,
     };
-    let density = setup.atoms.density.get(0);
+    let density = inertia(setup, 0);
     let material = |kind: &usize| {
         let own = types.get(*kind, *kind);
         MaterialSpec {
@@ -75,7 +68,9 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
             vec![]
         },
         materials: types.materials().iter().map(material).collect(),
-        interface: rule,
+        interface: InterfaceRule::Series,
+        pairs: types.table(),
+        release: Release::AfterForce,
         horizon: Horizon::Length(types.horizon()),
         volume_scaling: true,
         calibration: Calibration::Continuum,
@@ -84,7 +79,12 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
         surface: None,
         bonds: vec![],
         precracks: vec![],
-        contact: Some(CONTACT),
+        contact: Some(ContactSpec {
+            // distances below which LAMMPS's points repel: fraction of the reference distance, and lattice constants
+            bonded: 0.9,
+            free: 1.35,
+            stiffness: types.contact(),
+        }),
         initial: vec![],
         conditions: vec![],
         indenters: vec![],
@@ -99,6 +99,11 @@ pub fn spec(setup: &Setup, types: &Types, rule: InterfaceRule) -> Result<Spec, H
     })
 }
 
+/// Force density over acceleration of an atom: its density, in units in which that of energy is density · velocity².
+fn inertia(setup: &Setup, i: usize) -> f64 {
+    setup.atoms.density.get(i) / setup.units.acceleration()
+}
+
 /// The value all atoms have.
 fn same(column: &Column<f64>) -> Option<f64> {
     match column {
@@ -110,8 +115,9 @@ fn same(column: &Column<f64>) -> Option<f64> {
     }
 }
 
-/// Sites of the script's lattice, if that is what the atoms are.
-fn sites(setup: &Setup, periodic: [Option<f64>; 3]) -> Option<BodySpec> {
+/// Sites of the script's lattice, if that is what the atoms are and no bond ends within round-off of the horizon: where
+/// one does, LAMMPS's positions decide about every bond of its own.
+fn sites(setup: &Setup, periodic: [Option<f64>; 3], horizon: f64) -> Option<BodySpec> {
     let atoms = &setup.atoms;
     let Reference::Sites { lattice, sites } = &atoms.reference else {
         return None;
@@ -135,12 +141,16 @@ fn sites(setup: &Setup, periodic: [Option<f64>; 3]) -> Option<BodySpec> {
         }
     }
     let plane = setup.dimension == 2;
+    let kind = if plane {
+        LatticeKind::Square
+    } else {
+        LatticeKind::Cubic
+    };
+    if Stencil::new(kind, lattice.spacing, Horizon::Length(horizon)).near_horizon > 0 {
+        return None;
+    }
     Some(BodySpec::Sites {
-        kind: if plane {
-            LatticeKind::Square
-        } else {
-            LatticeKind::Cubic
-        },
+        kind,
         spacing: lattice.spacing,
         origin: lattice.offset,
         quarters: sites
@@ -166,7 +176,7 @@ fn cloud(setup: &Setup, marked: bool) -> Result<BodySpec, HostError> {
         volume: (0..n).map(|i| atoms.volume.get(i)).collect(),
         density: match same(&atoms.density) {
             Some(_) => vec![],
-            None => (0..n).map(|i| atoms.density.get(i)).collect(),
+            None => (0..n).map(|i| inertia(setup, i)).collect(),
         },
         mark: if marked {
             (0..n).map(|i| atoms.types.get(i) as i32).collect()

@@ -1,30 +1,19 @@
-//! Coefficients of several atom types as materials of the engine.
+//! Coefficients of several atom types as materials of the engine and a table of their pairs.
 //!
-//! LAMMPS gives every pair of types its own coefficients, and a point's s0 is the greatest s00 − α·stretch over its
-//! unbroken bonds, each with its own s00 and α (LAMMPS's observed behaviour). The engine has one horizon, materials with
-//! a law, s00 and α, and a rule for the stiffness of bonds across. Where both say the same the run is LAMMPS's; all
-//! else is refused.
+//! What LAMMPS does, observed: c (PMB), horizon, s00 and α are those of the pair of types; a point's s0 is the greatest
+//! s00 − α·stretch over its unbroken bonds. Forces of LPS on a point have the K and G of the point's own type for both
+//! ends of the bond, so those of unlike types are not opposite. Contact is 15 c/δ of the pair; for LPS c = 18 K/(πδ⁴) with
+//! the K of whichever point stands first in a neighbour list, for which the mean of both is taken here.
 
-use peridyne::spec::{InterfaceRule, LawSpec, PmbStiffness};
+use peridyne::spec::{ContactStiffness, LawSpec, PairSpec, PmbStiffness};
 
 use crate::lammps::atoms::{Atoms, Column};
 use crate::lammps::host::{HostError, LpsCoefficients, Pair, PmbCoefficients};
-
-/// Bonds across of a micromodulus within this (relative) of a rule's obey it: a formula prints 15 digits.
-const SAME: f64 = 1e-13;
-
-const RULES: [InterfaceRule; 3] = [
-    InterfaceRule::Series,
-    InterfaceRule::Minimum,
-    InterfaceRule::Parallel,
-];
 
 /// What a pair of types has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coefficients {
     pub law: LawSpec,
-    /// c or K: the repulsion is proportional to it.
-    pub stiffness: f64,
     pub horizon: f64,
     pub critical_stretch: f64,
     pub alpha: f64,
@@ -34,7 +23,6 @@ impl From<PmbCoefficients> for Coefficients {
     fn from(c: PmbCoefficients) -> Self {
         Coefficients {
             law: LawSpec::Pmb(PmbStiffness::Micromodulus(c.micromodulus)),
-            stiffness: c.micromodulus,
             horizon: c.horizon,
             critical_stretch: c.critical_stretch,
             alpha: c.alpha,
@@ -49,7 +37,6 @@ impl From<LpsCoefficients> for Coefficients {
                 bulk: c.bulk,
                 shear: c.shear,
             },
-            stiffness: c.bulk,
             horizon: c.horizon,
             critical_stretch: c.critical_stretch,
             alpha: c.alpha,
@@ -67,7 +54,7 @@ pub struct Types<'a> {
 
 impl<'a> Types<'a> {
     /// # Errors
-    /// The horizons of two pairs differ.
+    /// There are too many types.
     pub fn new(pair: &'a Pair, atoms: &Atoms) -> Result<Self, HostError> {
         let mut present: Vec<usize> = match &atoms.types {
             Column::Uniform(kind) => vec![*kind as usize],
@@ -82,17 +69,6 @@ impl<'a> Types<'a> {
         };
         let first = types.materials[0];
         let own = types.get(first, first);
-        for (i, j) in types.pairs() {
-            let other = types.get(i, j).horizon;
-            if other != own.horizon {
-                return Err(HostError::new(format!(
-                    "`pair_coeff {i} {j}` has the horizon {other:e}, `pair_coeff {first} {first}` has {:e}",
-                    own.horizon
-                ))
-                .of_pair(i, j)
-                .help("all pairs of types need the same horizon"));
-            }
-        }
         if types.pairs().all(|(i, j)| types.get(i, j) == own) {
             types.materials.truncate(1);
         }
@@ -116,8 +92,10 @@ impl<'a> Types<'a> {
         }
     }
 
+    /// The longest of all pairs.
     pub fn horizon(&self) -> f64 {
-        self.get(self.present[0], self.present[0]).horizon
+        let all = self.pairs().map(|(i, j)| self.get(i, j).horizon);
+        all.fold(0.0, f64::max)
     }
 
     /// All pairs i <= j of types that atoms have.
@@ -129,106 +107,83 @@ impl<'a> Types<'a> {
             .filter(|(i, j)| i <= j)
     }
 
-    /// Do all pairs repel with the same stiffness? The engine has one.
-    pub fn repel_alike(&self) -> bool {
-        let first = self.present[0];
-        let own = self.get(first, first).stiffness;
-        self.pairs().all(|(i, j)| self.get(i, j).stiffness == own)
+    /// What the engine needs to know of every pair of materials, `[of][with]`; nothing where there is one material.
+    pub fn table(&self) -> Vec<PairSpec> {
+        if self.materials.len() == 1 {
+            return vec![];
+        }
+        let all = |i: usize| self.materials.iter().map(move |j| (i, *j));
+        let pairs = self.materials.iter().flat_map(|i| all(*i));
+        pairs
+            .map(|(i, j)| {
+                let c = self.get(i, j);
+                // moduli are those of the point's own type
+                let law = match c.law {
+                    LawSpec::LpsAsTyped { .. } => self.get(i, i).law,
+                    law => law,
+                };
+                PairSpec {
+                    horizon: c.horizon,
+                    law,
+                    critical_stretch: c.critical_stretch,
+                    alpha: c.alpha,
+                }
+            })
+            .collect()
     }
 
-    /// The rule that gives the bonds between those types for which `bonded` holds what LAMMPS gives them.
-    ///
-    /// # Errors
-    /// There is none.
-    pub fn rule(&self, bonded: impl Fn(usize, usize) -> bool) -> Result<InterfaceRule, HostError> {
-        let across: Vec<(usize, usize)> = self
-            .pairs()
-            .filter(|(i, j)| i < j && bonded(*i, *j))
-            .collect();
-        for (i, j) in &across {
-            self.breaks_alike(*i, *j)?;
-        }
-        let fits = |rule: &InterfaceRule| across.iter().all(|(i, j)| self.obeys(*rule, *i, *j));
-        if let Some(rule) = RULES.iter().find(|r| fits(r)) {
-            return Ok(*rule);
-        }
-        let alone = |(i, j): &(usize, usize)| RULES.iter().any(|r| self.obeys(*r, *i, *j));
-        let Some((i, j)) = across.iter().find(|p| !alone(p)) else {
-            let (i, j) = across[across.len() - 1];
-            return Err(HostError::new(
-                "bonds between unlike types follow different rules in different pairs",
-            )
-            .of_pair(i, j)
-            .help(
-                "give all pairs I J the smaller, the harmonic or the arithmetic mean of the two c",
-            ));
-        };
-        let (a, b) = (self.get(*i, *i), self.get(*j, *j));
-        let error = match (a.law, b.law) {
-            (LawSpec::Pmb(_), _) => {
-                let means = RULES.map(|r| format!("{:.15e}", mean(r, a.stiffness, b.stiffness)));
-                HostError::new(format!(
-                    "`pair_coeff {i} {j}` has c = {:e}, which is no mean of {:e} and {:e} that bonds between the types can have",
-                    self.get(*i, *j).stiffness, a.stiffness, b.stiffness
-                ))
-                .help(format!(
-                    "write the harmonic mean {}, the smaller {} or the arithmetic mean {}; or keep the types further apart than the horizon",
-                    means[0], means[1], means[2]
-                ))
+    /// Stiffness of contact.
+    pub fn contact(&self) -> ContactStiffness {
+        match self.materials[..] {
+            [_] => ContactStiffness::Laws,
+            ref all => {
+                let row = |i: &usize| all.iter().map(|j| self.repulsion(*i, *j)).collect();
+                ContactStiffness::Pairs(all.iter().map(row).collect())
             }
-            _ => HostError::new(format!(
-                "atoms of types {i} and {j} are bonded, and their K or G differ: LAMMPS's `peri/lps` takes those of `pair_coeff {i} {j}` for both ends of such a bond, which is not supported"
-            ))
-            .help("give both types the same K and G, or keep them further apart than the horizon; in a deck (TOML) each end has the moduli of its own material"),
-        };
-        Err(error.of_pair(*i, *j))
+        }
     }
 
-    fn obeys(&self, rule: InterfaceRule, i: usize, j: usize) -> bool {
-        let (a, b, across) = (self.get(i, i), self.get(j, j), self.get(i, j));
-        match across.law {
-            LawSpec::Pmb(_) => {
-                let expected = mean(rule, a.stiffness, b.stiffness);
-                (across.stiffness - expected).abs() <= SAME * expected
+    /// 15 c/δ (force / volume² / length).
+    fn repulsion(&self, i: usize, j: usize) -> f64 {
+        let c = self.get(i, j);
+        if c.horizon == 0.0 {
+            return f64::INFINITY;
+        }
+        let micromodulus = match (self.pair, c.law) {
+            (Pair::Pmb(table), _) => table.get(i, j).micromodulus,
+            (Pair::Lps(table), _) => {
+                let bulk = 0.5 * (table.get(i, i).bulk + table.get(j, j).bulk);
+                18.0 * bulk / (std::f64::consts::PI * c.horizon.powi(4))
             }
-            law => a.law == law && b.law == law,
-        }
-    }
-
-    /// With α = 0 and s00 of the pair the smaller of the two, no bond's s0 depends on which other bonds are whole.
-    fn breaks_alike(&self, i: usize, j: usize) -> Result<(), HostError> {
-        let (a, b, across) = (self.get(i, i), self.get(j, j), self.get(i, j));
-        let toughness = |c: &Coefficients| (c.critical_stretch, c.alpha);
-        let smaller = a.critical_stretch.min(b.critical_stretch);
-        let same = toughness(&a) == toughness(&across) && toughness(&b) == toughness(&across);
-        let constant = [a, b, across].iter().all(|c| c.alpha == 0.0);
-        if same || (constant && across.critical_stretch == smaller) {
-            return Ok(());
-        }
-        let (message, help) = if constant {
-            (
-                format!(
-                    "`pair_coeff {i} {j}` has s00 = {}: between bonded types it must be the smaller of {} and {}",
-                    across.critical_stretch, a.critical_stretch, b.critical_stretch
-                ),
-                format!("write {smaller}; or keep the types further apart than the horizon"),
-            )
-        } else {
-            (
-                format!(
-                    "atoms of types {i} and {j} are bonded, have different s00 or alpha, and alpha is not 0: their critical stretches are not supported"
-                ),
-                "give both types and their pair the same s00 and alpha, or alpha = 0 to all and the smaller s00 to the pair; or keep the types further apart than the horizon".to_string(),
-            )
         };
-        Err(HostError::new(message).of_pair(i, j).help(help))
+        15.0 * micromodulus / c.horizon
     }
-}
 
-fn mean(rule: InterfaceRule, a: f64, b: f64) -> f64 {
-    match rule {
-        InterfaceRule::Series => 2.0 * a * b / (a + b),
-        InterfaceRule::Parallel => 0.5 * (a + b),
-        InterfaceRule::Minimum => a.min(b),
+    /// Pairs of types that nothing bonds: their contact is without bounds.
+    pub fn unbonded(&self) -> Vec<(usize, usize)> {
+        let all = self.pairs();
+        all.filter(|(i, j)| self.get(*i, *j).horizon == 0.0)
+            .collect()
+    }
+
+    /// Bulk and shear modulus of each material; nothing of PMB.
+    pub fn moduli(&self) -> Vec<[f64; 2]> {
+        let own = self.materials.iter().map(|i| self.get(*i, *i).law);
+        own.filter_map(|law| match law {
+            LawSpec::LpsAsTyped { bulk, shear } => Some([bulk, shear]),
+            _ => None,
+        })
+        .collect()
+    }
+
+    /// Which material a type is of.
+    pub fn material_of(&self, kind: usize) -> usize {
+        self.materials.iter().position(|m| *m == kind).unwrap_or(0)
+    }
+
+    /// Do LPS types differ in K or G?
+    pub fn unlike_moduli(&self) -> bool {
+        let moduli = self.moduli();
+        moduli.iter().any(|m| *m != moduli[0])
     }
 }

@@ -58,9 +58,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     tile.strain.store(out.strain.at(i));
                     tile.repulsion.store(out.repulsion.at(i));
                     tile.share.store(out.share.at(i));
-                    if !W::SHARES {
-                        tile.weight.store(out.weight.at(i));
-                    }
+                    tile.weight.store(out.weight.at(i));
                 }
             }
         }
@@ -131,10 +129,10 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                             }
                         }
                     }
-                    if self.fields.is_some() && !W::SHARES {
+                    if self.fields.is_some() {
                         for b in bonds {
                             let mut kr = L::splat(b.share);
-                            if SCALED {
+                            if SCALED && !W::SHARES {
                                 kr = kr * scale.pair(b.number as usize);
                             }
                             if MASKED {

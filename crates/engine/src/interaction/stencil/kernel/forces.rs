@@ -3,14 +3,14 @@
 use super::chunk::{CHUNK, Chunk};
 use super::offsets::Offsets;
 use super::{Bond, MOST, View};
-use crate::body::Field;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::scale::TileFactors;
-use crate::interaction::{Tally, Toughness, history};
+use crate::interaction::{Motion, Tally, Toughness, history};
 use crate::law::Law;
+use crate::spec::Release;
 use std::mem::MaybeUninit;
 
 /// Bonds that a hot loop left for later.
@@ -27,8 +27,8 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     /// Between these values of `e` no whole bond is too close and none breaks.
     pub lower: f64,
     pub upper: f64,
-    /// Velocity of the step's middle, and the step; none if bonds must not break.
-    pub motion: Option<(&'a Field<D>, f64)>,
+    /// `None`: nothing breaks.
+    pub motion: Option<Motion<'a, D>>,
 }
 
 impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
@@ -161,7 +161,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             }
             if let (true, Some(out)) = (FULL, self.next) {
                 let material = |l: usize| v.body.material_of(i + l);
-                let next = history::next_critical(self.toughness, material, lowest);
+                let alone = history::alone::<L, W>(at.critical);
+                let next = history::next_critical(self.toughness, material, lowest, alone);
                 next.store(out.at(tile * TILE));
                 for x in &next.to_array() {
                     tally.least_critical = tally.least_critical.min(*x);
@@ -273,11 +274,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     .pull::<L, SCALED>(b, g, own, other, scale)
                     .zero_if(dead);
                 let mut pull = L::select(aside, own_pull, zero);
-                let close = raw.lt(L::splat(b.contact_e));
-                if L::any(close) {
-                    pull = pull + v.repel(&partners[n], i, raw, close).0;
-                }
-                if self.motion.is_some() {
+                if let Some(motion) = self.motion {
                     let limit = L::load(self.critical.as_ptr().add(j)).min(at.critical);
                     let breaks = limit.lt(e);
                     let which = L::bits(breaks);
@@ -294,14 +291,21 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                                 share = share * scale.own(n);
                             }
                         }
-                        let held =
-                            v.law.pair_energy(pair, own, other) + self.farewell(own_pull, y, i, j);
+                        let held = v.law.pair_energy(pair, own, other)
+                            + farewell(&motion, own_pull, y, i, j);
                         let sum = lost.unwrap_or([zero; 2]);
                         lost = Some([
                             sum[0] + L::select(breaks, held, zero),
                             sum[1] + L::select(breaks, share, zero),
                         ]);
+                        if motion.release == Release::AtOnce {
+                            pull = pull.zero_if(breaks);
+                        }
                     }
+                }
+                let close = raw.lt(L::splat(b.contact_e));
+                if L::any(close) {
+                    pull = pull + v.repel(&partners[n], i, raw, close).0;
                 }
                 for a in 0..D {
                     acc[a] = pull.fma(y[a], acc[a]);
@@ -315,22 +319,26 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             }
         }
     }
+}
 
-    /// Energy density that a breaking bond takes from the motion while it pulls once more, over half a step:
-    /// half of `½Δt F·(v_j − v_i)`, the other half goes to the partner. `y` points from j to i.
-    #[inline(always)]
-    unsafe fn farewell<L: Lane>(&self, pull: L, y: [L; D], i: usize, j: usize) -> L {
-        let Some((v, dt)) = self.motion else {
-            return L::splat(0.0);
-        };
-        let mut rate = L::splat(0.0);
-        for a in 0..D {
-            // SAFETY: slots lie inside the arrays
-            let relative = unsafe { L::load(v[a].as_ptr().add(i)) - L::load(v[a].as_ptr().add(j)) };
-            rate = y[a].fma(relative, rate);
-        }
-        L::splat(0.25 * dt) * pull * rate
+/// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by
+/// not doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's. `y` points from j to i.
+#[inline(always)]
+unsafe fn farewell<L: Lane, const D: usize>(
+    motion: &Motion<D>,
+    pull: L,
+    y: [L; D],
+    i: usize,
+    j: usize,
+) -> L {
+    let v = motion.v;
+    let mut rate = L::splat(0.0);
+    for a in 0..D {
+        // SAFETY: slots lie inside the arrays
+        let relative = unsafe { L::load(v[a].as_ptr().add(i)) - L::load(v[a].as_ptr().add(j)) };
+        rate = y[a].fma(relative, rate);
     }
+    L::splat(motion.farewell()) * pull * rate
 }
 
 /// After a force pass: the next critical stretches take the place of the old.
