@@ -123,7 +123,10 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         series: SeriesOptions {
             points: output.vtu,
             bonds: output.bonds,
-            dump: output.dump.as_ref().map(|_| DumpBox::default()),
+            dump: output.dump.as_ref().map(|name| {
+                let cell = DumpBox::periodic(deck.corner, deck.spec.periodic);
+                (name.clone(), cell)
+            }),
             picture: output.picture.then(|| PictureOptions {
                 title: title.clone(),
                 length_unit: length_unit.to_string(),
@@ -149,7 +152,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
                 temperature_unit: temperature_unit.to_string(),
                 pressure_scale: 1.0 / deck.units.plain_factor(Dim::PRESSURE),
                 pressure_unit: pressure_unit.to_string(),
-                trajectory: output.trajectory.clone(),
+                trajectories: output.trajectories.clone(),
                 data: output.data.clone(),
                 species: deck.species.clone().unwrap_or_else(|| "X".into()),
                 density: deck.spec.materials[0].density,

@@ -53,7 +53,7 @@ pub struct AtomsPlan {
     /// How many of it a computed pressure of 1 is.
     pub pressure_scale: f64,
     pub pressure_unit: String,
-    pub trajectory: Option<(PathBuf, Format)>,
+    pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state.
     pub data: Option<PathBuf>,
     pub species: String,
@@ -194,10 +194,10 @@ pub fn drive(
         columns.push(Column::new("temperature", &atoms.temperature_unit));
         columns.push(Column::new("pressure", &atoms.pressure_unit));
     }
-    let mut trajectory = match plan.atoms.as_ref().and_then(|a| a.trajectory.as_ref()) {
-        Some((path, format)) => Some(Trajectory::create(&plan.dir.join(path), *format)?),
-        None => None,
-    };
+    let trajectories = plan.atoms.iter().flat_map(|a| &a.trajectories);
+    let mut trajectories: Vec<Trajectory> = trajectories
+        .map(|(path, format)| Trajectory::create(&plan.dir.join(path), *format))
+        .collect::<Result<_, _>>()?;
     let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
     sim.start(true);
     let mut stepping = Duration::ZERO;
@@ -237,15 +237,16 @@ pub fn drive(
             history.push(sim.step_number(), &row)?;
             progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());
         }
-        if let (Some(trajectory), Some(atoms)) = (&mut trajectory, &plan.atoms)
+        if let Some(atoms) = plan.atoms.as_ref().filter(|_| !trajectories.is_empty())
             && (n == 0 || last || plan.every.is_some_and(|e| n % e == 0))
         {
-            trajectory.push(&atoms.frame(sim))?;
+            let frame = atoms.frame(sim);
+            trajectories.iter_mut().try_for_each(|t| t.push(&frame))?;
             framed = Some(sim.step_number());
         }
         if !last
             && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
-            && (plan.series.points || plan.series.bonds)
+            && (plan.series.points || plan.series.bonds || plan.series.dump.is_some())
         {
             series.write(&sim.snapshot(plan.snapshot))?;
         }
@@ -254,9 +255,13 @@ pub fn drive(
     series.write(&snapshot)?;
     series.finish(&snapshot)?;
     history.finish()?;
-    if let (Some(mut trajectory), Some(atoms)) = (trajectory, &plan.atoms) {
+    for mut trajectory in trajectories {
         // of a run that stopped, the last good state
-        if framed != Some(sim.step_number()) {
+        if let Some(atoms) = plan
+            .atoms
+            .as_ref()
+            .filter(|_| framed != Some(sim.step_number()))
+        {
             trajectory.push(&atoms.frame(sim))?;
         }
         trajectory.finish()?;
@@ -356,6 +361,16 @@ fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Resul
         series.write(&shape)?;
     }
     Ok(())
+}
+
+/// What to say about so many threads.
+pub fn too_many_threads(threads: usize) -> Option<String> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    (threads > cores).then(|| {
+        format!(
+            "{threads} threads on {cores} cores are slower than {cores}: leave `threads` out to use all cores"
+        )
+    })
 }
 
 /// The folder a deck's results go to if nobody says otherwise: `out/<deck name>`.

@@ -46,6 +46,29 @@ impl<const D: usize> Constraint<D> {
         }
     }
 
+    /// Whether two constraints ask the same of a point, `k` and `j` of their lists, at these times; what each asks, where not:
+    /// displacements, or velocities where one of them is one.
+    pub(crate) fn disagree(
+        &self,
+        other: &Self,
+        (a, k, j): (usize, usize, usize),
+        times: &[f64],
+        dt: f64,
+    ) -> Option<[f64; 2]> {
+        let asked = |c: &Self, k: usize, t: f64| match (self.kind, other.kind) {
+            (Prescribed::Displacement, Prescribed::Displacement) => {
+                c.program.at(a, k, &c.points[k], t)
+            }
+            (Prescribed::Velocity, _) | (_, Prescribed::Velocity) => c.velocity(a, k, t, dt),
+        };
+        times.iter().find_map(|t| {
+            let both = [asked(self, k, *t), asked(other, j, *t)];
+            // round-off of two ways to write the same
+            let near = 1e-9 * both[0].abs().max(both[1].abs());
+            ((both[0] - both[1]).abs() > near).then_some(both)
+        })
+    }
+
     /// Slots, and which of their components are held.
     pub fn holds(&self) -> impl Iterator<Item = (usize, [bool; D])> {
         let held = std::array::from_fn(|a| self.program.acts(a));

@@ -15,13 +15,15 @@
 //! length of about one unit. Both are functions of place: other seeds are other places, `noise(x/l + 100, y/l, 0)`.
 //! Both sides of a choice are evaluated; the one not taken may be NaN without harm.
 
+mod measure;
 mod op;
 mod parse;
 mod random;
 #[cfg(test)]
 mod tests;
 
-use op::Op;
+pub use measure::{Measure, Misfit, Rule};
+use op::{Binary, Op};
 use std::fmt;
 use std::ops::Range;
 
@@ -57,11 +59,32 @@ impl Expression {
     ///
     /// `x`, `y`, `z`, `t` and function names are never looked up among the constants.
     pub fn parse(source: &str, constants: &[(&str, f64)]) -> Result<Self, ExpressionError> {
-        let program = parse::program(source, constants)?;
-        Ok(Expression {
+        Ok(Self::measured(source, constants, &measure::Plain)?.0)
+    }
+
+    /// The same where parts measure something, and what the whole measures.
+    pub fn measured<M: Measure>(
+        source: &str,
+        constants: &[(&str, f64)],
+        measure: &M,
+    ) -> Result<(Self, M::Kind), ExpressionError> {
+        let (program, kind) = parse::program(source, constants, measure)?;
+        let expression = Expression {
             source: source.to_string(),
             program,
-        })
+        };
+        Ok((expression, kind))
+    }
+
+    /// So many times its value; the text stays.
+    pub fn times(mut self, factor: f64) -> Self {
+        match self.program[..] {
+            [Op::Push(value)] => self.program = vec![Op::Push(value * factor)],
+            _ => self
+                .program
+                .extend([Op::Push(factor), Op::Two(Binary::Multiply)]),
+        }
+        self
     }
 
     pub fn constant(value: f64) -> Self {

@@ -1,6 +1,6 @@
 //! Operations of the stack machine.
 
-use super::{STACK, random};
+use super::{Rule, STACK, random};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Op {
@@ -110,7 +110,41 @@ fn truth(condition: bool) -> f64 {
     if condition { 1.0 } else { 0.0 }
 }
 
+impl Op {
+    /// Arguments it takes, and what it asks of them; `None` of what takes none.
+    pub(super) fn rule(self) -> Option<(usize, Rule)> {
+        match self {
+            Op::Push(_) | Op::Coordinate(_) | Op::Time => None,
+            Op::One(f) => Some((1, f.rule())),
+            Op::Two(f) => Some((2, f.rule())),
+            Op::Three(f) => Some((3, f.rule())),
+        }
+    }
+}
+
 impl Unary {
+    fn rule(self) -> Rule {
+        match self {
+            Unary::Negate | Unary::Abs => Rule::Alike,
+            Unary::Not | Unary::Sign | Unary::Step => Rule::Any,
+            Unary::Sqrt => Rule::Root,
+            Unary::Sin
+            | Unary::Cos
+            | Unary::Tan
+            | Unary::Asin
+            | Unary::Acos
+            | Unary::Atan
+            | Unary::Sinh
+            | Unary::Cosh
+            | Unary::Tanh
+            | Unary::Exp
+            | Unary::Log
+            | Unary::Log10
+            | Unary::Floor
+            | Unary::Ceil => Rule::Numbers,
+        }
+    }
+
     pub(super) fn apply(self, a: f64) -> f64 {
         match self {
             Unary::Negate => -a,
@@ -140,6 +174,25 @@ impl Unary {
 }
 
 impl Binary {
+    fn rule(self) -> Rule {
+        match self {
+            Binary::Add | Binary::Subtract | Binary::Hypot | Binary::Min | Binary::Max => {
+                Rule::Alike
+            }
+            Binary::Multiply => Rule::Product,
+            Binary::Divide => Rule::Quotient,
+            Binary::Power => Rule::Power,
+            Binary::Less
+            | Binary::LessEqual
+            | Binary::Greater
+            | Binary::GreaterEqual
+            | Binary::Equal
+            | Binary::NotEqual
+            | Binary::Atan2 => Rule::Compare,
+            Binary::And | Binary::Or => Rule::Any,
+        }
+    }
+
     pub(super) fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             Binary::Add => a + b,
@@ -164,6 +217,14 @@ impl Binary {
 }
 
 impl Ternary {
+    fn rule(self) -> Rule {
+        match self {
+            Ternary::Select => Rule::Choice,
+            Ternary::Clamp => Rule::Alike,
+            Ternary::Random | Ternary::Noise => Rule::Numbers,
+        }
+    }
+
     pub(super) fn apply(self, a: f64, b: f64, c: f64) -> f64 {
         match self {
             Ternary::Select => {

@@ -1,16 +1,22 @@
 //! Text to program: a precedence-climbing parser that emits operations as it goes.
 
 use super::op::{Binary, FUNCTIONS, Function, Op, Ternary, Unary};
-use super::{ExpressionError, STACK};
+use super::{ExpressionError, Measure, Misfit, STACK};
 use std::ops::Range;
 
 /// Deepest nesting of brackets, signs and powers; keeps the parser's own stack small.
 const NESTING: usize = 64;
 
-pub(super) fn program(source: &str, constants: &[(&str, f64)]) -> Result<Vec<Op>, ExpressionError> {
+pub(super) fn program<M: Measure>(
+    source: &str,
+    constants: &[(&str, f64)],
+    measure: &M,
+) -> Result<(Vec<Op>, M::Kind), ExpressionError> {
     let mut parser = Parser {
         source,
         constants,
+        measure,
+        kinds: Vec::new(),
         at: 0,
         nesting: 0,
         program: Vec::new(),
@@ -18,7 +24,19 @@ pub(super) fn program(source: &str, constants: &[(&str, f64)]) -> Result<Vec<Op>
     };
     parser.choice()?;
     match parser.peek() {
-        None => Ok(parser.program),
+        None => {
+            let kind = parser.kinds.pop().unwrap_or_else(|| measure.pure());
+            Ok((parser.program, kind))
+        }
+        Some((span, Token::Symbol(",")))
+            if source[..span.start].ends_with(|c: char| c.is_ascii_digit())
+                && source[span.end..].starts_with(|c: char| c.is_ascii_digit()) =>
+        {
+            let mut error = parser.error(span.clone(), "a number has a decimal point, not a comma");
+            let written = format!("{}.{}", &source[..span.start], &source[span.end..]);
+            error.help = Some(format!("write {written}"));
+            Err(error)
+        }
         Some((span, Token::Symbol(")"))) => Err(parser.error(span, "this bracket closes nothing")),
         Some((span, token)) => {
             let help = match token {
@@ -44,9 +62,12 @@ enum Token<'a> {
     Stray,
 }
 
-struct Parser<'a> {
+struct Parser<'a, M: Measure> {
     source: &'a str,
     constants: &'a [(&'a str, f64)],
+    measure: &'a M,
+    /// Of the numbers on the stack.
+    kinds: Vec<M::Kind>,
     at: usize,
     nesting: usize,
     program: Vec<Op>,
@@ -71,7 +92,7 @@ const LEVELS: &[&[(&str, Binary)]] = &[
 ];
 const COMPARISON: usize = 2;
 
-impl<'a> Parser<'a> {
+impl<'a, M: Measure> Parser<'a, M> {
     fn error(&self, span: Range<usize>, message: impl Into<String>) -> ExpressionError {
         ExpressionError {
             message: message.into(),
@@ -132,8 +153,40 @@ impl<'a> Parser<'a> {
         Err(self.error(span, format!("expected `{symbol}` {why}")))
     }
 
+    fn misfit(&self, span: Range<usize>, misfit: Misfit) -> ExpressionError {
+        ExpressionError {
+            help: misfit.help,
+            ..self.error(span, misfit.message)
+        }
+    }
+
+    /// Appends what takes no arguments.
+    fn leaf(&mut self, op: Op, kind: M::Kind) -> Result<(), ExpressionError> {
+        self.kinds.push(kind);
+        self.append(op)
+    }
+
+    /// Appends an operation; `span` is where it stands, and its name.
+    fn emit(&mut self, op: Op, span: Range<usize>) -> Result<(), ExpressionError> {
+        if let Some((count, rule)) = op.rule() {
+            let exponent = match self.program.last() {
+                Some(Op::Push(value)) => Some(*value),
+                _ => None,
+            };
+            let name = self.source[span.clone()].split('(').next().unwrap_or("");
+            let of = self.kinds.len().saturating_sub(count);
+            let kind = self
+                .measure
+                .combine(name, rule, &self.kinds[of..], exponent)
+                .map_err(|misfit| self.misfit(span, misfit))?;
+            self.kinds.truncate(of);
+            self.kinds.push(kind);
+        }
+        self.append(op)
+    }
+
     /// Appends an operation, folding it at once when its arguments are numbers.
-    fn emit(&mut self, op: Op) -> Result<(), ExpressionError> {
+    fn append(&mut self, op: Op) -> Result<(), ExpressionError> {
         self.program.push(op);
         let folded = match self.program[..] {
             [.., Op::Push(a), Op::One(f)] => Some((2, f.apply(a))),
@@ -181,11 +234,11 @@ impl<'a> Parser<'a> {
     fn choice(&mut self) -> Result<(), ExpressionError> {
         self.nested(|p| {
             p.binary(0)?;
-            if p.take_symbol("?").is_some() {
+            if let Some(span) = p.take_symbol("?") {
                 p.choice()?;
                 p.expect(":", "between the two sides of `? :`")?;
                 p.choice()?;
-                p.emit(Op::Three(Ternary::Select))?;
+                p.emit(Op::Three(Ternary::Select), span)?;
             }
             Ok(())
         })
@@ -214,7 +267,7 @@ impl<'a> Parser<'a> {
             compared = true;
             self.at = span.end;
             self.binary(level + 1)?;
-            self.emit(Op::Two(operator))?;
+            self.emit(Op::Two(operator), span)?;
         }
         Ok(())
     }
@@ -225,15 +278,15 @@ impl<'a> Parser<'a> {
             ("!", Some(Unary::Not)),
             ("+", None),
         ] {
-            if self.take_symbol(symbol).is_some() {
+            if let Some(span) = self.take_symbol(symbol) {
                 self.nested(Self::sign)?;
-                return operator.map_or(Ok(()), |f| self.emit(Op::One(f)));
+                return operator.map_or(Ok(()), |f| self.emit(Op::One(f), span));
             }
         }
         self.primary()?;
-        if self.take_symbol("^").is_some() {
+        if let Some(span) = self.take_symbol("^") {
             self.nested(Self::sign)?;
-            self.emit(Op::Two(Binary::Power))?;
+            self.emit(Op::Two(Binary::Power), span)?;
         }
         Ok(())
     }
@@ -250,7 +303,7 @@ impl<'a> Parser<'a> {
         };
         self.at = span.end;
         match token {
-            Token::Number(value) => self.emit(Op::Push(value)),
+            Token::Number(value) => self.number(value),
             Token::Symbol("(") => {
                 self.choice()?;
                 self.expect(")", "to close the bracket")
@@ -272,28 +325,43 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// A number, with the unit behind it if there is one.
+    fn number(&mut self, value: f64) -> Result<(), ExpressionError> {
+        let rest = &self.source[self.at..];
+        match self.measure.quantity(value, rest) {
+            Ok(None) => self.leaf(Op::Push(value), self.measure.number(value)),
+            Ok(Some((length, value, kind))) => {
+                self.at += length;
+                self.leaf(Op::Push(value), kind)
+            }
+            Err((span, misfit)) => {
+                let span = self.at + span.start..self.at + span.end;
+                Err(self.misfit(span, misfit))
+            }
+        }
+    }
+
     fn name(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
         if let Some(&(_, function)) = FUNCTIONS.iter().find(|(f, _)| *f == name) {
             return self.call(name, function, span);
         }
         if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) {
-            return self.emit(Op::Coordinate(axis));
+            return self.leaf(Op::Coordinate(axis), self.measure.coordinate());
         }
         if name == "t" {
-            return self.emit(Op::Time);
+            return self.leaf(Op::Time, self.measure.time());
         }
-        let own = self
-            .constants
-            .iter()
-            .find(|(c, _)| *c == name)
-            .map(|(_, value)| *value);
-        let value = own.or(match name {
+        if let Some(index) = self.constants.iter().position(|(c, _)| *c == name) {
+            let value = self.constants[index].1;
+            return self.leaf(Op::Push(value), self.measure.constant(index));
+        }
+        let number = match name {
             "pi" => Some(std::f64::consts::PI),
             "e" => Some(std::f64::consts::E),
             _ => None,
-        });
-        if let Some(value) = value {
-            return self.emit(Op::Push(value));
+        };
+        if let Some(value) = number {
+            return self.leaf(Op::Push(value), self.measure.pure());
         }
         let mut error = self.error(span, format!("unknown name \"{name}\""));
         let constants: Vec<&str> = self.constants.iter().map(|(c, _)| *c).collect();
@@ -330,7 +398,7 @@ impl<'a> Parser<'a> {
                 if let Function::Fold(f) = function
                     && given > 1
                 {
-                    self.emit(Op::Two(f))?;
+                    self.emit(Op::Two(f), span.start..self.at)?;
                 }
                 if self.take_symbol(",").is_none() {
                     break;
@@ -354,7 +422,7 @@ impl<'a> Parser<'a> {
             let message = format!("{name} takes {wanted}{more} {plural}, not {given}");
             return Err(self.error(span.start..self.at, message));
         }
-        op.map_or(Ok(()), |op| self.emit(op))
+        op.map_or(Ok(()), |op| self.emit(op, span.start..self.at))
     }
 }
 

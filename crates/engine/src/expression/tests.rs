@@ -68,6 +68,14 @@ fn errors_name_the_place_and_the_cure() {
         ("x + µ", "unexpected character", "µ", ""),
         ("1 + .", "is not a number", ".", ""),
         ("x & y", "expected an operator", "&", ""),
+        ("12,5", "decimal point, not a comma", ",", "write 12.5"),
+        (
+            "1,5 MPa",
+            "decimal point, not a comma",
+            ",",
+            "write 1.5 MPa",
+        ),
+        ("5 MPa", "expected an operator", "MPa", "`*`"),
     ] {
         let (got_message, got_marked, got_help) = failure(source);
         assert!(got_message.contains(message), "{source}: {got_message}");

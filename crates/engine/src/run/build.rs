@@ -288,6 +288,12 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.sets = sets;
+    // how long a run of a given duration is, its caller knows
+    let steps = match spec.schedule.steps {
+        0 => 1000,
+        steps => steps,
+    };
+    model.check_agreement(&spec.conditions, steps as f64 * dt)?;
     if let Some(statics) = spec.schedule.statics {
         if spec.schedule.steps > 0 {
             model.check_statics(statics)?;

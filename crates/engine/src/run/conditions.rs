@@ -6,6 +6,7 @@ use crate::condition::constraint::{Constraint, Prescribed};
 use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
 use crate::spec::{ConditionKind, ConditionSpec};
+use std::collections::HashMap;
 
 impl<const D: usize> Model<D> {
     /// Loads in the order in which they act, and constraints.
@@ -65,5 +66,52 @@ impl<const D: usize> Model<D> {
             LoadKind::Replace(_) => 2,
         });
         Ok((loads, constraints))
+    }
+    /// Refuses conditions that ask different motions of one point: the last would win without a word. Looked at are a few
+    /// times up to `end`.
+    pub(super) fn check_agreement(
+        &self,
+        conditions: &[ConditionSpec],
+        end: f64,
+    ) -> Result<(), BuildError> {
+        let moves = |c: &ConditionSpec| {
+            matches!(
+                c.kind,
+                ConditionKind::Displacement(_) | ConditionKind::Velocity(_)
+            )
+        };
+        let number: Vec<usize> = (0..conditions.len())
+            .filter(|n| moves(&conditions[*n]))
+            .collect();
+        let times = [0.0, 0.25, 0.5, 1.0].map(|part| part * end);
+        // who holds a component of a slot: constraint, and place in its list
+        let mut holders: HashMap<(usize, usize), (usize, usize)> = HashMap::new();
+        for (c, constraint) in self.constraints.iter().enumerate() {
+            for (k, (slot, held)) in constraint.holds().enumerate() {
+                for a in (0..D).filter(|a| held[*a]) {
+                    let Some(&(other, j)) = holders.get(&(slot, a)) else {
+                        holders.insert((slot, a), (c, k));
+                        continue;
+                    };
+                    let other_constraint = &self.constraints[other];
+                    let both = other_constraint.disagree(constraint, (a, j, k), &times, self.dt);
+                    if let Some([first, second]) = both {
+                        let (n, m) = (number[other], number[c]);
+                        let x = self.body.position(slot);
+                        let axis = ["x", "y", "z"][a];
+                        let message = format!(
+                            "two conditions, on `{}` and on `{}`, ask different motions of the point at {:?} along {axis}: {first:e} and {second:e}",
+                            conditions[n].set,
+                            conditions[m].set,
+                            &x[..D]
+                        );
+                        return Err(BuildError::new(format!("conditions[{m}]"), message).help(
+                            "make their sets disjoint, or leave this component out of one of them",
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 }

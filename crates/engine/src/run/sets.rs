@@ -26,6 +26,7 @@ pub(super) fn sets<const D: usize>(
             Members::Mark(mark) => {
                 Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark)
             }
+            Members::Points(ids) => Box::new(|id, _| ids.binary_search(&(id as u32)).is_ok()),
         };
         let ids: Vec<u32> = body
             .slots

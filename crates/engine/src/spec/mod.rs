@@ -195,6 +195,8 @@ pub struct Cloud {
     pub velocity: Vec<[f64; 3]>,
     /// Names of marks (physical groups, element sets): `(mark, name)`.
     pub names: Vec<(i32, String)>,
+    /// Named sets that marks cannot say: points by their place, rising.
+    pub sets: Vec<(String, std::sync::Arc<[u32]>)>,
     /// Typical distance of nearest neighbours (length): volume scaling and contact use it. `None`: the cube root
     /// (D-th root) of the mean volume over the section.
     pub spacing: Option<f64>,
@@ -215,6 +217,8 @@ pub enum Members {
     Mark(i32),
     /// Points at whose reference position this is not 0 (x, y, z; t = 0).
     Where(Expression),
+    /// Points of a cloud by their place in it, rising.
+    Points(std::sync::Arc<[u32]>),
 }
 
 /// A material on a set of points.

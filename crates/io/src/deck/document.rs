@@ -3,7 +3,7 @@
 mod atoms;
 
 use super::units::{Constants, UnitSystem};
-use super::value::{At, Components, Number, Or, Vector, Written};
+use super::value::{At, Components, Named, Number, Or, Vector, Written};
 pub use atoms::{Buckingham, Eam, EamForm, EndName, LennardJones, Morse, Thermal};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -35,6 +35,7 @@ pub struct Document {
     #[serde(default)]
     pub sets: BTreeMap<String, At<Set>>,
     /// `[material]`, or `[material.NAME]` for each of several.
+    #[schemars(with = "Or<Material, Named<Material>>")]
     pub material: BTreeMap<String, At<Material>>,
     /// Bonds between unlike materials; series when left out.
     pub interface: Option<InterfaceName>,
@@ -468,8 +469,9 @@ pub struct Output {
     /// The linear body about the last state as linear_body.npz (NumPy): points and micromoduli.
     #[serde(default)]
     pub linear_body: bool,
-    /// LAMMPS dump file of this name.
-    pub dump: Option<String>,
+    /// LAMMPS dump of this name, in the folder of the results: frames of points with their fields, of atoms with velocities,
+    /// forces and energies.
+    pub dump: Option<At<String>>,
     /// Steps between rows of history.csv; a hundredth of the run when left out.
     pub history: Option<At<u64>>,
     /// PNG of the damage at the end; when left out, true, and false for atoms.

@@ -7,6 +7,7 @@ pub mod coarsened;
 mod describe;
 mod document;
 mod error;
+mod form;
 mod locate;
 mod lower;
 mod schema;
@@ -51,6 +52,12 @@ pub struct Deck {
     pub duration: Option<f64>,
     /// Modes of vibration asked for.
     pub modes: usize,
+    /// What looks wrong though it can be run, with its line.
+    pub warnings: Vec<String>,
+    /// What was passed over in files.
+    pub notes: Vec<String>,
+    /// Entry of the deck that each condition of the spec comes from.
+    condition_entries: Vec<usize>,
     source: Source,
 }
 
@@ -69,14 +76,14 @@ pub struct OutputSpec {
     pub bonds: bool,
     /// The linear body about the last state.
     pub linear_body: bool,
-    /// LAMMPS dump of this name.
+    /// LAMMPS dump of points of this name; that of atoms is a trajectory.
     pub dump: Option<PathBuf>,
     /// Steps between rows of `history.csv`; `None`: chosen by the caller.
     pub history: Option<u64>,
     /// PNG of the damage at the end.
     pub picture: bool,
-    /// File of all frames of atoms.
-    pub trajectory: Option<(PathBuf, Format)>,
+    /// Files of all frames of atoms.
+    pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state of atoms.
     pub data: Option<PathBuf>,
 }
@@ -109,6 +116,7 @@ impl Deck {
 
     fn of_source(source: Source) -> Result<Deck, DeckError> {
         let mut tree = source.tree()?;
+        form::check(&source, tree.get_ref())?;
         locate::name_material(tree.get_mut());
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
             .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
@@ -124,6 +132,9 @@ impl Deck {
             threads: lowered.threads,
             duration: lowered.duration,
             modes: lowered.modes,
+            warnings: lowered.warnings,
+            notes: lowered.notes,
+            condition_entries: lowered.condition_entries,
             source,
         })
     }
@@ -143,7 +154,24 @@ impl Deck {
     /// Where an entry of the spec (`"materials[0].density"`, `"body.region"`) stands in the deck, in bytes; the
     /// nearest table around it if it was left out.
     pub fn locate(&self, path: &str) -> Option<Range<usize>> {
-        locate::locate(&self.source, path)
+        // an entry that does several things is several conditions of the spec
+        let entry = path.strip_prefix("conditions[").and_then(|rest| {
+            let (number, rest) = rest.split_once(']')?;
+            let entry = self.condition_entries.get(number.parse::<usize>().ok()?)?;
+            Some(format!("conditions[{entry}]{rest}"))
+        });
+        locate::locate(&self.source, entry.as_deref().unwrap_or(path))
+    }
+
+    /// What to say about the length of a run whose time step is known.
+    pub fn long_run(&self, time_step: f64) -> Option<String> {
+        let steps = self.steps(time_step);
+        (self.spec.schedule.statics.is_none() && steps > lower::MANY_STEPS).then(|| {
+            let step = self.units.write(time_step, Dim::TIME);
+            format!(
+                "{steps} steps of {step}: check the unit of run.duration (\"50 us\") or run.time_step, or the number of steps"
+            )
+        })
     }
 
     /// An error of the engine as an error in the deck.

@@ -279,3 +279,255 @@ fn flags_make_a_deck_and_are_named_where_they_are_wrong() {
     let error = Deck::of_flags(&flags("-1")).unwrap_err();
     assert_eq!((&*error.file, error.line), ("--spacing", None));
 }
+
+/// The impact with constants and a condition of this text: its value at x = 0.02, t = 3e-5, or message and help.
+fn value(key: &str, text: &str, statics: bool) -> Result<f64, (String, String)> {
+    let run = IMPACT.find("[[initial]]").unwrap();
+    let schedule = if statics {
+        "[statics]\n"
+    } else {
+        "[run]\nsteps = 1\n"
+    };
+    let deck = format!(
+        "{}L = \"50 mm\"\nw = \"2*R\"\nc = \"sqrt(14 GPa/(2200 kg/m^3))\"\nT = \"L/c\"\nn = 3\np = \"12 MPa\"\n{}\
+         [[condition]]\n{key} = {{ x = '{text}' }}\n{schedule}",
+        &IMPACT[..IMPACT.find("[body]").unwrap()],
+        &IMPACT[IMPACT.find("[body]").unwrap()..run],
+    );
+    match Deck::parse(&deck, "f.toml", &[]) {
+        Ok(deck) => {
+            let value = match &deck.spec.conditions[0].kind {
+                ConditionKind::Displacement(v) | ConditionKind::Velocity(v) => v[0].clone(),
+                ConditionKind::Traction { value, .. } => value[0].clone(),
+                other => panic!("{other:?}"),
+            };
+            Ok(value.unwrap().eval(&[0.02, 0.0, 0.0], 3e-5))
+        }
+        Err(error) => {
+            let marked = error.span().map_or("", |span| &deck[span]);
+            assert!(text.contains(marked.trim_matches('\'')), "{text}: {marked}");
+            Err((error.message, error.help.unwrap_or_default()))
+        }
+    }
+}
+
+#[test]
+fn quantities_stand_in_expressions() {
+    let speed = (14e9f64 / 2200.0).sqrt();
+    for (key, text, wanted) in [
+        ("traction", "12 MPa * t / 10 us", 3.6e7),
+        ("traction", "12 MPa*t/1e-5", 3.6e7),
+        ("traction", "p*t/1e-5", 3.6e7),
+        ("traction", "12 MPa * min(t / (10 us), 1)", 1.2e7),
+        ("traction", "12 MPa * (1e5*t)", 3.6e7),
+        ("traction", "1 MPa + 1e10*t", 1.3e6),
+        ("traction", "t < 20us ? p : 0", 0.0),
+        ("traction", "1e10*t", 3e5),
+        ("traction", "14 GPa * x / L", 5.6e9),
+        ("displacement", "100 m/s * t", 3e-3),
+        ("displacement", "-100 m/s*t", -3e-3),
+        ("displacement", "v*t", -3e-3),
+        ("displacement", "0.5*9.81 m/s^2*t^2", 0.5 * 9.81 * 9e-10),
+        (
+            "displacement",
+            "0.001*sin(2*pi*x/L)",
+            1e-3 * (0.8 * std::f64::consts::PI).sin(),
+        ),
+        (
+            "displacement",
+            "1 mm * sin(2*pi*50 kHz*t)",
+            1e-3 * (3.0 * std::f64::consts::PI).sin(),
+        ),
+        ("displacement", "1 mm * exp(-((x - 2 cm)/0.002)^2)", 1e-3),
+        (
+            "displacement",
+            "1 mm * exp(-((x - R)/(2 mm))^2)",
+            1e-3 * (-56.25f64).exp(),
+        ),
+        ("displacement", "0.1*(1 - x/L)", 0.06),
+        ("displacement", "max(x - w, 0 mm) + 3*t", 0.01 + 9e-5),
+        (
+            "displacement",
+            "hypot(3 mm, 4 mm) * t/T",
+            5e-3 * 3e-5 / (0.05 / speed),
+        ),
+        ("displacement", "5 % * x", 1e-3),
+        ("displacement", "n*1 mm", 3e-3),
+        ("displacement", "x > 0.01 ? 1mm : 2mm", 1e-3),
+        ("velocity", "sqrt(14 GPa / (2.2 g/cm^3))", speed),
+        ("velocity", "c", speed),
+        ("velocity", "1 kN / (1 kg/s)", 1e3),
+        ("velocity", "5 kN*m/(1 J)*c", 5e3 * speed),
+        ("velocity", "22e6*t", 660.0),
+        ("velocity", "x/L", 0.4),
+    ] {
+        match (value(key, text, false), text) {
+            // a pure number is no velocity
+            (Err((message, _)), "x/L") => {
+                assert!(message.contains("is a plain number"), "{message}")
+            }
+            (got, _) => {
+                let got = got.unwrap_or_else(|e| panic!("{text}: {e:?}"));
+                assert!(
+                    (got - wanted).abs() <= 1e-14 * wanted.abs(),
+                    "{text}: {got} {wanted}"
+                );
+            }
+        }
+    }
+    // t counts from 0 to 1 there
+    assert_eq!(value("displacement", "5 mm * t", true), Ok(5e-3 * 3e-5));
+}
+
+#[test]
+fn what_does_not_fit_together_is_refused_with_its_place() {
+    for (key, text, message, help) in [
+        (
+            "displacement",
+            "5 mm * t",
+            "expected a length, \"5 mm * t\" is a length times a time",
+            "divide by a time, for example `/ (20 us)`",
+        ),
+        (
+            "traction",
+            "12 MPa * t",
+            "is a pressure times a time",
+            "divide by a time",
+        ),
+        (
+            "traction",
+            "0.5 * 12 MPa * t",
+            "is a pressure times a time",
+            "a number without unit beside a quantity is a pure number",
+        ),
+        (
+            "displacement",
+            "12 MPa",
+            "expected a length, \"12 MPa\" is a pressure",
+            "write for example \"0.5 mm\"",
+        ),
+        (
+            "displacement",
+            "v",
+            "expected a length, \"v\" is a velocity",
+            "0.5 mm",
+        ),
+        (
+            "displacement",
+            "2*c",
+            "expected a length, \"2*c\" is a velocity",
+            "0.5 mm",
+        ),
+        (
+            "displacement",
+            "R + t",
+            "`+` takes two of a kind, here are a length and a time",
+            "",
+        ),
+        (
+            "displacement",
+            "x > 5 us ? R : 0",
+            "`>` takes two of a kind, here are a length and a time",
+            "",
+        ),
+        (
+            "displacement",
+            "max(R, 5 us)",
+            "`max` takes two of a kind",
+            "",
+        ),
+        (
+            "displacement",
+            "1 mm * sin(x)",
+            "`sin` takes a plain number, this is a length",
+            "divide by a length",
+        ),
+        (
+            "displacement",
+            "1 mm * exp(t/R)",
+            "`exp` takes a plain number",
+            "",
+        ),
+        (
+            "displacement",
+            "R^0.5",
+            "`^` takes a plain number, this is a length",
+            "",
+        ),
+        ("displacement", "R^x", "`^` takes a plain number", ""),
+        (
+            "displacement",
+            "x/L",
+            "is a plain number",
+            "multiply by a length, for example `* 0.5 mm`",
+        ),
+        (
+            "displacement",
+            "5 furlong * x",
+            "unknown unit `furlong`",
+            "",
+        ),
+        ("displacement", "5 mpa * x", "did you mean `MPa`", ""),
+        (
+            "displacement",
+            "5 t * x",
+            "`t` is a unit, and a name",
+            "write `* t`",
+        ),
+        ("displacement", "5 L * x", "expected an operator", "`*`"),
+        (
+            "displacement",
+            "5 m^x",
+            "power of a unit is a whole number",
+            "",
+        ),
+        (
+            "displacement",
+            "0,5 mm",
+            "decimal point, not a comma",
+            "write 0.5 mm",
+        ),
+        ("displacement", "5 mm +", "ends too early", ""),
+    ] {
+        let (got, cure) = value(key, text, false).expect_err(text);
+        assert!(got.contains(message), "{text}: {got}");
+        assert!(cure.contains(help), "{text}: {cure}");
+    }
+}
+
+#[test]
+fn expressions_in_metal_units_are_computed_in_those() {
+    let text = "units = \"metal\"\nhorizon = 9\n[constants]\nK = \"76 GPa\"\n[body]\nlattice = \"fcc\"\nspacing = \"0.4 nm\"\nregion = { block = { low = [0,0,0], high = [40,40,40] } }\n[material]\ndensity = \"2*1.35 g/cm^3\"\nlaw = { pmb = { bulk = \"0.5*K\" } }\n[run]\nduration = 1\n[[condition]]\ntraction = { x = \"TEXT\" }\n";
+    let traction = |t: &str| {
+        let deck = Deck::parse(&text.replace("TEXT", t), "f", &[])?;
+        let ConditionKind::Traction { value, .. } = &deck.spec.conditions[0].kind else {
+            panic!()
+        };
+        Ok::<f64, DeckError>(value[0].as_ref().unwrap().eval(&[8.0, 0.0, 0.0], 2.0))
+    };
+    let gpa = 1.0 / 160.2176634;
+    let deck = parse(&text.replace("TEXT", "0"));
+    let LawSpec::Pmb(PmbStiffness::Bulk(k)) = deck.spec.materials[0].law else {
+        panic!()
+    };
+    assert!((k - 38.0 * gpa).abs() < 1e-12, "{k}");
+    assert!((deck.spec.materials[0].density - 2.7 * 6.02214076e-1 * 1.036426966e-4).abs() < 1e-10);
+    for (written, wanted) in [
+        ("3 eV / (2 Å)^3", 0.375),
+        ("1 GPa * t / 4 ps", 0.5 * gpa),
+        ("K * x / 16", 38.0 * gpa),
+        ("1e4*t", 2.0 * gpa),
+        ("t > 1 ? 1 GPa : 0", gpa),
+    ] {
+        let got = traction(written).unwrap();
+        assert!((got - wanted).abs() < 1e-12, "{written}: {got} {wanted}");
+    }
+    // bars or eV/Å³?
+    let error = traction("1 GPa + 100").unwrap_err();
+    assert!(
+        error
+            .message
+            .contains("a pressure and a number without unit"),
+        "{error}"
+    );
+}

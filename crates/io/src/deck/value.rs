@@ -242,3 +242,19 @@ impl<A: JsonSchema, T: JsonSchema> JsonSchema for Or<A, T> {
         json_schema!({ "anyOf": [bare, table] })
     }
 }
+
+/// The schema of one or more things with names.
+pub struct Named<T>(PhantomData<T>);
+
+impl<T: JsonSchema> JsonSchema for Named<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("Named{}", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<T>();
+        json_schema!({ "type": "object", "additionalProperties": one, "minProperties": 1 })
+    }
+}

@@ -1,12 +1,13 @@
 //! Mesh cells: centroid and volume.
 
+use super::ReadError;
 use super::lines::Lines;
-use super::{ReadError, Sourced};
-use peridyne::spec::Cloud;
 use std::collections::HashMap;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
+    Vertex,
+    Line,
     Triangle,
     Quad,
     Tetra,
@@ -18,6 +19,8 @@ pub(super) enum Kind {
 impl Kind {
     pub fn corners(self) -> usize {
         match self {
+            Kind::Vertex => 1,
+            Kind::Line => 2,
             Kind::Triangle => 3,
             Kind::Quad | Kind::Tetra => 4,
             Kind::Pyramid => 5,
@@ -27,16 +30,31 @@ impl Kind {
     }
 
     pub fn dimension(self) -> usize {
-        if matches!(self, Kind::Triangle | Kind::Quad) {
-            2
-        } else {
-            3
+        match self {
+            Kind::Vertex => 0,
+            Kind::Line => 1,
+            Kind::Triangle | Kind::Quad => 2,
+            Kind::Tetra | Kind::Hexa | Kind::Prism | Kind::Pyramid => 3,
         }
     }
 
-    /// Simplices that make the cell, by corner.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Kind::Vertex => "vertices",
+            Kind::Line => "lines",
+            Kind::Triangle => "triangles",
+            Kind::Quad => "quadrilaterals",
+            Kind::Tetra => "tetrahedra",
+            Kind::Hexa => "hexahedra",
+            Kind::Prism => "prisms",
+            Kind::Pyramid => "pyramids",
+        }
+    }
+
+    /// Simplices that make the cell, by corner; none of what is no body.
     fn simplices(self) -> &'static [[usize; 4]] {
         match self {
+            Kind::Vertex | Kind::Line => &[],
             Kind::Triangle => &[[0, 1, 2, 0]],
             Kind::Quad => &[[0, 1, 2, 0], [0, 2, 3, 0]],
             Kind::Tetra => &[[0, 1, 2, 3]],
@@ -52,62 +70,68 @@ impl Kind {
             ],
         }
     }
+
+    /// Sides of a cell, by corner: edges in 2-D, faces in 3-D.
+    pub fn sides(self) -> &'static [&'static [usize]] {
+        match self {
+            Kind::Vertex | Kind::Line => &[],
+            Kind::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
+            Kind::Quad => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+            Kind::Tetra => &[&[0, 1, 2], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3]],
+            Kind::Pyramid => &[
+                &[0, 1, 2, 3],
+                &[0, 1, 4],
+                &[1, 2, 4],
+                &[2, 3, 4],
+                &[3, 0, 4],
+            ],
+            Kind::Prism => &[
+                &[0, 1, 2],
+                &[3, 4, 5],
+                &[0, 1, 4, 3],
+                &[1, 2, 5, 4],
+                &[2, 0, 3, 5],
+            ],
+            Kind::Hexa => &[
+                &[0, 1, 2, 3],
+                &[4, 5, 6, 7],
+                &[0, 1, 5, 4],
+                &[1, 2, 6, 5],
+                &[2, 3, 7, 6],
+                &[3, 0, 4, 7],
+            ],
+        }
+    }
 }
 
 pub(super) struct Cell {
     pub kind: Kind,
     pub id: u64,
+    /// Corners only.
     pub nodes: Vec<u64>,
-    pub mark: i32,
-    /// Line of the file.
-    pub line: usize,
+    /// Groups of the mesh that hold it; the first is its mark.
+    pub groups: Vec<usize>,
+    /// Line of the file, if it has lines.
+    pub line: Option<usize>,
 }
 
 /// Nodes by number.
 pub(super) type Nodes = HashMap<u64, [f64; 3]>;
 
-/// Cells of the highest dimension as points.
-pub(super) fn points(
+/// Centroid and volume of a cell (area of a flat one).
+pub(super) fn measure(
     lines: &Lines,
     nodes: &Nodes,
-    cells: &[Cell],
-    mut names: Vec<(i32, String)>,
-) -> Result<Sourced, ReadError> {
-    let Some(dimension) = cells.iter().map(|c| c.kind.dimension()).max() else {
-        return Err(lines.error(
-            "the mesh has no cells (triangles, quadrilaterals, tetrahedra, prisms, hexahedra)",
-        ));
-    };
-    let mut cloud = Cloud::default();
-    let mut sources = Vec::new();
-    for cell in cells.iter().filter(|c| c.kind.dimension() == dimension) {
-        let (centroid, volume) = measure(lines, nodes, cell)?;
-        cloud.position.push(centroid);
-        cloud.volume.push(volume);
-        cloud.mark.push(cell.mark);
-        sources.push(cell.line);
-    }
-    names.retain(|(mark, _)| cloud.mark.contains(mark));
-    cloud.names = names;
-    Ok(Sourced {
-        atoms: None,
-        cloud,
-        dimension: Some(dimension),
-        lines: sources,
-    })
-}
-
-fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<([f64; 3], f64), ReadError> {
+    cell: &Cell,
+) -> Result<([f64; 3], f64), ReadError> {
+    let error = |message: String| lines.error_where(cell.line, message);
     let mut corners = Vec::with_capacity(8);
     for id in &cell.nodes {
         let x = nodes.get(id).ok_or_else(|| {
-            lines.error_at(
-                cell.line,
-                format!(
-                    "element {} refers to node {id}, which does not exist",
-                    cell.id
-                ),
-            )
+            let id_of = cell.id;
+            error(format!(
+                "element {id_of} refers to node {id}, which does not exist"
+            ))
         })?;
         corners.push(*x);
     }
@@ -139,10 +163,10 @@ fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<([f64; 3], f64),
         } else {
             "volume"
         };
-        return Err(lines.error_at(
-            cell.line,
-            format!("element {} has no positive {what}: {volume}", cell.id),
-        ));
+        return Err(error(format!(
+            "element {} has no positive {what}: {volume}",
+            cell.id
+        )));
     }
     Ok((centroid, volume.abs()))
 }

@@ -1,74 +1,137 @@
-//! gmsh ASCII meshes, formats 2.2 and 4.1; physical groups become marks.
+//! gmsh meshes, formats 2.2 and 4.1, as text or binary; physical groups become marks and sets.
 
-use super::cell::{self, Cell, Kind, Nodes};
+mod binary;
+
+use super::cell::{Cell, Kind};
 use super::lines::Lines;
+use super::mesh::{Group, Mesh};
 use super::{ReadError, Sourced};
 use std::collections::HashMap;
 
-/// What a gmsh element type is: a cell with its number of nodes, something without volume, or unknown.
-enum Element {
-    Cell(Kind, usize),
-    /// Points and lines.
-    Nothing(usize),
-}
-
-fn element(kind: u32) -> Option<Element> {
+/// The corners and the number of nodes of a gmsh element type.
+fn element(kind: u32) -> Option<(Kind, usize)> {
     Some(match kind {
-        2 => Element::Cell(Kind::Triangle, 3),
-        3 => Element::Cell(Kind::Quad, 4),
-        4 => Element::Cell(Kind::Tetra, 4),
-        5 => Element::Cell(Kind::Hexa, 8),
-        6 => Element::Cell(Kind::Prism, 6),
-        7 => Element::Cell(Kind::Pyramid, 5),
-        9 => Element::Cell(Kind::Triangle, 6),
-        10 => Element::Cell(Kind::Quad, 9),
-        11 => Element::Cell(Kind::Tetra, 10),
-        12 => Element::Cell(Kind::Hexa, 27),
-        13 => Element::Cell(Kind::Prism, 18),
-        16 => Element::Cell(Kind::Quad, 8),
-        17 => Element::Cell(Kind::Hexa, 20),
-        18 => Element::Cell(Kind::Prism, 15),
-        1 => Element::Nothing(2),
-        8 => Element::Nothing(3),
-        15 => Element::Nothing(1),
+        1 => (Kind::Line, 2),
+        2 => (Kind::Triangle, 3),
+        3 => (Kind::Quad, 4),
+        4 => (Kind::Tetra, 4),
+        5 => (Kind::Hexa, 8),
+        6 => (Kind::Prism, 6),
+        7 => (Kind::Pyramid, 5),
+        8 => (Kind::Line, 3),
+        9 => (Kind::Triangle, 6),
+        10 => (Kind::Quad, 9),
+        11 => (Kind::Tetra, 10),
+        12 => (Kind::Hexa, 27),
+        13 => (Kind::Prism, 18),
+        14 => (Kind::Pyramid, 14),
+        15 => (Kind::Vertex, 1),
+        16 => (Kind::Quad, 8),
+        17 => (Kind::Hexa, 20),
+        18 => (Kind::Prism, 15),
+        19 => (Kind::Pyramid, 13),
         _ => return None,
     })
 }
 
+/// A mesh as it is read.
 #[derive(Default)]
-struct Mesh {
+struct Gmsh {
     /// Format 4.1 rather than 2.2.
     new: bool,
-    nodes: Nodes,
-    cells: Vec<Cell>,
-    /// Physical group of `(dimension, entity)`.
-    entities: HashMap<(usize, i64), i32>,
-    /// `(dimension, group, name)`
-    names: Vec<(usize, i32, String)>,
+    mesh: Mesh,
+    /// Groups of `(dimension, entity)`.
+    entities: HashMap<(usize, i64), Vec<usize>>,
+}
+
+impl Gmsh {
+    fn node(&mut self, lines: &Lines, id: u64, x: [f64; 3]) -> Result<(), ReadError> {
+        if x.iter().any(|c| !c.is_finite()) {
+            return Err(lines.error(format!("node {id} is at {x:?}")));
+        }
+        match self.mesh.nodes.insert(id, x) {
+            None => Ok(()),
+            Some(_) => Err(lines.error(format!("node {id} is defined twice"))),
+        }
+    }
+
+    /// An element; `groups` are physical ones.
+    fn element(
+        &mut self,
+        lines: &Lines,
+        id: u64,
+        (kind, count): (Kind, usize),
+        groups: Vec<usize>,
+        nodes: Vec<u64>,
+    ) -> Result<(), ReadError> {
+        if nodes.len() != count {
+            return Err(lines.error(format!(
+                "element {id} of {} has {} nodes instead of {count}",
+                kind.plural(),
+                nodes.len()
+            )));
+        }
+        self.mesh.cells.push(Cell {
+            kind,
+            id,
+            nodes: nodes[..kind.corners()].to_vec(),
+            groups,
+            line: lines.place(),
+        });
+        Ok(())
+    }
+
+    /// Groups by their numbers; a negative one is the group turned round.
+    fn groups(&mut self, dimension: usize, numbers: &[i32]) -> Vec<usize> {
+        let used = numbers.iter().filter(|n| **n != 0);
+        let mut groups: Vec<usize> = used
+            .map(|n| self.mesh.group(dimension, n.saturating_abs()))
+            .collect();
+        groups.dedup();
+        groups
+    }
+}
+
+fn unknown(lines: &Lines, kind: u32, id: u64) -> ReadError {
+    lines.error(format!("unknown element type {kind} of element {id}"))
+}
+
+/// Reads a mesh of either kind.
+pub(super) fn read(bytes: &[u8], name: &str) -> Result<Sourced, ReadError> {
+    let binary = bytes.starts_with(b"$MeshFormat")
+        && String::from_utf8_lossy(&bytes[..bytes.len().min(80)])
+            .lines()
+            .nth(1)
+            .is_some_and(|format| format.split_whitespace().nth(1) == Some("1"));
+    if binary {
+        return binary::parse(bytes, name);
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => parse(text, name),
+        Err(_) => Err(Lines::binary(name).error("it is no mesh of gmsh: neither text nor binary")),
+    }
+}
+
+/// Is the version new (4.1) rather than old (2.2)?
+fn version(lines: &Lines, format: &str) -> Result<bool, ReadError> {
+    match format.split_whitespace().next().unwrap_or("") {
+        "2.2" | "2" | "2.1" => Ok(false),
+        "4.1" => Ok(true),
+        other => Err(lines.error(format!(
+            "format {other} is not read: export 4.1 or 2.2 (gmsh -format msh41)"
+        ))),
+    }
 }
 
 pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
     let mut lines = Lines::new(text, name);
-    let mut mesh = Mesh::default();
+    let mut mesh = Gmsh::default();
     let header = lines.expect("$MeshFormat")?;
     if header != "$MeshFormat" {
         return Err(lines.error("expected $MeshFormat: this is not a gmsh mesh"));
     }
     let format = lines.expect("the version of the format")?;
-    let mut fields = format.split_whitespace();
-    let version = fields.next().unwrap_or("");
-    mesh.new = match version {
-        "2.2" | "2" | "2.1" => false,
-        "4.1" => true,
-        _ => {
-            return Err(lines.error(format!(
-                "format {version} is not read: export 4.1 or 2.2 (gmsh -format msh41)"
-            )));
-        }
-    };
-    if fields.next() != Some("0") {
-        return Err(lines.error("the mesh is binary: export it as ASCII"));
-    }
+    mesh.new = version(&lines, format)?;
     end(&mut lines, "$EndMeshFormat")?;
     while let Some(section) = lines.next() {
         match section {
@@ -87,19 +150,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
             }
         }
     }
-    let dimension = mesh
-        .cells
-        .iter()
-        .map(|c| c.kind.dimension())
-        .max()
-        .unwrap_or(0);
-    let names = mesh
-        .names
-        .iter()
-        .filter(|n| n.0 == dimension)
-        .map(|n| (n.1, n.2.clone()))
-        .collect();
-    cell::points(&lines, &mesh.nodes, &mesh.cells, names)
+    mesh.mesh.points(&lines)
 }
 
 fn end(lines: &mut Lines, closing: &str) -> Result<(), ReadError> {
@@ -111,31 +162,30 @@ fn end(lines: &mut Lines, closing: &str) -> Result<(), ReadError> {
     }
 }
 
-fn physical_names(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
+fn physical_names(lines: &mut Lines, mesh: &mut Gmsh) -> Result<(), ReadError> {
     let count: usize = lines
         .expect("the number of names")
         .and_then(|l| lines.parse(Some(l), "the number of names"))?;
     for _ in 0..count {
         let line = lines.expect("a physical name")?;
-        let mut fields = line.splitn(3, char::is_whitespace);
-        let dimension = lines.parse(fields.next(), "a dimension")?;
-        let group = lines.parse(fields.next(), "the number of a group")?;
-        mesh.names.push((
-            dimension,
-            group,
-            fields
-                .next()
-                .unwrap_or("")
-                .trim()
-                .trim_matches('"')
-                .to_string(),
-        ));
+        physical_name(lines, mesh, line)?;
     }
     end(lines, "$EndPhysicalNames")
 }
 
-/// Format 4.1: the physical group of every point, curve, surface and volume.
-fn entities(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
+fn physical_name(lines: &Lines, mesh: &mut Gmsh, line: &str) -> Result<(), ReadError> {
+    let mut fields = line.splitn(3, char::is_whitespace);
+    let dimension = lines.parse(fields.next(), "a dimension")?;
+    let number = lines.parse(fields.next(), "the number of a group")?;
+    let name = fields.next().unwrap_or("").trim().trim_matches('"');
+    let group = mesh.mesh.group(dimension, number);
+    let known: &mut Group = &mut mesh.mesh.groups[group];
+    known.name = Some(name.to_string()).filter(|n| !n.is_empty());
+    Ok(())
+}
+
+/// Format 4.1: the physical groups of every point, curve, surface and volume.
+fn entities(lines: &mut Lines, mesh: &mut Gmsh) -> Result<(), ReadError> {
     let line = lines.expect("the numbers of entities")?;
     let counts: Vec<usize> = line
         .split_whitespace()
@@ -151,12 +201,12 @@ fn entities(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
             let tag: i64 = lines.parse(fields.next(), "the tag of an entity")?;
             // a point has coordinates, the others a bounding box
             let mut fields = fields.skip(if dimension == 0 { 3 } else { 6 });
-            let groups: usize = lines.parse(fields.next(), "the number of physical groups")?;
-            if groups > 0 {
-                let group: i32 = lines.parse(fields.next(), "a physical group")?;
-                mesh.entities
-                    .insert((dimension, tag), group.saturating_abs());
-            }
+            let count: usize = lines.parse(fields.next(), "the number of physical groups")?;
+            let numbers: Vec<i32> = (0..count.min(line.len()))
+                .map(|_| lines.parse(fields.next(), "a physical group"))
+                .collect::<Result<_, _>>()?;
+            let groups = mesh.groups(dimension, &numbers);
+            mesh.entities.insert((dimension, tag), groups);
         }
     }
     end(lines, "$EndEntities")
@@ -173,14 +223,7 @@ fn position<'a>(
     ])
 }
 
-fn insert(lines: &Lines, mesh: &mut Mesh, id: u64, x: [f64; 3]) -> Result<(), ReadError> {
-    match mesh.nodes.insert(id, x) {
-        None => Ok(()),
-        Some(_) => Err(lines.error(format!("node {id} is defined twice"))),
-    }
-}
-
-fn nodes(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
+fn nodes(lines: &mut Lines, mesh: &mut Gmsh) -> Result<(), ReadError> {
     let line = lines.expect("the number of nodes")?;
     let first: usize = lines.parse(line.split_whitespace().next(), "the number of nodes")?;
     if !mesh.new {
@@ -189,7 +232,7 @@ fn nodes(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
             let mut fields = line.split_whitespace();
             let id = lines.parse(fields.next(), "a node number")?;
             let x = position(lines, fields)?;
-            insert(lines, mesh, id, x)?;
+            mesh.node(lines, id, x)?;
         }
         return end(lines, "$EndNodes");
     }
@@ -208,47 +251,22 @@ fn nodes(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
         for id in ids {
             let line = lines.expect("the position of a node")?;
             let x = position(lines, line.split_whitespace())?;
-            insert(lines, mesh, id, x)?;
+            mesh.node(lines, id, x)?;
         }
     }
     end(lines, "$EndNodes")
 }
 
-fn push<'a>(
+fn corners<'a>(
     lines: &Lines,
-    mesh: &mut Mesh,
-    id: u64,
-    kind: u32,
-    mark: i32,
     fields: impl Iterator<Item = &'a str>,
-) -> Result<(), ReadError> {
-    let (cell, count) = match element(kind) {
-        Some(Element::Cell(cell, count)) => (Some(cell), count),
-        Some(Element::Nothing(count)) => (None, count),
-        None => return Err(lines.error(format!("unknown element type {kind} of element {id}"))),
-    };
-    let nodes: Vec<u64> = fields
+) -> Result<Vec<u64>, ReadError> {
+    fields
         .map(|f| lines.parse(Some(f), "a node number"))
-        .collect::<Result<_, _>>()?;
-    if nodes.len() != count {
-        return Err(lines.error(format!(
-            "element {id} of type {kind} has {} nodes instead of {count}",
-            nodes.len()
-        )));
-    }
-    if let Some(kind) = cell {
-        mesh.cells.push(Cell {
-            kind,
-            id,
-            nodes: nodes[..kind.corners()].to_vec(),
-            mark,
-            line: lines.number,
-        });
-    }
-    Ok(())
+        .collect()
 }
 
-fn elements(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
+fn elements(lines: &mut Lines, mesh: &mut Gmsh) -> Result<(), ReadError> {
     let line = lines.expect("the number of elements")?;
     let first: usize = lines.parse(line.split_whitespace().next(), "the number of elements")?;
     for _ in 0..first {
@@ -257,36 +275,35 @@ fn elements(lines: &mut Lines, mesh: &mut Mesh) -> Result<(), ReadError> {
         if !mesh.new {
             let id = lines.parse(fields.next(), "an element number")?;
             let kind = lines.parse(fields.next(), "an element type")?;
+            let shape = element(kind).ok_or_else(|| unknown(lines, kind, id))?;
             let tags: usize = lines.parse(fields.next(), "the number of tags")?;
             let tags: Vec<i32> = fields
                 .by_ref()
                 .take(tags)
                 .map(|f| lines.parse(Some(f), "a tag"))
                 .collect::<Result<_, _>>()?;
-            push(
-                lines,
-                mesh,
-                id,
-                kind,
-                tags.first().map_or(0, |t| t.saturating_abs()),
-                fields,
-            )?;
+            // the first is the physical group, the second the entity
+            let groups = mesh.groups(shape.0.dimension(), &tags[..tags.len().min(1)]);
+            let nodes = corners(lines, fields)?;
+            mesh.element(lines, id, shape, groups, nodes)?;
             continue;
         }
         let dimension = lines.parse(fields.next(), "a dimension")?;
         let entity = lines.parse(fields.next(), "the tag of an entity")?;
         let kind = lines.parse(fields.next(), "an element type")?;
         let count: usize = lines.parse(fields.next(), "the number of elements of the block")?;
-        let mark = mesh
+        let groups = mesh
             .entities
             .get(&(dimension, entity))
-            .copied()
-            .unwrap_or(0);
+            .cloned()
+            .unwrap_or_default();
         for _ in 0..count {
             let line = lines.expect("an element")?;
             let mut fields = line.split_whitespace();
             let id = lines.parse(fields.next(), "an element number")?;
-            push(lines, mesh, id, kind, mark, fields)?;
+            let shape = element(kind).ok_or_else(|| unknown(lines, kind, id))?;
+            let nodes = corners(lines, fields)?;
+            mesh.element(lines, id, shape, groups.clone(), nodes)?;
         }
     }
     end(lines, "$EndElements")

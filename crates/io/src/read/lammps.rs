@@ -69,6 +69,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         dimension: None,
         // the file is in no order; the engine names points in one place by their number
         lines: vec![],
+        notes: vec![],
     })
 }
 

@@ -36,6 +36,7 @@ pub fn read(path: &Path) -> Result<Points, ReadError> {
         dimension: Some(dimension),
         atoms: None,
         micromoduli: Some(Arc::new(body)),
+        notes: vec![],
     })
 }
 

@@ -19,6 +19,16 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// Of a file without lines: it makes errors without them.
+    pub fn binary(name: &'a str) -> Self {
+        Lines::new("", name)
+    }
+
+    /// The number of the line last taken, if the file has lines.
+    pub fn place(&self) -> Option<usize> {
+        Some(self.number).filter(|n| *n > 0)
+    }
+
     /// The next line that is not blank, trimmed.
     pub fn next(&mut self) -> Option<&'a str> {
         for (index, line) in self.rest.by_ref() {
@@ -49,13 +59,17 @@ impl<'a> Lines<'a> {
     }
 
     pub fn error(&self, message: impl Into<String>) -> ReadError {
-        self.error_at(self.number, message)
+        self.error_where(self.place(), message)
     }
 
     pub fn error_at(&self, line: usize, message: impl Into<String>) -> ReadError {
+        self.error_where(Some(line), message)
+    }
+
+    pub fn error_where(&self, line: Option<usize>, message: impl Into<String>) -> ReadError {
         ReadError {
             file: self.name.to_string(),
-            line: Some(line),
+            line,
             message: message.into(),
         }
     }

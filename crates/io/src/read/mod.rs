@@ -1,8 +1,8 @@
 //! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), atoms
 //! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), and tables of potentials ([`eam`]).
 //!
-//! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count;
-//! second-order cells are taken by their corners.
+//! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count; what
+//! else the mesh names becomes sets (`mesh`). Second-order cells are taken by their corners.
 
 mod abaqus;
 mod atoms;
@@ -15,6 +15,7 @@ mod gmsh;
 mod lammps;
 mod linear;
 mod lines;
+mod mesh;
 mod stream;
 mod text;
 
@@ -38,6 +39,8 @@ pub struct Points {
     pub atoms: Option<AtomsFile>,
     /// Of a linear body.
     pub micromoduli: Option<Arc<AnyLinearBody>>,
+    /// What the user should know: what was passed over.
+    pub notes: Vec<String>,
 }
 
 /// Box and mass of a file of atoms.
@@ -123,8 +126,10 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
         return linear::read(path);
     }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_| error("it is not text; save meshes as ASCII".into()))?;
+    if extension == "msh" {
+        return whole(gmsh::read(&bytes, &name)?, &name);
+    }
+    let text = String::from_utf8(bytes).map_err(|_| error("it is not text".into()))?;
     parse(&text, &name, &extension)
 }
 
@@ -168,9 +173,11 @@ fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
     let mut seen = HashMap::with_capacity(points.cloud.position.len());
     for (i, (x, line)) in points.cloud.position.iter().zip(&points.lines).enumerate() {
         // + 0.0 makes −0 and 0 one
-        if let Some(first) = seen.insert(x.map(|c| (c + 0.0).to_bits()), *line) {
+        if let Some(first) = &seen.insert(x.map(|c| (c + 0.0).to_bits()), *line) {
+            let [place, line] = [*first, *line].map(|l| Some(l).filter(|l| *l > 0));
+            let place = place.map_or("another".into(), |l| format!("that of line {l}"));
             let message = format!(
-                "point {} at ({}, {}, {}) coincides with that of line {first}",
+                "point {} at ({}, {}, {}) coincides with {place}",
                 i + 1,
                 x[0],
                 x[1],
@@ -178,7 +185,7 @@ fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
             );
             return Err(ReadError {
                 file: name.into(),
-                line: Some(*line),
+                line,
                 message,
             });
         }
@@ -188,6 +195,7 @@ fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
         dimension: points.dimension,
         atoms: points.atoms,
         micromoduli: None,
+        notes: points.notes,
     })
 }
 
@@ -227,15 +235,17 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
         },
         dimension: None,
         lines: vec![],
+        notes: vec![],
     })
 }
 
-/// Points and the line that each came from, where that is known.
+/// Points and the line that each came from, where that is known; 0 in a file without lines.
 struct Sourced {
     cloud: Cloud,
     dimension: Option<usize>,
     lines: Vec<usize>,
     atoms: Option<AtomsFile>,
+    notes: Vec<String>,
 }
 
 #[cfg(test)]

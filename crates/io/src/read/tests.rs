@@ -48,6 +48,21 @@ fn abaqus_cells_become_points() {
         .collect();
     assert_eq!(points.cloud.mark, [1, 2, 3]);
     assert_eq!(names, [(1, "LEFT"), (2, "Right"), (3, "TIP")]);
+    // sets may overlap, marks do not; N has all nodes
+    let sets: Vec<(&str, &[u32])> = points
+        .cloud
+        .sets
+        .iter()
+        .map(|(n, s)| (&**n, &**s))
+        .collect();
+    let wanted: [(&str, &[u32]); 5] = [
+        ("LEFT", &[0]),
+        ("Right", &[1, 2]),
+        ("TIP", &[2]),
+        ("EVERY", &[0, 1, 2]),
+        ("N", &[0, 1, 2]),
+    ];
+    assert_eq!(sets, wanted);
 }
 
 #[test]
@@ -77,7 +92,7 @@ fn solids_have_their_volumes() {
 
 const OLD: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"edge\"\n2 5 \"glass plate\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n3\n1 1 2 7 1 1 2\n2 2 2 5 1 1 2 3\n3 2 2 5 1 1 3 4\n$EndElements\n";
 
-const NEW: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 5 \"glass plate\"\n$EndPhysicalNames\n$Entities\n1 1 1 0\n1 0 0 0 0\n1 0 0 0 1 0 0 0 2 1 1\n1 0 0 0 1 1 0 1 5 1 1\n$EndEntities\n$Nodes\n2 4 1 4\n1 1 0 2\n1\n2\n0 0 0\n1 0 0\n2 1 0 2\n3\n4\n1 1 0\n0 1 0\n$EndNodes\n$Elements\n2 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
+const NEW: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"edge\"\n2 5 \"glass plate\"\n$EndPhysicalNames\n$Entities\n1 1 1 0\n1 0 0 0 0\n1 0 0 0 1 0 0 1 7 2 1 1\n1 0 0 0 1 1 0 1 5 1 1\n$EndEntities\n$Nodes\n2 4 1 4\n1 1 0 2\n1\n2\n0 0 0\n1 0 0\n2 1 0 2\n3\n4\n1 1 0\n0 1 0\n$EndNodes\n$Elements\n2 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 2\n2 1 2 3\n3 1 3 4\n$EndElements\n";
 
 #[test]
 fn both_gmsh_formats_say_the_same() {
@@ -87,6 +102,159 @@ fn both_gmsh_formats_say_the_same() {
     assert_eq!(old.cloud.mark, [5, 5]);
     assert_eq!(old.cloud.names, [(5, "glass plate".to_string())]);
     assert_eq!(old.dimension, Some(2));
+    // the edge is one of the first triangle's
+    let sets: Vec<(&str, &[u32])> = old.cloud.sets.iter().map(|(n, s)| (&**n, &**s)).collect();
+    assert_eq!(sets, [("glass plate", &[0, 1][..]), ("edge", &[0])]);
+    assert_eq!(
+        old.notes,
+        [
+            "skipped are 1 lines, which are no 2-D cells; sets of the mesh: glass plate (2 points), edge (1 points)"
+        ]
+    );
+}
+
+/// Two cubes side by side along x: nodes 1 to 12, x from 0 to 2.
+const CUBES: &str = "*NODE\n1,0,0,0\n2,1,0,0\n3,2,0,0\n4,0,1,0\n5,1,1,0\n6,2,1,0\n\
+    7,0,0,1\n8,1,0,1\n9,2,0,1\n10,0,1,1\n11,1,1,1\n12,2,1,1\n\
+    *ELEMENT,TYPE=C3D8\n1,1,2,5,4,7,8,11,10\n2,2,3,6,5,8,9,12,11\n";
+
+#[test]
+fn sets_of_nodes_surfaces_lines_and_vertices_are_sets_of_the_points_beside_them() {
+    let more = "*ELEMENT,TYPE=S4R,ELSET=RIGHT\n3,3,6,12,9\n*ELEMENT,TYPE=T3D2,ELSET=EDGE\n4,1,4\n5,2,5\n\
+        *ELEMENT,TYPE=MASS,ELSET=WEIGHT\n6,3\n*ELEMENT,TYPE=S4,ELSET=MIDDLE\n7,2,5,11,8\n\
+        *NSET,NSET=LEFT\n1,4,7,10\n*NSET,NSET=TOP,GENERATE\n7,12,1\n*NSET,NSET=WALL\n2,5,8,11\n\
+        *NSET,NSET=LINE\n3,6\n*NSET,NSET=CORNER\n12\n*NSET,NSET=BOTH\nLEFT,CORNER\n*NSET,NSET=FAR\n99\n\
+        *NSET,NSET=FIRST\n1,2,5,4,7,8,11,10\n";
+    let points = read(&format!("{CUBES}{more}"), "inp");
+    let sets: std::collections::BTreeMap<&str, &[u32]> = points
+        .cloud
+        .sets
+        .iter()
+        .map(|(n, s)| (&**n, &**s))
+        .collect();
+    for (name, wanted) in [
+        ("RIGHT", &[1][..]),
+        // the second line is one of both cubes
+        ("EDGE", &[0, 1]),
+        ("MIDDLE", &[0, 1]),
+        ("LEFT", &[0]),
+        ("TOP", &[0, 1]),
+        ("WALL", &[0, 1]),
+        ("LINE", &[1]),
+        ("CORNER", &[1]),
+        // the corner alone is no side
+        ("BOTH", &[0]),
+        // the whole inner side belongs to the other cube, too
+        ("FIRST", &[0]),
+    ] {
+        assert_eq!(sets.get(name), Some(&wanted), "{name}");
+    }
+    assert!(!sets.contains_key("FAR") && !sets.contains_key("WEIGHT"));
+    assert_eq!(points.notes.len(), 2, "{:?}", points.notes);
+    assert!(points.notes[0].contains("\"FAR\" of the mesh touches no cell"));
+    assert!(points.notes[1].contains("2 quadrilaterals, 2 lines, 1 elements MASS"));
+}
+
+/// The same as `OLD` and `NEW` in bytes, `swap` of the other order.
+fn binary(new: bool, swap: bool) -> Vec<u8> {
+    let mut out = Vec::new();
+    let text = |out: &mut Vec<u8>, t: &str| out.extend(t.as_bytes());
+    let put = |out: &mut Vec<u8>, bytes: &[u8]| {
+        let mut bytes = bytes.to_vec();
+        if swap {
+            bytes.reverse();
+        }
+        out.extend(bytes);
+    };
+    let ints = |out: &mut Vec<u8>, all: &[i32]| all.iter().for_each(|i| put(out, &i.to_le_bytes()));
+    let sizes =
+        |out: &mut Vec<u8>, all: &[u64]| all.iter().for_each(|i| put(out, &i.to_le_bytes()));
+    let reals =
+        |out: &mut Vec<u8>, all: &[f64]| all.iter().for_each(|i| put(out, &i.to_le_bytes()));
+    let version = if new { "4.1" } else { "2.2" };
+    text(&mut out, &format!("$MeshFormat\n{version} 1 8\n"));
+    ints(&mut out, &[1]);
+    text(
+        &mut out,
+        "\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"edge\"\n2 5 \"glass plate\"\n$EndPhysicalNames\n",
+    );
+    let nodes = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
+    if new {
+        text(&mut out, "$Entities\n");
+        sizes(&mut out, &[1, 1, 1, 0]);
+        ints(&mut out, &[1]);
+        reals(&mut out, &[0.0; 3]);
+        sizes(&mut out, &[0]);
+        for (group, bounds) in [(7, [1, 1]), (5, [1, 1])] {
+            ints(&mut out, &[1]);
+            reals(&mut out, &[0.0; 6]);
+            sizes(&mut out, &[1]);
+            ints(&mut out, &[group]);
+            sizes(&mut out, &[2]);
+            ints(&mut out, &bounds);
+        }
+        text(&mut out, "\n$EndEntities\n$Nodes\n");
+        sizes(&mut out, &[2, 4, 1, 4]);
+        for (dimension, first) in [(1, 0), (2, 2)] {
+            ints(&mut out, &[dimension, 1, 0]);
+            sizes(&mut out, &[2, first + 1, first + 2]);
+            nodes[first as usize..][..2]
+                .iter()
+                .for_each(|x| reals(&mut out, x));
+        }
+        text(&mut out, "\n$EndNodes\n$Elements\n");
+        sizes(&mut out, &[2, 3, 1, 3]);
+        ints(&mut out, &[1, 1, 1]);
+        sizes(&mut out, &[1, 1, 1, 2]);
+        ints(&mut out, &[2, 1, 2]);
+        sizes(&mut out, &[2, 2, 1, 2, 3, 3, 1, 3, 4]);
+    } else {
+        text(&mut out, "$Nodes\n4\n");
+        for (id, x) in nodes.iter().enumerate() {
+            ints(&mut out, &[id as i32 + 1]);
+            reals(&mut out, x);
+        }
+        text(&mut out, "\n$EndNodes\n$Elements\n3\n");
+        ints(&mut out, &[1, 1, 2, 1, 7, 1, 1, 2]);
+        ints(&mut out, &[2, 2, 2, 2, 5, 1, 1, 2, 3, 3, 5, 1, 1, 3, 4]);
+    }
+    text(&mut out, "\n$EndElements\n$Other\n\u{1}\u{2}\n$EndOther\n");
+    out
+}
+
+#[test]
+fn binary_meshes_say_the_same_as_text() {
+    let text = read(OLD, "msh");
+    for (new, swap) in [(false, false), (false, true), (true, false), (true, true)] {
+        let bytes = binary(new, swap);
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("plate.msh");
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(points(&path, Frame::Last).unwrap(), text);
+        // cut off anywhere it is refused, unless nothing but the last section is lost
+        let whole = bytes.len() - "$Other\n\u{1}\u{2}\n$EndOther\n".len();
+        for cut in 0..whole - 1 {
+            std::fs::write(&path, &bytes[..cut]).unwrap();
+            let error = points(&path, Frame::Last).unwrap_err();
+            assert!(!error.message.is_empty(), "{new} {swap} {cut}");
+        }
+    }
+}
+
+#[test]
+fn a_header_is_told_how_to_begin() {
+    for text in ["x y z volume\n0 0 0 1\n", "x,y,z,V,mark\n0,0,0,1,2\n"] {
+        let said = failure(text, "csv");
+        assert!(
+            said.starts_with("f:1: ") && said.contains("a header begins with #"),
+            "{said}"
+        );
+    }
 }
 
 #[test]
@@ -131,9 +299,9 @@ fn what_is_wrong_is_said_with_its_line() {
         ),
         ("# nothing", "txt", "no points"),
         (
-            "*NODE\n1,0,0\n*ELEMENT, TYPE=S4\n",
+            "*NODE\n1,0,0\n*ELEMENT, TYPE=CAX4\n",
             "inp",
-            "f:3: unknown element type S4",
+            "f:3: unknown element type CAX4",
         ),
         (
             "*NODE\n1,0,0\n1,1,0\n",
@@ -160,7 +328,11 @@ fn what_is_wrong_is_said_with_its_line() {
         ("*NODE\n1,0,0", "inp", "no cells"),
         ("solid", "msh", "f:1: expected $MeshFormat"),
         ("$MeshFormat\n4.0 0 8", "msh", "format 4.0 is not read"),
-        ("$MeshFormat\n4.1 1 8", "msh", "binary"),
+        (
+            "*NODE\n1,0,0\n2,1,0\n3,1,1\n*ELEMENT,TYPE=S3R\n1,1,2,3",
+            "inp",
+            "the elements S3R are shells or membranes",
+        ),
         (
             OLD.split("3 2 2 5").next().unwrap_or(""),
             "msh",

@@ -18,6 +18,13 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         if fields.is_empty() {
             continue;
         }
+        if columns.is_none() && fields.iter().all(|f| f.parse::<f64>().is_err()) {
+            return Err(lines.error(format!(
+                "expected `x y z volume [mark]` as numbers, found the words `{}`: a header begins with #, write `# {}`",
+                line.trim(),
+                line.trim()
+            )));
+        }
         let first = *columns.get_or_insert(fields.len());
         if !(4..=5).contains(&fields.len()) {
             return Err(lines.error(format!(
@@ -60,5 +67,6 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         cloud,
         dimension: None,
         lines: sources,
+        notes: vec![],
     })
 }

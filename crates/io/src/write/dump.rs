@@ -8,12 +8,21 @@ use super::extxyz::check;
 use super::fields::{Field, fields, positions};
 use crate::read::Atoms;
 
-/// The box of a dump; without one it is shrunk around the points, half a spacing wider on each side.
+/// The box of a dump: along a periodic axis one period (length), along others as far as the points go and half a spacing
+/// more on each side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DumpBox {
-    /// Lower and upper bound per axis (length).
-    pub bounds: Option<[[f64; 2]; 3]>,
-    pub periodic: [bool; 3],
+    /// Lower and upper bound of each periodic axis.
+    pub periods: [Option<[f64; 2]>; 3],
+}
+
+impl DumpBox {
+    /// Periods from a lower corner on.
+    pub fn periodic(corner: [f64; 3], periods: [Option<f64>; 3]) -> Self {
+        DumpBox {
+            periods: std::array::from_fn(|a| periods[a].map(|p| [corner[a], corner[a] + p])),
+        }
+    }
 }
 
 /// Writes one frame: `id type x y z`, velocities as `vx vy vz`, and every scalar of the snapshot by its name.
@@ -27,8 +36,9 @@ pub fn write_frame<W: Write>(w: &mut W, s: &Snapshot, cell: &DumpBox) -> io::Res
     let mut columns = fields(s)?;
     // x, y, z say it already
     columns.retain(|(name, _)| *name != "displacement");
-    let flags = cell.periodic.map(|p| if p { "pp" } else { "ss" });
-    let bounds = cell.bounds.unwrap_or_else(|| shrunk(s));
+    let flags = cell.periods.map(|p| if p.is_some() { "pp" } else { "ss" });
+    let shrunk = shrunk(s);
+    let bounds = std::array::from_fn(|a| cell.periods[a].unwrap_or(shrunk[a]));
     head(w, s.step, s.reference.len(), flags, bounds)?;
     for (name, _) in &columns {
         match *name {
@@ -81,7 +91,11 @@ pub fn write_atoms<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
         writeln!(w, "ITEM: TIME\n{time:?}")?;
     }
     let flags = atoms.periodic.map(|p| if p { "pp" } else { "ff" });
-    let bounds = std::array::from_fn(|a| [atoms.low[a], atoms.high[a]]);
+    // a box without length along an axis gets length 1, as 2-D boxes of LAMMPS have
+    let bounds = std::array::from_fn(|a| match atoms.low[a] == atoms.high[a] {
+        true => [atoms.low[a] - 0.5, atoms.high[a] + 0.5],
+        false => [atoms.low[a], atoms.high[a]],
+    });
     head(w, atoms.step.unwrap_or(0), atoms.len(), flags, bounds)?;
     let vectors = [(&atoms.velocity, "vx vy vz"), (&atoms.force, "fx fy fz")];
     for (_, names) in vectors.iter().filter(|v| v.0.is_some()) {
@@ -168,14 +182,12 @@ mod tests {
 
     #[test]
     fn a_given_box_is_kept() {
-        let cell = DumpBox {
-            bounds: Some([[0.0, 1.0]; 3]),
-            periodic: [true, false, true],
-        };
+        let cell = DumpBox::periodic([0.0; 3], [Some(1.0), None, Some(2.0)]);
         let mut file = Vec::new();
         write_frame(&mut file, &small(), &cell).unwrap();
         let text = String::from_utf8(file).unwrap();
-        assert!(text.contains("BOX BOUNDS pp ss pp\n0.0 1.0\n0.0 1.0\n0.0 1.0\nITEM"));
+        assert!(text.contains("BOX BOUNDS pp ss pp\n0.0 1.0\n"));
+        assert!(text.contains("\n0.0 2.0\nITEM: ATOMS"));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::atomic::{WriteError, create_directory, write_file};
 use super::dump::{DumpBox, write_frame};
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
+use super::trajectory::Frames;
 use super::vtu::{write_bonds, write_points};
 
 /// Which files a series writes.
@@ -17,8 +18,8 @@ pub struct SeriesOptions {
     pub points: bool,
     /// `bonds_<step>.vtu` and `bonds.pvd`; the snapshots must carry bonds.
     pub bonds: bool,
-    /// `dump_<step>.lammpstrj`, one frame per file.
-    pub dump: Option<DumpBox>,
+    /// A LAMMPS dump of this name in the directory, all frames in it.
+    pub dump: Option<(PathBuf, DumpBox)>,
     /// `damage.png` at the end.
     pub picture: Option<PictureOptions>,
 }
@@ -43,6 +44,8 @@ pub struct Series {
     options: SeriesOptions,
     points: Pvd,
     bonds: Pvd,
+    /// The dump and the step of its last frame.
+    dump: Option<(Frames, Option<u64>)>,
 }
 
 impl Series {
@@ -54,11 +57,16 @@ impl Series {
             Pvd::new(dir.join("points.pvd")),
             Pvd::new(dir.join("bonds.pvd")),
         );
+        let dump = match &options.dump {
+            Some((name, _)) => Some((Frames::create(&dir.join(name))?, None)),
+            None => None,
+        };
         Ok(Series {
             dir,
             options,
             points,
             bonds,
+            dump,
         })
     }
 
@@ -66,7 +74,7 @@ impl Series {
         &self.dir
     }
 
-    /// Writes all files of a snapshot; a snapshot of the same step is replaced.
+    /// Writes all files of a snapshot. One of the same step is replaced, but the dump keeps the first.
     pub fn write(&mut self, s: &Snapshot) -> Result<(), WriteError> {
         if self.options.points {
             let name = format!("points_{:08}.vtu", s.step);
@@ -78,15 +86,20 @@ impl Series {
             write_file(&self.dir.join(&name), |w| write_bonds(w, s))?;
             self.bonds.push(s.time, &name)?;
         }
-        if let Some(cell) = &self.options.dump {
-            let name = format!("dump_{:08}.lammpstrj", s.step);
-            write_file(&self.dir.join(&name), |w| write_frame(w, s, cell))?;
+        if let (Some((dump, last)), Some((_, cell))) = (&mut self.dump, &self.options.dump)
+            && *last != Some(s.step)
+        {
+            dump.push(|w| write_frame(w, s, cell))?;
+            *last = Some(s.step);
         }
         Ok(())
     }
 
     /// Draws the last snapshot, if a picture was asked for; returns its path.
     pub fn finish(self, last: &Snapshot) -> Result<Option<PathBuf>, WriteError> {
+        if let Some((dump, _)) = self.dump {
+            dump.finish()?;
+        }
         let Some(options) = &self.options.picture else {
             return Ok(None);
         };
@@ -117,7 +130,7 @@ mod tests {
         let out = dir.path().join("a/b");
         let options = SeriesOptions {
             bonds: true,
-            dump: Some(DumpBox::default()),
+            dump: Some(("plate.dump".into(), DumpBox::default())),
             ..Default::default()
         };
         let mut series = Series::new(&out, options).unwrap();
@@ -136,13 +149,14 @@ mod tests {
             "bonds_00000007.vtu",
             "bonds_00000012.vtu",
             "damage.png",
-            "dump_00000007.lammpstrj",
-            "dump_00000012.lammpstrj",
+            "plate.dump",
             "points.pvd",
             "points_00000007.vtu",
             "points_00000012.vtu",
         ];
         assert_eq!(names(&out), files);
+        let dump = std::fs::read_to_string(out.join("plate.dump")).unwrap();
+        assert_eq!(dump.matches("ITEM: ATOMS").count(), 2);
         let pvd = std::fs::read_to_string(out.join("points.pvd")).unwrap();
         assert_eq!(pvd.matches("<DataSet").count(), 2);
         assert_eq!(

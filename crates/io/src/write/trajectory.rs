@@ -36,32 +36,24 @@ pub fn write_atoms(path: &Path, format: Format, frames: &[Atoms]) -> Result<(), 
 /// An open trajectory.
 #[derive(Debug)]
 pub struct Trajectory {
-    path: PathBuf,
-    file: File,
+    frames: Frames,
     format: Format,
-    /// Length of the file in bytes, whole frames only.
-    length: u64,
 }
 
 impl Trajectory {
     /// Starts an empty file; an older one is replaced.
     pub fn create(path: &Path, format: Format) -> Result<Self, WriteError> {
-        write_file(path, |_| Ok(()))?;
-        Trajectory::append(path, format)
+        Ok(Trajectory {
+            frames: Frames::create(path)?,
+            format,
+        })
     }
 
     /// Goes on with an existing file.
     pub fn append(path: &Path, format: Format) -> Result<Self, WriteError> {
-        let file = open_to_append(path)?;
-        let length = file
-            .metadata()
-            .map_err(WriteError::at("append to", path))?
-            .len();
         Ok(Trajectory {
-            path: path.to_path_buf(),
-            file,
+            frames: Frames::append(path)?,
             format,
-            length,
         })
     }
 
@@ -70,8 +62,51 @@ impl Trajectory {
     /// # Errors
     /// The operating system's, and those of the format; the file then ends with the frame before.
     pub fn push(&mut self, atoms: &Atoms) -> Result<(), WriteError> {
+        self.frames.push(|w| self.format.write(w, atoms))
+    }
+
+    /// Waits until all frames are on the disk.
+    pub fn finish(self) -> Result<(), WriteError> {
+        self.frames.finish()
+    }
+}
+
+/// A file that grows frame by frame.
+#[derive(Debug)]
+pub(super) struct Frames {
+    path: PathBuf,
+    file: File,
+    /// Length of the file in bytes, whole frames only.
+    length: u64,
+}
+
+impl Frames {
+    /// Starts an empty file; an older one is replaced.
+    pub fn create(path: &Path) -> Result<Self, WriteError> {
+        write_file(path, |_| Ok(()))?;
+        Frames::append(path)
+    }
+
+    fn append(path: &Path) -> Result<Self, WriteError> {
+        let file = open_to_append(path)?;
+        let length = file
+            .metadata()
+            .map_err(WriteError::at("append to", path))?
+            .len();
+        Ok(Frames {
+            path: path.to_path_buf(),
+            file,
+            length,
+        })
+    }
+
+    /// Appends what `write` writes, or nothing.
+    pub fn push(
+        &mut self,
+        write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+    ) -> Result<(), WriteError> {
         let mut w = BufWriter::with_capacity(1 << 18, &self.file);
-        let done = self.format.write(&mut w, atoms).and_then(|()| w.flush());
+        let done = write(&mut w).and_then(|()| w.flush());
         // what is buffered of a failed frame must not follow when the writer is dropped
         drop(w.into_parts());
         if let Err(error) = done {

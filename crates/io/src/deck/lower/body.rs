@@ -53,6 +53,9 @@ pub(super) fn body(
             let points = files.read(context, written)?;
             context.atoms = points.atoms;
             context.micromoduli = points.micromoduli;
+            let notes = points.notes.into_iter();
+            let name = written.file.as_ref().map_or("", |f| &f.value);
+            context.notes.extend(notes.map(|n| format!("{name}: {n}")));
             (Some(points.cloud), points.dimension)
         }
     };
@@ -301,7 +304,7 @@ pub(super) fn sets(
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
         let members = match (&set.value.region, &set.value.mark, &set.value.r#where) {
             (Some(shape), _, _) => Members::Region(region(context, shape)?),
-            (_, Some(mark), _) => Members::Mark(mark_number(context, mark, body)?),
+            (_, Some(mark), _) => marked(context, mark, body)?,
             (_, _, Some(text)) => Members::Where(context.expression(text, Dim::NUMBER)?),
             (None, None, None) => Members::All,
         };
@@ -311,11 +314,14 @@ pub(super) fn sets(
         });
     }
     if let BodySpec::Cloud(cloud) = body {
-        for (mark, name) in &cloud.names {
-            if name != "all" && !written.contains_key(name) {
+        for name in named(cloud) {
+            if name != "all"
+                && !written.contains_key(name)
+                && let Some(members) = of_file(cloud, name)
+            {
                 sets.push(SetSpec {
-                    name: name.clone(),
-                    members: Members::Mark(*mark),
+                    name: name.to_string(),
+                    members,
                 });
             }
         }
@@ -323,32 +329,47 @@ pub(super) fn sets(
     Ok(sets)
 }
 
-fn mark_number(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<i32> {
-    let names: &[(i32, String)] = match body {
-        BodySpec::Cloud(Cloud { names, .. }) => names,
-        _ => return Err(context.error(&mark.span, "a lattice has no marks: say region instead")),
+/// Names of the file's sets and marks.
+fn named(cloud: &Cloud) -> Vec<&str> {
+    let sets = cloud.sets.iter().map(|(name, _)| name.as_str());
+    let mut names: Vec<&str> = sets.collect();
+    for (_, name) in &cloud.names {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// The points that the file gives a name: a set knows all of them, a mark only those that have no other.
+fn of_file(cloud: &Cloud, name: &str) -> Option<Members> {
+    let set = cloud.sets.iter().find(|(known, _)| known == name);
+    let mark = || cloud.names.iter().find(|(_, known)| known == name);
+    set.map(|(_, ids)| Members::Points(ids.clone()))
+        .or_else(|| mark().map(|(mark, _)| Members::Mark(*mark)))
+}
+
+fn marked(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<Members> {
+    let BodySpec::Cloud(cloud) = body else {
+        return Err(context.error(&mark.span, "a lattice has no marks: say region instead"));
     };
     match &mark.value {
-        Mark::Number(number) => Ok(*number),
-        Mark::Name(name) => names
-            .iter()
-            .find(|(_, known)| known == name)
-            .map(|(number, _)| *number)
-            .ok_or_else(|| {
-                let known: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
-                let help = match nearest(name, known.iter().copied()) {
-                    Some(near) => format!("did you mean \"{near}\"?"),
-                    None => format!(
-                        "the file names: {}",
-                        if known.is_empty() {
-                            "none".into()
-                        } else {
-                            known.join(", ")
-                        }
-                    ),
-                };
-                context.error_with(&mark.span, format!("the file has no mark \"{name}\""), help)
-            }),
+        Mark::Number(number) => Ok(Members::Mark(*number)),
+        Mark::Name(name) => of_file(cloud, name).ok_or_else(|| {
+            let known = named(cloud);
+            let help = match nearest(name, known.iter().copied()) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => format!(
+                    "the file names: {}",
+                    if known.is_empty() {
+                        "none".into()
+                    } else {
+                        known.join(", ")
+                    }
+                ),
+            };
+            context.error_with(&mark.span, format!("the file has no mark \"{name}\""), help)
+        }),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::deck::error::{DeckError, nearest};
 use crate::deck::source::Source;
-use crate::deck::units::{self, Dim, UnitSystem};
+use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem};
 use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
 use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
@@ -21,28 +21,29 @@ pub(super) struct Context<'a> {
     pub atoms: Option<AtomsFile>,
     /// Of the body's file.
     pub micromoduli: Option<Arc<AnyLinearBody>>,
-    /// Value in plain numbers of the deck, and dimension if it was written with a unit.
+    /// What was passed over in files.
+    pub notes: Vec<String>,
+    /// What `t` is: a time, in statics a number.
+    time: Dim,
+    /// Dimension if units say it, and the value: as computed with a dimension, else a plain number of the deck.
     constants: BTreeMap<String, (f64, Option<Dim>)>,
-}
-
-/// What a text in a number's place turned out to be.
-enum Meaning {
-    Value(f64),
-    Expression(Expression),
 }
 
 impl<'a> Context<'a> {
     pub fn new(
         source: &'a Source,
         units: UnitSystem,
+        time: Dim,
         constants: &BTreeMap<String, Number>,
     ) -> Result<Self> {
         let mut context = Context {
             source,
             units,
+            time,
             dimension: 3,
             atoms: None,
             micromoduli: None,
+            notes: Vec::new(),
             constants: BTreeMap::new(),
         };
         // constants may use each other in any order; each round settles at least one, or the first error is real
@@ -86,17 +87,14 @@ impl<'a> Context<'a> {
                 ),
             ));
         }
-        if let Written::Text(text) = &number.value
-            && let Some((value, unit)) = units::split(text)
-            && !unit.is_empty()
-        {
-            let unit = self.unit(unit, &number.span)?;
-            return Ok((
-                unit.si(value) * self.units.from_si(unit.dim),
-                Some(unit.dim),
-            ));
+        match &number.value {
+            Written::Plain(value) => Ok((*value, None)),
+            Written::Text(text) => {
+                let (expression, kind) = self.compile(text, &number.span)?;
+                let value = self.constant_value(expression, &number.span)?;
+                Ok((value, kind.of_constant()))
+            }
         }
-        Ok((self.plain(number)?, None))
     }
 
     pub fn error(&self, span: &Range<usize>, message: impl Into<String>) -> DeckError {
@@ -113,52 +111,75 @@ impl<'a> Context<'a> {
             .error(Some(span.clone()), message, Some(help.into()))
     }
 
-    fn unit(&self, unit: &str, span: &Range<usize>) -> Result<units::Unit> {
-        if !self.units.has_units() {
-            let message = format!(
-                "numbers carry no units in the unit system {}: `{unit}`",
-                self.units.name()
-            );
-            return Err(self.error_with(span, message, "write plain numbers, or units = \"si\""));
-        }
-        units::unit(unit).map_err(|message| self.error(span, message))
-    }
-
-    /// A text is a quantity, the name of a constant, or an expression; the value is in plain numbers of the deck.
-    fn meaning(&self, text: &str, span: &Range<usize>, dim: Dim) -> Result<Meaning> {
-        let wrong = |found: Dim| {
-            let help = dim.example().map_or("write it in other units".into(), |e| {
-                format!("write for example \"{e}\"")
+    /// A text as an expression in units of computation: a quantity, the name of a constant, or more.
+    fn meaning(&self, text: &str, span: &Range<usize>, dim: Dim) -> Result<Expression> {
+        let (expression, kind) = self.compile(text, span)?;
+        let factor = self.units.plain_factor(dim);
+        if kind.takes_any() || !kind.unit {
+            return Ok(if factor == 1.0 {
+                expression
+            } else {
+                expression.times(factor)
             });
-            self.error_with(span, format!("expected {dim}, \"{text}\" is {found}"), help)
+        }
+        if kind.can_be(dim) {
+            return Ok(expression);
+        }
+        let found = kind.dim();
+        let mut help = match units::factor_help(found, dim) {
+            Some(help) if expression.as_constant().is_none() => help,
+            _ => dim.example().map_or("write it in other units".into(), |e| {
+                format!("write for example \"{e}\"")
+            }),
         };
-        if let Some((value, unit)) = units::split(text) {
-            if unit.is_empty() {
-                return Ok(Meaning::Value(value));
-            }
-            let unit = self.unit(unit, span)?;
-            if unit.dim != dim {
-                return Err(wrong(unit.dim));
-            }
-            return Ok(Meaning::Value(unit.si(value) * self.units.from_si(dim)));
+        if kind.has_bare_factor() {
+            help += "; a number without unit beside a quantity is a pure number";
         }
-        if let Some((value, found)) = self.constants.get(text.trim()) {
-            return match found {
-                Some(found) if *found != dim => Err(wrong(*found)),
-                _ => Ok(Meaning::Value(*value)),
-            };
-        }
-        self.compile(text, span).map(Meaning::Expression)
+        let message = format!("expected {dim}, \"{text}\" is {found}");
+        Err(self.error_with(span, message, help))
     }
 
-    fn compile(&self, text: &str, span: &Range<usize>) -> Result<Expression> {
+    /// The expression, in units of computation where a unit is written in it, and what it measures.
+    fn compile(&self, text: &str, span: &Range<usize>) -> Result<(Expression, Kind)> {
+        // infinities, too
+        if let Ok(value) = text.trim().parse::<f64>() {
+            return Ok((Expression::constant(value), Kind::bare(value == 0.0)));
+        }
         let constants: Vec<(&str, f64)> = self
             .constants
             .iter()
             .map(|(name, v)| (name.as_str(), v.0))
             .collect();
-        Expression::parse(text, &constants)
-            .map_err(|error| self.expression_error(text, span, error))
+        let kinds: Vec<(&str, Option<Dim>)> = self
+            .constants
+            .iter()
+            .map(|(name, v)| (name.as_str(), v.1))
+            .collect();
+        // a tonne, where nothing else stands
+        if let Some((value, "t")) = units::split(text)
+            && self.units.has_units()
+            && let Ok(unit) = units::unit("t")
+        {
+            let factor = self.units.from_si(unit.dim) * self.units.plain_factor(unit.dim);
+            let value = Expression::constant(unit.si(value) * factor);
+            return Ok((value, Kind::quantity(unit.dim)));
+        }
+        let mut dimensions = Dimensions {
+            units: self.units,
+            time: self.time,
+            constants: &kinds,
+            strict: false,
+        };
+        let read = |dimensions: &Dimensions| {
+            Expression::measured(text, &constants, dimensions)
+                .map_err(|error| self.expression_error(text, span, error))
+        };
+        let (expression, kind) = read(&dimensions)?;
+        if !kind.unit {
+            return Ok((expression, kind));
+        }
+        dimensions.strict = true;
+        read(&dimensions)
     }
 
     /// Carries the place inside an expression over to the deck, if the text stands there as it is.
@@ -179,16 +200,6 @@ impl<'a> Context<'a> {
         self.source.error(Some(inner), error.message, error.help)
     }
 
-    fn plain(&self, number: &Number) -> Result<f64> {
-        match &number.value {
-            Written::Plain(value) => Ok(*value),
-            Written::Text(text) => match units::split(text) {
-                Some((value, "")) => Ok(value),
-                _ => self.constant_value(self.compile(text, &number.span)?, &number.span),
-            },
-        }
-    }
-
     fn constant_value(&self, expression: Expression, span: &Range<usize>) -> Result<f64> {
         expression.as_constant().ok_or_else(|| {
             self.error_with(
@@ -202,16 +213,16 @@ impl<'a> Context<'a> {
     /// A number of this dimension, as it is computed with; NaN is refused.
     pub fn number(&self, number: &Number, dim: Dim) -> Result<f64> {
         let value = match &number.value {
-            Written::Plain(value) => *value,
-            Written::Text(text) => match self.meaning(text, &number.span, dim)? {
-                Meaning::Value(value) => value,
-                Meaning::Expression(expression) => self.constant_value(expression, &number.span)?,
-            },
+            Written::Plain(value) => *value * self.units.plain_factor(dim),
+            Written::Text(text) => {
+                let expression = self.meaning(text, &number.span, dim)?;
+                self.constant_value(expression, &number.span)?
+            }
         };
         if value.is_nan() {
             return Err(self.error(&number.span, "this is not a number (NaN)"));
         }
-        Ok(value * self.units.plain_factor(dim))
+        Ok(value)
     }
 
     pub fn finite(&self, number: &Number, dim: Dim) -> Result<f64> {
@@ -241,15 +252,10 @@ impl<'a> Context<'a> {
 
     /// An expression of x, y, z, t of this dimension.
     pub fn expression(&self, number: &Number, dim: Dim) -> Result<Expression> {
-        let factor = self.units.plain_factor(dim);
         let Written::Text(text) = &number.value else {
             return Ok(Expression::constant(self.finite(number, dim)?));
         };
-        match self.meaning(text, &number.span, dim)? {
-            Meaning::Value(value) => Ok(Expression::constant(value * factor)),
-            Meaning::Expression(expression) if factor == 1.0 => Ok(expression),
-            Meaning::Expression(_) => self.compile(&format!("({text})*{factor:e}"), &number.span),
-        }
+        self.meaning(text, &number.span, dim)
     }
 
     fn list<'v>(&self, numbers: &'v [Number], span: &Range<usize>) -> Result<&'v [Number]> {

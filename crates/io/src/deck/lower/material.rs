@@ -127,6 +127,7 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
     let only = sets.iter().find(|s| s.name == set).map(|s| &s.members);
     let points = (0..cloud.density.len()).filter(|i| match only {
         Some(Members::Mark(mark)) => cloud.mark.get(*i) == Some(mark),
+        Some(Members::Points(ids)) => ids.binary_search(&(*i as u32)).is_ok(),
         _ => true,
     });
     let (sum, count) = points.fold((0.0, 0), |(s, n), i| (s + cloud.density[i], n + 1));

@@ -6,9 +6,10 @@ mod context;
 mod material;
 mod motion;
 mod schedule;
+mod warnings;
 
 pub(super) use atoms::boltzmann;
-pub(super) use schedule::steps;
+pub(super) use schedule::{MANY_STEPS, steps};
 
 use super::OutputSpec;
 use super::document::{
@@ -43,6 +44,7 @@ impl Files<'_> {
                 dimension: None,
                 atoms: None,
                 micromoduli: None,
+                notes: Vec::new(),
             });
         };
         let path = self.folder.join(&file.value);
@@ -74,6 +76,9 @@ pub(super) struct Lowered {
     pub threads: Option<usize>,
     pub duration: Option<f64>,
     pub modes: usize,
+    pub warnings: Vec<String>,
+    pub notes: Vec<String>,
+    pub condition_entries: Vec<usize>,
 }
 
 pub(super) fn lower(
@@ -82,7 +87,11 @@ pub(super) fn lower(
     files: &Files,
 ) -> std::result::Result<Lowered, DeckError> {
     let units = units(document);
-    let mut context = Context::new(source, units, &document.constants)?;
+    let time = match document.statics {
+        Some(_) => Dim::NUMBER,
+        None => Dim::TIME,
+    };
+    let mut context = Context::new(source, units, time, &document.constants)?;
     measured_constants(&context, document)?;
     let mut body = body::body(
         &mut context,
@@ -121,9 +130,10 @@ pub(super) fn lower(
     for (index, at) in document.initial.iter().enumerate() {
         initial.push(motion::initial(&context, index, at, &mut sets)?);
     }
-    let mut conditions = Vec::new();
+    let (mut conditions, mut condition_entries) = (Vec::new(), Vec::new());
     for (index, at) in document.condition.iter().enumerate() {
         conditions.extend(motion::condition(&context, index, at, &mut sets)?);
+        condition_entries.resize(conditions.len(), index);
     }
     let section = section(&context, document)?;
     if let (2, BodySpec::Cloud(cloud), Some(file)) =
@@ -224,6 +234,9 @@ pub(super) fn lower(
         threads: run.threads,
         duration: run.duration,
         modes: run.modes,
+        warnings: warnings::warnings(&context, document),
+        notes: context.notes,
+        condition_entries,
     })
 }
 

@@ -9,6 +9,10 @@ use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
 use crate::write::trajectory::Format;
 use peridyne::spec::{Method, Schedule, Solver, TimeStep};
+use std::path::PathBuf;
+
+/// A run of more steps is likely a slip of units.
+pub(in crate::deck) const MANY_STEPS: u64 = 20_000_000;
 
 pub(super) struct RunSpec {
     pub schedule: Schedule,
@@ -193,7 +197,8 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         FieldName::Mark,
         FieldName::Id,
     ];
-    let trajectory = match &written.trajectory {
+    let mut trajectories: Vec<(PathBuf, Format)> = Vec::new();
+    trajectories.extend(match &written.trajectory {
         None => None,
         Some(name) if !atoms => {
             return Err(context.error_with(
@@ -215,7 +220,18 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
                 "name it trajectory.extxyz or trajectory.lammpstrj",
             ));
         }
-    };
+    });
+    if let Some(name) = written.dump.as_ref().filter(|_| atoms) {
+        let path = PathBuf::from(&name.value);
+        if trajectories.iter().any(|(other, _)| *other == path) {
+            return Err(context.error_with(
+                &name.span,
+                "the dump and the trajectory are one file",
+                "drop one of them, or give them different names",
+            ));
+        }
+        trajectories.push((path, Format::Dump));
+    }
     let data = match &written.data {
         Some(name) if !atoms => {
             return Err(context.error_with(
@@ -233,10 +249,14 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         vtu: written.vtu.unwrap_or(true),
         bonds: written.bonds,
         linear_body: written.linear_body,
-        dump: written.dump.clone().map(Into::into),
+        dump: written
+            .dump
+            .as_ref()
+            .filter(|_| !atoms)
+            .map(|n| n.value.clone().into()),
         history: positive(&written.history, "history")?,
         picture: written.picture.unwrap_or(!atoms),
-        trajectory,
+        trajectories,
         data,
     })
 }

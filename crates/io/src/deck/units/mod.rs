@@ -1,11 +1,12 @@
 //! Units: what `"14.9 GPa"` is in a unit system.
 
+mod measure;
 mod parse;
 mod table;
 mod write;
 
+pub use measure::{Dimensions, Kind, factor_help};
 pub use parse::{split, unit};
-pub use table::Unit;
 pub(in crate::deck) use write::short;
 
 use schemars::JsonSchema;
@@ -45,6 +46,7 @@ impl Dim {
         (Dim::TIME, "a time", "20 us"),
         (Dim::VELOCITY, "a velocity", "100 m/s"),
         (Dim([1, 0, -2]), "an acceleration", "9.81 m/s^2"),
+        (Dim([-1, 0, 0]), "an inverse length", "1.4/mm"),
         (Dim([0, 0, -1]), "a frequency", "1 kHz"),
         (Dim::DENSITY, "a density", "2200 kg/m^3"),
         (Dim::FORCE, "a force", "10 N"),
@@ -75,6 +77,11 @@ impl Dim {
         ),
     ];
 
+    /// How usual it is: its place among those with names.
+    fn place(self) -> Option<usize> {
+        Dim::NAMES.iter().position(|n| n.0 == self)
+    }
+
     pub fn example(self) -> Option<&'static str> {
         Dim::NAMES.iter().find(|n| n.0 == self).map(|n| n.2)
     }
@@ -92,11 +99,31 @@ impl fmt::Display for Dim {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match Dim::NAMES.iter().find(|n| n.0 == *self) {
             Some((_, name, _)) => f.write_str(name),
-            None => write!(
-                f,
-                "a quantity in m^{} kg^{} s^{}",
-                self.0[0], self.0[1], self.0[2]
-            ),
+            None => {
+                let near = [
+                    (Dim::TIME, 1),
+                    (Dim::TIME, -1),
+                    (Dim::LENGTH, 1),
+                    (Dim::LENGTH, -1),
+                ];
+                // a pressure times a time, a mass per length
+                let named = near.into_iter().find_map(|(part, power)| {
+                    let rest = self.plus(part, -power)?;
+                    let name = Dim::NAMES
+                        .iter()
+                        .find(|n| n.0 == rest && rest != Dim::NUMBER)?
+                        .1;
+                    Some((name, if power > 0 { "times" } else { "over" }, part))
+                });
+                match named {
+                    Some((name, how, part)) => write!(f, "{name} {how} {part}"),
+                    None => write!(
+                        f,
+                        "a quantity in m^{} kg^{} s^{}",
+                        self.0[0], self.0[1], self.0[2]
+                    ),
+                }
+            }
         }
     }
 }

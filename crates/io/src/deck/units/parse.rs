@@ -2,6 +2,8 @@
 
 use super::Dim;
 use super::table::{Unit, named, unknown};
+use peridyne::expression::Misfit;
+use std::ops::Range;
 
 /// A unit such as `kg/m^3`, `N/m²`, `J/m^2/s`, `eV/Å^3`, `kg/m3`; each `/` divides by what follows it only.
 pub fn unit(text: &str) -> Result<Unit, String> {
@@ -56,6 +58,103 @@ pub fn unit(text: &str) -> Result<Unit, String> {
             Some(after) => (-1, after.trim_start()),
             None => (1, rest.strip_prefix('*').unwrap_or(rest).trim_start()),
         };
+    }
+}
+
+/// The unit that stands behind a number in an expression, and its length in bytes: `" MPa * t"` begins with MPa. `taken` are
+/// names of variables and constants, which are no units here, and a name with a bracket is a function.
+///
+/// # Errors
+/// Where the name stands that is no unit, or that is a unit and something else.
+pub fn prefix(
+    text: &str,
+    taken: &dyn Fn(&str) -> bool,
+) -> Result<Option<(usize, Unit)>, (Range<usize>, Misfit)> {
+    let skip = |at: usize| at + text[at..].len() - text[at..].trim_start().len();
+    // the name at a place as a unit has it (m of m2), and as an expression has it
+    let names = |at: usize| {
+        let end =
+            |wanted: fn(char) -> bool| text[at..].find(|c| !wanted(c)).unwrap_or(text.len() - at);
+        let unit = &text[at..at + end(|c| c.is_alphabetic() || c == '%')];
+        let whole = &text[at..at + end(|c| c.is_alphanumeric() || c == '_' || c == '%')];
+        let called = text[at + whole.len()..].trim_start().starts_with('(');
+        (unit, whole, called)
+    };
+    let usable = |at: usize| {
+        let (unit, whole, called) = names(at);
+        !called && !taken(whole) && named(unit).is_some()
+    };
+    let mut at = skip(0);
+    let start = at;
+    if text[at..].starts_with('/') {
+        // 50/s
+        if !usable(skip(at + 1)) {
+            return Ok(None);
+        }
+    } else {
+        let (unit, whole, called) = names(at);
+        if unit.is_empty() || called {
+            return Ok(None);
+        }
+        if taken(whole) {
+            if named(unit).is_none() {
+                return Ok(None);
+            }
+            let help = format!("write `* {whole}` for the one, and another unit for the other");
+            let message = format!("`{whole}` is a unit, and a name of this deck's expressions");
+            let misfit = Misfit {
+                message,
+                help: Some(help),
+            };
+            return Err((at..at + whole.len(), misfit));
+        }
+        if named(unit).is_none() {
+            let help = Some(
+                "quantities are numbers with a unit, `5 mm`; multiplication is written with `*`"
+                    .into(),
+            );
+            let message = unknown(unit);
+            return Err((at..at + unit.len(), Misfit { message, help }));
+        }
+    }
+    loop {
+        // an operator, if any, and a name that can be used
+        if let Some(operator) = text[at..].chars().next().filter(|c| "/*·".contains(*c)) {
+            at = skip(at + operator.len_utf8());
+        }
+        at += names(at).0.len();
+        let explicit = skip(at);
+        if text[explicit..].starts_with('^') {
+            at = skip(explicit + 1);
+            at += usize::from(text[at..].starts_with('-'));
+        }
+        at += text[at..]
+            .find(|c: char| !(c.is_ascii_digit() || c == '²' || c == '³'))
+            .unwrap_or(text.len() - at);
+        let next = skip(at);
+        let after = match text[next..].chars().next() {
+            Some(operator) if "/*·".contains(operator) => skip(next + operator.len_utf8()),
+            _ => next,
+        };
+        if !usable(after) {
+            break;
+        }
+        at = next;
+    }
+    let written = match text[start..at].strip_prefix('/') {
+        Some(below) => unit(below).map(|u| u.power(-1)),
+        None => unit(&text[start..at]).map(Some),
+    };
+    match written {
+        Ok(Some(unit)) => Ok(Some((at, unit))),
+        Ok(None) => Ok(None),
+        Err(message) => Err((
+            start..at,
+            Misfit {
+                message,
+                help: None,
+            },
+        )),
     }
 }
 

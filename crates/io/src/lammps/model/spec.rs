@@ -184,6 +184,7 @@ fn cloud(setup: &Setup, marked: bool) -> Result<BodySpec, HostError> {
             vec![]
         },
         names: vec![],
+        sets: vec![],
         spacing: Some(setup.lattice_constant),
     }))
 }

@@ -1,0 +1,115 @@
+//! Slips of form that are common, said in words before the deck is read key by key.
+
+use super::error::DeckError;
+use super::source::Source;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Tables that a deck has several of.
+const SEVERAL: [&str; 5] = [
+    "condition",
+    "initial",
+    "precrack",
+    "indenter",
+    "bond_factor",
+];
+
+/// Tables that it has one of.
+const ONE: [&str; 6] = ["run", "statics", "output", "thermal", "constants", "sets"];
+
+/// Laws by their keys that must be given, as one would write them.
+const LAWS: [(&str, &str); 10] = [
+    ("pmb", "{ young = \"72 GPa\" }"),
+    ("lps", "{ young = \"72 GPa\", poisson = 0.22 }"),
+    (
+        "lps_as_typed",
+        "{ bulk = \"14.9 GPa\", shear = \"8.9 GPa\" }",
+    ),
+    ("eam_like", "{ pair = \"1 GPa\", volume = \"1 GPa\" }"),
+    ("springs", "{ young = \"72 GPa\" }"),
+    ("lennard_jones", "{ epsilon = 1, sigma = 1, cutoff = 2.5 }"),
+    (
+        "morse",
+        "{ depth = \"0.34 eV\", alpha = \"1.36/Å\", distance = \"2.87 Å\", cutoff = \"8 Å\" }",
+    ),
+    (
+        "buckingham",
+        "{ strength = \"1000 eV\", range = \"0.3 Å\", dispersion = \"10 eV*Å^6\", cutoff = \"8 Å\" }",
+    ),
+    ("eam", "{ file = \"Cu.eam.alloy\" }"),
+    ("eam_form", "{ cohesive = 1, pair = 1, … }"),
+];
+
+pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
+    let error = |at: &Spanned<DeValue>, message: String, help: String| {
+        Err(source.error(Some(at.span()), message, Some(help)))
+    };
+    for key in SEVERAL {
+        if let Some(at) = deck.get(key)
+            && at.get_ref().is_table()
+        {
+            let message = format!("a deck can have several of `{key}`: this is a list of tables");
+            return error(
+                at,
+                message,
+                format!("write [[{key}]], or {key} = [{{ … }}]"),
+            );
+        }
+    }
+    for key in ONE {
+        if let Some(at) = deck.get(key)
+            && tables(at)
+        {
+            let message = format!("a deck has one `{key}`, this is a list of tables");
+            return error(at, message, format!("write [{key}]"));
+        }
+    }
+    let Some(at) = deck.get("material") else {
+        return Ok(());
+    };
+    if tables(at) {
+        let message = "several materials have names".to_string();
+        return error(
+            at,
+            message,
+            "write [material.glass] and [material.steel], or one [material]".into(),
+        );
+    }
+    let Some(material) = at.get_ref().as_table() else {
+        return Ok(());
+    };
+    let inner = material.values().filter_map(|m| m.get_ref().as_table());
+    for table in std::iter::once(material).chain(inner) {
+        let Some(law) = table.get("law") else {
+            continue;
+        };
+        let known = |name: &str| LAWS.iter().find(|(law, _)| *law == name);
+        if let DeValue::String(name) = law.get_ref()
+            && let Some((name, keys)) = known(name)
+        {
+            let message = format!("the law \"{name}\" needs its constants");
+            return error(law, message, format!("write law = {{ {name} = {keys} }}"));
+        }
+        if let DeValue::Table(one) = law.get_ref() {
+            for (name, constants) in one {
+                if let Some((name, keys)) = known(name.get_ref())
+                    && !constants.get_ref().is_table()
+                {
+                    let message = format!("the constants of the law \"{name}\" are a table");
+                    return error(
+                        constants,
+                        message,
+                        format!("write law = {{ {name} = {keys} }}"),
+                    );
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// `[[key]]`, or a list of inline tables.
+fn tables(at: &Spanned<DeValue>) -> bool {
+    let list = at.get_ref().as_array();
+    list.is_some_and(|items| items.iter().any(|i| i.get_ref().is_table()))
+}
