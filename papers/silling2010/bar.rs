@@ -122,7 +122,7 @@ pub fn levels(fine: LinearBody<1>, every: [u32; 2], way: Way) -> Result<[Level; 
     };
     let radii = match way {
         Way::Energy => ENERGY_RADII,
-        _ => RADII,
+        Way::Published | Way::Exact => RADII,
     };
     let one = next(&zero, every[0], radii[0], way)?;
     let two = next(&one, every[1], radii[1], way)?;

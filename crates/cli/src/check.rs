@@ -94,7 +94,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 units: match setup.units {
                     Units::Si => UnitSystem::Si,
                     Units::Lj => UnitSystem::Lj,
-                    _ => UnitSystem::None,
+                    Units::Metal | Units::Cgs | Units::Micro | Units::Nano => UnitSystem::None,
                 },
                 script: true,
                 sim: prepared.simulation,

@@ -65,4 +65,12 @@ impl Progress for Terminal {
     fn row(&mut self, _step: u64, _time: f64, _ledger: &Ledger, broken: u64) {
         self.broken = broken;
     }
+
+    fn warning(&mut self, message: &str) {
+        let line = format!("warning: {message}");
+        match &self.bar {
+            Some(bar) => bar.println(line),
+            None => eprintln!("{line}"),
+        }
+    }
 }

@@ -36,8 +36,8 @@ pub enum RunError {
         position: [f64; 3],
     },
     #[error(
-        "step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) would move {path:.3e} in one step, more than the spacing {spacing:.3e}: the run is unstable or the step too long",
-        position[0], position[1], position[2]
+        "step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) would move {path:.3e} in one step, more than the spacing {spacing:.3e}: {}",
+        position[0], position[1], position[2], blame(*contact, "the run is unstable or the step too long")
     )]
     TooFast {
         step: u64,
@@ -45,6 +45,8 @@ pub enum RunError {
         position: [f64; 3],
         path: f64,
         spacing: f64,
+        /// The stability limit of contact, if contact is what drives the point.
+        contact: Option<f64>,
     },
     #[error(
         "step {step}: the electron density at atom {id} at ({:.6e}, {:.6e}, {:.6e}) is {density:.4e}: the embedding energy has no meaning there (its logarithm needs a positive density); atoms are too close or too far from each other for this potential, or its length scales do not fit the lattice",
@@ -66,12 +68,30 @@ pub enum RunError {
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
     #[error(
-        "step {step}: total energy grew from {before:.6e} to {after:.6e} without work: the step {time_step:.3e} is unstable"
+        "step {step}: total energy grew from {before:.6e} to {after:.6e} without work: {}", blame(*contact, &format!("the step {time_step:.3e} is unstable"))
     )]
     Unstable {
         step: u64,
         before: f64,
         after: f64,
         time_step: f64,
+        /// The stability limit of contact, if contact holds the energy.
+        contact: Option<f64>,
     },
+}
+
+/// What a run dies of: `otherwise`, or contact, whose limit of the step is known.
+fn blame(contact: Option<f64>, otherwise: &str) -> String {
+    match contact {
+        None => otherwise.to_string(),
+        Some(limit) => {
+            let limit = match limit.is_finite() {
+                true => format!(" (contact is stable below about {limit:.3e})"),
+                false => String::new(),
+            };
+            format!(
+                "contact is the cause, points repel with more energy than their bonds hold: take a shorter step{limit}, a lower contact stiffness, or slower points"
+            )
+        }
+    }
 }

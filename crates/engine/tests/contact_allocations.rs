@@ -44,7 +44,7 @@ fn steps_and_rebuilds_allocate_nothing() {
             }
         }
     };
-    let mut contact = Contact::new(rule, &body, 2.0);
+    let mut contact = Contact::new(rule, &body, 2.0, &[]);
     let mut f = zeros::<3>(body.len);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)

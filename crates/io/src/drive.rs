@@ -8,6 +8,7 @@ use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne::statics::{AnyLinearBody, SolveError};
 
+use crate::balance::BalanceWatch;
 use crate::read::{Atoms, Species};
 use crate::write::data::write_data;
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
@@ -155,6 +156,8 @@ pub trait Progress {
     fn step(&mut self, done: u64, total: u64, stepping: Duration);
     /// A row of the history.
     fn row(&mut self, step: u64, time: f64, ledger: &Ledger, broken: u64);
+    /// Something that the user should know now.
+    fn warning(&mut self, message: &str);
 }
 
 /// Why a run did not end well.
@@ -204,6 +207,8 @@ pub fn drive(
     let mut stopped = None;
     let mut ledger = Ledger::default();
     let mut framed = None;
+    let mut balance = BalanceWatch::default();
+    let mut warnings = sim.info().warnings.clone();
     for n in 0..=plan.steps {
         if n > 0 {
             let begin = Instant::now();
@@ -236,6 +241,10 @@ pub fn drive(
             }
             history.push(sim.step_number(), &row)?;
             progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());
+            if let Some(jump) = balance.row(sim.step_number(), &ledger) {
+                progress.warning(&jump);
+                warnings.push(jump);
+            }
         }
         if let Some(atoms) = plan.atoms.as_ref().filter(|_| !trajectories.is_empty())
             && (n == 0 || last || plan.every.is_some_and(|e| n % e == 0))
@@ -309,7 +318,7 @@ pub fn drive(
         threads: plan.threads,
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),
-        warnings: info.warnings.clone(),
+        warnings,
     };
     report.write(&plan.dir.join("run.json"))?;
     match stopped {

@@ -46,6 +46,11 @@ pub fn write(found: &Findings) -> String {
         "steps": found.steps,
         "time_step": info.time_step,
         "stable_step": info.stable_step,
+        "contact_step": info.contact_step.is_finite().then_some(info.contact_step),
+        "bodies": info.bodies.iter().map(|(name, points)| json!({"name": name, "points": points})).collect::<Vec<_>>(),
+        "gaps": info.gaps.iter().map(|g| json!({
+            "bodies": g.bodies.map(|b| info.bodies[b].0.as_str()), "distance": g.distance, "contact": g.contact,
+        })).collect::<Vec<_>>(),
         "memory_bytes": info.bytes,
         "threads": found.threads,
         "simd": info.simd,

@@ -95,6 +95,27 @@ fn points(found: &Findings) -> String {
         "family size",
         format!("{least} to {most}, mean {mean:.2}"),
     );
+    for (n, (name, points)) in info.bodies.iter().enumerate() {
+        let gaps = info.gaps.iter().filter_map(|g| {
+            let other = match g.bodies {
+                [a, b] if a == n => b,
+                [a, b] if b == n => a,
+                _ => return None,
+            };
+            let distance = units.write(g.distance, Dim::LENGTH);
+            Some(format!("{distance} from {}", info.bodies[other].0))
+        });
+        let gaps: Vec<String> = gaps.collect();
+        let near = match gaps.is_empty() {
+            true => "no other within the horizon or the range of contact".to_string(),
+            false => gaps.join(", "),
+        };
+        row(
+            &mut out,
+            "body",
+            format!("{name}: {} points, {near}", whole(*points)),
+        );
+    }
     let near = match info.near_horizon {
         0 => "none".to_string(),
         n => format!("{} bonds within round-off of it", whole(n)),
@@ -341,10 +362,15 @@ fn waves(found: &Findings) -> String {
         &mut out,
         "time step",
         format!(
-            "{}, {:.1} % of the stability limit {}",
+            "{}, {:.1} % of the stability limit {}{}",
             units.write(info.time_step, Dim::TIME),
             100.0 * info.time_step / info.stable_step,
-            units.write(info.stable_step, Dim::TIME)
+            units.write(info.stable_step, Dim::TIME),
+            if info.contact_step <= info.stable_step && info.contact_step.is_finite() {
+                ", which contact sets"
+            } else {
+                ""
+            }
         ),
     );
     row(

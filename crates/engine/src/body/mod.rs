@@ -6,10 +6,12 @@
 pub mod build;
 pub mod field;
 pub mod grid;
+pub mod several;
 pub mod values;
 
 pub use field::{Column, Field, zeros};
 pub use grid::Grid;
+pub use several::Piece;
 pub use values::Values;
 
 use crate::space::Point;
@@ -22,6 +24,8 @@ pub enum Layout<const D: usize> {
     Grid(Grid<D>),
     /// Reference coordinates per slot.
     Cloud([Vec<f64>; D]),
+    /// Bodies side by side, each with slots of its own.
+    Several(Vec<Piece<D>>),
 }
 
 /// Reference configuration of a body in D dimensions.
@@ -59,6 +63,10 @@ impl<const D: usize> Body<D> {
         match &self.layout {
             Layout::Grid(g) => g.position(slot),
             Layout::Cloud(x) => std::array::from_fn(|a| if a < D { x[a][slot] } else { 0.0 }),
+            Layout::Several(pieces) => {
+                let p = &pieces[several::piece_of(pieces, slot)];
+                p.body.position(slot - p.first)
+            }
         }
     }
 
@@ -70,6 +78,11 @@ impl<const D: usize> Body<D> {
             Layout::Cloud(x) => {
                 for (out, &slot) in out.iter_mut().zip(slots) {
                     *out = if a < D { x[a][slot as usize] } else { 0.0 };
+                }
+            }
+            Layout::Several(_) => {
+                for (out, &slot) in out.iter_mut().zip(slots) {
+                    *out = self.position(slot as usize)[a];
                 }
             }
         }
@@ -117,6 +130,7 @@ impl<const D: usize> Body<D> {
         let layout = match &self.layout {
             Layout::Grid(g) => g.present.len(),
             Layout::Cloud(x) => x.iter().map(|c| c.len() * 8).sum(),
+            Layout::Several(pieces) => pieces.iter().map(|p| p.body.bytes()).sum(),
         };
         layout
             + self.slots.len() * 4

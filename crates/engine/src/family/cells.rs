@@ -1,7 +1,7 @@
 //! A cell list over reference positions: who may be within reach of whom.
 
 /// Points sorted into cells of at least half the search radius, x fastest.
-pub(super) struct Cells<'a, const D: usize> {
+pub(crate) struct Cells<'a, const D: usize> {
     position: [&'a [f64]; D],
     period: [f64; D],
     inv_period: [f64; D],

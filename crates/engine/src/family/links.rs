@@ -147,7 +147,7 @@ impl<const D: usize> Links<D> {
     pub fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
         match &body.layout {
             Layout::Grid(grid) => self.family(grid, slot),
-            Layout::Cloud(_) => 0,
+            Layout::Cloud(_) | Layout::Several(_) => 0,
         }
     }
 

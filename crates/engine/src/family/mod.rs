@@ -1,6 +1,6 @@
 //! Families: which points talk to which. Each kind enumerates its bonds in one place.
 
-mod cells;
+pub(crate) mod cells;
 pub mod horizon;
 pub mod links;
 pub mod neighbours;

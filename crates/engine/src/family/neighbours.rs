@@ -10,14 +10,21 @@ pub mod near;
 use crate::body::{Body, Field};
 use cells::Cells;
 
+/// A point that holds together with no other.
+pub const LOOSE: u16 = u16::MAX;
+
 /// The half list of near pairs: every point i with its neighbours j > i, both in order of slot.
 #[derive(Debug, Clone)]
 pub struct Neighbours<const D: usize> {
     reach: f64,
     apart: f64,
+    /// `[slots]`: which points hold together, where not all do ([`LOOSE`]: a point does with none).
+    group: Vec<u16>,
     cells: Cells<D>,
     /// A ball around the displacements of each cell: centre and radius.
     balls: Vec<([f32; D], f32)>,
+    /// The group of all points in each cell, or [`LOOSE`].
+    cell_group: Vec<u16>,
     skin: f64,
     /// Bound on the path of any point since the build (length); not a number or infinite: build.
     path: f64,
@@ -38,6 +45,8 @@ impl<const D: usize> Neighbours<D> {
         Neighbours {
             reach,
             apart: 0.0,
+            group: vec![],
+            cell_group: vec![],
             cells: Cells::new(body, reach),
             balls: vec![],
             skin,
@@ -53,6 +62,12 @@ impl<const D: usize> Neighbours<D> {
     /// each other in the reference matter, this passes over whole cells of a body that holds together.
     pub fn apart(mut self, apart: f64) -> Self {
         self.apart = apart;
+        self
+    }
+
+    /// `[slots]`: only pairs of the same group may be left out by [`Neighbours::apart`].
+    pub fn groups(mut self, group: Vec<u16>) -> Self {
+        self.group = group;
         self
     }
 
@@ -95,6 +110,23 @@ impl<const D: usize> Neighbours<D> {
                 .map(|d| d * d)
                 .sum::<f64>()
         };
+        let group = &self.group;
+        let together = |i: u32, j: u32| {
+            group.is_empty()
+                || (group[i as usize] != LOOSE && group[i as usize] == group[j as usize])
+        };
+        self.cell_group.clear();
+        if !group.is_empty() {
+            self.cell_group.extend((0..cells.len()).map(|c| {
+                let mut slots = cells.slots(c).iter();
+                let first = slots.next().map_or(LOOSE, |s| group[*s as usize]);
+                match slots.all(|s| group[*s as usize] == first) {
+                    true => first,
+                    false => LOOSE,
+                }
+            }));
+        }
+        let cell_group = &self.cell_group;
         self.balls.clear();
         if apart > 0.0 {
             self.balls.extend((0..cells.len()).map(|c| {
@@ -114,7 +146,9 @@ impl<const D: usize> Neighbours<D> {
         }
         let balls = &self.balls;
         let alike = |a: usize, b: usize| {
-            apart > 0.0 && {
+            let mixed = !cell_group.is_empty()
+                && (cell_group[a] == LOOSE || cell_group[a] != cell_group[b]);
+            apart > 0.0 && !mixed && {
                 let ((p, pr), (q, qr)) = (&balls[a], &balls[b]);
                 let room = apart - *pr as f64 - *qr as f64;
                 let square: f64 = (0..D).map(|a| (q[a] as f64 - p[a] as f64).powi(2)).sum();
@@ -124,7 +158,7 @@ impl<const D: usize> Neighbours<D> {
         let found = &mut self.found;
         found.clear();
         cells.each_near(alike, |i, j| {
-            if difference(i, j) < apart * apart {
+            if apart > 0.0 && together(i, j) && difference(i, j) < apart * apart {
                 return;
             }
             let (i, j) = (i.min(j), i.max(j));

@@ -17,9 +17,20 @@ pub struct Fragments {
 impl Fragments {
     /// Connected components over the whole bonds of `interaction`. A point without whole bonds is a fragment of one.
     pub fn of<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> Fragments {
+        Self::by(body, interaction, |_, _, _, state| {
+            state == BondState::Whole
+        })
+    }
+
+    /// Connected components over the bonds (slots, ξ, state) for which `joins` holds.
+    pub fn by<const D: usize>(
+        body: &Body<D>,
+        interaction: &dyn Interaction<D>,
+        joins: impl Fn(usize, usize, &[f64; D], BondState) -> bool,
+    ) -> Fragments {
         let mut sets = Sets::new(body.len);
-        interaction.each_bond(body, &mut |i, j, _, state| {
-            if state == BondState::Whole {
+        interaction.each_bond(body, &mut |i, j, xi, state| {
+            if joins(i, j, &xi, state) {
                 sets.join(i as u32, j as u32);
             }
         });

@@ -5,7 +5,7 @@
 
 use super::Repulsion;
 use crate::body::{Body, Field};
-use crate::family::neighbours::{Neighbours, periods};
+use crate::family::neighbours::{LOOSE, Neighbours, periods};
 
 /// A listed pair, in the order of the list.
 #[derive(Debug, Clone, Copy)]
@@ -50,6 +50,8 @@ impl<const D: usize> Touch<D> {
 pub struct Contact<const D: usize> {
     repulsion: Repulsion,
     neighbours: Neighbours<D>,
+    /// `[slots]`: which row of the tables of `repulsion` a point has; empty: that of its material.
+    kind: Vec<u16>,
     pairs: Vec<Pair<D>>,
 }
 
@@ -59,7 +61,8 @@ impl<const D: usize> Contact<D> {
     /// `horizon` (length) is a promise that `in_family` holds for all pairs closer than that in the reference, broken
     /// or not; it lets the search pass over what has hardly deformed. 0 promises nothing, for families that forget
     /// bonds that a crack made absent.
-    pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64) -> Self {
+    /// Where there are several bodies, it holds within each of them that is `bonded`; empty: in all.
+    pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64, bonded: &[bool]) -> Self {
         // two points out of a body that holds together come that close only if their displacements differ by the rest
         // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed
         let range = repulsion.range.highest();
@@ -68,9 +71,18 @@ impl<const D: usize> Contact<D> {
         let apart = (horizon * (1.0 - 1e-6) - range - skin).max(0.0);
         Contact {
             repulsion,
-            neighbours: Neighbours::new(body, range, skin).apart(apart),
+            neighbours: Neighbours::new(body, range, skin)
+                .apart(apart)
+                .groups(groups(body, bonded)),
+            kind: vec![],
             pairs: vec![],
         }
+    }
+
+    /// `[slots]`: the row of the tables of repulsion that a point has, instead of that of its material.
+    pub fn kinds(mut self, kind: Vec<u16>) -> Self {
+        self.kind = kind;
+        self
     }
 
     /// No point has gone further than `path` (length) since the last call.
@@ -124,7 +136,10 @@ impl<const D: usize> Contact<D> {
                 let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
                 let (then, now) = (periods(body, &xi), periods(body, &now));
                 let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
-                let materials = [i, j].map(|s| body.material_of(s));
+                let materials = [i, j].map(|s| match self.kind.get(s) {
+                    Some(kind) => *kind as usize,
+                    None => body.material_of(s),
+                });
                 self.pairs.push(Pair {
                     base: std::array::from_fn(|a| xi[a] - now[a]),
                     distance: self.repulsion.distance(square.sqrt(), materials),
@@ -192,6 +207,19 @@ impl<const D: usize> Contact<D> {
             }
         }
     }
+}
+
+/// Which points hold together, where not all do.
+fn groups<const D: usize>(body: &Body<D>, bonded: &[bool]) -> Vec<u16> {
+    let pieces = body.pieces();
+    let mut group = vec![LOOSE; if pieces.is_empty() { 0 } else { body.len }];
+    for (n, p) in pieces.iter().enumerate() {
+        // two bodies of one number would be taken for one: those beyond are searched in full
+        if bonded.get(n) != Some(&false) && n < LOOSE as usize {
+            group[p.range()].fill(n as u16);
+        }
+    }
+    group
 }
 
 #[cfg(test)]

@@ -61,7 +61,7 @@ fn check<const D: usize>(
     horizon: f64,
     configurations: &[Field<D>],
 ) -> u64 {
-    let mut contact = Contact::new(rule(), body, horizon);
+    let mut contact = Contact::new(rule(), body, horizon, &[]);
     let mut most = 0;
     for (n, u) in configurations.iter().enumerate() {
         contact.moved(longest(&configurations[n.saturating_sub(1)], u));
@@ -202,8 +202,8 @@ fn a_cloud_with_volumes_of_its_own() {
     // the same without the promise
     let steps = approach(&body, 8.0, |x| x[2] < 4.5);
     let (mut f, mut g) = (zeros::<3>(body.len), zeros::<3>(body.len));
-    Contact::new(rule(), &body, 0.0).add_forces(&body, &steps[35], &mut f, &in_family);
-    Contact::new(rule(), &body, 2.5).add_forces(&body, &steps[35], &mut g, &in_family);
+    Contact::new(rule(), &body, 0.0, &[]).add_forces(&body, &steps[35], &mut f, &in_family);
+    Contact::new(rule(), &body, 2.5, &[]).add_forces(&body, &steps[35], &mut g, &in_family);
     assert!(f == g && f[0].iter().any(|x| *x != 0.0));
 }
 
@@ -213,7 +213,7 @@ fn a_range_of_nothing_or_next_to_nothing_is_harmless() {
     let (body, law) = lattice::<2>(LatticeKind::Square, &quarters, 1.0, 2, [false; 2]);
     for range in [0.0, -1.0, f64::NAN, 1e-9, 1e-300] {
         let rule = Repulsion::uniform(STIFFNESS, BONDED, range);
-        let mut contact = Contact::new(rule, &body, 2.0);
+        let mut contact = Contact::new(rule, &body, 2.0, &[]);
         let mut f = zeros::<2>(body.len);
         let asked = std::cell::Cell::new(0);
         contact.add_forces(&body, &body.at_rest(), &mut f, &|i, j| {
@@ -231,7 +231,7 @@ fn force_is_the_gradient_of_energy() {
     let (body, law) = lattice::<2>(LatticeKind::Square, &quarters, 1.0, 3, [false; 2]);
     let in_family = |i: usize, j: usize| law.in_family(&body, i, j);
     let mut u = approach(&body, 6.6, |x| x[1] < 6.0)[37].clone();
-    let mut contact = Contact::new(rule(), &body, 3.0);
+    let mut contact = Contact::new(rule(), &body, 3.0, &[]);
     let mut f = zeros::<2>(body.len);
     contact.add_forces(&body, &u, &mut f, &in_family);
     let mut pushed = 0;
@@ -264,7 +264,7 @@ fn threads_do_not_show() {
             .build()
             .unwrap();
         pool.install(|| {
-            let mut contact = Contact::new(rule(), &body, 2.0);
+            let mut contact = Contact::new(rule(), &body, 2.0, &[]);
             let mut f = zeros::<3>(body.len);
             for (before, u) in steps[29..].iter().zip(&steps[30..]) {
                 contact.moved(longest(before, u));

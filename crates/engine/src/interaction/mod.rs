@@ -11,6 +11,7 @@ pub mod micromoduli;
 pub mod pairs;
 pub mod repulsion;
 pub mod scale;
+pub mod several;
 pub mod stencil;
 pub mod tangent;
 pub mod weight;

@@ -24,6 +24,8 @@ pub struct Snapshot {
     pub energy_density: Vec<f64>,
     /// `[N]` set mark or material index.
     pub mark: Vec<i32>,
+    /// `[N]` which of several bodies; empty where there is one.
+    pub body: Vec<u32>,
     /// `[N]` fragment numbers (0 is the largest), when asked for.
     pub fragment: Option<Vec<u32>>,
     /// Unbroken bonds `(i, j)`, i < j, when asked for.

@@ -4,7 +4,7 @@ use super::model::Model;
 use super::recipe::Laws;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
-use crate::interaction::{BondState, Fault};
+use crate::interaction::{BondState, Fault, PointEnergies};
 use crate::observe::Ledger;
 
 impl<const D: usize> Model<D> {
@@ -77,6 +77,8 @@ impl<const D: usize> Model<D> {
                 before,
                 after,
                 time_step: self.dt,
+                contact: (ledger.contact > ledger.strain || self.dt > self.info.contact_step)
+                    .then_some(self.info.contact_step),
             });
         }
         Ok(ledger)
@@ -133,7 +135,18 @@ impl<const D: usize> Model<D> {
             position,
             path,
             spacing: limit,
+            contact: self.is_pushed(i).then_some(self.info.contact_step),
         }
+    }
+
+    /// Does a slot's repulsion hold more energy than its bonds?
+    fn is_pushed(&self, slot: usize) -> bool {
+        let mut seen = PointEnergies::default();
+        self.interaction.observe(&self.body, &self.u, &mut seen);
+        if let Some(contact) = &self.contact {
+            contact.add_energy_density(&self.body, &self.u, &mut seen.repulsion);
+        }
+        seen.repulsion[slot] > seen.strain[slot]
     }
 
     /// A fault of the last forces, with point ids.
@@ -167,7 +180,7 @@ impl<const D: usize> Model<D> {
 
     fn crossed_chain(&self) -> Option<(u64, u64)> {
         // linear springs may go through each other, atoms are looked at in every step
-        if D != 1 || !matches!(self.recipe.laws, Laws::Bond(_) | Laws::Solid(_)) {
+        if D != 1 || !matches!(self.recipes.first().laws, Laws::Bond(_) | Laws::Solid(_)) {
             return None;
         }
         let mut crossed = None;

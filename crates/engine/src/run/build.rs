@@ -1,26 +1,26 @@
 //! From a specification to a model: the only place that matches on dimension, law and family.
 
 use super::atoms;
-use super::calibration::cloud_moments;
 use super::equilibrium::StaticState;
 use super::model::Model;
+use super::parts::{Part, parts};
 use super::probe;
-use super::recipe::{Laws, Recipe};
-use super::reference::{Reference, cell, current_neighbours, reference};
+use super::recipe::Recipes;
+use super::reference::current_neighbours;
 use super::sets::{assign_materials, initial, sets};
 use super::{Info, Simulation};
 use super::{bonds, surface};
-use crate::body::{Values, zeros};
+use super::{contact, gaps};
+use crate::body::{Body, Layout, Values, zeros};
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::fracture::precrack::Crack;
-use crate::interaction::contact::Contact;
-use crate::law::micromodulus::Moments;
-use crate::spec::{
-    BodySpec, Calibration, CrackKind, LawSpec, MaterialSpec, PmbStiffness, Spec, TimeStep,
-};
+use crate::interaction::Interaction;
+use crate::interaction::several::SeveralInteraction;
+use crate::space::Point;
+use crate::spec::{BodySpec, Cloud, CrackKind, Spec, TimeStep};
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -62,52 +62,25 @@ pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, Build
 pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D>, BuildError> {
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = vec![];
-    let Reference {
-        mut body,
-        stencil,
-        bulk,
-        mut horizon,
-    } = reference::<D>(spec)?;
+    let (mut parts, mut body) = parts::<D>(spec)?;
     if let Some(potential) = &spec.potential
         && current_neighbours(spec)
     {
         atoms::check_box(potential, &body.period)?;
-        horizon = potential.cut_off();
+        parts[0].horizon = potential.cut_off();
     }
-    let cell = cell(spec, &body);
-    let from_modulus = |m: &MaterialSpec| {
-        use PmbStiffness::{Bulk, Young};
-        matches!(m.law, LawSpec::Pmb(Bulk(_) | Young(_)))
-    };
-    let mut bulk = bulk;
-    if bulk.is_none()
-        && spec.calibration == Calibration::Discrete
-        && spec.materials.iter().any(from_modulus)
-    {
-        bulk = cloud_moments(spec, &body, horizon, cell)?;
-        if bulk.is_none() {
-            warnings.push(
-                "no point of this cloud has a full family to calibrate to, all are closer to the surface than the horizon: the constants are those of the continuum".into(),
-            );
-        }
-    }
-    let discrete =
-        bulk.unwrap_or_else(|| Moments::continuum(D, horizon, spec.section, spec.influence));
+    let horizon = parts[0].horizon;
     let sets = sets(spec, &body)?;
     assign_materials(spec, &mut body, &sets)?;
-    if let BodySpec::Cloud(cloud) = &spec.body
-        && !cloud.density.is_empty()
-    {
-        body.density = Values::from_points(&cloud.density, &body.slots, body.len, 1.0);
-    }
-    let ends = stencil.as_ref().map_or(0, |s| s.near_horizon as u64);
+    own_densities(spec, &mut body);
+    let ends = parts.iter().flat_map(|p| &p.stencil);
+    let ends: u64 = ends.map(|s| s.near_horizon as u64).sum();
     if let (Some(potential), BodySpec::Lattice { kind, spacing, .. }) =
         (&spec.potential, &spec.body)
     {
         warnings.extend(atoms::crystal(spec, potential, *kind, *spacing)?);
     }
-    let mut recipe = Recipe::new::<D>(spec, stencil, horizon, cell, discrete, simd)?;
-    let mut interaction = recipe.interaction(&body, None)?;
+    let (mut recipes, mut interaction) = bind(spec, &mut parts, &mut body, simd, &mut warnings)?;
     let cell_volume = body.volume.uniform();
     if let Some(factors) = &spec.surface {
         surface::scale(factors, &mut body, interaction.as_mut())?;
@@ -115,7 +88,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     }
     warnings.extend(bonds::scale(spec, &body, interaction.as_mut())?);
     // a ratio is meant inclusively; only a length leaves the decision to round-off
-    let near_horizon = if recipe.ratio {
+    let near_horizon = if recipes.first().ratio {
         0
     } else {
         ends.max(interaction.near_horizon())
@@ -129,6 +102,9 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         warnings.push(format!(
             "{near_horizon} {what} end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances"
         ));
+    }
+    if spec.potential.is_none() && spec.micromoduli.is_none() {
+        warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
     }
     let mut cut = 0;
     for kind in [CrackKind::Absent, CrackKind::Broken] {
@@ -153,7 +129,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         }
     }
     let directed_bonds = interaction.directed_bonds();
-    if directed_bonds == 0 && body.points() > 1 {
+    let bonded = parts.iter().any(|p| p.bonded);
+    if directed_bonds == 0 && body.points() > 1 && bonded && body.points() > body.pieces().len() {
         return Err(BuildError::new(
             "horizon",
             format!(
@@ -162,23 +139,38 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             ),
         )
         .help(format!(
-            "the spacing is {:e}: a horizon of three spacings is usual",
+            "the spacing is {:e}: a horizon of three spacings is usual; points that only touch are a body with bonded = false",
             body.spacing
         )));
     }
-    let stable_step = if options.trust_time_step || spec.schedule.statics.is_some() {
-        f64::INFINITY
-    } else {
-        probe::stable_step(&recipe, &body, interaction.as_mut(), spec, cell_volume)?
-    };
+    let repulsion = contact::repulsion(spec, &parts, &recipes, &body)?;
+    let range = |a: usize, b: usize| repulsion.as_ref().map_or(0.0, |r| r.range(a, b));
+    let reach = (0..parts.len())
+        .map(|n| range(n, n))
+        .fold(horizon, f64::max);
+    let gaps = gaps::between(&body, reach, range);
+    let spacing = |n: usize| body.pieces()[n].body.spacing;
+    warnings.extend(gaps::warnings(spec, &gaps, spacing));
+    let (mut bond_step, mut contact_step) = (f64::INFINITY, f64::INFINITY);
+    let mut touching = None;
+    if !options.trust_time_step && spec.schedule.statics.is_none() {
+        let first = recipes.first();
+        let lambda = probe::bonds(first, &body, interaction.as_mut(), spec, cell_volume)?;
+        bond_step = probe::step(lambda);
+        if let Some(r) = &repulsion {
+            touching = r.limit(&parts, &body, lambda);
+        }
+        contact_step = touching.map_or(f64::INFINITY, |t| probe::step(t.lambda));
+    }
+    let stable_step = bond_step.min(contact_step);
     let dt = match spec.schedule.time_step {
         TimeStep::Fraction(x) if stable_step.is_finite() => x * stable_step,
         TimeStep::Fraction(_) if body.points() == 1 => {
             return Err(BuildError::new(
                 "body",
-                "the body has one point, and a point alone has no bonds",
+                "the body has one point, and a point alone has no bonds: no stable step can be derived",
             )
-            .help("a larger region or a smaller spacing"));
+            .help("a larger region or a smaller spacing, or time_step as a number"));
         }
         TimeStep::Fraction(_) => {
             return Err(BuildError::new(
@@ -195,10 +187,26 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             format!("the time step is {dt}, expected a positive number"),
         ));
     }
-    if dt > stable_step {
-        let message = format!(
-            "the time step {dt:.4e} is above the stability limit {stable_step:.4e} of this body"
-        );
+    // a step that was chosen may be right where nothing ever touches
+    let chosen = matches!(spec.schedule.time_step, TimeStep::Fixed(_));
+    let limit = if chosen { bond_step } else { stable_step };
+    if dt > contact_step && dt <= limit {
+        let of = touching
+            .map_or([0, 0], |t| t.materials)
+            .map(|k| repulsion.as_ref().map_or("", |r| r.name(spec, k)));
+        let [a, b] = of;
+        let between = if a == b {
+            format!("points of {a}")
+        } else {
+            format!("{a} and {b}")
+        };
+        warnings.push(format!(
+            "the time step {dt:.4e} is above the stability limit {contact_step:.4e} of contact between {between}: the run goes unstable if many of them touch"
+        ));
+    }
+    if dt > limit {
+        let message =
+            format!("the time step {dt:.4e} is above the stability limit {limit:.4e} of this body");
         if !spec.schedule.force_unstable {
             return Err(BuildError::new("schedule.time_step", message)
                 .help(format!("write time_step = {:.3e} or \"auto\"; force_unstable = true under [run] runs it all the same", 0.8 * stable_step)));
@@ -211,7 +219,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         .map(|s| interaction.family_size(&body, *s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     let u = body.at_rest();
-    recipe.stencil = None; // the interaction has it
+    recipes.forget_stencils(); // the interaction has them
     let mut model = Model {
         info: Info {
             dimension: D,
@@ -229,14 +237,13 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             section: spec.section,
             mass: body.mass(),
             volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
-            micromodulus: if let Laws::Bond(c) = &recipe.laws {
-                c.clone()
-            } else {
-                vec![]
-            },
-            critical_stretch: recipe.toughness.iter().map(|t| t.s00).collect(),
+            micromodulus: recipes.micromoduli(spec.materials.len()),
+            critical_stretch: recipes.critical_stretches(spec.materials.len()),
             time_step: dt,
             stable_step,
+            contact_step,
+            bodies: names(spec, &body),
+            gaps,
             cut,
             bytes: 0,
             simd: simd.name(),
@@ -246,12 +253,12 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         f: zeros(body.len),
         u,
         verlet: Verlet::new(simd, &body),
-        contact: recipe.repulsion.clone().map(|r| {
-            let pairs = recipe.pairs.as_ref();
-            Contact::new(r, &body, pairs.map_or(horizon, |p| p.shortest()))
+        contact: repulsion.map(|r| {
+            let pairs = recipes.first().pairs.as_ref();
+            r.contact(&parts, &body, pairs.map_or(horizon, |p| p.shortest()))
         }),
         release: spec.release,
-        recipe,
+        recipes,
         interaction,
         body,
         loads: vec![],
@@ -279,10 +286,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     if let Some(thermal) = spec.thermal {
         model.heat(thermal);
     }
-    if let BodySpec::Cloud(cloud) = &spec.body
-        && !cloud.velocity.is_empty()
-    {
-        model.set_velocities(&cloud.velocity);
+    if let Some(velocity) = own_velocities(spec, &model.body) {
+        model.set_velocities(&velocity);
     }
     initial(spec, &mut model)?;
     let sets = std::mem::take(&mut model.sets);
@@ -301,4 +306,111 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         model.statics = Some(StaticState::new(statics));
     }
     Ok(model)
+}
+
+/// Laws and bonds of all bodies.
+#[allow(clippy::type_complexity)] // what a model is made of, twice
+fn bind<const D: usize>(
+    spec: &Spec,
+    parts: &mut [Part],
+    body: &mut Body<D>,
+    simd: Simd,
+    warnings: &mut Vec<String>,
+) -> Result<(Recipes, Box<dyn Interaction<D>>), BuildError> {
+    let BodySpec::Several(named) = &spec.body else {
+        let recipe = parts[0].recipe(body, simd, warnings)?;
+        let interaction = recipe.interaction(body, None)?;
+        return Ok((Recipes::one(recipe), interaction));
+    };
+    let (mut recipes, mut bonds) = (vec![], vec![]);
+    for (n, part) in parts.iter_mut().enumerate() {
+        let mut own = body.pieces()[n].body.clone();
+        part.choose(body, n, &mut own);
+        let mut told = vec![];
+        let made = part.recipe(&own, simd, &mut told).and_then(|recipe| {
+            let bonds = part.bonds(&recipe, &own)?;
+            Ok((recipe, bonds))
+        });
+        let (recipe, bond) = made.map_err(|e| BuildError {
+            message: format!("body `{}`: {}", named[n].name, e.message),
+            ..e
+        })?;
+        warnings.extend(
+            told.iter()
+                .map(|w| format!("body `{}`: {w}", named[n].name)),
+        );
+        recipes.push((body.pieces()[n].first, part.materials.clone(), recipe));
+        bonds.push(bond);
+        if let Layout::Several(pieces) = &mut body.layout {
+            pieces[n].body = own;
+        }
+    }
+    let interaction = SeveralInteraction::new(body, bonds);
+    Ok((Recipes::several(recipes), Box::new(interaction)))
+}
+
+/// Names and sizes of several bodies.
+fn names<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<(String, u64)> {
+    match &spec.body {
+        BodySpec::Several(pieces) => {
+            let all = pieces.iter().zip(body.pieces());
+            all.map(|(p, own)| (p.name.clone(), own.body.points() as u64))
+                .collect()
+        }
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => vec![],
+    }
+}
+
+/// The clouds of a spec, each with the ids of its points.
+fn clouds<'a, const D: usize>(
+    spec: &'a Spec,
+    body: &Body<D>,
+) -> Vec<(&'a Cloud, std::ops::Range<usize>)> {
+    let cloud = |b: &'a BodySpec| match b {
+        BodySpec::Cloud(cloud) => Some(cloud),
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Several(_) => None,
+    };
+    match &spec.body {
+        BodySpec::Several(pieces) => {
+            let all = pieces.iter().zip(body.ids());
+            all.filter_map(|(p, ids)| Some((cloud(&p.body)?, ids)))
+                .collect()
+        }
+        one => cloud(one)
+            .map(|c| (c, 0..body.points()))
+            .into_iter()
+            .collect(),
+    }
+}
+
+/// Points of a cloud that brings densities have those.
+fn own_densities<const D: usize>(spec: &Spec, body: &mut Body<D>) {
+    let mut density: Vec<f64> = vec![];
+    for (cloud, ids) in clouds(spec, body) {
+        if !cloud.density.is_empty() {
+            if density.is_empty() {
+                density = body
+                    .slots
+                    .iter()
+                    .map(|s| body.density.at(*s as usize))
+                    .collect();
+            }
+            density[ids].copy_from_slice(&cloud.density);
+        }
+    }
+    if !density.is_empty() {
+        body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
+    }
+}
+
+/// Velocities that clouds bring; `None`: they bring none.
+fn own_velocities<const D: usize>(spec: &Spec, body: &Body<D>) -> Option<Vec<Point>> {
+    let mut velocity = vec![];
+    for (cloud, ids) in clouds(spec, body) {
+        if !cloud.velocity.is_empty() {
+            velocity.resize(body.points(), [0.0; 3]);
+            velocity[ids].copy_from_slice(&cloud.velocity);
+        }
+    }
+    (!velocity.is_empty()).then_some(velocity)
 }

@@ -6,10 +6,13 @@ mod bonds;
 mod build;
 mod calibration;
 mod conditions;
+mod contact;
 mod equilibrium;
 mod free;
+mod gaps;
 mod model;
 mod motion;
+mod parts;
 mod probe;
 mod recipe;
 mod record;
@@ -50,14 +53,31 @@ pub struct Info {
     /// Critical stretch s00 per material; ∞: never breaks.
     pub critical_stretch: Vec<f64>,
     pub time_step: f64,
-    /// Stability limit of the step.
+    /// Stability limit of the step: that of bonds, and of contact if that is lower.
     pub stable_step: f64,
+    /// Of points in contact alone; ∞ without contact.
+    pub contact_step: f64,
+    /// Names and numbers of points of several bodies; empty: there is one.
+    pub bodies: Vec<(String, u64)>,
+    /// The shortest distances between bodies that are nearer to each other than the horizon or the range of contact.
+    pub gaps: Vec<Gap>,
     /// Bonds cut by pre-cracks, directed.
     pub cut: u64,
     /// Bytes held by the model.
     pub bytes: usize,
     pub simd: &'static str,
     pub warnings: Vec<String>,
+}
+
+/// The shortest distance between two bodies in the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// Their places in [`Info::bodies`].
+    pub bodies: [usize; 2],
+    /// Between their nearest points (length).
+    pub distance: f64,
+    /// Below which points of the two repel, if they were further apart before (length); 0 without contact.
+    pub contact: f64,
 }
 
 /// What to fill into a snapshot beyond positions, velocities and damage.

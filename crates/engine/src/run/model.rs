@@ -1,7 +1,7 @@
 //! The running model: its state, and what may be asked of it.
 
 use super::equilibrium::StaticState;
-use super::recipe::Recipe;
+use super::recipe::Recipes;
 use super::{Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions};
 use crate::body::{Body, Field};
 use crate::condition::constraint::Constraint;
@@ -42,7 +42,7 @@ pub struct Model<const D: usize> {
     pub(super) watch_virial: bool,
     pub(super) virial: Option<[f64; 6]>,
     /// Laws and constants, for what is computed pair by pair.
-    pub(super) recipe: Recipe,
+    pub(super) recipes: Recipes,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
     pub(super) dt: f64,
@@ -311,7 +311,10 @@ impl<const D: usize> Simulation for Model<D> {
                 PointField::Density => body.density.at(s as usize),
                 PointField::CriticalStretch => self.interaction.critical_stretch(s as usize),
                 // of an axis that the body does not have
-                _ => 0.0,
+                PointField::Reference(_)
+                | PointField::Displacement(_)
+                | PointField::Velocity(_)
+                | PointField::Force(_) => 0.0,
             };
         }
     }
@@ -323,7 +326,11 @@ impl<const D: usize> Simulation for Model<D> {
         let component = match field {
             PointField::Displacement(a) => self.u.get_mut(a),
             PointField::Velocity(a) => self.v.get_mut(a),
-            _ => None,
+            PointField::Reference(_)
+            | PointField::Force(_)
+            | PointField::Volume
+            | PointField::Density
+            | PointField::CriticalStretch => None,
         };
         let Some(component) = component else { return };
         for (value, &s) in values.iter().zip(&self.body.slots[first..]) {

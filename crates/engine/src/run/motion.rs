@@ -133,9 +133,9 @@ impl<const D: usize> Model<D> {
         }
         self.still.begin(&mut self.v, &mut self.f, !self.pending);
         // linear springs may go through each other: they know no distance that is too far for a step
-        let limit = match self.recipe.laws {
+        let limit = match self.recipes.first().laws {
             Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
-            _ => self.body.spacing,
+            Laws::Bond(_) | Laws::Solid(_) | Laws::Atoms(_) => self.body.spacing,
         };
         let fastest = self.verlet.advance(
             &self.body,

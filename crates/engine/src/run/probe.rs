@@ -15,11 +15,11 @@ const BLOCK: usize = 24;
 /// Cells per neighbour on one side, where families are larger than that.
 const PER_REACH: usize = 8;
 
-/// Largest stable step of velocity Verlet (time); ∞ if nothing resists.
+/// Largest eigenvalue of `M⁻¹K` of the bonds (1 / time²); 0 if nothing resists.
 ///
 /// A large lattice body is probed on a block with the same lattice, periodic axes and thickness, once per material:
 /// it has the bulk and every kind of flat surface, edge and corner.
-pub(super) fn stable_step<const D: usize>(
+pub(super) fn bonds<const D: usize>(
     recipe: &Recipe,
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
@@ -63,7 +63,7 @@ pub(super) fn stable_step<const D: usize>(
                 Some(all) => match surface::of_block(all, body, &block) {
                     Some(factors) => Some(factors),
                     // no block has all its places
-                    None => return Ok(step(largest_eigenvalue(body, interaction))),
+                    None => return Ok(largest_eigenvalue(body, interaction)),
                 },
             };
             let whole = block.volume.clone();
@@ -80,13 +80,15 @@ pub(super) fn stable_step<const D: usize>(
             }
             lambda
         }
-        _ => largest_eigenvalue(body, interaction),
+        Layout::Grid(_) | Layout::Cloud(_) | Layout::Several(_) => {
+            largest_eigenvalue(body, interaction)
+        }
     };
-    Ok(step(lambda))
+    Ok(lambda)
 }
 
-/// Largest stable step at a largest eigenvalue.
-fn step(lambda: f64) -> f64 {
+/// Largest stable step of velocity Verlet at a largest eigenvalue (time); ∞ if nothing resists.
+pub(super) fn step(lambda: f64) -> f64 {
     if lambda > 0.0 {
         2.0 / lambda.sqrt()
     } else {

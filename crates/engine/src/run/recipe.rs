@@ -43,6 +43,8 @@ pub(super) struct Recipe {
     pub laws: Laws,
     pub toughness: Vec<Toughness>,
     pub repulsion: Option<Repulsion>,
+    /// Stiffness of contact between points of a material, from its law (force / volume² / length).
+    pub contact: Vec<f64>,
     pub stencil: Option<Stencil>,
     pub horizon: f64,
     /// Distance over which the horizon cuts cells.
@@ -55,6 +57,67 @@ pub(super) struct Recipe {
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
     pub simd: Simd,
+}
+
+/// The recipes of all bodies.
+pub(super) struct Recipes {
+    /// First slot, places of the materials in the spec, recipe.
+    of: Vec<(usize, Vec<usize>, Recipe)>,
+}
+
+impl Recipes {
+    /// Of a single body.
+    pub fn one(recipe: Recipe) -> Recipes {
+        Recipes {
+            of: vec![(0, (0..recipe.contact.len()).collect(), recipe)],
+        }
+    }
+
+    /// `(first slot, places of its materials in the spec, recipe)` of each body, in order.
+    pub fn several(of: Vec<(usize, Vec<usize>, Recipe)>) -> Recipes {
+        Recipes { of }
+    }
+
+    pub fn first(&self) -> &Recipe {
+        &self.of[0].2
+    }
+
+    pub fn all(&self) -> impl Iterator<Item = &Recipe> {
+        self.of.iter().map(|(_, _, r)| r)
+    }
+
+    /// The recipe of the body that a slot belongs to, and the first slot of that.
+    pub fn at(&self, slot: usize) -> (&Recipe, usize) {
+        let n = self.of.partition_point(|(first, _, _)| *first <= slot) - 1;
+        (&self.of[n].2, self.of[n].0)
+    }
+
+    pub fn forget_stencils(&mut self) {
+        self.of.iter_mut().for_each(|(_, _, r)| r.stencil = None);
+    }
+
+    /// A number per material of the spec, from the first body that is made of it.
+    fn per_material(&self, count: usize, of: impl Fn(&Recipe) -> Vec<f64>) -> Vec<f64> {
+        let mut all = vec![None; count];
+        for (_, materials, recipe) in &self.of {
+            for (m, x) in materials.iter().zip(of(recipe)) {
+                all[*m].get_or_insert(x);
+            }
+        }
+        all.into_iter().flatten().collect()
+    }
+
+    /// Micromoduli of bond-based materials.
+    pub fn micromoduli(&self, count: usize) -> Vec<f64> {
+        self.per_material(count, |r| match &r.laws {
+            Laws::Bond(c) => c.clone(),
+            Laws::Solid(_) | Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => vec![],
+        })
+    }
+
+    pub fn critical_stretches(&self, count: usize) -> Vec<f64> {
+        self.per_material(count, |r| r.toughness.iter().map(|t| t.s00).collect())
+    }
 }
 
 impl Recipe {
@@ -200,6 +263,7 @@ impl Recipe {
             laws,
             toughness,
             repulsion,
+            contact: repulsive,
             stencil,
             horizon,
             spacing,
@@ -539,7 +603,10 @@ impl<const D: usize> Visitor for Current<'_, D> {
 }
 
 /// The table of all pairs of materials, whose own stiffnesses are `own`.
-fn contact_stiffness(asked: &ContactStiffness, own: &[f64]) -> Result<PairTable, BuildError> {
+pub(super) fn contact_stiffness(
+    asked: &ContactStiffness,
+    own: &[f64],
+) -> Result<PairTable, BuildError> {
     let table = match asked {
         ContactStiffness::Same(stiffness) => PairTable::uniform(*stiffness),
         ContactStiffness::Laws => PairTable::new(own.len(), |a, b| {
@@ -590,7 +657,11 @@ fn toughness<const D: usize>(
                 LawSpec::Lps(m) => {
                     return lps_toughness::<D>(spec, m, energy, fracture.alpha, path);
                 }
-                _ => {
+                LawSpec::LpsAsTyped { .. }
+                | LawSpec::EamLike { .. }
+                | LawSpec::Springs(_)
+                | LawSpec::Atoms
+                | LawSpec::Micromoduli => {
                     return Err(BuildError::new(
                         path,
                         "a fracture energy is known for pmb and lps materials only",

@@ -25,6 +25,10 @@ impl<const D: usize> Model<D> {
             } else {
                 self.body.mark.clone()
             },
+            body: match self.body.pieces() {
+                [] => vec![],
+                _ => self.by_id(|i| self.body.piece_of(i) as u32),
+            },
             ..Snapshot::default()
         };
         if options.energies {
@@ -82,7 +86,7 @@ impl<const D: usize> Model<D> {
         // images of a grid have displacements of their own; a list knows none, so the jump of a homogeneous strain
         // lies somewhere in a periodic cloud: it is put in several places, and each point asked when it is far away
         let cut: [bool; D] = std::array::from_fn(|a| {
-            matches!(self.body.layout, Layout::Cloud(_)) && self.body.period[a].is_some()
+            !matches!(self.body.layout, Layout::Grid(_)) && self.body.period[a].is_some()
         });
         let reach = self.info.horizon * (1.0 + 1e-6);
         let period = |a: usize| self.body.period[a].unwrap_or(0.0);

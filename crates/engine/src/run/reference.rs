@@ -29,7 +29,14 @@ pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
             spacing,
             ..
         } => *spacing,
-        _ => body.spacing,
+        BodySpec::Lattice {
+            kind:
+                LatticeKind::Triangular | LatticeKind::Bcc | LatticeKind::Fcc | LatticeKind::Diamond,
+            ..
+        }
+        | BodySpec::Sites { .. }
+        | BodySpec::Cloud(_)
+        | BodySpec::Several(_) => body.spacing,
     }
 }
 
@@ -233,6 +240,10 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 horizon: horizon_length(spec, spacing),
             })
         }
+        BodySpec::Several(_) => Err(BuildError::new(
+            "body",
+            "several bodies inside one of several bodies",
+        )),
     }
 }
 

@@ -4,7 +4,7 @@ use super::model::Model;
 use crate::body::{Body, Values};
 use crate::error::BuildError;
 use crate::space::Point;
-use crate::spec::{Members, Spec};
+use crate::spec::{BodySpec, Members, Spec};
 
 /// Does a point (index, reference position) belong?
 type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;
@@ -16,18 +16,7 @@ pub(super) fn sets<const D: usize>(
 ) -> Result<Vec<(String, Vec<u32>)>, BuildError> {
     let mut out = vec![];
     for set in &spec.sets {
-        let member: Member = match &set.members {
-            Members::All => Box::new(|_, _| true),
-            Members::Region(region) => {
-                let slack = 1e-9 * body.spacing;
-                Box::new(move |_, x| region.contains(x) || near(region, x, slack))
-            }
-            Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
-            Members::Mark(mark) => {
-                Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark)
-            }
-            Members::Points(ids) => Box::new(|id, _| ids.binary_search(&(id as u32)).is_ok()),
-        };
+        let member = member(spec, body, &set.name, &set.members, 0)?;
         let ids: Vec<u32> = body
             .slots
             .iter()
@@ -45,6 +34,46 @@ pub(super) fn sets<const D: usize>(
         out.push((set.name.clone(), ids));
     }
     Ok(out)
+}
+
+/// The test of a set; `first` is the id of the first point that places count from.
+fn member<'a, const D: usize>(
+    spec: &Spec,
+    body: &'a Body<D>,
+    set: &str,
+    members: &'a Members,
+    first: usize,
+) -> Result<Member<'a>, BuildError> {
+    Ok(match members {
+        Members::All => Box::new(|_, _| true),
+        Members::Region(region) => {
+            let slack = 1e-9 * body.spacing;
+            Box::new(move |_, x| region.contains(x) || near(region, x, slack))
+        }
+        Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
+        Members::Mark(mark) => Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark),
+        Members::Points(ids) => {
+            let place = move |id: usize| id.checked_sub(first).map(|n| n as u32);
+            Box::new(move |id, _| place(id).is_some_and(|n| ids.binary_search(&n).is_ok()))
+        }
+        Members::Within {
+            body: name,
+            members,
+        } => {
+            let named = match &spec.body {
+                BodySpec::Several(pieces) => pieces.iter().position(|p| p.name == *name),
+                BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => None,
+            };
+            let Some(ids) = named.and_then(|n| body.ids().into_iter().nth(n)) else {
+                return Err(BuildError::new(
+                    format!("sets.{set}"),
+                    format!("set `{set}` is of the body `{name}`, which does not exist"),
+                ));
+            };
+            let inner = member(spec, body, set, members, ids.start)?;
+            Box::new(move |id, x| ids.contains(&id) && inner(id, x))
+        }
+    })
 }
 
 /// Points within round-off of a region's boundary belong to it.

@@ -26,15 +26,23 @@ impl<const D: usize> Model<D> {
         if let Some(virial) = self.interaction.virial(&self.body, &self.u) {
             return virial;
         }
-        let recipe = &self.recipe;
+        let recipes = &self.recipes;
         let mut dilatation = vec![];
-        if let Laws::Solid(_) = recipe.laws {
+        if recipes.all().any(|r| matches!(r.laws, Laws::Solid(_))) {
             let mut seen = PointEnergies::default();
             self.interaction.observe(&self.body, &self.u, &mut seen);
             dilatation = seen.dilatation;
         }
+        // among those of its body
+        let material = |slot: usize, first: usize| match self.body.pieces() {
+            [] => self.body.material_of(slot),
+            pieces => pieces[self.body.piece_of(slot)]
+                .body
+                .material_of(slot - first),
+        };
         let fields = |i: usize| -> [f64; 2] {
-            let material = self.body.material_of(i);
+            let (recipe, first) = recipes.at(i);
+            let material = material(i, first);
             match &recipe.laws {
                 Laws::Bond(c) => [c[material], 0.0],
                 Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => [0.0; 2],
@@ -46,8 +54,10 @@ impl<const D: usize> Model<D> {
             }
         };
         // a state-based bond pulls at rest, too
-        let at_rest_free = matches!(recipe.laws, Laws::Bond(_))
-            && recipe.repulsion.as_ref().is_none_or(|c| c.bonded <= 1.0);
+        let at_rest_free = recipes.all().all(|recipe| {
+            matches!(recipe.laws, Laws::Bond(_))
+                && recipe.repulsion.as_ref().is_none_or(|c| c.bonded <= 1.0)
+        });
         let mut virial = [0.0; 6];
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
@@ -56,6 +66,7 @@ impl<const D: usize> Model<D> {
                 if at_rest_free && eta == [0.0; D] {
                     return;
                 }
+                let (recipe, first) = recipes.at(i);
                 let squared: f64 = xi.iter().map(|x| x * x).sum();
                 let r0 = squared.sqrt();
                 let change: f64 = (0..D).map(|a| eta[a] * (xi[a] + 0.5 * eta[a])).sum();
@@ -83,7 +94,7 @@ impl<const D: usize> Model<D> {
                     pull *= volume / volumes[1];
                 }
                 if let Some(repulsion) = &recipe.repulsion {
-                    let materials = [i, j].map(|s| self.body.material_of(s));
+                    let materials = [i, j].map(|s| material(s, first));
                     let (r, d) = (r0 * w, repulsion.distance(r0, materials));
                     if r < d {
                         pull += repulsion.of(materials) * (r - d) / r;

@@ -42,7 +42,7 @@ impl LatticeKind {
         match self {
             LatticeKind::Chain => 1,
             LatticeKind::Square | LatticeKind::Triangular => 2,
-            _ => 3,
+            LatticeKind::Cubic | LatticeKind::Bcc | LatticeKind::Fcc | LatticeKind::Diamond => 3,
         }
     }
 
@@ -73,7 +73,12 @@ impl LatticeKind {
     pub fn edge_squared(self) -> [i64; 3] {
         match self {
             LatticeKind::Triangular => [1, 3, 1],
-            _ => [1, 1, 1],
+            LatticeKind::Chain
+            | LatticeKind::Square
+            | LatticeKind::Cubic
+            | LatticeKind::Bcc
+            | LatticeKind::Fcc
+            | LatticeKind::Diamond => [1, 1, 1],
         }
     }
 
@@ -88,7 +93,10 @@ impl LatticeKind {
             LatticeKind::Bcc => 0.75f64.sqrt(),
             LatticeKind::Fcc => 0.5f64.sqrt(),
             LatticeKind::Diamond => 0.1875f64.sqrt(),
-            _ => 1.0,
+            LatticeKind::Chain
+            | LatticeKind::Square
+            | LatticeKind::Triangular
+            | LatticeKind::Cubic => 1.0,
         }
     }
 

@@ -162,6 +162,19 @@ pub enum BodySpec {
     },
     /// Points with volumes and marks.
     Cloud(Cloud),
+    /// Bodies side by side: bonds inside each, contact between them. Their points come one after another.
+    Several(Vec<PieceSpec>),
+}
+
+/// A body among several.
+#[derive(Debug, Clone)]
+pub struct PieceSpec {
+    /// For messages, and for [`Members::Within`].
+    pub name: String,
+    /// One lattice or cloud.
+    pub body: BodySpec,
+    /// `false`: loose points (powder), which have contact only.
+    pub bonded: bool,
 }
 
 impl BodySpec {
@@ -170,6 +183,12 @@ impl BodySpec {
         match self {
             BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => Some(*spacing),
             BodySpec::Cloud(c) => c.spacing,
+            // of all, if it is the same
+            BodySpec::Several(pieces) => {
+                let first = pieces.first()?.body.spacing()?;
+                let same = |p: &PieceSpec| p.body.spacing() == Some(first);
+                pieces.iter().all(same).then_some(first)
+            }
         }
     }
 }
@@ -219,6 +238,11 @@ pub enum Members {
     Where(Expression),
     /// Points of a cloud by their place in it, rising.
     Points(std::sync::Arc<[u32]>),
+    /// Those of one of several bodies, by its name.
+    Within {
+        body: String,
+        members: Box<Members>,
+    },
 }
 
 /// A material on a set of points.

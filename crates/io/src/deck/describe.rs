@@ -198,6 +198,18 @@ fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> String {
                 units.write(*spacing, Dim::LENGTH)
             )
         }
+        BodySpec::Several(pieces) => {
+            let each = pieces.iter().map(|p| {
+                let loose = if p.bonded { "" } else { ", loose points" };
+                format!(
+                    "\n           {}: {}{loose}",
+                    p.name,
+                    self::body(&p.body, units, dimension)
+                )
+            });
+            let word = if pieces.len() == 1 { "body" } else { "bodies" };
+            format!("{} {word}{}", pieces.len(), each.collect::<String>())
+        }
         BodySpec::Cloud(cloud) => {
             let own = if cloud.density.is_empty() {
                 ""

@@ -30,7 +30,13 @@ pub struct Document {
     /// Named numbers for use in any number.
     #[serde(default)]
     pub constants: BTreeMap<String, Number>,
+    /// `[body]`, or `[[body]]` several times: bonds inside each, contact between them.
+    #[schemars(with = "Or<Vec<Body>, Body>")]
     pub body: At<Body>,
+    /// Those after the first.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub more_bodies: Vec<At<Body>>,
     /// Named sets of points; "all" always exists.
     #[serde(default)]
     pub sets: BTreeMap<String, At<Set>>,
@@ -61,7 +67,7 @@ pub struct Document {
     pub bond_factor: Vec<At<BondFactor>>,
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,
-    /// On when a material can fracture; false turns it off.
+    /// On when a material can fracture or there are several bodies; false turns it off.
     pub contact: Option<Or<bool, Contact>>,
     /// Maxwellian velocities.
     pub thermal: Option<Thermal>,
@@ -83,6 +89,12 @@ pub struct Document {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
+    /// For messages, and as a set of its points; of several bodies only.
+    pub name: Option<At<String>>,
+    /// The [material.NAME] that the whole body is made of; of several bodies only.
+    pub material: Option<At<String>>,
+    /// false: points without bonds, which meet by contact only (powder, a single point); true when left out.
+    pub bonded: Option<bool>,
     pub lattice: Option<At<LatticeName>>,
     /// Edge of the lattice cell; with a file, the typical distance of points.
     pub spacing: Option<Number>,
@@ -148,6 +160,8 @@ pub enum Shape {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Set {
+    /// Only points of this one of several bodies; marks are those of its file.
+    pub body: Option<At<String>>,
     pub region: Option<At<Shape>>,
     /// Number or name of a mark in the file.
     pub mark: Option<At<Mark>>,

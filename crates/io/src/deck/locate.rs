@@ -3,7 +3,7 @@
 use super::source::Source;
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// Keys of one material; a table under `material` with none of them holds named materials.
 const MATERIAL: [&str; 5] = ["set", "density", "mass", "law", "fracture"];
@@ -33,6 +33,36 @@ pub(super) fn name_material(tree: &mut DeTable) {
             Spanned::new(span, DeValue::Table(one)),
         );
     }
+}
+
+/// Puts the bodies of `[[body]]` after the first under a key of their own.
+pub(super) fn first_body<'a>(tree: &mut DeTable<'a>) {
+    let Some(entry) = tree.get_mut("body") else {
+        return;
+    };
+    let DeValue::Array(bodies) = entry.get_mut() else {
+        return;
+    };
+    if bodies.is_empty() {
+        return;
+    }
+    let all = std::mem::replace(bodies, DeArray::new());
+    let span = all[0].span();
+    let mut rest = DeArray::new();
+    let mut first = None;
+    for body in all {
+        match first {
+            None => first = Some(body),
+            Some(_) => rest.push(body),
+        }
+    }
+    if let Some(first) = first {
+        *entry = first;
+    }
+    tree.insert(
+        Spanned::new(span.clone(), "more_bodies".into()),
+        Spanned::new(span, DeValue::Array(rest)),
+    );
 }
 
 /// A set that a region of the deck makes is called after its entry: `"condition 2"` is `condition[1].region`. Other

@@ -118,6 +118,7 @@ impl Deck {
         let mut tree = source.tree()?;
         form::check(&source, tree.get_ref())?;
         locate::name_material(tree.get_mut());
+        locate::first_body(tree.get_mut());
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
             .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));

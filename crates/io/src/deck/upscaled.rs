@@ -95,7 +95,9 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
     );
     let spacing = match &coarse.body {
         BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => *spacing,
-        BodySpec::Cloud(_) => return Err("only a lattice body can be upscaled".into()),
+        BodySpec::Cloud(_) | BodySpec::Several(_) => {
+            return Err("only a lattice body can be upscaled".into());
+        }
     };
     let body = inner(&mut table, "body").ok_or("the deck has no body")?;
     body.insert("spacing".into(), plain(spacing, Dim::LENGTH));

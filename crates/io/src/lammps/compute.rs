@@ -100,7 +100,13 @@ impl Mode {
         match self {
             Mode::Min | Mode::MinAbs => 1e20,
             Mode::Max => -1e20,
-            _ => 0.0,
+            Mode::Sum
+            | Mode::Ave
+            | Mode::SumSq
+            | Mode::AveSq
+            | Mode::SumAbs
+            | Mode::AveAbs
+            | Mode::MaxAbs => 0.0,
         }
     }
 

@@ -88,14 +88,14 @@ impl SimBox {
             Face::ShrinkMinimum => {
                 self.low[axis] = (least - self.gap[axis]).min(self.first[0][axis])
             }
-            _ => {}
+            Face::Periodic | Face::Fixed => {}
         }
         match self.faces[axis][1] {
             Face::Shrink => self.high[axis] = greatest + self.gap[axis],
             Face::ShrinkMinimum => {
                 self.high[axis] = (greatest + self.gap[axis]).max(self.first[1][axis])
             }
-            _ => {}
+            Face::Periodic | Face::Fixed => {}
         }
     }
 

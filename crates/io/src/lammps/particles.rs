@@ -102,7 +102,10 @@ impl View<'_> {
                         Field::Wrapped(_) => wrapped,
                         Field::Scaled(_) => (wrapped - low) * inverse,
                         Field::UnwrappedScaled(_) => (*x - low) * inverse,
-                        _ => image as f64,
+                        Field::Image(_) => image as f64,
+                        Field::Id | Field::Raw(_) | Field::Kinetic | Field::Number(_) => {
+                            unreachable!("the arm above names the others")
+                        }
                     };
                 }
             }

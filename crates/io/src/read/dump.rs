@@ -13,7 +13,7 @@ use std::path::Path;
 pub fn dump(path: &Path, which: Frame) -> Result<Atoms, ReadError> {
     let last = match which {
         Frame::Last => count(Stream::open(path)?)?.saturating_sub(1),
-        _ => 0,
+        Frame::Index(_) | Frame::Step(_) => 0,
     };
     parse(Stream::open(path)?, which, last)
 }
@@ -23,7 +23,7 @@ pub fn parse_dump(text: &str, name: &str, which: Frame) -> Result<Atoms, ReadErr
     let stream = || Stream::new(text.as_bytes(), name);
     let last = match which {
         Frame::Last => count(stream())?.saturating_sub(1),
-        _ => 0,
+        Frame::Index(_) | Frame::Step(_) => 0,
     };
     parse(stream(), which, last)
 }

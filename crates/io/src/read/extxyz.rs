@@ -83,7 +83,7 @@ fn parse<R: BufRead>(
         stream.expect(|| "the line with Lattice and Properties is missing".into())?;
         let wanted = match which {
             Frame::Step(step) => Head::read(&stream)?.step == Some(step),
-            _ => seen == index,
+            Frame::Index(_) | Frame::Last => seen == index,
         };
         if wanted {
             let head = Head::read(&stream)?;
@@ -95,7 +95,7 @@ fn parse<R: BufRead>(
     Err(stream.whole(match which {
         _ if seen == 0 => "the file has no frames".to_string(),
         Frame::Step(step) => format!("none of its {seen} frames says step={step}"),
-        _ => format!(
+        Frame::Index(_) | Frame::Last => format!(
             "there is no frame {index}: it has {seen}, the last is {}",
             seen - 1
         ),

@@ -39,6 +39,7 @@ pub fn fields(s: &Snapshot) -> io::Result<Vec<(&'static str, Field<'_>)>> {
         ("energy_density", Field::Scalar(&s.energy_density)),
         ("dilatation", Field::Scalar(&s.dilatation)),
         ("mark", Field::Integer(&s.mark)),
+        ("body", Field::Count(&s.body)),
     ];
     if let Some(fragment) = &s.fragment {
         all.push(("fragment", Field::Count(fragment)));
@@ -92,6 +93,7 @@ pub(super) mod tests {
             dilatation: vec![0.01, -0.02, 0.03],
             energy_density: vec![10.0, 20.0, 30.0],
             mark: vec![-1, 0, 4],
+            body: vec![0, 1, 1],
             fragment: Some(vec![0, 0, 1]),
             bonds: Some(vec![(0, 1), (1, 2)]),
         }

@@ -308,6 +308,10 @@ pub(super) mod tests {
             [[255; 4], [0; 4], [4, 0, 0, 0]].concat()
         );
         assert_eq!(
+            appended(&file, "body"),
+            [[0; 4], [1, 0, 0, 0], [1, 0, 0, 0]].concat()
+        );
+        assert_eq!(
             appended(&file, "fragment"),
             [[0; 4], [0; 4], [1, 0, 0, 0]].concat()
         );

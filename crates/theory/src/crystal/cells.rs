@@ -55,7 +55,12 @@ pub fn links<const D: usize>(
     let site = |b: usize| usize::from(kind == LatticeKind::Diamond && b >= 4);
     let sources: &[usize] = match kind {
         LatticeKind::Diamond => &[0, 4],
-        _ => &[0],
+        LatticeKind::Chain
+        | LatticeKind::Square
+        | LatticeKind::Triangular
+        | LatticeKind::Cubic
+        | LatticeKind::Bcc
+        | LatticeKind::Fcc => &[0],
     };
     Ok(sources
         .iter()

@@ -162,7 +162,11 @@ impl LatticeSolid {
                 };
                 self.bond_based(micromodulus(D, plane, stiffness, moments))
             }
-            _ => Err(CrystalError::NotASolid),
+            LawSpec::Lps(_)
+            | LawSpec::LpsAsTyped { .. }
+            | LawSpec::EamLike { .. }
+            | LawSpec::Atoms
+            | LawSpec::Micromoduli => Err(CrystalError::NotASolid),
         }
     }
 }

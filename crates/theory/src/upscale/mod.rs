@@ -113,7 +113,9 @@ pub fn lattice(spec: &Spec) -> Result<(LatticeKind, f64), UpscaleError> {
             ..
         }
         | BodySpec::Sites { kind, spacing, .. } => Ok((*kind, *spacing)),
-        _ => Err(UpscaleError::NoLattice),
+        BodySpec::Lattice { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => {
+            Err(UpscaleError::NoLattice)
+        }
     }
 }
 
@@ -178,7 +180,7 @@ pub fn upscale_keeping(
     let mut coarse = spec.clone();
     match &mut coarse.body {
         BodySpec::Lattice { spacing, .. } | BodySpec::Sites { spacing, .. } => *spacing *= n,
-        BodySpec::Cloud(_) => return Err(UpscaleError::NoLattice),
+        BodySpec::Cloud(_) | BodySpec::Several(_) => return Err(UpscaleError::NoLattice),
     }
     coarse.family = FamilyChoice::Stencil;
     let divided = |horizon: Horizon| -> Result<Horizon, UpscaleError> {

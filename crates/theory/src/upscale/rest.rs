@@ -41,7 +41,9 @@ pub fn rest_spacing(spec: &Spec) -> Option<f64> {
         // its embedding energy says nothing far from there
         made_for: match &potential.form {
             Form::Mei(p) => Some(p.spec().nearest / kind.nearest()),
-            _ => None,
+            Form::LennardJones(_) | Form::Morse(_) | Form::Buckingham(_) | Form::Tabulated(_) => {
+                None
+            }
         },
     })
 }

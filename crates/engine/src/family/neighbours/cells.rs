@@ -215,10 +215,24 @@ fn wind(t: f64) -> u32 {
 /// Slot and reference position of every point. On a grid, walked row by row: finding the coordinates of a single slot
 /// takes divisions.
 fn each_point<const D: usize>(body: &Body<D>, mut visit: impl FnMut(usize, [f64; D])) {
+    each_of(body, 0, &mut visit);
+}
+
+/// The same of a body whose slots begin at `start`.
+fn each_of<const D: usize>(body: &Body<D>, start: usize, visit: &mut impl FnMut(usize, [f64; D])) {
     let grid = match &body.layout {
         Layout::Cloud(x) => {
             for &slot in &body.slots {
-                visit(slot as usize, std::array::from_fn(|a| x[a][slot as usize]));
+                visit(
+                    start + slot as usize,
+                    std::array::from_fn(|a| x[a][slot as usize]),
+                );
+            }
+            return;
+        }
+        Layout::Several(pieces) => {
+            for p in pieces {
+                each_of(&p.body, p.first, visit);
             }
             return;
         }
@@ -243,7 +257,7 @@ fn each_point<const D: usize>(body: &Body<D>, mut visit: impl FnMut(usize, [f64;
             for c in 0..grid.cells[0] {
                 if grid.is_owned(first + c) {
                     x[0] = coordinate(0, c);
-                    visit(first + c, x);
+                    visit(start + first + c, x);
                 }
             }
         }

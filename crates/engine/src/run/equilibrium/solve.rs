@@ -78,7 +78,7 @@ impl<const D: usize> Model<D> {
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
     fn at_peace(&self) -> bool {
-        !matches!(self.recipe.laws, Laws::Atoms(_))
+        !matches!(self.recipes.first().laws, Laws::Atoms(_))
     }
 
     /// `A u = F` about the reference, with A's factors or by conjugate gradients.

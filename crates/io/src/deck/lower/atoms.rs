@@ -128,7 +128,12 @@ pub(super) fn potential(
                     mass: None,
                 }));
             }
-            _ => continue,
+            Law::Pmb(_)
+            | Law::Lps(_)
+            | Law::LpsAsTyped(_)
+            | Law::EamLike(_)
+            | Law::Springs(_)
+            | Law::Micromoduli => continue,
         };
         let (cutoff, end) = ended(context, end)?;
         if written.len() > 1 {
@@ -227,7 +232,7 @@ fn closed_form(
         BodySpec::Lattice { kind, spacing, .. } | BodySpec::Sites { kind, spacing, .. } => {
             (*kind, *spacing)
         }
-        BodySpec::Cloud(_) => {
+        BodySpec::Cloud(_) | BodySpec::Several(_) => {
             return Err(context.error_with(
                 span,
                 "the embedding energy in closed form is made for a lattice, this is a cloud of points",

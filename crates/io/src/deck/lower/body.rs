@@ -302,15 +302,27 @@ pub(super) fn sets(
             ("where", set.value.r#where.is_some()),
         ];
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
+        let piece = match &set.value.body {
+            Some(name) => Some(super::bodies::named(context, name, body)?),
+            None => None,
+        };
+        let of = piece.map_or(body, |p| &p.body);
+        if piece.is_some() && given.iter().all(|(_, given)| !given) {
+            let help = "add region, mark or where; the body itself is a set of its name";
+            return Err(context.error_with(&set.span, "all points of a body", help));
+        }
         let members = match (&set.value.region, &set.value.mark, &set.value.r#where) {
             (Some(shape), _, _) => Members::Region(region(context, shape)?),
-            (_, Some(mark), _) => marked(context, mark, body)?,
+            (_, Some(mark), _) => marked(context, mark, of)?,
             (_, _, Some(text)) => Members::Where(context.expression(text, Dim::NUMBER)?),
             (None, None, None) => Members::All,
         };
         sets.push(SetSpec {
             name: name.clone(),
-            members,
+            members: match piece {
+                Some(piece) => super::bodies::within(&piece.name, members),
+                None => members,
+            },
         });
     }
     if let BodySpec::Cloud(cloud) = body {
@@ -330,7 +342,7 @@ pub(super) fn sets(
 }
 
 /// Names of the file's sets and marks.
-fn named(cloud: &Cloud) -> Vec<&str> {
+pub(super) fn named(cloud: &Cloud) -> Vec<&str> {
     let sets = cloud.sets.iter().map(|(name, _)| name.as_str());
     let mut names: Vec<&str> = sets.collect();
     for (_, name) in &cloud.names {
@@ -342,7 +354,7 @@ fn named(cloud: &Cloud) -> Vec<&str> {
 }
 
 /// The points that the file gives a name: a set knows all of them, a mark only those that have no other.
-fn of_file(cloud: &Cloud, name: &str) -> Option<Members> {
+pub(super) fn of_file(cloud: &Cloud, name: &str) -> Option<Members> {
     let set = cloud.sets.iter().find(|(known, _)| known == name);
     let mark = || cloud.names.iter().find(|(_, known)| known == name);
     set.map(|(_, ids)| Members::Points(ids.clone()))
@@ -350,8 +362,18 @@ fn of_file(cloud: &Cloud, name: &str) -> Option<Members> {
 }
 
 fn marked(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<Members> {
-    let BodySpec::Cloud(cloud) = body else {
-        return Err(context.error(&mark.span, "a lattice has no marks: say region instead"));
+    let cloud = match body {
+        BodySpec::Cloud(cloud) => cloud,
+        BodySpec::Several(_) => {
+            return Err(context.error_with(
+                &mark.span,
+                "each of several bodies has marks of its own",
+                "say whose: body = \"NAME\"",
+            ));
+        }
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } => {
+            return Err(context.error(&mark.span, "a lattice has no marks: say region instead"));
+        }
     };
     match &mark.value {
         Mark::Number(number) => Ok(Members::Mark(*number)),
@@ -383,7 +405,9 @@ pub(super) fn corner(context: &Context, written: &Body, body: &BodySpec) -> [f64
             };
             low.map(|c| if c.is_finite() { c } else { 0.0 })
         }
-        _ => context.atoms.as_ref().map_or([0.0; 3], |file| file.corner),
+        BodySpec::Sites { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => {
+            context.atoms.as_ref().map_or([0.0; 3], |file| file.corner)
+        }
     }
 }
 
@@ -481,7 +505,14 @@ pub(super) fn periods(
                 ]);
                 length
             }
-            _ => period
+            BodySpec::Several(_) => period.ok_or_else(|| {
+                context.error_with(
+                    &span,
+                    "several bodies do not say their period",
+                    format!("write periodic = {{ {axis} = \"50 mm\" }}"),
+                )
+            })?,
+            BodySpec::Sites { .. } | BodySpec::Cloud(_) => period
                 .or(context.atoms.as_ref().map(|f| f.cell[a]))
                 .ok_or_else(|| {
                     context.error_with(

@@ -1,32 +1,50 @@
 //! Materials: laws, moduli, fracture.
 
 use super::atoms::AtomsPotential;
+use super::bodies;
 use super::context::{Context, Result};
-use crate::deck::document::{Elastic, Fracture, Law, Material, ReleaseName};
+use crate::deck::document::{Document, Elastic, Fracture, Law, Material, ReleaseName};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number};
 use peridyne::spec::{
-    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, PmbStiffness,
-    Release, SetSpec,
+    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, PieceSpec,
+    PmbStiffness, Release, SetSpec,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 pub(super) fn materials(
     context: &Context,
-    written: &BTreeMap<String, At<Material>>,
+    document: &Document,
     sets: &[SetSpec],
     body: &mut BodySpec,
     potential: Option<&AtomsPotential>,
 ) -> Result<Vec<MaterialSpec>> {
+    let written = &document.material;
     let several = written.len() > 1;
+    // bodies of a material that is on several: one entry each, at the end
+    let mut others: Vec<MaterialSpec> = Vec::new();
     let point = point_volume(body, context.dimension);
+    let mut users: BTreeMap<&String, Vec<String>> = written
+        .keys()
+        .map(|name| {
+            let bodies = bodies::made_of(document, body, name);
+            (name, bodies.map(str::to_string).collect())
+        })
+        .collect();
     let of_file = densities(context, written, body)?;
     let mut materials: Vec<MaterialSpec> = Vec::new();
     for (name, material) in written {
         let given = &material.value;
+        let mut users = users.remove(name).unwrap_or_default().into_iter();
+        let first_user = users.next();
         let set = match &given.set {
+            Some(set) if first_user.is_some() => {
+                let message = "a body names this material: it needs no set besides";
+                return Err(context.error(&set.span, message));
+            }
             Some(set) => context.known_set(set, sets)?,
+            None if let Some(body) = first_user => body,
             // a mesh names its parts: the material of the same name belongs there
             None if several && sets.iter().any(|s| s.name == *name) => name.clone(),
             None if several => {
@@ -80,7 +98,7 @@ pub(super) fn materials(
                 ));
             }
         };
-        materials.push(MaterialSpec {
+        let made = MaterialSpec {
             name: name.clone(),
             set,
             density,
@@ -90,8 +108,14 @@ pub(super) fn materials(
                 .as_ref()
                 .map(|f| fracture(context, f))
                 .transpose()?,
-        });
+        };
+        others.extend(users.map(|set| MaterialSpec {
+            set,
+            ..made.clone()
+        }));
+        materials.push(made);
     }
+    materials.extend(others);
     Ok(materials)
 }
 
@@ -101,6 +125,15 @@ fn densities<'b>(
     written: &BTreeMap<String, At<Material>>,
     body: &'b mut BodySpec,
 ) -> Result<Option<&'b Cloud>> {
+    if let BodySpec::Several(pieces) = body {
+        // where there are several bodies, materials have the densities
+        for piece in pieces {
+            if let BodySpec::Cloud(cloud) = &mut piece.body {
+                cloud.density.clear();
+            }
+        }
+        return Ok(None);
+    }
     let BodySpec::Cloud(cloud) = body else {
         return Ok(None);
     };
@@ -217,6 +250,11 @@ fn point_volume(body: &BodySpec, dimension: usize) -> Option<f64> {
         BodySpec::Cloud(cloud) => {
             let first = cloud.volume.first()?;
             cloud.volume.iter().all(|v| v == first).then_some(*first)
+        }
+        BodySpec::Several(pieces) => {
+            let first = point_volume(&pieces.first()?.body, dimension)?;
+            let same = |p: &PieceSpec| point_volume(&p.body, dimension) == Some(first);
+            pieces.iter().all(same).then_some(first)
         }
     }
 }

@@ -1,6 +1,7 @@
 //! From the deck as written to the specification: units, defaults, checks.
 
 mod atoms;
+mod bodies;
 mod body;
 mod context;
 mod material;
@@ -93,28 +94,19 @@ pub(super) fn lower(
     };
     let mut context = Context::new(source, units, time, &document.constants)?;
     measured_constants(&context, document)?;
-    let mut body = body::body(
-        &mut context,
-        &document.body,
-        document.dimension.as_ref(),
-        files,
-    )?;
+    let mut body = bodies::bodies(&mut context, document, files)?;
+    bodies::check(&context, document)?;
     let periodic = body::periods(
         &context,
         document.periodic.as_ref(),
         document.body.value.cells.as_ref(),
         &mut body,
     )?;
-    let mut sets = body::sets(&context, &document.sets, &body)?;
+    let mut sets = bodies::sets(&context, document, &body)?;
+    sets.extend(body::sets(&context, &document.sets, &body)?);
     let mut potential = atoms::potential(&context, &document.material, &body, files)?;
     atoms::of_file(&context, &document.body, potential.as_mut())?;
-    let materials = material::materials(
-        &context,
-        &document.material,
-        &sets,
-        &mut body,
-        potential.as_ref(),
-    )?;
+    let materials = material::materials(&context, document, &sets, &mut body, potential.as_ref())?;
     let current = potential.is_some()
         && matches!(
             document.family,
@@ -136,12 +128,6 @@ pub(super) fn lower(
         condition_entries.resize(conditions.len(), index);
     }
     let section = section(&context, document)?;
-    if let (2, BodySpec::Cloud(cloud), Some(file)) =
-        (context.dimension, &mut body, &document.body.value.file)
-        && (file.value.ends_with(".inp") || file.value.ends_with(".msh"))
-    {
-        cloud.volume.iter_mut().for_each(|area| *area *= section);
-    }
     let run = schedule::schedule(&context, document)?;
     let mut spec = Spec {
         title: document.title.clone().unwrap_or_default(),
@@ -278,6 +264,17 @@ fn horizon(
         BodySpec::Lattice { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
         BodySpec::Cloud(cloud) => cloud.spacing.map(|s| (s, 0.0)),
         BodySpec::Sites { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
+        // each body says for itself what is too short
+        BodySpec::Several(_) => body.spacing().map(|s| (s, 0.0)),
+    };
+    let several = matches!(body, BodySpec::Several(_));
+    let on_lattices = match body {
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } => true,
+        BodySpec::Cloud(_) => false,
+        BodySpec::Several(pieces) => pieces.iter().all(|p| match p.body {
+            BodySpec::Lattice { .. } | BodySpec::Sites { .. } => true,
+            BodySpec::Cloud(_) | BodySpec::Several(_) => false,
+        }),
     };
     let below = |length: f64, shortest: f64| {
         let [length, shortest] = [length, shortest].map(|l| context.units.write(l, Dim::LENGTH));
@@ -300,12 +297,17 @@ fn horizon(
         Or::Table(HorizonRatio { m_ratio }) => {
             let ratio = context.positive(m_ratio, Dim::NUMBER, "m_ratio")?;
             let Some((spacing, shortest)) = lattice else {
-                let help = "give body.spacing, or the horizon as a length";
-                return Err(context.error_with(
-                    &m_ratio.span,
-                    "m_ratio counts spacings, and these points have none",
-                    help,
-                ));
+                let (message, help) = match several {
+                    false => (
+                        "m_ratio counts spacings, and these points have none",
+                        "give body.spacing, or the horizon as a length",
+                    ),
+                    true => (
+                        "m_ratio counts spacings, and these bodies have different ones: horizons that differ from body to body are not supported yet",
+                        "give the horizon as a length, that of all bodies",
+                    ),
+                };
+                return Err(context.error_with(&m_ratio.span, message, help));
             };
             let whole = ratio.fract() == 0.0 && ratio <= f64::from(u32::MAX);
             if ratio * spacing < shortest {
@@ -318,7 +320,7 @@ fn horizon(
                         short(ratio)
                     ),
                 ))
-            } else if whole && !matches!(body, BodySpec::Cloud(_)) {
+            } else if whole && on_lattices {
                 Ok(Horizon::Ratio(ratio as u32))
             } else {
                 Ok(Horizon::Length(ratio * spacing))
@@ -337,7 +339,14 @@ fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
         Some(InfluenceName::CubicSpline) => Influence::CubicSpline,
         None => match materials.first().map(|m| m.law) {
             Some(LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. }) => Influence::Inverse,
-            _ => Influence::Constant,
+            Some(
+                LawSpec::Pmb(_)
+                | LawSpec::EamLike { .. }
+                | LawSpec::Springs(_)
+                | LawSpec::Atoms
+                | LawSpec::Micromoduli,
+            )
+            | None => Influence::Constant,
         },
     }
 }
@@ -402,10 +411,11 @@ fn contact(
     match &document.contact {
         Some(Or::Bare(false)) => Ok(None),
         Some(Or::Bare(true)) => Ok(Some(standard)),
-        None => Ok(materials
-            .iter()
-            .any(|m| m.fracture.is_some())
-            .then_some(standard)),
+        None => {
+            let touches = bodies::several(document);
+            let breaks = materials.iter().any(|m| m.fracture.is_some());
+            Ok((touches || breaks).then_some(standard))
+        }
         Some(Or::Table(c)) => {
             let get = |n: &Option<_>, or: f64, what: &str| {
                 n.as_ref()

@@ -211,7 +211,7 @@ impl UnitSystem {
                 let [length, mass, time] = dim.0.map(i32::from);
                 EV.powi(mass) * 1e-10f64.powi(length - 2 * mass) * 1e-12f64.powi(time + 2 * mass)
             }
-            _ => 1.0,
+            UnitSystem::Si | UnitSystem::Lj | UnitSystem::None => 1.0,
         }
     }
 

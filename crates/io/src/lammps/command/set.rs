@@ -63,13 +63,27 @@ impl Session<'_> {
             let allowed = |x: f64| match quantity {
                 Quantity::Density | Quantity::Volume => x > 0.0 && x.is_finite(),
                 Quantity::Type => x >= 1.0 && x <= types && x.fract() == 0.0,
-                _ => x.is_finite(),
+                Quantity::Position(_)
+                | Quantity::Reference(_)
+                | Quantity::Velocity(_)
+                | Quantity::Force(_)
+                | Quantity::Damage
+                | Quantity::Dilatation
+                | Quantity::CriticalStretch
+                | Quantity::Energy => x.is_finite(),
             };
             let wrong = |x: f64, who: String| {
                 let what = match quantity {
                     Quantity::Type => format!("be a whole number from 1 to {types}"),
                     Quantity::Density | Quantity::Volume => "be positive".to_string(),
-                    _ => "be finite".to_string(),
+                    Quantity::Position(_)
+                    | Quantity::Reference(_)
+                    | Quantity::Velocity(_)
+                    | Quantity::Force(_)
+                    | Quantity::Damage
+                    | Quantity::Dilatation
+                    | Quantity::CriticalStretch
+                    | Quantity::Energy => "be finite".to_string(),
                 };
                 Problem::at(word.span, format!("{name} must {what}, found {x}{who}"))
             };

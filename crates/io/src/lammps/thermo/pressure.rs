@@ -23,7 +23,7 @@ impl Session<'_> {
         let column = |c: &Column| match c {
             Column::Keyword(k) => WANTED.contains(k),
             Column::Compute(_, id, _) => id == "thermo_press",
-            _ => false,
+            Column::Fix(..) | Column::Variable(_) => false,
         };
         let formula = |name: &str| match self.variables.get(name) {
             Some(Kind::Equal(f) | Kind::Atom(f)) => WANTED.iter().any(|w| f.text.contains(w)),

@@ -89,7 +89,11 @@ impl Kind {
                 *at += 1;
                 *at <= *last
             }
-            _ => true,
+            Kind::Text(_)
+            | Kind::Equal(_)
+            | Kind::Atom(_)
+            | Kind::Internal(_)
+            | Kind::Format { .. } => true,
         }
     }
 }

@@ -156,7 +156,9 @@ impl LatticeBody {
                 };
                 (lattice, quarters.clone())
             }
-            _ => return Err(SurfaceError::Lattice),
+            BodySpec::Lattice { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => {
+                return Err(SurfaceError::Lattice);
+            }
         };
         use LatticeKind::{Chain, Cubic, Square};
         if !matches!(lattice.kind, Chain | Square | Cubic) {

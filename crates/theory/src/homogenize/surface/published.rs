@@ -89,7 +89,9 @@ pub fn row(sites: &Sites, bonds: &[StencilBond], method: SurfaceMethod, place: u
                         .powf(-0.5)
                 }
                 // of the sums, not of their inverses
-                _ => 2.0 / (1.0 / own[0] + 1.0 / other[0]),
+                SurfaceMethod::Volume | SurfaceMethod::Force | SurfaceMethod::Exact => {
+                    2.0 / (1.0 / own[0] + 1.0 / other[0])
+                }
             }
         })
         .collect()

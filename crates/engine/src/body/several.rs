@@ -1,0 +1,111 @@
+//! Several bodies as one: each keeps its own layout, its slots and its points come one after another.
+
+use super::{Body, Layout, Values};
+
+/// A body among several.
+#[derive(Debug, Clone)]
+pub struct Piece<const D: usize> {
+    /// Its first slot.
+    pub first: usize,
+    pub body: Body<D>,
+}
+
+impl<const D: usize> Piece<D> {
+    /// Its slots.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.body.len
+    }
+}
+
+impl<const D: usize> Body<D> {
+    /// One body of several, all with the same periods. Its spacing is the smallest.
+    pub fn several(bodies: Vec<Body<D>>) -> Body<D> {
+        let mut pieces = Vec::with_capacity(bodies.len());
+        let mut first = 0;
+        for body in bodies {
+            let next = first + body.len;
+            pieces.push(Piece { first, body });
+            first = next;
+        }
+        let len = first;
+        let shifted = |p: &Piece<D>, s: u32| p.first as u32 + s;
+        let mut slots = vec![];
+        let mut images = vec![];
+        for p in &pieces {
+            slots.extend(p.body.slots.iter().map(|s| shifted(p, *s)));
+            let all = p.body.images.iter();
+            images.extend(all.map(|(copy, of)| (shifted(p, *copy), shifted(p, *of))));
+        }
+        let volume = join(&pieces, &slots, len, 0.0, |b| &b.volume);
+        let density = join(&pieces, &slots, len, 1.0, |b| &b.density);
+        let marked = pieces.iter().any(|p| !p.body.mark.is_empty());
+        let mark = |p: &Piece<D>| match p.body.mark.is_empty() {
+            true => vec![0; p.body.points()],
+            false => p.body.mark.clone(),
+        };
+        Body {
+            slots,
+            len,
+            spacing: pieces
+                .iter()
+                .map(|p| p.body.spacing)
+                .fold(f64::INFINITY, f64::min),
+            volume,
+            density,
+            period: pieces.first().map_or([None; D], |p| p.body.period),
+            material: vec![],
+            mark: match marked {
+                true => pieces.iter().flat_map(mark).collect(),
+                false => vec![],
+            },
+            images,
+            layout: Layout::Several(pieces),
+        }
+    }
+
+    /// The bodies that this one is made of, if it is made of several.
+    pub fn pieces(&self) -> &[Piece<D>] {
+        match &self.layout {
+            Layout::Several(pieces) => pieces,
+            Layout::Grid(_) | Layout::Cloud(_) => &[],
+        }
+    }
+
+    /// Which of the bodies a slot belongs to; 0 where there is one.
+    pub fn piece_of(&self, slot: usize) -> usize {
+        piece_of(self.pieces(), slot)
+    }
+
+    /// Ids of the points of each of the bodies.
+    pub fn ids(&self) -> Vec<std::ops::Range<usize>> {
+        let mut first = 0;
+        let each = self.pieces().iter().map(|p| {
+            let from = first;
+            first += p.body.points();
+            from..first
+        });
+        each.collect()
+    }
+}
+
+/// The piece that has this slot.
+pub(super) fn piece_of<const D: usize>(pieces: &[Piece<D>], slot: usize) -> usize {
+    pieces
+        .partition_point(|p| p.first <= slot)
+        .saturating_sub(1)
+}
+
+/// A number per slot from those of the pieces.
+fn join<const D: usize>(
+    pieces: &[Piece<D>],
+    slots: &[u32],
+    len: usize,
+    absent: f64,
+    of: impl Fn(&Body<D>) -> &Values,
+) -> Values {
+    let each = pieces.iter().flat_map(|p| {
+        let values = of(&p.body);
+        p.body.slots.iter().map(|s| values.at(*s as usize))
+    });
+    Values::from_points(&each.collect::<Vec<_>>(), slots, len, absent)
+}

@@ -1,0 +1,306 @@
+//! Interactions of several bodies side by side: each sweeps over its own bonds, none reaches another.
+//!
+//! Sweeps want the columns of their own body, so displacements, velocities and forces are copied in and out.
+
+use super::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
+use crate::body::several::Piece;
+use crate::body::{Body, Field, Layout, zeros};
+use crate::error::BuildError;
+use crate::law::BondFactors;
+use crate::spec::CrackKind;
+
+/// One body's bonds and its own columns.
+struct Own<const D: usize> {
+    /// First slot.
+    first: usize,
+    /// `None`: loose points.
+    bonds: Option<Box<dyn Interaction<D>>>,
+    u: Field<D>,
+    v: Field<D>,
+    f: Field<D>,
+    seen: PointEnergies,
+}
+
+/// Interactions of several bodies, in their order.
+pub struct SeveralInteraction<const D: usize> {
+    own: Vec<Own<D>>,
+    /// Family of those that have bonds.
+    family: &'static str,
+}
+
+impl<const D: usize> SeveralInteraction<D> {
+    /// One interaction for each body that `body` is made of; `None` for loose points.
+    pub fn new(body: &Body<D>, bonds: Vec<Option<Box<dyn Interaction<D>>>>) -> Self {
+        let mut kinds = bonds.iter().flatten().map(|i| i.family());
+        let family = match kinds.next() {
+            None => "none",
+            Some(first) if kinds.all(|k| k == first) => first,
+            Some(_) => "stencil and list",
+        };
+        let own = pieces(body).iter().zip(bonds).map(|(p, bonds)| Own {
+            first: p.first,
+            bonds,
+            u: p.body.at_rest(),
+            v: zeros(p.body.len),
+            f: zeros(p.body.len),
+            seen: PointEnergies::default(),
+        });
+        SeveralInteraction {
+            own: own.collect(),
+            family,
+        }
+    }
+
+    /// Bodies with bonds.
+    fn each<'a>(
+        &'a self,
+        body: &'a Body<D>,
+    ) -> impl Iterator<Item = (&'a Piece<D>, &'a dyn Interaction<D>)> {
+        let all = pieces(body).iter().zip(&self.own);
+        all.filter_map(|(p, own)| own.bonds.as_deref().map(|bonds| (p, bonds)))
+    }
+
+    /// The body of a slot, and the slot in it.
+    fn place(&self, slot: usize) -> (usize, usize) {
+        let n = self.own.partition_point(|o| o.first <= slot) - 1;
+        (n, slot - self.own[n].first)
+    }
+
+    /// What the interaction of a slot's body says of it; `None`: a loose point.
+    fn at<T>(&self, slot: usize, of: impl Fn(&dyn Interaction<D>, usize, usize) -> T) -> Option<T> {
+        let (n, own) = self.place(slot);
+        self.own[n].bonds.as_deref().map(|bonds| of(bonds, n, own))
+    }
+}
+
+fn pieces<const D: usize>(body: &Body<D>) -> &[Piece<D>] {
+    match &body.layout {
+        Layout::Several(pieces) => pieces,
+        Layout::Grid(_) | Layout::Cloud(_) => unreachable!("made for several bodies"),
+    }
+}
+
+fn take<const D: usize>(from: &Field<D>, p: &Piece<D>, to: &mut Field<D>) {
+    for a in 0..D {
+        to[a].copy_from_slice(&from[a][p.range()]);
+    }
+}
+
+/// The displacements of one body.
+fn part<const D: usize>(u: &Field<D>, p: &Piece<D>) -> Field<D> {
+    let mut own = zeros(p.body.len);
+    take(u, p, &mut own);
+    own
+}
+
+fn put(seen: &PointEnergies, first: usize, out: &mut PointEnergies) {
+    let all = [
+        (&seen.strain, &mut out.strain),
+        (&seen.repulsion, &mut out.repulsion),
+        (&seen.dilatation, &mut out.dilatation),
+        (&seen.whole, &mut out.whole),
+    ];
+    for (from, to) in all {
+        to[first..first + from.len()].copy_from_slice(from);
+    }
+}
+
+fn shifted(fault: Fault, first: usize) -> Fault {
+    match fault {
+        Fault::Density { slot, density } => Fault::Density {
+            slot: slot + first,
+            density,
+        },
+        Fault::Crossing { i, j } => Fault::Crossing {
+            i: i + first,
+            j: j + first,
+        },
+    }
+}
+
+impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
+    fn family(&self) -> &'static str {
+        self.family
+    }
+
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        mut seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        if let Some(seen) = &mut seen {
+            seen.zeros(body.len);
+        }
+        let mut total = Tally::default();
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            let Some(bonds) = &mut own.bonds else {
+                for a in 0..D {
+                    f[a][p.range()].fill(0.0);
+                }
+                continue;
+            };
+            take(u, p, &mut own.u);
+            let sweep = match sweep {
+                Sweep::Evolve { v, dt, release } => {
+                    take(v, p, &mut own.v);
+                    Sweep::Evolve {
+                        v: &own.v,
+                        dt,
+                        release,
+                    }
+                }
+                Sweep::Hold => Sweep::Hold,
+            };
+            let watch = seen.is_some().then_some(&mut own.seen);
+            let mut tally = bonds.forces(&p.body, &own.u, &mut own.f, sweep, watch);
+            tally.fault = tally.fault.map(|fault| shifted(fault, p.first));
+            total += tally;
+            for a in 0..D {
+                f[a][p.range()].copy_from_slice(&own.f[a]);
+            }
+            if let Some(seen) = &mut seen {
+                put(&own.seen, p.first, seen);
+            }
+        }
+        total
+    }
+
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                take(u, p, &mut own.u);
+                let [strain, repulsion] = bonds.energy(&p.body, &own.u);
+                sum = [sum[0] + strain, sum[1] + repulsion];
+            }
+        }
+        sum
+    }
+
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        out.zeros(body.len);
+        for (p, bonds) in self.each(body) {
+            let mut seen = PointEnergies::default();
+            bonds.observe(&p.body, &part(u, p), &mut seen);
+            put(&seen, p.first, out);
+        }
+    }
+
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                take(u, p, &mut own.u);
+                bonds.tangents(&p.body, &own.u, &mut |bond| {
+                    visit(BondTangent {
+                        i: bond.i + p.first,
+                        j: bond.j + p.first,
+                        ..bond
+                    });
+                });
+            }
+        }
+    }
+
+    fn gain(&self, slot: usize) -> f64 {
+        self.at(slot, |bonds, _, s| bonds.gain(s)).unwrap_or(0.0)
+    }
+
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        for (p, bonds) in self.each(body) {
+            bonds.each_bond(&p.body, &mut |i, j, xi, state| {
+                visit(i + p.first, j + p.first, xi, state);
+            });
+        }
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        out.fill(0.0);
+        for (p, bonds) in self.each(body) {
+            bonds.damage(&p.body, &mut out[p.range()]);
+        }
+    }
+
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        let all = pieces(body).iter().zip(&mut self.own);
+        all.filter_map(|(p, own)| Some(own.bonds.as_mut()?.cut(&p.body, kind, crosses)))
+            .sum()
+    }
+
+    fn scale_bonds(
+        &mut self,
+        body: &Body<D>,
+        factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
+    ) -> Result<(), BuildError> {
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                let of = |i: usize, j: usize, c| factors(i + p.first, j + p.first, c);
+                bonds.scale_bonds(&p.body, &of)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn reached(&self, body: &Body<D>, i: usize, xi: [f64; D]) -> Option<(f64, BondFactors<f64>)> {
+        self.at(i, |bonds, n, s| bonds.reached(&pieces(body)[n].body, s, xi))?
+    }
+
+    fn prepare(&mut self, body: &Body<D>) {
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                bonds.prepare(&p.body);
+            }
+        }
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
+        all.map(|b| b.directed_bonds()).sum()
+    }
+
+    fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
+        let size =
+            |bonds: &dyn Interaction<D>, n: usize, s| bonds.family_size(&pieces(body)[n].body, s);
+        self.at(slot, size).unwrap_or(0)
+    }
+
+    fn near_horizon(&self) -> u64 {
+        let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
+        all.map(|b| b.near_horizon()).sum()
+    }
+
+    fn critical_stretch(&self, slot: usize) -> f64 {
+        self.at(slot, |bonds, _, s| bonds.critical_stretch(s))
+            .unwrap_or(f64::INFINITY)
+    }
+
+    fn point_field(&self, field: usize, slot: usize) -> f64 {
+        self.at(slot, |bonds, _, s| bonds.point_field(field, s))
+            .unwrap_or(0.0)
+    }
+
+    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        let ((n, i), (m, j)) = (self.place(i), self.place(j));
+        let bonds = self.own[n].bonds.as_deref();
+        n == m && bonds.is_some_and(|b| b.in_family(&pieces(body)[n].body, i, j))
+    }
+
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&[], &[])
+    }
+
+    fn bytes(&self) -> usize {
+        let own = |o: &Own<D>| {
+            let columns: usize = [&o.u, &o.v, &o.f].iter().map(|f| 8 * D * f[0].len()).sum();
+            columns + o.bonds.as_ref().map_or(0, |b| b.bytes())
+        };
+        self.own.iter().map(own).sum()
+    }
+}

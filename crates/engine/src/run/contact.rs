@@ -1,0 +1,176 @@
+//! Contact of a model: how points of every body and material repel, and what step that allows.
+
+use super::parts::Part;
+use super::recipe::{Recipes, contact_stiffness};
+use super::reference::cell;
+use crate::body::Body;
+use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
+use crate::error::BuildError;
+use crate::interaction::contact::Contact;
+use crate::interaction::{PairTable, Repulsion};
+use crate::space::AXES;
+use crate::spec::{ContactStiffness, Spec};
+
+/// Points of one material in one body.
+struct Kind {
+    body: usize,
+    /// Place in the spec.
+    material: usize,
+    /// Distance of points (length).
+    spacing: f64,
+    /// From the law (force / volume² / length).
+    stiffness: f64,
+}
+
+/// How all points repel.
+pub(super) struct Rules {
+    kinds: Vec<Kind>,
+    repulsion: Repulsion,
+}
+
+/// The rules of all pairs; `None`: no contact. Points of unlike spacing repel from the mean of both on.
+pub(super) fn repulsion<const D: usize>(
+    spec: &Spec,
+    parts: &[Part],
+    recipes: &Recipes,
+    body: &Body<D>,
+) -> Result<Option<Rules>, BuildError> {
+    let Some(contact) = &spec.contact else {
+        return Ok(None);
+    };
+    let mut kinds = vec![];
+    for (n, (part, recipe)) in parts.iter().zip(recipes.all()).enumerate() {
+        let own = body.pieces().get(n).map_or(body, |p| &p.body);
+        let spacing = cell(&part.spec, own);
+        for (material, stiffness) in part.materials.iter().zip(&recipe.contact) {
+            kinds.push(Kind {
+                body: n,
+                material: *material,
+                spacing,
+                stiffness: *stiffness,
+            });
+        }
+    }
+    let stiffness = match &contact.stiffness {
+        ContactStiffness::Pairs(_) => {
+            let of_materials =
+                contact_stiffness(&contact.stiffness, &vec![0.0; spec.materials.len()])?;
+            PairTable::new(kinds.len(), |a, b| {
+                of_materials.at(kinds[a].material, kinds[b].material)
+            })
+        }
+        ContactStiffness::Laws | ContactStiffness::Same(_) => {
+            let own: Vec<f64> = kinds.iter().map(|k| k.stiffness).collect();
+            contact_stiffness(&contact.stiffness, &own)?
+        }
+    };
+    let range = PairTable::new(kinds.len(), |a, b| {
+        contact.free * 0.5 * (kinds[a].spacing + kinds[b].spacing)
+    });
+    let longest = range.highest();
+    if !body.pieces().is_empty() {
+        for (a, period) in body.period.iter().enumerate() {
+            if let Some(p) = period.filter(|p| *p <= 3.0 * longest) {
+                return Err(BuildError::new(
+                    "periodic",
+                    format!(
+                        "the period along {} is {p:e}, not more than three ranges of contact of {longest:e}: a point would meet its own image",
+                        AXES[a]
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(Some(Rules {
+        kinds,
+        repulsion: Repulsion {
+            stiffness,
+            bonded: contact.bonded,
+            range,
+        },
+    }))
+}
+
+impl Rules {
+    /// Name of the material of a kind.
+    pub fn name<'a>(&self, spec: &'a Spec, kind: usize) -> &'a str {
+        let material = self.kinds.get(kind).map_or(0, |k| k.material);
+        spec.materials.get(material).map_or("", |m| &m.name)
+    }
+
+    /// The longest distance below which points of two bodies repel (length).
+    pub fn range(&self, a: usize, b: usize) -> f64 {
+        let of = |n: usize| {
+            let all = self.kinds.iter().enumerate();
+            all.filter(move |(_, k)| k.body == n).map(|(k, _)| k)
+        };
+        let pairs = of(a).flat_map(|k| of(b).map(move |l| (k, l)));
+        pairs
+            .map(|(k, l)| self.repulsion.range.at(k, l))
+            .fold(0.0, f64::max)
+    }
+
+    /// The pair of kinds that asks for the shortest step; `bonds` is the largest eigenvalue of the bonds.
+    pub fn limit<const D: usize>(
+        &self,
+        parts: &[Part],
+        body: &Body<D>,
+        bonds: f64,
+    ) -> Option<ContactLimit> {
+        let mut grains = vec![
+            Grain {
+                volume: 0.0,
+                density: f64::INFINITY
+            };
+            self.kinds.len()
+        ];
+        let kind = self.kind_of(body);
+        for &s in &body.slots {
+            let s = s as usize;
+            let grain = &mut grains[kind(s)];
+            grain.volume = grain.volume.max(body.volume.at(s));
+            grain.density = grain.density.min(body.density.at(s));
+        }
+        let mut near = 0.0f64;
+        for (n, part) in parts.iter().enumerate() {
+            let own = body.pieces().get(n).map_or(body, |p| &p.body);
+            let range = self.kinds.iter().enumerate().filter(|(_, k)| k.body == n);
+            let range = range.map(|(k, _)| self.repulsion.range.at(k, k));
+            near = near.max(part.neighbours(own, range.fold(0.0, f64::max)));
+        }
+        contact_limit(&self.repulsion, &grains, near / D as f64, bonds)
+    }
+
+    /// The kind of a slot.
+    fn kind_of<const D: usize>(&self, body: &Body<D>) -> impl Fn(usize) -> usize {
+        let first: Vec<usize> = (0..body.pieces().len())
+            .map(|n| self.kinds.iter().position(|k| k.body == n).unwrap_or(0))
+            .collect();
+        move |slot| match body.pieces() {
+            [] => body.material_of(slot),
+            pieces => {
+                let n = body.piece_of(slot);
+                first[n] + pieces[n].body.material_of(slot - pieces[n].first)
+            }
+        }
+    }
+
+    /// Contact of all points that are in no common family.
+    pub fn contact<const D: usize>(
+        self,
+        parts: &[Part],
+        body: &Body<D>,
+        horizon: f64,
+    ) -> Contact<D> {
+        let bonded: Vec<bool> = parts.iter().map(|p| p.bonded).collect();
+        let mut kind = vec![];
+        if !body.pieces().is_empty() {
+            let of = self.kind_of(body);
+            kind = vec![0; body.len];
+            for &s in &body.slots {
+                kind[s as usize] = of(s as usize) as u16;
+            }
+        }
+        Contact::new(self.repulsion, body, horizon, &bonded).kinds(kind)
+    }
+}

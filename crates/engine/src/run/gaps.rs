@@ -1,0 +1,149 @@
+//! Gaps between bodies, and gaps inside one that bonds reach across.
+
+use super::Gap;
+use crate::body::Body;
+use crate::family::cells::Cells;
+use crate::fracture::fragments::Fragments;
+use crate::interaction::{BondState, Interaction};
+use crate::spec::{BodySpec, PieceSpec, Spec};
+
+/// Points further apart than so many spacings are not next to each other: diagonal neighbours are up to √3 apart, the
+/// other side of a missing layer is 2.
+const NEXT: f64 = 1.9;
+/// Nearer than this part of a spacing, the cells of two points overlap.
+const OVERLAP: f64 = 0.9;
+
+/// The shortest distance between every two bodies that come nearer to each other than `reach` (length).
+pub(super) fn between<const D: usize>(
+    body: &Body<D>,
+    reach: f64,
+    range: impl Fn(usize, usize) -> f64,
+) -> Vec<Gap> {
+    let count = body.pieces().len();
+    if count < 2 {
+        return vec![];
+    }
+    let of: Vec<usize> = (body.slots.iter())
+        .map(|s| body.piece_of(*s as usize))
+        .collect();
+    let x: [Vec<f64>; D] = std::array::from_fn(|a| {
+        let all = body.slots.iter();
+        all.map(|s| body.position(*s as usize)[a]).collect()
+    });
+    let half = body
+        .period
+        .iter()
+        .flatten()
+        .fold(f64::INFINITY, |m, p| m.min(0.49 * p));
+    let reach = reach.min(half);
+    let cells = Cells::new(
+        std::array::from_fn(|a| x[a].as_slice()),
+        of.len(),
+        body.period,
+        reach,
+    );
+    let mut nearest = std::collections::BTreeMap::new();
+    for (i, own) in of.iter().enumerate() {
+        cells.candidates(i, |j, square| {
+            let other = of[j as usize];
+            if *own < other && square <= reach * reach {
+                let least: &mut f64 = nearest.entry([*own, other]).or_insert(square);
+                *least = least.min(square);
+            }
+        });
+    }
+    let gap = |(bodies, square): ([usize; 2], f64)| Gap {
+        bodies,
+        distance: square.sqrt(),
+        contact: range(bodies[0], bodies[1]),
+    };
+    nearest.into_iter().map(gap).collect()
+}
+
+/// What is wrong with them.
+pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64) -> Vec<String> {
+    let BodySpec::Several(pieces) = &spec.body else {
+        return vec![];
+    };
+    let name = |n: usize| pieces.get(n).map_or("", |p: &PieceSpec| &p.name);
+    let told = gaps.iter().filter_map(|gap| {
+        let [a, b] = gap.bodies;
+        let (own, distance) = (0.5 * (spacing(a) + spacing(b)), gap.distance);
+        let bodies = format!("bodies `{}` and `{}`", name(a), name(b));
+        if distance < OVERLAP * own {
+            Some(format!(
+                "{bodies} overlap: their nearest points are {distance:.4e} apart, their spacing is {own:.4e}"
+            ))
+        } else if spec.contact.is_none() {
+            Some(format!(
+                "{bodies} are {distance:.4e} apart and there is no contact: they go through each other"
+            ))
+        } else if distance < gap.contact {
+            Some(format!(
+                "{bodies} are {distance:.4e} apart, nearer than the distance of contact {:.4e}: such points begin to repel when they are nearer than {} of their distance now",
+                gap.contact,
+                spec.contact.as_ref().map_or(0.0, |c| c.bonded)
+            ))
+        } else {
+            None
+        }
+    });
+    told.collect()
+}
+
+/// Separate pieces of one body that bonds join; call before bonds are cut.
+pub(super) fn across<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    interaction: &dyn Interaction<D>,
+) -> Vec<String> {
+    let length = |s: usize| {
+        let (own, all) = (body.volume.at(s), body.pieces());
+        let spacing = all
+            .get(body.piece_of(s))
+            .map_or(body.spacing, |p| p.body.spacing);
+        spacing.max((own / spec.section).powf(1.0 / D as f64))
+    };
+    let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+    let next =
+        |i: usize, j: usize, xi: &[f64; D]| square(xi) < (NEXT * length(i).max(length(j))).powi(2);
+    let near = Fragments::by(body, interaction, |i, j, xi, state| {
+        state == BondState::Whole && next(i, j, xi)
+    });
+    if near.count() == Fragments::of(body, interaction).count() {
+        return vec![];
+    }
+    let mut label = vec![0; body.len];
+    for (l, s) in near.label.iter().zip(&body.slots) {
+        label[*s as usize] = *l;
+    }
+    let mut shortest: Option<(f64, usize, usize)> = None;
+    let mut bonds = 0u64;
+    interaction.each_bond(body, &mut |i, j, xi, state| {
+        if state == BondState::Whole && label[i] != label[j] {
+            bonds += 1;
+            let r = square(&xi).sqrt();
+            if shortest.is_none_or(|(least, ..)| r < least) {
+                shortest = Some((r, i, j));
+            }
+        }
+    });
+    let Some((r, i, j)) = shortest else {
+        return vec![];
+    };
+    let of = match &spec.body {
+        BodySpec::Several(pieces) => format!("body `{}`", pieces[body.piece_of(i)].name),
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => "the body".into(),
+    };
+    let at = |s: usize| {
+        let x = body.position(s);
+        let numbers: Vec<String> = x[..D].iter().map(|c| format!("{c:.4e}")).collect();
+        format!("({})", numbers.join(", "))
+    };
+    vec![format!(
+        "{of} is in separate pieces that {bonds} bonds join across a gap: the shortest of them, from {} to {}, is {r:.4e} long, {:.2} spacings. If the pieces should only touch, write [[body]] for each",
+        at(i),
+        at(j),
+        r / length(i).max(length(j))
+    )]
+}

@@ -1,0 +1,253 @@
+//! The bodies of a spec on their way into a model: where their points are, their laws, their bonds.
+
+use super::calibration::cloud_moments;
+use super::recipe::Recipe;
+use super::reference::{Reference, cell, reference};
+use crate::body::{Body, Layout, Values};
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::family::stencil::Stencil;
+use crate::interaction::Interaction;
+use crate::law::micromodulus::Moments;
+use crate::spec::{
+    BodySpec, Calibration, ContactStiffness, Horizon, LawSpec, MaterialSpec, PieceSpec,
+    PmbStiffness, Spec,
+};
+use std::borrow::Cow;
+
+/// One body.
+pub(super) struct Part<'a> {
+    /// Of this body alone: its points, and the materials that it is made of.
+    pub spec: Cow<'a, Spec>,
+    /// Places of these materials in the spec of all.
+    pub materials: Vec<usize>,
+    pub bonded: bool,
+    pub stencil: Option<Stencil>,
+    pub bulk: Option<Moments>,
+    /// Length.
+    pub horizon: f64,
+}
+
+/// The bodies of a spec, and where their points are.
+pub(super) fn parts<'a, const D: usize>(
+    spec: &'a Spec,
+) -> Result<(Vec<Part<'a>>, Body<D>), BuildError> {
+    let part = |spec: Cow<'a, Spec>, bonded: bool| -> Result<(Part<'a>, Body<D>), BuildError> {
+        let Reference {
+            body,
+            stencil,
+            bulk,
+            horizon,
+        } = reference::<D>(&spec)?;
+        let part = Part {
+            materials: (0..spec.materials.len()).collect(),
+            spec,
+            bonded,
+            stencil,
+            bulk,
+            horizon,
+        };
+        Ok((part, body))
+    };
+    let pieces = match &spec.body {
+        BodySpec::Several(pieces) => pieces,
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => {
+            let (part, body) = part(Cow::Borrowed(spec), true)?;
+            return Ok((vec![part], body));
+        }
+    };
+    several_can(spec, pieces)?;
+    let without = Spec {
+        body: BodySpec::Several(vec![]),
+        ..spec.clone()
+    };
+    let (mut all, mut bodies) = (vec![], vec![]);
+    for (n, piece) in pieces.iter().enumerate() {
+        let own = Spec {
+            body: piece.body.clone(),
+            ..without.clone()
+        };
+        let (part, body) = part(Cow::Owned(own), piece.bonded).map_err(|e| BuildError {
+            path: e.path.replacen("body", &format!("body[{n}]"), 1),
+            message: format!("body `{}`: {}", piece.name, e.message),
+            ..e
+        })?;
+        all.push(part);
+        bodies.push(body);
+    }
+    Ok((all, Body::several(bodies)))
+}
+
+/// What several bodies cannot have yet.
+fn several_can(spec: &Spec, pieces: &[PieceSpec]) -> Result<(), BuildError> {
+    let refused = |path: &str, message: &str, help: &str| {
+        Err(BuildError::new(path, message.to_string()).help(help))
+    };
+    if pieces.is_empty() {
+        return refused("body", "there are no bodies", "give one");
+    }
+    for (n, piece) in pieces.iter().enumerate() {
+        if pieces[..n].iter().any(|p| p.name == piece.name) {
+            return Err(BuildError::new(
+                format!("body[{n}].name"),
+                format!("two bodies are called `{}`", piece.name),
+            ));
+        }
+    }
+    let solid = |m: &MaterialSpec| {
+        matches!(
+            m.law,
+            LawSpec::Pmb(_)
+                | LawSpec::Lps(_)
+                | LawSpec::LpsAsTyped { .. }
+                | LawSpec::EamLike { .. }
+        )
+    };
+    if let Some(n) = spec.materials.iter().position(|m| !solid(m)) {
+        return refused(
+            &format!("materials[{n}].law"),
+            "several bodies, and loose points, need a law with contact",
+            "take pmb or lps; springs, micromoduli and atoms are bodies of their own",
+        );
+    }
+    let unlike = |m: &MaterialSpec| {
+        std::mem::discriminant(&m.law) != std::mem::discriminant(&spec.materials[0].law)
+    };
+    if let Some(n) = spec.materials.iter().position(unlike) {
+        return refused(
+            &format!("materials[{n}].law"),
+            "different kinds of law in several bodies are not supported yet",
+            "give all materials the same kind of law",
+        );
+    }
+    if !spec.pairs.is_empty() {
+        return refused(
+            "pairs",
+            "pairs of materials with constants of their own are for a single body",
+            "leave pairs out",
+        );
+    }
+    if spec.surface.is_some() {
+        return refused(
+            "surface",
+            "factors of bonds near the surface are for a single body",
+            "leave surface out",
+        );
+    }
+    let ratio = matches!(spec.horizon, Horizon::Ratio(_));
+    if ratio && spec.body.spacing().is_none() {
+        return refused(
+            "horizon",
+            "the bodies have different spacings: the same number of spacings is a different horizon in each, which is not supported yet",
+            "write the horizon as a length, that of all bodies",
+        );
+    }
+    Ok(())
+}
+
+impl Part<'_> {
+    /// Choose the materials of all that this body, made of several, has; its points know them by their place among
+    /// these.
+    pub fn choose<const D: usize>(&mut self, all: &Body<D>, n: usize, body: &mut Body<D>) {
+        let piece = &all.pieces()[n];
+        let slots = piece.body.slots.iter();
+        let of: Vec<usize> = slots
+            .map(|s| all.material_of(piece.first + *s as usize))
+            .collect();
+        let mut used = of.clone();
+        used.sort_unstable();
+        used.dedup();
+        let density = body.slots.iter();
+        let density: Vec<f64> = density
+            .map(|s| all.density.at(piece.first + *s as usize))
+            .collect();
+        body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
+        if used.len() > 1 {
+            body.material = vec![0; body.len];
+            for (m, s) in of.iter().zip(&body.slots) {
+                let place = used.binary_search(m).unwrap_or(0);
+                body.material[*s as usize] = place as u8;
+            }
+        }
+        let spec = self.spec.to_mut();
+        spec.materials = used.iter().map(|m| spec.materials[*m].clone()).collect();
+        if let Some(contact) = &mut spec.contact
+            && let ContactStiffness::Pairs(rows) = &mut contact.stiffness
+            && rows.iter().all(|r| r.len() == rows.len())
+        {
+            let row = |a: &usize| used.iter().map(|b| rows[*a][*b]).collect();
+            *rows = used.iter().map(row).collect();
+        }
+        self.materials = used;
+    }
+
+    /// Its laws with their constants.
+    pub fn recipe<const D: usize>(
+        &mut self,
+        body: &Body<D>,
+        simd: Simd,
+        warnings: &mut Vec<String>,
+    ) -> Result<Recipe, BuildError> {
+        let spec: &Spec = &self.spec;
+        let cell = cell(spec, body);
+        let from_modulus = |m: &MaterialSpec| {
+            use PmbStiffness::{Bulk, Young};
+            matches!(m.law, LawSpec::Pmb(Bulk(_) | Young(_)))
+        };
+        let mut bulk = self.bulk;
+        if bulk.is_none()
+            && self.bonded
+            && spec.calibration == Calibration::Discrete
+            && spec.materials.iter().any(from_modulus)
+        {
+            bulk = cloud_moments(spec, body, self.horizon, cell)?;
+            if bulk.is_none() {
+                warnings.push(
+                    "no point of this cloud has a full family to calibrate to, all are closer to the surface than the horizon: the constants are those of the continuum".into(),
+                );
+            }
+        }
+        let continuum = || Moments::continuum(D, self.horizon, spec.section, spec.influence);
+        let discrete = bulk.unwrap_or_else(continuum);
+        Recipe::new::<D>(
+            spec,
+            self.stencil.take(),
+            self.horizon,
+            cell,
+            discrete,
+            simd,
+        )
+    }
+
+    /// Its bonds; `None`: loose points.
+    pub fn bonds<const D: usize>(
+        &self,
+        recipe: &Recipe,
+        body: &Body<D>,
+    ) -> Result<Option<Box<dyn Interaction<D>>>, BuildError> {
+        match self.bonded {
+            true => recipe.interaction(body, None).map(Some),
+            false => Ok(None),
+        }
+    }
+
+    /// Neighbours of a free point of this body within `range` (length), about: of the lattice, or of a cloud of that
+    /// density of points.
+    pub fn neighbours<const D: usize>(&self, body: &Body<D>, range: f64) -> f64 {
+        if let Layout::Grid(grid) = &body.layout {
+            let near = Stencil::new(
+                grid.lattice.kind,
+                grid.lattice.spacing,
+                Horizon::Length(range),
+            );
+            return near.bonds() as f64;
+        }
+        let q = range / body.spacing;
+        let ball = match D {
+            1 => 2.0 * q,
+            2 => std::f64::consts::PI * q * q,
+            _ => 4.0 / 3.0 * std::f64::consts::PI * q.powi(3),
+        };
+        (ball - 1.0).max(0.0)
+    }
+}

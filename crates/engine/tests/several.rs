@@ -1,0 +1,499 @@
+//! Several bodies: bonds inside each, contact between them; loose points; the step that contact allows.
+
+use peridyne::error::RunError;
+use peridyne::expression::Expression;
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::spec::*;
+
+fn text(e: &str) -> Option<Expression> {
+    Some(Expression::parse(e, &[]).unwrap())
+}
+
+fn block(kind: LatticeKind, spacing: f64, low: [f64; 3], high: [f64; 3]) -> BodySpec {
+    BodySpec::Lattice {
+        kind,
+        spacing,
+        origin: low,
+        region: Region::Block { low, high },
+        perturb: None,
+    }
+}
+
+fn piece(name: &str, body: BodySpec, bonded: bool) -> PieceSpec {
+    PieceSpec {
+        name: name.into(),
+        body,
+        bonded,
+    }
+}
+
+fn within(name: &str) -> SetSpec {
+    SetSpec {
+        name: name.into(),
+        members: Members::Within {
+            body: name.into(),
+            members: Box::new(Members::All),
+        },
+    }
+}
+
+fn material(set: &str, density: f64, young: f64) -> MaterialSpec {
+    MaterialSpec {
+        name: set.into(),
+        set: set.into(),
+        density,
+        law: LawSpec::Pmb(PmbStiffness::Young(young)),
+        fracture: None,
+    }
+}
+
+const CONTACT: ContactSpec = ContactSpec {
+    bonded: 0.9,
+    free: 1.35,
+    stiffness: ContactStiffness::Laws,
+};
+
+/// A small square that flies into a larger, coarser one of another material.
+fn collision(fraction: f64) -> Spec {
+    let ball = block(LatticeKind::Square, 0.8, [3.1, 9.3, 0.0], [7.2, 12.6, 0.0]);
+    let plate = block(LatticeKind::Square, 1.0, [0.0; 3], [11.0, 7.0, 0.0]);
+    let pieces = vec![piece("ball", ball, true), piece("plate", plate, true)];
+    let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, LawSpec::Atoms);
+    spec.sets = vec![within("ball"), within("plate")];
+    spec.materials = vec![material("ball", 2.0, 300.0), material("plate", 1.0, 100.0)];
+    spec.horizon = Horizon::Length(2.5);
+    spec.volume_scaling = true;
+    spec.contact = Some(CONTACT);
+    spec.initial = vec![InitialSpec {
+        set: "ball".into(),
+        displacement: [None, None, None],
+        velocity: [text("0.3"), text("-2"), None],
+    }];
+    spec.schedule.time_step = TimeStep::Fraction(fraction);
+    spec
+}
+
+fn momentum(sim: &mut dyn Simulation) -> ([f64; 2], f64) {
+    let (v, m) = (sim.velocities(), sim.volumes());
+    let rho = sim.densities();
+    let mut p = [0.0; 2];
+    let mut size = 0.0;
+    for ((v, m), rho) in v.iter().zip(&m).zip(&rho) {
+        for a in 0..2 {
+            p[a] += v[a] * m * rho;
+            size += (v[a] * m * rho).abs();
+        }
+    }
+    (p, size)
+}
+
+#[test]
+fn colliding_bodies_keep_momentum_and_energy() {
+    let mut worst = vec![];
+    for fraction in [0.2, 0.1] {
+        let spec = collision(fraction);
+        let mut sim = build(&spec, Options::default()).unwrap();
+        assert_eq!(
+            sim.info().bodies,
+            [("ball".into(), 30), ("plate".into(), 96)]
+        );
+        assert_eq!(sim.info().family_kind, "stencil");
+        sim.start(true);
+        let (before, size) = momentum(sim.as_mut());
+        let (mut touched, mut most) = (0.0f64, 0.0f64);
+        let duration = 4.0;
+        let initial = sim.ledger().unwrap().initial;
+        while sim.time() < duration {
+            sim.step().unwrap();
+            let l = sim.ledger().unwrap();
+            touched = touched.max(l.contact);
+            most = most.max(l.residual().abs() / initial);
+        }
+        let (after, _) = momentum(sim.as_mut());
+        for a in 0..2 {
+            assert!(
+                (after[a] - before[a]).abs() < 1e-12 * size,
+                "{before:?} {after:?}"
+            );
+        }
+        assert!(touched > 1e-2 * initial, "they hardly touched: {touched}");
+        assert_eq!(sim.fragments(), 2);
+        assert!(sim.damage().iter().all(|d| *d == 0.0));
+        worst.push(most);
+    }
+    // second order in the step, up to pairs that come and go
+    assert!(worst[0] < 1e-2 && worst[1] < 0.4 * worst[0], "{worst:?}");
+}
+
+/// One body among several is the body itself, bit by bit, as a lattice and as a list; threads do not show.
+#[test]
+fn one_of_several_is_the_body_itself() {
+    let of = |body: BodySpec, family| {
+        let mut spec = Spec::new(
+            3,
+            body,
+            2.0,
+            LawSpec::Lps(Moduli {
+                young: 5.0,
+                poisson: 0.3,
+            }),
+        );
+        spec.materials[0].fracture = Some(FractureSpec {
+            criterion: Criterion::Stretch(0.02),
+            alpha: 0.25,
+        });
+        spec.horizon = Horizon::Ratio(2);
+        spec.contact = Some(CONTACT);
+        spec.family = family;
+        spec.initial = vec![InitialSpec {
+            set: "all".into(),
+            displacement: [text("0.01*x"), text("0.02*sin(x+y)"), text("-0.3*z*(z>2)")],
+            velocity: [text("0.1*y"), None, text("0.2*(x>3) - 0.1")],
+        }];
+        spec
+    };
+    let lattice = block(LatticeKind::Cubic, 1.0, [0.0; 3], [6.0, 4.0, 4.0]);
+    for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+        let several = BodySpec::Several(vec![piece("a", lattice.clone(), true)]);
+        let run = |body, threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| {
+                let mut sim = build(&of(body, family), Options::default()).unwrap();
+                sim.start(true);
+                for _ in 0..20 {
+                    sim.step().unwrap();
+                }
+                let energy = sim.ledger().unwrap();
+                (
+                    sim.displacements(),
+                    sim.damage(),
+                    energy.strain,
+                    sim.broken(),
+                )
+            })
+        };
+        let alone = run(lattice.clone(), 1);
+        assert!(alone.3 > 0, "nothing broke");
+        for threads in [1, 2, 4] {
+            assert!(
+                run(several.clone(), threads) == alone,
+                "{family:?}, {threads} threads"
+            );
+        }
+    }
+}
+
+#[test]
+fn bodies_a_spacing_apart_are_not_bonded() {
+    let upper = |gap: f64| {
+        block(
+            LatticeKind::Square,
+            1.0,
+            [0.0, 4.0 + gap, 0.0],
+            [5.0, 8.0 + gap, 0.0],
+        )
+    };
+    let lower = block(LatticeKind::Square, 1.0, [0.0; 3], [5.0, 4.0, 0.0]);
+    let several = |gap: f64| {
+        let pieces = vec![
+            piece("low", lower.clone(), true),
+            piece("high", upper(gap), true),
+        ];
+        let mut spec = Spec::new(
+            2,
+            BodySpec::Several(pieces),
+            1.0,
+            material("all", 1.0, 1.0).law,
+        );
+        spec.horizon = Horizon::Ratio(3);
+        spec.contact = Some(CONTACT);
+        spec
+    };
+    let sim = build(&several(2.0), Options::default()).unwrap();
+    assert_eq!(sim.fragments(), 2);
+    let gap = sim.info().gaps[0];
+    assert_eq!((gap.bodies, gap.distance), ([0, 1], 2.0));
+    assert!((gap.contact - 1.35).abs() < 1e-12);
+    assert!(sim.info().warnings.is_empty(), "{:?}", sim.info().warnings);
+    // lift the upper one: nothing pulls
+    let mut sim = build(&several(2.0), Options::default()).unwrap();
+    let lift: Vec<_> = sim
+        .reference()
+        .iter()
+        .map(|x| [0.0, if x[1] > 5.0 { 0.3 } else { 0.0 }, 0.0])
+        .collect();
+    assert!(sim.forces_under(&lift).iter().flatten().all(|f| *f == 0.0));
+    for (gap, what) in [
+        (1.0, "nearer than the distance of contact"),
+        (0.5, "overlap"),
+    ] {
+        let sim = build(&several(gap), Options::default()).unwrap();
+        assert!(
+            sim.info().warnings[0].contains(what),
+            "{:?}",
+            sim.info().warnings
+        );
+    }
+    // the same points as one body: joined, and told
+    let region = Region::Difference(
+        Box::new(Region::Block {
+            low: [0.0; 3],
+            high: [5.0, 10.0, 0.0],
+        }),
+        vec![Region::Block {
+            low: [-1.0, 4.5, 0.0],
+            high: [6.0, 5.5, 0.0],
+        }],
+    );
+    let body = BodySpec::Lattice {
+        kind: LatticeKind::Square,
+        spacing: 1.0,
+        origin: [0.0; 3],
+        region,
+        perturb: None,
+    };
+    let mut spec = several(2.0);
+    spec.body = body;
+    let sim = build(&spec, Options::default()).unwrap();
+    assert_eq!(sim.fragments(), 1);
+    let told = &sim.info().warnings[0];
+    assert!(
+        told.contains("separate pieces") && told.contains("2.00 spacings"),
+        "{told}"
+    );
+}
+
+/// Loose points fall onto a plate that is held: contact only, energy closes.
+#[test]
+fn powder_bounces_on_a_plate() {
+    let powder = block(LatticeKind::Square, 1.0, [1.3, 4.6, 0.0], [6.4, 7.7, 0.0]);
+    let plate = block(LatticeKind::Square, 1.0, [0.0; 3], [9.0, 3.0, 0.0]);
+    let stone = block(LatticeKind::Square, 1.0, [4.0, 9.0, 0.0], [4.0, 9.0, 0.0]);
+    let pieces = vec![
+        piece("powder", powder, false),
+        piece("plate", plate, true),
+        piece("stone", stone, true),
+    ];
+    let mut spec = Spec::new(
+        2,
+        BodySpec::Several(pieces),
+        1.0,
+        material("all", 1.0, 100.0).law,
+    );
+    spec.sets = vec![within("powder"), within("stone")];
+    spec.horizon = Horizon::Ratio(3);
+    spec.contact = Some(CONTACT);
+    let fall = |set: &str, v: &str| InitialSpec {
+        set: set.into(),
+        displacement: [None, None, None],
+        velocity: [None, text(v), None],
+    };
+    spec.initial = vec![fall("powder", "-1"), fall("stone", "-3")];
+    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    let mut sim = build(&spec, Options::default()).unwrap();
+    assert_eq!(sim.families().size[0], 0);
+    assert_eq!(sim.fragments(), 24 + 1 + 1);
+    sim.start(true);
+    let (before, size) = momentum(sim.as_mut());
+    let initial = sim.ledger().unwrap().initial;
+    let (mut touched, mut most) = (0.0f64, 0.0f64);
+    while sim.time() < 4.0 {
+        sim.step().unwrap();
+        let l = sim.ledger().unwrap();
+        touched = touched.max(l.contact);
+        most = most.max(l.residual().abs() / initial);
+    }
+    let (after, _) = momentum(sim.as_mut());
+    assert!((after[1] - before[1]).abs() < 1e-12 * size);
+    assert!(touched > 1e-2 * initial && most < 1e-2, "{touched} {most}");
+    // the powder was turned round
+    let v = sim.velocities();
+    assert!(v[..24].iter().map(|v| v[1]).sum::<f64>() > -24.0 + 1.0);
+}
+
+/// A chain of loose points under pressure between two that are held: the highest frequency is 2√(KV/ρ).
+#[test]
+fn the_step_of_contact_is_that_of_a_chain_in_touch() {
+    let chain = |fraction: f64| {
+        let pieces = vec![piece(
+            "powder",
+            block(LatticeKind::Chain, 1.0, [0.0; 3], [40.0, 0.0, 0.0]),
+            false,
+        )];
+        let mut spec = Spec::new(
+            1,
+            BodySpec::Several(pieces),
+            3.0,
+            material("all", 3.0, 1.0).law,
+        );
+        spec.contact = Some(ContactSpec {
+            stiffness: ContactStiffness::Same(7.0),
+            ..CONTACT
+        });
+        spec.horizon = Horizon::Ratio(2);
+        spec.sets = vec![SetSpec {
+            name: "ends".into(),
+            members: Members::Where(text("x < 0.5 || x > 39.5").unwrap()),
+        }];
+        spec.conditions = vec![ConditionSpec {
+            set: "ends".into(),
+            kind: ConditionKind::Displacement([text("-0.2*x"), None, None]),
+        }];
+        spec.initial = vec![InitialSpec {
+            set: "all".into(),
+            displacement: [
+                text("-0.2*x + 1e-6*(random(x, 0, 0) - 0.5)*(x > 0.5)*(x < 39.5)"),
+                None,
+                None,
+            ],
+            velocity: [None, None, None],
+        }];
+        spec.schedule.time_step = TimeStep::Fraction(fraction);
+        spec.schedule.force_unstable = true;
+        build(&spec, Options::default()).unwrap()
+    };
+    let limit = 2.0 / (4.0f64 * 7.0 / 3.0).sqrt();
+    assert!((chain(0.8).info().stable_step / limit - 1.0).abs() < 1e-12);
+    for (fraction, stable) in [(0.99, true), (1.02, false)] {
+        let mut sim = chain(fraction);
+        sim.start(true);
+        let start = sim.displacements();
+        for _ in 0..2000 {
+            if sim.step().is_err() {
+                break;
+            }
+        }
+        let moved = sim
+            .displacements()
+            .iter()
+            .zip(&start)
+            .map(|(a, b)| (a[0] - b[0]).abs())
+            .fold(0.0, f64::max);
+        assert_eq!(moved < 1e-3, stable, "{fraction}: {moved}");
+    }
+}
+
+/// Steel on epoxy, everything by default: a soft, light body is not hit with the stiffness of a hard, heavy one.
+#[test]
+fn steel_on_epoxy_runs_at_the_default_step() {
+    let mut spec = steel_on_epoxy();
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let initial = sim.ledger().unwrap().initial;
+    let (mut most, mut touched) = (0.0f64, 0.0f64);
+    for _ in 0..1500 {
+        sim.step().unwrap();
+        let l = sim.ledger().unwrap();
+        most = most.max(l.residual().abs() / initial);
+        touched = touched.max(l.contact / initial);
+    }
+    assert!(touched > 1e-4 && most < 0.05, "{touched} {most}");
+    // contact as stiff as the steel, at the step of the bonds: refused to be trusted, and named when it dies
+    spec.contact = Some(ContactSpec {
+        stiffness: ContactStiffness::Same(1e26),
+        ..CONTACT
+    });
+    let free = sim.info().time_step;
+    let limited = build(&spec, Options::default()).unwrap().info().clone();
+    // six neighbours, two for an axis: λ = 2 · 2 K V / ρ of the lighter one
+    let lambda: f64 = 4.0 * 1e26 * 1e-9 / 1200.0;
+    let expected = 0.8 * 2.0 / lambda.sqrt();
+    assert!(
+        (limited.time_step / expected - 1.0).abs() < 1e-9,
+        "{} {expected}",
+        limited.time_step
+    );
+    spec.schedule.time_step = TimeStep::Fixed(free);
+    let mut sim = build(&spec, Options::default()).unwrap();
+    let told = &sim.info().warnings;
+    assert!(
+        told.iter().any(|w| w.contains("of contact between")),
+        "{told:?}"
+    );
+    sim.start(true);
+    let error = (0..3000).find_map(|_| sim.step().and_then(|()| sim.ledger().map(drop)).err());
+    let error = error.expect("it cannot be stable");
+    assert!(matches!(
+        error,
+        RunError::Unstable { .. } | RunError::TooFast { .. }
+    ));
+    assert!(
+        error.to_string().contains("contact is the cause"),
+        "{error}"
+    );
+}
+
+fn steel_on_epoxy() -> Spec {
+    let h = 1e-3;
+    let ball = block(
+        LatticeKind::Cubic,
+        h,
+        [3e-3, 3e-3, 4.5e-3],
+        [6e-3, 6e-3, 7.5e-3],
+    );
+    let plate = block(LatticeKind::Cubic, h, [0.0; 3], [9e-3, 9e-3, 3e-3]);
+    let pieces = vec![piece("steel", ball, true), piece("epoxy", plate, true)];
+    let mut spec = Spec::new(3, BodySpec::Several(pieces), 1.0, LawSpec::Atoms);
+    spec.sets = vec![within("steel"), within("epoxy")];
+    spec.materials = vec![
+        material("steel", 7800.0, 200e9),
+        material("epoxy", 1200.0, 3e9),
+    ];
+    for (m, s) in spec.materials.iter_mut().zip([0.01, 0.02]) {
+        m.fracture = Some(FractureSpec {
+            criterion: Criterion::Stretch(s),
+            alpha: 0.0,
+        });
+    }
+    spec.horizon = Horizon::Ratio(3);
+    spec.volume_scaling = true;
+    spec.contact = Some(CONTACT);
+    spec.initial = vec![InitialSpec {
+        set: "steel".into(),
+        displacement: [None, None, None],
+        velocity: [None, None, text("-100")],
+    }];
+    spec
+}
+
+#[test]
+fn what_several_bodies_cannot_have_yet_is_refused() {
+    let refused = |change: &dyn Fn(&mut Spec), what: &str| {
+        let mut spec = collision(0.5);
+        change(&mut spec);
+        let error = build(&spec, Options::default()).err().expect(what);
+        assert!(error.message.contains(what), "{error}");
+    };
+    refused(&|s| s.horizon = Horizon::Ratio(3), "different spacings");
+    refused(
+        &|s| {
+            s.materials[1].law = LawSpec::EamLike {
+                pair: 1.0,
+                volume: 1.0,
+            }
+        },
+        "different kinds of law",
+    );
+    refused(
+        &|s| {
+            s.sets[0].members = Members::Within {
+                body: "cat".into(),
+                members: Box::new(Members::All),
+            }
+        },
+        "`cat`, which does not exist",
+    );
+    refused(
+        &|s| {
+            s.materials
+                .iter_mut()
+                .for_each(|m| m.law = LawSpec::Springs(PmbStiffness::Young(1.0)))
+        },
+        "need a law with contact",
+    );
+}

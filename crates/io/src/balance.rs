@@ -1,0 +1,85 @@
+//! Watches the energy balance of a run: a residual that jumps is said when it does.
+
+use peridyne::observe::Ledger;
+
+/// Growth of the residual from one row to the next that is a jump.
+const JUMP: f64 = 16.0;
+/// Residuals below this part of the energy are the error of the time step.
+const SMALL: f64 = 1e-4;
+
+/// What the last row of the history had.
+#[derive(Debug, Default)]
+pub struct BalanceWatch {
+    last: Option<(u64, f64, f64)>,
+    /// The most energy so far.
+    scale: f64,
+}
+
+impl BalanceWatch {
+    /// A row: what to warn of, if its residual is 16 times that of the row before.
+    pub fn row(&mut self, step: u64, ledger: &Ledger) -> Option<String> {
+        let residual = ledger.residual();
+        let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let held = ledger.kinetic + ledger.strain + ledger.contact + ledger.released;
+        self.scale = self
+            .scale
+            .max(work + ledger.initial.abs())
+            .max(held.min(10.0 * self.scale));
+        let before = self.last.replace((step, residual, ledger.contact));
+        let (then, was, contact) = before?;
+        let least = was.abs().max(SMALL * self.scale);
+        if !(residual.abs() > JUMP * least) {
+            return None;
+        }
+        let percent = 100.0 * residual.abs() / self.scale;
+        let cause = if ledger.contact.max(contact) > SMALL * self.scale {
+            format!(
+                "; contact held {contact:.3e} then and holds {:.3e} now: it may be too stiff for this step",
+                ledger.contact
+            )
+        } else {
+            ": the step may be too long".to_string()
+        };
+        Some(format!(
+            "step {step}: the energy balance misses {residual:.3e} ({percent:.2} % of the energy), at step {then} it missed {was:.3e}{cause}"
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ledger(kinetic: f64, contact: f64) -> Ledger {
+        Ledger {
+            kinetic,
+            contact,
+            initial: 1.0,
+            ..Ledger::default()
+        }
+    }
+
+    #[test]
+    fn a_jump_is_told_once_and_a_drift_is_not() {
+        let mut watch = BalanceWatch::default();
+        for (step, kinetic) in [
+            (0, 1.0),
+            (10, 1.00001),
+            (20, 1.0001),
+            (30, 1.0015),
+            (40, 1.01),
+        ] {
+            assert_eq!(watch.row(step, &ledger(kinetic, 0.0)), None, "{step}");
+        }
+        let told = watch.row(50, &ledger(0.9, 0.3)).unwrap();
+        assert!(
+            told.starts_with("step 50: the energy balance misses 2.000e-1 (16.67 %"),
+            "{told}"
+        );
+        assert!(
+            told.contains("contact held 0.000e0 then and holds 3.000e-1 now"),
+            "{told}"
+        );
+        assert_eq!(watch.row(60, &ledger(0.9, 0.35)), None);
+    }
+}

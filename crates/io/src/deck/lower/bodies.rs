@@ -1,0 +1,190 @@
+//! Several bodies: `[[body]]` more than once, or points without bonds.
+
+use super::body;
+use super::context::{Context, Result};
+use super::{Files, section};
+use crate::deck::document::{Body, Document};
+use crate::deck::error::nearest;
+use crate::deck::value::At;
+use peridyne::spec::{BodySpec, Members, PieceSpec, SetSpec};
+
+/// All bodies of a deck, the first included.
+pub(super) fn written(document: &Document) -> impl Iterator<Item = &At<Body>> {
+    std::iter::once(&document.body).chain(&document.more_bodies)
+}
+
+/// Is there more than one body, or one without bonds? Such decks have a [`BodySpec::Several`].
+pub(super) fn several(document: &Document) -> bool {
+    !document.more_bodies.is_empty() || document.body.value.bonded == Some(false)
+}
+
+/// The bodies of a deck; settles the dimension of `context`.
+pub(super) fn bodies(
+    context: &mut Context,
+    document: &Document,
+    files: &Files,
+) -> Result<BodySpec> {
+    let asked = document.dimension.as_ref();
+    let mut pieces: Vec<PieceSpec> = Vec::new();
+    for (n, at) in written(document).enumerate() {
+        let written = &at.value;
+        let before = context.dimension;
+        let mut spec = body::body(context, at, asked, files)?;
+        if n > 0 && context.dimension != before {
+            let message = format!(
+                "this body is {}-D, the first is {before}-D",
+                context.dimension
+            );
+            return Err(context.error(&at.span, message));
+        }
+        if !several(document) {
+            with_section(context, document, at, &mut spec)?;
+            return Ok(spec);
+        }
+        if context.atoms.is_some() || context.micromoduli.is_some() {
+            let span = written.file.as_ref().map_or(&at.span, |f| &f.span);
+            return Err(context.error(
+                span,
+                "atoms, and linear bodies with their micromoduli, cannot be one of several bodies",
+            ));
+        }
+        with_section(context, document, at, &mut spec)?;
+        let name = match &written.name {
+            Some(name) if name.value == "all" || name.value.is_empty() => {
+                let message = "a body needs another name: \"all\" is the set of all points";
+                return Err(context.error(&name.span, message));
+            }
+            Some(name) => name.value.clone(),
+            None => format!("body {}", n + 1),
+        };
+        if pieces.iter().any(|p| p.name == name) {
+            let span = written.name.as_ref().map_or(&at.span, |n| &n.span);
+            return Err(context.error(span, format!("two bodies are called \"{name}\"")));
+        }
+        pieces.push(PieceSpec {
+            name,
+            body: spec,
+            bonded: written.bonded.unwrap_or(true),
+        });
+    }
+    Ok(BodySpec::Several(pieces))
+}
+
+/// Cells of a 2-D mesh have areas so far: give them the thickness.
+fn with_section(
+    context: &Context,
+    document: &Document,
+    written: &At<Body>,
+    spec: &mut BodySpec,
+) -> Result<()> {
+    let section = section(context, document)?;
+    if let (2, BodySpec::Cloud(cloud), Some(file)) = (context.dimension, spec, &written.value.file)
+        && (file.value.ends_with(".inp") || file.value.ends_with(".msh"))
+    {
+        cloud.volume.iter_mut().for_each(|area| *area *= section);
+    }
+    Ok(())
+}
+
+/// A set for every body, of its name, and `BODY.NAME` for each named mark of its file.
+pub(super) fn sets(context: &Context, document: &Document, all: &BodySpec) -> Result<Vec<SetSpec>> {
+    let BodySpec::Several(pieces) = all else {
+        return Ok(vec![]);
+    };
+    let mut sets = Vec::new();
+    for piece in pieces {
+        if let Some(set) = document.sets.get(&piece.name) {
+            let message = format!(
+                "\"{}\" is a body, and so a set: choose another name",
+                piece.name
+            );
+            return Err(context.error(&set.span, message));
+        }
+        let set = |name: String, members: Members| SetSpec {
+            name,
+            members: within(&piece.name, members),
+        };
+        sets.push(set(piece.name.clone(), Members::All));
+        if let BodySpec::Cloud(cloud) = &piece.body {
+            for name in body::named(cloud) {
+                if let Some(members) = body::of_file(cloud, name) {
+                    sets.push(set(format!("{}.{name}", piece.name), members));
+                }
+            }
+        }
+    }
+    Ok(sets)
+}
+
+pub(super) fn within(body: &str, members: Members) -> Members {
+    Members::Within {
+        body: body.to_string(),
+        members: Box::new(members),
+    }
+}
+
+/// The body that a key names.
+pub(super) fn named<'a>(
+    context: &Context,
+    name: &At<String>,
+    body: &'a BodySpec,
+) -> Result<&'a PieceSpec> {
+    let pieces: &[PieceSpec] = match body {
+        BodySpec::Several(pieces) => pieces,
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
+    };
+    pieces.iter().find(|p| p.name == name.value).ok_or_else(|| {
+        let message = format!("there is no body \"{}\"", name.value);
+        let help = match nearest(&name.value, pieces.iter().map(|p| p.name.as_str())) {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None => "bodies have their names by name = \"NAME\" under [[body]]".into(),
+        };
+        context.error_with(&name.span, message, help)
+    })
+}
+
+/// Names of the bodies that are made of a material.
+pub(super) fn made_of<'a>(
+    document: &'a Document,
+    body: &'a BodySpec,
+    material: &'a str,
+) -> impl Iterator<Item = &'a str> {
+    let pieces: &[PieceSpec] = match body {
+        BodySpec::Several(pieces) => pieces,
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => &[],
+    };
+    let all = pieces.iter().zip(written(document));
+    all.filter(move |(_, at)| {
+        at.value
+            .material
+            .as_ref()
+            .is_some_and(|m| m.value == material)
+    })
+    .map(|(p, _)| p.name.as_str())
+}
+
+/// Keys of a body that only have a meaning where there are several, and materials that do not exist.
+pub(super) fn check(context: &Context, document: &Document) -> Result<()> {
+    for at in written(document) {
+        let Some(material) = &at.value.material else {
+            continue;
+        };
+        if !several(document) {
+            return Err(context.error_with(
+                &material.span,
+                "a single body has the materials of [material]",
+                "leave it out; with several [[body]] each may name its own",
+            ));
+        }
+        if !document.material.contains_key(&material.value) {
+            let known = document.material.keys().map(String::as_str);
+            let help = match nearest(&material.value, known) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => format!("write [material.{}]", material.value),
+            };
+            let message = format!("there is no material \"{}\"", material.value);
+            return Err(context.error_with(&material.span, message, help));
+        }
+    }
+    Ok(())
+}
