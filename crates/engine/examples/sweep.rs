@@ -1,6 +1,6 @@
 //! Time per directed bond of the force sweep, on one thread or as many as asked for:
 //! `cargo run --release --example sweep [threads] [words]`. Only cases whose line has every word run, for example
-//! `sweep avx2 cube lps/stencil`.
+//! `sweep avx2 cube lps/stencil mixed`; bodies are calm where no word says otherwise.
 use peridyne::body::{Body, Layout, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::{horizon::HorizonList, stencil::Stencil};
@@ -17,6 +17,45 @@ use std::time::Instant;
 /// Spacing (m).
 const H: f64 = 0.0005;
 
+/// How far bonds are stretched.
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    /// Strains of 1e-5.
+    Calm,
+    /// Strains of 1e-3.
+    Strained,
+    /// From nothing to a tenth, side by side.
+    Mixed,
+    /// A third of the body thrown about by tenths of a spacing, the rest mixed.
+    Debris,
+}
+
+impl State {
+    const ALL: [State; 4] = [State::Calm, State::Strained, State::Mixed, State::Debris];
+
+    fn name(self) -> &'static str {
+        match self {
+            State::Calm => "calm",
+            State::Strained => "strained",
+            State::Mixed => "mixed",
+            State::Debris => "debris",
+        }
+    }
+
+    /// Of a point (length), from its place and a number of its own in ±1.
+    fn displacement(self, p: [f64; 3], a: usize, random: f64) -> f64 {
+        let wave = ((p[a] + 2.0 * p[(a + 1) % 3]) * 300.0).sin();
+        let mixed = 10f64.powf(-4.0 + 3.5 * (p[2] * 90.0).sin());
+        match self {
+            State::Calm => 2e-5 * H * wave,
+            State::Strained => 2e-3 * H * wave,
+            State::Mixed => mixed * H * random,
+            State::Debris if (p[0] * 400.0).sin() > 0.5 => 0.3 * H * random,
+            State::Debris => mixed * H * random,
+        }
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Case {
     simd: Simd,
@@ -27,18 +66,20 @@ struct Case {
     lps: bool,
     fracture: bool,
     contact: bool,
+    state: State,
 }
 
 impl Case {
     fn name(&self) -> String {
         format!(
-            "{:8} {} {}/{:7} {} {}",
+            "{:8} {} {}/{:7} {} {} {:8}",
             self.simd.name(),
             if self.disk { "disk" } else { "cube" },
             if self.lps { "lps" } else { "pmb" },
             if self.cloud { "list" } else { "stencil" },
             if self.fracture { "breaks" } else { "intact" },
             if self.contact { "contact" } else { "free   " },
+            self.state.name(),
         )
     }
 
@@ -122,13 +163,7 @@ impl Case {
 
     /// The same sites moved by up to a fifth of the spacing.
     fn on_list<W: Law>(&self, law: W, point_constants: PointConstants) {
-        let mut state = 1u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
-        };
+        let mut random = random();
         let move_site = |q: &[i32; 3]| q.map(|q| H * (q as f64 / 4.0 + 0.2 * random()));
         let position: Vec<[f64; 3]> = self.sites().iter().map(move_site).collect();
         let volume = vec![H * H * H; position.len()];
@@ -154,10 +189,11 @@ impl Case {
     fn measure(&self, mut it: impl Interaction<3>, body: &Body<3>) {
         it.prepare(body);
         let mut u = body.at_rest();
+        let mut random = random();
         for &s in &body.slots {
             let p = body.position(s as usize);
             for a in 0..3 {
-                u[a][s as usize] = 2e-5 * H * ((p[a] + 2.0 * p[(a + 1) % 3]) * 300.0).sin();
+                u[a][s as usize] = self.state.displacement(p, a, random());
             }
         }
         let mut f = zeros::<3>(body.len);
@@ -189,11 +225,27 @@ impl Case {
     }
 }
 
+/// Numbers in ±1, the same every time.
+fn random() -> impl FnMut() -> f64 {
+    let mut state = 1u64;
+    move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
+    }
+}
+
 fn main() {
     let mut words: Vec<String> = std::env::args().skip(1).collect();
     let threads = words.first().and_then(|w| w.parse().ok());
     if threads.is_some() {
         words.remove(0);
+    }
+    let asked = |s: &State| words.iter().any(|w| w == s.name());
+    let mut states: Vec<State> = State::ALL.into_iter().filter(asked).collect();
+    if states.is_empty() {
+        states.push(State::Calm);
     }
     let mut cases = vec![];
     for simd in Simd::available() {
@@ -201,14 +253,17 @@ fn main() {
             for cloud in [false, true] {
                 for lps in [false, true] {
                     for (fracture, contact) in [(false, false), (true, false), (true, true)] {
-                        cases.push(Case {
-                            simd,
-                            disk,
-                            cloud,
-                            lps,
-                            fracture,
-                            contact,
-                        });
+                        for &state in &states {
+                            cases.push(Case {
+                                simd,
+                                disk,
+                                cloud,
+                                lps,
+                                fracture,
+                                contact,
+                                state,
+                            });
+                        }
                     }
                 }
             }
@@ -221,7 +276,12 @@ fn main() {
     pool.install(|| {
         cases
             .iter()
-            .filter(|c| words.iter().all(|w| c.name().contains(w.as_str())))
+            .filter(|c| {
+                let name = c.name();
+                words
+                    .iter()
+                    .all(|w| name.contains(w.as_str()) || State::ALL.iter().any(|s| w == s.name()))
+            })
             .for_each(Case::time)
     });
 }

@@ -224,18 +224,13 @@ fn images<const D: usize>(grid: &mut Grid<D>, extent: [usize; D]) -> Vec<(u32, u
     images
 }
 
-/// Ids sorted by cells of edge `cell`, cells in serpentine-free lexicographic order.
+/// Ids sorted by cells of edge `cell`, cells in serpentine-free lexicographic order. Cells are those of space, not of the body:
+/// the order of points, and so of the bonds of each, is the same in a part of a body as in the whole.
 fn spatial_order<const D: usize>(position: &[[f64; 3]], cell: f64) -> Vec<u32> {
-    let mut low = [f64::INFINITY; D];
-    for x in position {
-        for a in 0..D {
-            low[a] = low[a].min(x[a]);
-        }
-    }
     let key = |x: &[f64; 3]| -> [i64; 3] {
         let mut k = [0i64; 3];
         for a in 0..D {
-            k[2 - a] = ((x[a] - low[a]) / cell) as i64;
+            k[2 - a] = (x[a] / cell).floor() as i64;
         }
         k
     };

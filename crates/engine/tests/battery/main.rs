@@ -10,6 +10,7 @@ mod mechanics;
 mod motion;
 mod repeat;
 mod sample;
+mod shifted;
 mod stability;
 mod tangents;
 mod waves;

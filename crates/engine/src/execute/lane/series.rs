@@ -1,15 +1,25 @@
 //! The two functions of a bond's relative square stretch `e = |ξ+η|²/|ξ|² − 1` that all forces are made of, without
 //! division or root where `e` is small.
+//!
+//! `f(e)/e` is a sum of parts, `a(e) + e⁴ b(e) + e⁶ c(e)`. A part is added last, in one rounding, and where it is smaller than
+//! half the last place of what it is added to it changes nothing: with it or without it, the bits are the same. So bonds that
+//! are evaluated together take as many parts as the largest `e` of them asks for, and the answer of each depends on its own
+//! `e` alone (docs/decisions/0004-own-answers.md).
 
 use super::{Lane, TILE};
 use std::hint::black_box;
 use std::marker::PhantomData;
 
-/// Terms of the three series, and the |e| up to which each is exact to rounding.
-const NEAR: (usize, f64) = (3, 1.0 / 131_072.0);
-const MIDDLE: (usize, f64) = (5, 1.0 / 1024.0);
-const WIDE: (usize, f64) = (9, 1.0 / 32.0);
-const ROWS: usize = NEAR.0 + MIDDLE.0 + WIDE.0;
+/// Terms of each part, and the first of each.
+const PARTS: [usize; 3] = [4, 2, 4];
+const FIRST: [usize; 3] = [0, PARTS[0], PARTS[0] + PARTS[1]];
+const ROWS: usize = FIRST[2] + PARTS[2];
+/// Up to this |e| the second part changes no bit, and the third none up to the next: both are below 2⁻⁵⁵, half the last place
+/// of any number from ¼ to 1.
+const NEAR: f64 = 1e-4;
+const MIDDLE: f64 = 2.2e-3;
+/// Up to this |e| three parts are exact to rounding; beyond, the root.
+const WIDE: f64 = 1.0 / 32.0;
 
 /// Where values go: a trait and not a closure, so that it is compiled with its caller's instruction set.
 /// Implement `put` with `#[inline(always)]`.
@@ -25,9 +35,10 @@ impl<L, const N: usize> Sink<L> for [L; N] {
     }
 }
 
-/// A function of `e` by three series and a root.
+/// A function of `e` by a series and a root.
 pub trait Function: Copy {
-    /// Coefficients of `f(e)/e`, lowest first, interpolated at the Chebyshev nodes of each interval.
+    /// Coefficients of `f(e)/e`, lowest first: Taylor's, but for those of the last part, which are interpolated at the
+    /// Chebyshev nodes of its interval.
     const COEFFICIENTS: [f64; ROWS];
     const TABLE: &'static Table;
     /// For any e > −1, without cancellation.
@@ -43,13 +54,12 @@ pub struct Extension;
 pub struct Stretch;
 
 impl Function for Extension {
-    /// Relative errors 6.1e-17, 2.5e-17, 4.1e-17.
+    /// Relative error 3.8e-17 beside that of rounding.
     #[rustfmt::skip]
     const COEFFICIENTS: [f64; ROWS] = [
-        0.5, -0.3750000000119371, 0.3125000000107434,
-        0.5, -0.3749999999999359, 0.31249999999994044, -0.2734377689196167, 0.24609399971107618,
-        0.5, -0.37499999999999434, 0.3124999999999946, -0.2734375000770698, 0.24609375007356768, -0.22558565344138345,
-        0.20947238509963742, -0.1967682863372609, 0.18584063437886522,
+        0.5, -3.0 / 8.0, 5.0 / 16.0, -35.0 / 128.0,
+        63.0 / 256.0, -231.0 / 1024.0,
+        0.20947263618236012, -0.19638059600277924, 0.1856349566685266, -0.17635457940273352,
     ];
     const TABLE: &'static Table = {
         static TABLE: Table = table(Extension::COEFFICIENTS);
@@ -64,13 +74,12 @@ impl Function for Extension {
 }
 
 impl Function for Stretch {
-    /// Relative errors 8.7e-18, 2.3e-18, 2.4e-18.
+    /// Relative error 1.8e-18 beside that of rounding.
     #[rustfmt::skip]
     const COEFFICIENTS: [f64; ROWS] = [
-        0.5, -0.1250000000017053, 0.06250000000119371,
-        0.5, -0.12499999999999417, 0.06249999999999542, -0.03906252444723247, 0.027343769208540505,
-        0.5, -0.12499999999999971, 0.06249999999999974, -0.03906250000405494, 0.027343750003502126,
-        -0.020507797554129306, 0.016113268341746034, -0.01311244000002537, 0.010927651958395687,
+        0.5, -1.0 / 8.0, 1.0 / 16.0, -5.0 / 128.0,
+        7.0 / 256.0, -21.0 / 1024.0,
+        0.016113280294535754, -0.013092040179580882, 0.010917860603200625, -0.009280377265793081,
     ];
     const TABLE: &'static Table = {
         static TABLE: Table = table(Stretch::COEFFICIENTS);
@@ -110,41 +119,58 @@ impl<F: Function> Series<F> {
     }
 
     /// `f(e)` of each `e`, none of which lies outside `least..most`, to `sink` in order; not a number where `e` is not.
-    ///
-    /// All take the same series, the shortest that is exact for the largest: the result of one depends, within
-    /// rounding, on what it is evaluated with.
+    /// The bits of one do not depend on what it is evaluated with.
     #[inline(always)]
     pub fn each<L: Lane>(self, e: &[L], least: L, most: L, sink: &mut impl Sink<L>) {
         let largest = (L::splat(0.0) - least).max(most);
-        if !L::any(L::splat(NEAR.1).lt(largest)) {
-            self.terms::<L, { NEAR.0 }>(0, e, sink);
-        } else if !L::any(L::splat(MIDDLE.1).lt(largest)) {
-            self.terms::<L, { MIDDLE.0 }>(NEAR.0, e, sink);
-        } else if !L::any(L::splat(WIDE.1).lt(largest)) {
-            self.terms::<L, { WIDE.0 }>(NEAR.0 + MIDDLE.0, e, sink);
+        if !L::any(L::splat(NEAR).lt(largest)) {
+            self.sum::<L, 1, false>(e, sink);
+        } else if !L::any(L::splat(MIDDLE).lt(largest)) {
+            self.sum::<L, 2, false>(e, sink);
+        } else if !L::any(L::splat(WIDE).lt(largest)) {
+            self.sum::<L, 3, false>(e, sink);
         } else {
-            for (k, x) in e.iter().enumerate() {
-                sink.put(k, F::exact(*x));
+            self.sum::<L, 3, true>(e, sink);
+        }
+    }
+
+    /// So many parts of the series, and with `ROOT` the root where `e` asks for it.
+    #[inline(always)]
+    fn sum<L: Lane, const COUNT: usize, const ROOT: bool>(self, e: &[L], sink: &mut impl Sink<L>) {
+        for (n, x) in e.iter().enumerate() {
+            let x = *x;
+            let mut p = self.part(x, 0);
+            if COUNT > 1 {
+                let x2 = x * x;
+                let x4 = x2 * x2;
+                p = x4.fma(self.part(x, 1), p);
+                if COUNT > 2 {
+                    p = (x4 * x2).fma(self.part(x, 2), p);
+                }
             }
+            let mut f = p * x;
+            if ROOT {
+                // both for all: to ask bond by bond costs more than it saves
+                let far = L::splat(WIDE).lt(x.abs());
+                f = L::select(far, F::exact(x), f);
+            }
+            sink.put(n, f);
         }
     }
 
     /// Horner's scheme: the sweeps are bound by the number of operations, not by their depth.
     #[inline(always)]
-    fn terms<L: Lane, const T: usize>(self, first: usize, e: &[L], sink: &mut impl Sink<L>) {
+    fn part<L: Lane>(self, x: L, part: usize) -> L {
         // SAFETY: rows of a static table, each as wide as the widest lane
-        let row = |k: usize| unsafe { self.0.add((first + k) * TILE) };
-        for (n, x) in e.iter().enumerate() {
-            // SAFETY: as above
-            unsafe {
-                let mut p = L::load(row(T - 1));
-                let mut k = T - 1;
-                while k > 0 {
-                    k -= 1;
-                    p = p.fma(*x, L::load(row(k)));
-                }
-                sink.put(n, p * *x);
+        unsafe {
+            let row = |k: usize| self.0.add((FIRST[part] + k) * TILE);
+            let mut k = PARTS[part] - 1;
+            let mut p = L::load(row(k));
+            while k > 0 {
+                k -= 1;
+                p = p.fma(x, L::load(row(k)));
             }
+            p
         }
     }
 }
@@ -174,9 +200,49 @@ mod tests {
         assert!(none[1].is_nan());
     }
 
+    /// Alone, and beside ever larger ones.
+    fn check_company<F: Function>() {
+        let series = Series::<F>::new();
+        let mut e = 1e-12;
+        while e < 0.9 {
+            for e in [e, -e] {
+                let bits = |company: f64| {
+                    let mut all = [0.0; 2];
+                    let (least, most) = (e.min(company), e.max(company));
+                    series.each(&[e, company], least, most, &mut all);
+                    all[0].to_bits()
+                };
+                let alone = bits(e);
+                for company in [1e-30, 5e-5, 1e-3, 0.02, 0.5, -0.5, f64::NAN] {
+                    assert_eq!(bits(company), alone, "{e} beside {company}");
+                }
+            }
+            e *= 1.0007;
+        }
+    }
+
+    /// What a part adds below its interval is less than half a last place, whatever the rounding of its own sum.
+    fn check_parts<F: Function>() {
+        let c = F::COEFFICIENTS;
+        for (first, end, limit) in [(4, 6, NEAR), (6, 10, MIDDLE)] {
+            let most: f64 = (first..end)
+                .map(|k| c[k].abs() * limit.powi(k as i32))
+                .sum();
+            assert!(most < 0.999 * 2f64.powi(-55), "{most:e}");
+        }
+    }
+
     #[test]
     fn series_and_root_agree_with_the_closed_form() {
         check::<Extension>();
         check::<Stretch>();
+    }
+
+    #[test]
+    fn the_answer_of_a_bond_is_its_own() {
+        check_company::<Extension>();
+        check_company::<Stretch>();
+        check_parts::<Extension>();
+        check_parts::<Stretch>();
     }
 }
