@@ -94,7 +94,12 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 units: match setup.units {
                     Units::Si => UnitSystem::Si,
                     Units::Lj => UnitSystem::Lj,
-                    Units::Metal | Units::Cgs | Units::Micro | Units::Nano => UnitSystem::None,
+                    Units::Real
+                    | Units::Metal
+                    | Units::Cgs
+                    | Units::Electron
+                    | Units::Micro
+                    | Units::Nano => UnitSystem::None,
                 },
                 script: true,
                 sim: prepared.simulation,
