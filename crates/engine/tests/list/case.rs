@@ -4,12 +4,14 @@ use peridyne::body::{Body, Field, Layout};
 use peridyne::execute::simd::Simd;
 use peridyne::family::{horizon::HorizonList, stencil::Stencil};
 use peridyne::interaction::list::{ListInteraction, ListParts};
+use peridyne::interaction::pairs::BondTable;
 use peridyne::interaction::weight::BondWeight;
 use peridyne::interaction::{Interaction, PointConstants, Repulsion, Toughness};
 use peridyne::law::Law;
 use peridyne::law::solid::eam_like::Solid;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{Horizon, Influence};
+use std::sync::Arc;
 
 /// Uniform numbers in ±1 (splitmix64).
 pub struct Random(pub u64);
@@ -134,7 +136,19 @@ impl<const D: usize> Case<D> {
         point_constants: PointConstants,
         simd: Simd,
     ) -> ListInteraction<D, W> {
-        let mut it = ListInteraction::new(ListParts {
+        self.list_of_pairs(body, law, point_constants, simd, Arc::default())
+    }
+
+    /// With constants of pairs of materials, where the law reads them.
+    pub fn list_of_pairs<W: Law>(
+        &self,
+        body: &Body<D>,
+        law: W,
+        point_constants: PointConstants,
+        simd: Simd,
+        pairs: Arc<BondTable>,
+    ) -> ListInteraction<D, W> {
+        let parts = ListParts {
             body,
             list: HorizonList::new(body, self.delta() * (1.0 + 1e-9)).unwrap(),
             law,
@@ -143,7 +157,8 @@ impl<const D: usize> Case<D> {
             toughness: self.toughness.clone(),
             repulsion: self.repulsion.clone(),
             simd,
-        });
+        };
+        let mut it = ListInteraction::of_pairs(parts, pairs);
         it.prepare(body);
         it
     }

@@ -5,15 +5,27 @@ use crate::case::*;
 use peridyne::body::zeros;
 use peridyne::execute::simd::Simd;
 use peridyne::family::horizon::HorizonList;
-use peridyne::interaction::{Interaction, PointConstants, PointEnergies, Sweep};
+use peridyne::interaction::pairs::{BondConstants, BondTable, Paired};
+use peridyne::interaction::{Interaction, PointConstants, PointEnergies, Sweep, Toughness};
 use peridyne::law::Law;
-use peridyne::law::solid::bond_based::BondBasedMixed;
-use peridyne::law::solid::eam_like::EamLike;
+use peridyne::law::solid::bond_based::{BondBased, BondBasedMixed};
+use peridyne::law::solid::eam_like::{EamLike, Solid};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{Influence, InterfaceRule, Release};
+use std::sync::Arc;
 
 /// Everything that a few breaking steps leave behind.
 fn trace<W: Law>(law: W, constants: PointConstants, simd: Simd, threads: usize) -> Vec<u64> {
+    trace_of_pairs(law, constants, simd, threads, Arc::default())
+}
+
+fn trace_of_pairs<W: Law>(
+    law: W,
+    constants: PointConstants,
+    simd: Simd,
+    threads: usize,
+    pairs: Arc<BondTable>,
+) -> Vec<u64> {
     let case = Case {
         influence: Influence::Inverse,
         materials: true,
@@ -23,7 +35,7 @@ fn trace<W: Law>(law: W, constants: PointConstants, simd: Simd, threads: usize) 
     let body = case.perturbed_cloud();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
-        let mut it = case.list(&body, law, constants, simd);
+        let mut it = case.list_of_pairs(&body, law, constants, simd, pairs);
         let mut bits = vec![];
         let mut f = zeros(body.len);
         for step in 0..3 {
@@ -65,10 +77,37 @@ fn every_width_and_number_of_threads_gives_the_same_bits() {
     let both = |simd, threads| {
         let per = PointConstants::PerMaterial(vec![1.0, 2.0]);
         let eam = PointConstants::Solid(solids.clone());
-        (
+        // unlike in everything
+        let pair = |n: usize, volume: f64| BondConstants {
+            horizon: [1.0, 0.8, 0.8, 0.9][n] * 3.0 * H,
+            stiffness: [1.0, 0.6, 0.6, 2.0][n],
+            volume,
+            toughness: Toughness {
+                s00: [0.02, 0.01, 0.01, 0.03][n],
+                alpha: [0.25, 0.0, 0.0, 0.5][n],
+            },
+        };
+        let table = |volume: [f64; 4]| {
+            let pairs = (0..4).map(|n| pair(n, volume[n])).collect();
+            Arc::new(BondTable::new(2, pairs, Some(H)))
+        };
+        let unit = Solid {
+            n: 3.0,
+            kappa: 1.0,
+            beta: 1.0,
+        };
+        let units = PointConstants::Solid(vec![unit; 2]);
+        let law = Paired(EamLike {
+            ratio: unit.ratio(),
+        });
+        let volumes = table([0.3, 0.3, 0.7, 0.7]);
+        let bond = Paired(BondBased { c: 1.0 });
+        [
             trace(mixed, per, simd, threads),
             trace(solid, eam, simd, threads),
-        )
+            trace_of_pairs(bond, PointConstants::None, simd, threads, table([0.0; 4])),
+            trace_of_pairs(law, units, simd, threads, volumes),
+        ]
     };
     let portable = both(Simd::Portable, 1);
     for simd in Simd::available() {
@@ -109,4 +148,99 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         it.forces(&body, &u, &mut f, evolve, None);
         assert_eq!(allocations(), before);
     });
+}
+
+/// Where all pairs have the constants of one material, a table says what the law says.
+#[test]
+fn a_table_of_equal_pairs_is_the_law() {
+    let case = Case {
+        influence: Influence::Inverse,
+        materials: true,
+        ..Case::new(LatticeKind::Cubic, 3, [9, 8, 7])
+    };
+    let case = case.contact().breaking();
+    let body = case.perturbed_cloud();
+    let simd = Simd::detect();
+    let solid = lps(3)[0];
+    let toughness = Toughness {
+        s00: 0.02,
+        alpha: 0.25,
+    };
+    let case = Case {
+        toughness: vec![toughness],
+        ..case
+    };
+    let table = |stiffness: f64, volume: f64| {
+        let pair = BondConstants {
+            horizon: case.delta(),
+            stiffness,
+            volume,
+            toughness,
+        };
+        Arc::new(BondTable::new(2, vec![pair; 4], Some(H)))
+    };
+    let unit = Solid {
+        kappa: 1.0,
+        beta: 1.0,
+        ..solid
+    };
+    let law = EamLike {
+        ratio: solid.ratio(),
+    };
+    let units = EamLike {
+        ratio: unit.ratio(),
+    };
+    let (one, all) = (
+        PointConstants::Solid(vec![solid; 2]),
+        PointConstants::Solid(vec![unit; 2]),
+    );
+    let (bond, none) = (BondBased { c: 7.0 }, PointConstants::None);
+    let mut pairs: [[Box<dyn Interaction<3>>; 2]; 2] = [
+        [
+            Box::new(case.list(&body, bond, none.clone(), simd)),
+            Box::new(case.list_of_pairs(
+                &body,
+                Paired(BondBased { c: 1.0 }),
+                none,
+                simd,
+                table(7.0, 0.0),
+            )),
+        ],
+        [
+            Box::new(case.list(&body, law, one, simd)),
+            Box::new(case.list_of_pairs(
+                &body,
+                Paired(units),
+                all,
+                simd,
+                table(solid.beta, solid.kappa),
+            )),
+        ],
+    ];
+    for [plain, paired] in &mut pairs {
+        for step in 0..3 {
+            let u = displace(&body, case.amplitude * (step as f64 + 0.05), step);
+            let v = displace(&body, case.amplitude, step + 7);
+            let evolve = Sweep::Evolve {
+                v: &v,
+                dt: 0.3,
+                release: Release::AtOnce,
+            };
+            let mut f = (zeros(body.len), zeros(body.len));
+            let a = plain.forces(&body, &u, &mut f.0, evolve, None);
+            let b = paired.forces(&body, &u, &mut f.1, evolve, None);
+            assert_eq!(a.broken, b.broken);
+            assert!((a.released - b.released).abs() <= 1e-12 * a.released.abs());
+            let (all, energy) = (plain.energy(&body, &u), paired.energy(&body, &u));
+            assert!((all[0] - energy[0]).abs() <= 1e-13 * all[0]);
+            for axis in 0..3 {
+                let (a, b) = (by_id(&body, &f.0[axis]), by_id(&body, &f.1[axis]));
+                let largest = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                for (a, b) in a.iter().zip(&b) {
+                    assert!((a - b).abs() <= 1e-13 * largest, "{a} {b}");
+                }
+            }
+        }
+        assert_eq!(plain.memory().0, paired.memory().0);
+    }
 }

@@ -116,6 +116,27 @@ fn what_is_odd_in_lps_is_said() {
     assert!(!noted(&paper, "counts half"));
 }
 
+/// LAMMPS's LPS has no critical stretches before its first evaluation with bonds.
+#[test]
+fn a_start_in_motion_is_said() {
+    let coefficients = "pair_coeff * * 14.9e9 6e9 0.0015001 0.01 0";
+    let words = "LAMMPS has no critical stretches yet";
+    let moving = "variable v atom 10*x\nvelocity all set v_v 0 0 units box";
+    assert!(noted(
+        &run("lps", coefficients, 0.0, moving).unwrap(),
+        words
+    ));
+    let after_rest = format!("run 1\n{moving}");
+    for more in ["", &after_rest] {
+        assert!(!noted(&run("lps", coefficients, 0.0, more).unwrap(), words));
+    }
+    let strained = "run 0\nvariable x atom 1.001*x\nset group all x v_x";
+    assert!(noted(
+        &run("lps", coefficients, 0.0, strained).unwrap(),
+        words
+    ));
+}
+
 /// Which of two unlike volumes LAMMPS takes depends on its neighbour list.
 #[test]
 fn unlike_volumes_are_said() {

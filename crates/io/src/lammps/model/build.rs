@@ -44,6 +44,7 @@ impl Host for ModelHost {
             dimension,
             domain,
             atoms,
+            pair,
             ..
         } = setup;
         let height = if dimension == 2 {
@@ -63,6 +64,7 @@ impl Host for ModelHost {
             driven: Vec::new(),
             moduli,
             unbonded,
+            undefined: matches!(pair, Pair::Lps(_)),
             notes,
         }))
     }
@@ -102,6 +104,12 @@ fn notes(setup: &Setup, types: &Types, sim: &dyn Simulation) -> Vec<String> {
     if let Pair::Lps(_) = setup.pair {
         note(
             "pe, E_pair, E_vdwl, etotal and pe/atom are LAMMPS's: its `peri/lps` counts half of the energy of changes of shape, so that their sum with ke is not conserved; the energies in run.json are whole",
+        );
+    }
+    let across = (0..setup.dimension).any(|a| setup.domain.periodic(a));
+    if matches!(setup.pair, Pair::Lps(_)) && across {
+        note(
+            "LPS through periodic faces: LAMMPS's `peri/lps` computes the weighted volumes of points near such a face without the nearest images, so that they are far too large there; here they are those of the nearest images",
         );
     }
     if types.unlike_moduli() {

@@ -60,6 +60,8 @@ pub struct ModelEngine {
     moduli: Vec<[f64; 2]>,
     /// Pairs of atom types that repel without bounds.
     unbonded: Vec<(usize, usize)>,
+    /// Would LAMMPS not know the critical stretches of the next evaluation with bonds?
+    undefined: bool,
     notes: Vec<String>,
 }
 
@@ -256,6 +258,16 @@ impl Engine for ModelEngine {
             driven.extend(drive.map(|d| (d, conditions::members(condition, n))));
         }
         sim.set_driven(&driven);
+        // the next evaluation with bonds is now, or at the end of the first step
+        if self.undefined && (self.bonded || run.steps > 0) {
+            self.undefined = false;
+            let moves = |v: &[f64; 3]| v.iter().any(|c| *c != 0.0);
+            if sim.velocities().iter().any(moves)
+                || self.bonded && sim.displacements().iter().any(moves)
+            {
+                self.notes.push("atoms move or are strained when the bonds of `peri/lps` are first asked: LAMMPS has no critical stretches yet then and may break every bond that is stretched; here none breaks in that step (let LAMMPS make `run 1` at rest before anything moves, for equal results)".to_string());
+            }
+        }
         sim.watch_next();
         sim.start(self.bonded);
         self.bonded = true;
