@@ -3,6 +3,8 @@
 Usage: python atoms_ase.py write DIR    (makes ase.xyz and ase.data)
        python atoms_ase.py read DIR     (checks peridyne.xyz, peridyne.data, peridyne.lammpstrj against ase.xyz)
 Between the two: PERIDYNE_ASE=DIR cargo test -p peridyne-io --test atoms_ase
+       python atoms_ase.py run XYZ DUMP TEMPERATURE (output.trajectory and output.dump of one deck in metal units hold one system,
+                                        whose temperature ASE finds to be the last one of history.csv)
 Needs: pip install ase numpy
 """
 
@@ -10,6 +12,7 @@ import pathlib
 import sys
 
 import ase.io
+import ase.units
 import numpy as np
 from ase.build import bulk
 from ase.calculators.singlepoint import SinglePointCalculator
@@ -51,6 +54,8 @@ def read(directory):
     close("extxyz cell", mine.cell, atoms.cell, 0.0)
     close("extxyz masses", mine.get_masses(), atoms.get_masses(), 0.0)
     close("extxyz velocities", mine.arrays["velo"], atoms.get_velocities(), 1e-14)
+    # the column momenta is what ASE takes velocities from
+    close("extxyz momenta", mine.get_velocities(), atoms.get_velocities(), 1e-14)
     close("extxyz forces", mine.get_forces(apply_constraint=False), atoms.get_forces(apply_constraint=False), 0.0)
     data = ase.io.read(directory / "peridyne.data", format="lammps-data", atom_style="atomic", sort_by_id=True)
     close("data positions", data.positions, atoms.positions, 1e-14)
@@ -62,5 +67,27 @@ def read(directory):
     close("dump forces", dump.get_forces(apply_constraint=False)[order], atoms.get_forces(apply_constraint=False), 0.0)
 
 
+def run(trajectory, dumped, temperature):
+    frame = ase.io.read(trajectory, index=-1)
+    dump = ase.io.read(dumped, format="lammps-dump-text", index=-1, units="metal")
+    order = np.argsort(dump.arrays["id"]) if "id" in dump.arrays else slice(None)
+    dump = dump[order]
+    assert list(frame.pbc) == list(dump.pbc)
+    close("cell", frame.cell, dump.cell, 1e-12)
+    # positions may lie in other periodic images
+    moved = frame.get_scaled_positions(wrap=False) - dump.get_scaled_positions(wrap=False)
+    shift = moved - np.rint(moved - moved[0]) - moved[0]
+    close("positions", shift, np.zeros_like(shift), 1e-12)
+    close("forces", frame.get_forces(), dump.get_forces(), 1e-12)
+    close("velocities", frame.get_velocities(), dump.get_velocities(), 1e-7)
+    # D N - D degrees of freedom
+    degrees = 3 * len(frame) - 3
+    found = 2 * frame.get_kinetic_energy() / (degrees * ase.units.kB)
+    close("temperature", found, float(temperature), 1e-6 * float(temperature))
+
+
 if __name__ == "__main__":
-    {"write": write, "read": read}[sys.argv[1]](pathlib.Path(sys.argv[2]))
+    if sys.argv[1] == "run":
+        run(*sys.argv[2:5])
+    else:
+        {"write": write, "read": read}[sys.argv[1]](pathlib.Path(sys.argv[2]))

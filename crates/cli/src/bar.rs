@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, say};
 use clap::ValueEnum;
-use peridyne_theory::exact::{Field, Q, binary};
+use peridyne_theory::exact::{Field, Q};
 use peridyne_theory::homogenize::bar::limit::decimals;
 use peridyne_theory::homogenize::bar::stiffness::Corner;
 use peridyne_theory::homogenize::bar::{Bar, BarError, Ends, micromodulus};
@@ -119,28 +119,22 @@ fn texts(fractions: &[Q]) -> Vec<String> {
     fractions.iter().map(Q::to_string).collect()
 }
 
-/// A whole number without a point.
-fn number(x: f64) -> Value {
-    if x == x.trunc() && x.abs() < 9e15 {
-        json!(x as i64)
+/// A whole number as one, another as a fraction.
+fn number(x: &Q) -> Value {
+    let value = x.value();
+    // whole numbers below 2^53 are exact
+    if x.is_integer() && value.abs() < 9e15 {
+        json!(value as i64)
     } else {
-        json!(x)
+        json!(x.to_string())
     }
 }
 
-/// Scale and entries as numbers; in units of cA itself where they would not be exact.
+/// The rows in units of cA over their scale.
 fn corner(corner: &Corner) -> (Value, Value) {
-    let exact = |x: &Q| binary(x.value()).as_ref() == Some(x);
-    let scale = Q::from_integer(corner.scale.clone());
-    let whole = exact(&scale) && corner.rows.iter().flatten().all(exact);
-    let entry = |x: &Q| {
-        let x = if whole { x.clone() } else { x / &scale };
-        number(x.value())
-    };
-    let row = |row: &Vec<Q>| row.iter().map(entry).collect::<Vec<Value>>();
+    let row = |row: &Vec<Q>| row.iter().map(number).collect::<Vec<Value>>();
     let rows: Vec<Vec<Value>> = corner.rows.iter().map(row).collect();
-    let scale = if whole { scale.value() } else { 1.0 };
-    (number(scale), json!(rows))
+    (number(&Q::from_integer(corner.scale.clone())), json!(rows))
 }
 
 fn json(found: &Found) -> Value {

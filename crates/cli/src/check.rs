@@ -113,6 +113,10 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |threads| {
         let sim = deck::model(&deck, input)?;
+        let remarks = deck::remarks(&deck, sim.info().time_step);
+        if !remarks.is_empty() {
+            eprintln!("{}", remarks.trim_start());
+        }
         let subject = Subject {
             steps: deck.steps(sim.info().time_step),
             units: deck.units,

@@ -14,9 +14,52 @@ pub fn is_deck(input: &Input) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
+/// Files that are no decks and no scripts, by how they begin: what they are, and whether a body can be made of them.
+const OTHERS: [(&[u8], &str, bool); 7] = [
+    (b"$MeshFormat", "a mesh of gmsh", true),
+    (b"*HEADING", "a mesh of Abaqus", true),
+    (b"*NODE", "a mesh of Abaqus", true),
+    (b"ITEM: ", "a LAMMPS dump", true),
+    (b"PK\x03\x04", "an archive of arrays", true),
+    (b"\x89PNG", "a picture", false),
+    (b"<?xml", "an XML file", false),
+];
+
+fn refuse_others(name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    let begin = bytes[..bytes.len().min(4096)].to_ascii_uppercase();
+    let begin = begin.trim_ascii_start();
+    let Some((_, what, body)) = OTHERS
+        .iter()
+        .find(|(start, ..)| begin.starts_with(&start.to_ascii_uppercase()))
+    else {
+        return Ok(());
+    };
+    let help = match body {
+        true => {
+            let file = std::path::Path::new(name).file_name();
+            let file = file.map_or(name.into(), |f| f.to_string_lossy());
+            format!(
+                "write a deck (.toml) beside it, with body = {{ file = \"{file}\" }}, horizon, material and run"
+            )
+        }
+        false => "give a deck (.toml) or a LAMMPS input script".into(),
+    };
+    Err(Failure::input(format!(
+        "{name}: this is {what}, not a deck or script; {help}"
+    )))
+}
+
 pub fn text(input: &Input) -> Result<String, Failure> {
     let name = input.file.display();
     let bytes = std::fs::read(&input.file).map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    refuse_others(&name.to_string(), &bytes)?;
+    let table =
+        |line: &[u8]| [&b"[body]"[..], b"[material]", b"[run]"].contains(&line.trim_ascii());
+    if !is_deck(input) && bytes.split(|b| *b == b'\n').any(table) {
+        return Err(Failure::input(format!(
+            "{name}: this looks like a deck, and is read as a LAMMPS script because of its name: name it .toml"
+        )));
+    }
     String::from_utf8(bytes).map_err(|e| Failure::input(format!("{name}: not text: {e}")))
 }
 
@@ -52,6 +95,19 @@ pub fn model(deck: &Deck, input: &Input) -> Result<Box<dyn Simulation>, Failure>
         ..Options::default()
     };
     build(&deck.spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
+}
+
+/// What the deck passed over and what looks wrong in it, in lines.
+pub fn remarks(deck: &Deck, time_step: f64) -> String {
+    let notes = deck.notes.iter().map(|n| format!("\nnote: {n}"));
+    let warnings = deck
+        .warnings
+        .iter()
+        .cloned()
+        .chain(deck.long_run(time_step));
+    notes
+        .chain(warnings.map(|w| format!("\nwarning: {w}")))
+        .collect()
 }
 
 /// What was built, in a few lines.

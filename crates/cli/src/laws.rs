@@ -1,39 +1,62 @@
-//! `peridyne laws`: what a deck can name.
+//! `peridyne laws`: what a deck can name, read from its schema, so that nothing is forgotten.
 
 use crate::failure::{Failure, say};
 use peridyne::space::lattice::LatticeKind;
+use serde_json::Value;
+use std::fmt::Write;
 
-const LAWS: &str = "\
-laws (material.law)
-  pmb       bond-based, prototype microelastic brittle: f = c ω ν V s
-            bulk, young or micromodulus; Poisson ratio 1/4, plane stress 1/3
-  lps       linear peridynamic solid, state-based: W = ½ κ θ² + β/(2m) Σ ω ν V e²
-            two of young, poisson, bulk, shear; any Poisson ratio below 1/2
-  eam_like  the shape of both, with its two stiffnesses given directly: pair, volume
-  springs   the bond-based law linearised about the reference (lattices): bulk, young or micromodulus
+/// Tables of names in this order, with where they stand; others follow.
+const ORDER: [(&str, &str); 15] = [
+    ("Law", "laws (material.law)"),
+    ("EndName", "ends of pair potentials at their cut-off (end)"),
+    ("Fracture", "fracture (material.fracture)"),
+    (
+        "ReleaseName",
+        "when a bond past its critical stretch lets go (material.fracture.release)",
+    ),
+    ("InfluenceName", "influence functions (influence)"),
+    (
+        "InterfaceName",
+        "bonds between unlike materials (interface)",
+    ),
+    (
+        "SurfaceName",
+        "factors of bonds near the surface of a lattice body (surface)",
+    ),
+    (
+        "CalibrationName",
+        "calibration of the constants (calibration)",
+    ),
+    ("FamilyName", "families (family)"),
+    ("Shape", "regions (region)"),
+    ("CrackName", "kinds of pre-crack (precrack.kind)"),
+    ("MethodName", "methods of statics (statics.method)"),
+    ("SolverName", "solvers of linear systems (statics.solver)"),
+    ("FieldName", "fields (output.fields)"),
+    ("Constants", "physical constants of metal units (units.constants)"),
+];
 
-interatomic potentials (material.law); neighbours are the current ones, or with family = \"stencil\" those of the lattice
-  lennard_jones  4ε [(σ/r)¹² − (σ/r)⁶]: epsilon, sigma
-  morse          D [e^(−2α(r−r0)) − 2 e^(−α(r−r0))]: depth, alpha, distance
-  buckingham     A e^(−r/ρ) − C/r⁶: strength, range, dispersion
-                 all three: cutoff, end = truncated | shifted | shifted_force | smooth (smooth_from)
-  eam            embedded atoms from a table: file (eam/alloy setfl, or .eam funcfl), element, length_scale, energy_scale
-  eam_form       embedded atoms in closed form (Mei, Davenport & Fernando 1991): cohesive, pair, alpha, beta, gamma, lambda, …
-
-influence functions (influence)
-  constant 1   inverse 1/ξ   conical 1 − ξ/δ   gaussian exp(−(2ξ/δ)²)   cubic_spline
-
-fracture (material.fracture)
-  critical_stretch or energy (per area), alpha: s0 = s00 − α s_min
-  release at_once (a bond past s0 pulls no more, as in CabanaPD) or after_force (once more, as in LAMMPS)
-
-lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)";
+/// Said elsewhere, or plain.
+const LEFT_OUT: [&str; 5] = ["LatticeName", "AxisName", "PlaneName", "UnitName", "Mark"];
 
 pub fn print() -> Result<(), Failure> {
-    say(LAWS);
+    let schema = peridyne_io::deck::schema();
+    let none = serde_json::Map::new();
+    let all = schema["$defs"].as_object().unwrap_or(&none);
+    let others = all.iter().filter(|(name, table)| {
+        let known = ORDER.iter().any(|(o, _)| o == name) || LEFT_OUT.contains(&name.as_str());
+        !known && (table.get("oneOf").is_some() || table.get("enum").is_some())
+    });
+    let titled = ORDER.iter().map(|(name, title)| (*name, *title));
+    for (name, title) in titled.chain(others.map(|(name, _)| (name.as_str(), name.as_str()))) {
+        if let Some(table) = all.get(name) {
+            say(&format!("{title}\n{}", names(table, all)));
+        }
+    }
+    say("lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)");
     for kind in LatticeKind::ALL {
         say(&format!(
-            "  {:<11} {}-D, {} sites per cell, nearest neighbours at {:.4} spacings",
+            "  {:<14} {}-D, {} sites per cell, nearest neighbours at {:.4} spacings",
             kind.name(),
             kind.dimension(),
             kind.basis().len(),
@@ -41,4 +64,66 @@ pub fn print() -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// One line for each name: what it is, and its keys; those that must be given are marked.
+fn names(table: &Value, all: &serde_json::Map<String, Value>) -> String {
+    let mut text = String::new();
+    if let Some(keys) = keys(table, all) {
+        let _ = writeln!(text, "  {keys}");
+    }
+    let one = std::slice::from_ref(table);
+    let variants = table["oneOf"].as_array().map_or(one, Vec::as_slice);
+    for variant in variants {
+        let said = variant["description"]
+            .as_str()
+            .unwrap_or("")
+            .replace('\n', " ");
+        let line = |text: &mut String, name: &str| {
+            let _ = writeln!(text, "{}", format!("  {name:<14} {said}").trim_end());
+        };
+        if let Some(name) = variant["const"].as_str() {
+            line(&mut text, name);
+        }
+        let plain: Vec<&str> = variant["enum"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .collect();
+        if !plain.is_empty() {
+            let _ = writeln!(text, "  {}", plain.join("   "));
+        }
+        if table.get("oneOf").is_some()
+            && let Some(properties) = variant["properties"].as_object()
+        {
+            for (name, inner) in properties {
+                line(&mut text, name);
+                if let Some(keys) = keys(inner, all) {
+                    let _ = writeln!(text, "  {:<14} {keys}", "");
+                }
+            }
+        }
+    }
+    text
+}
+
+/// Keys of a table or of the table that it refers to.
+fn keys(table: &Value, all: &serde_json::Map<String, Value>) -> Option<String> {
+    let table = match table["$ref"].as_str() {
+        Some(name) => all.get(name.rsplit('/').next()?)?,
+        None => table,
+    };
+    let properties = table["properties"].as_object()?;
+    let needed = |key: &str| {
+        let required = table["required"].as_array();
+        required.is_some_and(|r| r.iter().any(|k| k == key))
+    };
+    let (must, may): (Vec<&String>, Vec<&String>) = properties.keys().partition(|k| needed(k));
+    let list = |keys: Vec<&String>| keys.into_iter().cloned().collect::<Vec<_>>().join(", ");
+    Some(match (must.is_empty(), may.is_empty()) {
+        (_, true) => format!("keys: {}", list(must)),
+        (true, false) => format!("keys: {}", list(may)),
+        (false, false) => format!("keys: {}; may be left out: {}", list(must), list(may)),
+    })
 }

@@ -7,7 +7,7 @@ use crate::progress::Terminal;
 use crate::script;
 use peridyne::run::SnapshotOptions;
 use peridyne_io::deck::{Deck, Dim, FieldName, UnitSystem};
-use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive};
+use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
@@ -45,6 +45,9 @@ pub fn with_threads(
     if threads == Some(0) {
         return Err(Failure::input("--threads 0: at least one thread must run"));
     }
+    if let Some(text) = threads.and_then(too_many_threads) {
+        eprintln!("warning: {text}");
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
         .build()
@@ -60,7 +63,8 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
     say(&deck.describe());
-    say(&deck::headline(sim.as_ref()));
+    let remarks = deck::remarks(deck, sim.info().time_step);
+    say(&(deck::headline(sim.as_ref()) + &remarks));
     let steps = deck.steps(sim.info().time_step);
     let plan = plan(deck, steps, dir, threads);
     say(&format!(
@@ -119,7 +123,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         every: output.every,
         modes: deck.modes,
         linear_body: output.linear_body,
-        history: output.history.unwrap_or((steps / 200).max(1)),
+        history: output.history.unwrap_or((steps / 100).max(1)),
         series: SeriesOptions {
             points: output.vtu,
             bonds: output.bonds,
@@ -156,6 +160,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
                 data: output.data.clone(),
                 species: deck.species.clone().unwrap_or_else(|| "X".into()),
                 density: deck.spec.materials[0].density,
+                ase_velocity: deck.units.ase_velocity(),
                 mass_scale: 1.0 / deck.units.plain_factor(Dim::MASS),
                 corner: deck.corner,
                 periodic: deck.spec.periodic,

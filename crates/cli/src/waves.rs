@@ -9,7 +9,7 @@ use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use peridyne::spec::TimeStep;
 use peridyne_io::deck::{Deck, UnitSystem};
-use peridyne_theory::survey::{Survey, survey};
+use peridyne_theory::survey::{Survey, TERMS, survey};
 use peridyne_theory::upscale::{UpscaleError, lattice};
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,9 @@ pub struct WavesArguments {
     /// Folder for the results; `out/<name of the deck>-waves` if not given.
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Highest derivative in the gradient equation, an even number up to 40.
+    #[arg(long, default_value_t = 2 * TERMS)]
+    pub order: usize,
     /// Print the JSON of the results instead of a report.
     #[arg(long)]
     pub json: bool,
@@ -52,6 +55,12 @@ pub fn waves(arguments: &WavesArguments) -> Result<(), Failure> {
             "waves takes a deck (.toml) with a lattice body; `peridyne check` reads LAMMPS scripts",
         ));
     }
+    let order = arguments.order;
+    if order % 2 != 0 || !(2..=40).contains(&order) {
+        return Err(Failure::input(format!(
+            "--order {order}: gradient equations have derivatives of even order, from 2 to 40; write for example --order 8"
+        )));
+    }
     let deck = deck::read(&arguments.input)?;
     with_threads(arguments.threads, |_| all(arguments, &deck))
 }
@@ -72,7 +81,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
         }
     };
     let found = Found {
-        survey: survey(&deck.spec, time_step).map_err(told)?,
+        survey: survey(&deck.spec, time_step, arguments.order / 2).map_err(told)?,
         deck,
         estimate,
     };

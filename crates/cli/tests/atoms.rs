@@ -171,3 +171,101 @@ fn a_run_that_stops_keeps_the_last_good_frame() {
     let again = extxyz(&dir.path().join("again.xyz"), Frame::Step(0)).unwrap();
     assert!((again.position[9][0] - 9.9).abs() < 1e-12);
 }
+
+/// `output.dump` has the name, the box, the velocities and the forces, and is the system itself: it goes on from there.
+#[test]
+fn a_dump_of_atoms_is_the_system() {
+    let dir = TempDir::new().unwrap();
+    let table = good("copper.eam.alloy").canonicalize().unwrap();
+    let copper = format!(
+        "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
+         body = {{ lattice = \"fcc\", spacing = 3.615, origin = [1, 2, 3], cells = [4, 4, 4] }}\n\
+         material.law = {{ eam = {{ file = {table:?} }} }}\nthermal = {{ temperature = 300, seed = 4 }}\n\
+         run = {{ steps = 20, time_step = 0.002 }}\n\
+         output = {{ dump = \"given.dump\", trajectory = \"t.extxyz\", vtu = false, history = 20 }}\n"
+    );
+    let deck = dir.path().join("deck.toml");
+    std::fs::write(&deck, &copper).unwrap();
+    let first = dir.path().join("first");
+    let (code, text) = run(&deck, &first, &[]);
+    assert_eq!(code, Some(0), "{text}");
+    let path = first.join("given.dump");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let heads: Vec<&str> = text.lines().filter(|l| l.starts_with("ITEM: ")).collect();
+    assert_eq!(heads.len(), 2 * 5, "{heads:?}");
+    assert!(heads.contains(&"ITEM: BOX BOUNDS pp pp pp"));
+    assert!(heads.contains(&"ITEM: ATOMS id type x y z vx vy vz fx fy fz c_pe"));
+    let (dumped, framed) = (
+        dump(&path, Frame::Last).unwrap(),
+        extxyz(&first.join("t.extxyz"), Frame::Last).unwrap(),
+    );
+    assert_eq!(dumped.low, [1.0, 2.0, 3.0]);
+    assert!((0..3).all(|a| (dumped.high[a] - dumped.low[a] - 14.46).abs() < 1e-12));
+    assert_eq!(
+        (
+            &dumped.position,
+            &dumped.velocity,
+            &dumped.force,
+            dumped.periodic
+        ),
+        (
+            &framed.position,
+            &framed.velocity,
+            &framed.force,
+            framed.periodic
+        )
+    );
+    assert_eq!(framed.species[0].mass, Some(63.546));
+
+    // momenta are in ASE's units, Å/10.18 fs and g/mol
+    let text = std::fs::read_to_string(first.join("t.extxyz")).unwrap();
+    assert!(text.contains("species:S:1:pos:R:3:masses:R:1:velo:R:3:momenta:R:3:forces:R:3"));
+    let row: Vec<f64> = text
+        .lines()
+        .nth(2)
+        .unwrap()
+        .split_whitespace()
+        .skip(1)
+        .map(|w| w.parse().unwrap())
+        .collect();
+    // ase.units.fs, per fs and not per ps
+    let wanted = row[4] * 63.546 * 1e-3 / 0.098_226_947_884_640_63;
+    assert!(
+        (row[7] - wanted).abs() < 1e-7 * wanted.abs(),
+        "{} {wanted}",
+        row[7]
+    );
+
+    // what is read goes on with the same energies, from the dump and from momenta alone
+    let bare = text.replace(":velo:R:3", ":old:R:3");
+    std::fs::write(dir.path().join("bare.extxyz"), bare).unwrap();
+    let energies = |folder: &Path, row: usize| -> Vec<f64> {
+        let table = std::fs::read_to_string(folder.join("history.csv")).unwrap();
+        let row = table.lines().nth(row).unwrap();
+        row.split(',')
+            .skip(2)
+            .take(2)
+            .map(|c| c.parse().unwrap())
+            .collect()
+    };
+    let last = energies(&first, 2);
+    for (n, (file, near)) in [("first/given.dump", 1e-12), ("bare.extxyz", 1e-8)]
+        .iter()
+        .enumerate()
+    {
+        let again = copper
+            .replace(
+                "lattice = \"fcc\", spacing = 3.615, origin = [1, 2, 3], cells = [4, 4, 4]",
+                &format!("file = \"{file}\""),
+            )
+            .replace("periodic = [\"x\", \"y\", \"z\"]\n", "")
+            .replace("thermal = { temperature = 300, seed = 4 }\n", "");
+        std::fs::write(&deck, again).unwrap();
+        let out = dir.path().join(format!("again{n}"));
+        let (code, text) = run(&deck, &out, &["--set", "run.steps=1"]);
+        assert_eq!(code, Some(0), "{text}");
+        for (a, b) in energies(&out, 1).iter().zip(&last) {
+            assert!((a - b).abs() < near * b.abs(), "{file}: {a} {b}");
+        }
+    }
+}

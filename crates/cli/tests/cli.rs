@@ -360,3 +360,141 @@ fn check_takes_a_script_as_it_stands_at_its_first_run() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("the script has no `run`"), "{said}");
 }
+
+/// A plate with a hole of points: `output.dump` of points has the given name and one file, periodic axes their periods.
+#[test]
+fn dumps_of_points_have_their_name_and_box() {
+    let dir = TempDir::new().unwrap();
+    let sets = ["--set", "run.steps=2", "--set", "output.every=1"];
+    let more = [
+        "--set",
+        "output.dump=wave.dump",
+        "--set",
+        "output.vtu=false",
+    ];
+    good(run(
+        &deck("good/periodic_wave.toml"),
+        dir.path(),
+        &[&sets[..], &more[..]].concat(),
+    ));
+    let text = std::fs::read_to_string(dir.path().join("wave.dump")).unwrap();
+    assert_eq!(
+        text.matches("ITEM: BOX BOUNDS pp pp pp\n0.0 0.02\n")
+            .count(),
+        3,
+        "{}",
+        &text[..200]
+    );
+}
+
+#[test]
+fn what_is_no_deck_and_what_looks_wrong_is_said() {
+    let dir = TempDir::new().unwrap();
+    for (file, message) in [
+        (
+            "good/plate.msh",
+            "this is a mesh of gmsh, not a deck or script; write a deck (.toml) beside it, with body = { file = \"plate.msh\" }",
+        ),
+        ("good/groups.inp", "this is a mesh of Abaqus"),
+        ("good/liquid.lammpstrj", "this is a LAMMPS dump"),
+    ] {
+        for verb in ["run", "check"] {
+            let output = peridyne(&[verb, deck(file).to_str().unwrap()]);
+            assert_eq!(output.status.code(), Some(2));
+            let text = errors(&output).replace("\n  │ ", " ");
+            let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(text.contains(message), "{text}");
+        }
+    }
+    let text = "horizon = { m_ratio = 2 }\n[body]\nlattice = \"chain\"\nspacing = \"1 mm\"\nregion = { block = { low = 0, high = \"9 mm\" } }\n\
+        [material]\ndensity = \"1 g/cm^3\"\nlaw = { pmb = { young = \"1 GPa\" } }\n[[precrack]]\npoint = \"4.5 mm\"\n[run]\nduration = \"300 s\"\nthreads = 1000\n";
+    let file = dir.path().join("slow.toml");
+    std::fs::write(&file, text).unwrap();
+    let output = good(peridyne(&["check", file.to_str().unwrap()]));
+    let said = errors(&output);
+    for part in [
+        "warning: 1000 threads on",
+        "slow.toml:9: this crack never grows, as no material can break",
+        "check the unit of run.duration",
+    ] {
+        assert!(said.contains(part), "{part}\n{said}");
+    }
+    let file = dir.path().join("deck.txt");
+    std::fs::write(&file, text).unwrap();
+    let output = peridyne(&["run", file.to_str().unwrap()]);
+    assert!(
+        errors(&output).contains("name it .toml"),
+        "{}",
+        errors(&output)
+    );
+}
+
+/// The folder of the results is relative to the deck.
+#[test]
+fn the_output_folder_lies_beside_the_deck() {
+    let dir = TempDir::new().unwrap();
+    let text = std::fs::read_to_string(deck("good/reduced_units.toml")).unwrap()
+        + "[output]\ndir = \"results\"\n";
+    let file = dir.path().join("deck.toml");
+    std::fs::write(&file, text.replace("steps = 1000", "steps = 300")).unwrap();
+    good(peridyne(&["run", file.to_str().unwrap()]));
+    let history = std::fs::read_to_string(dir.path().join("results/history.csv")).unwrap();
+    // a hundredth of the run between rows, both ends, and the header
+    assert_eq!(history.lines().count(), 1 + 101, "{history}");
+}
+
+/// Everything that the schema names is there.
+#[test]
+fn laws_are_complete() {
+    let said = String::from_utf8(good(peridyne(&["laws"])).stdout).unwrap();
+    let words: Vec<&str> = said
+        .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .collect();
+    for name in [
+        "pmb",
+        "lps",
+        "lps_as_typed",
+        "eam_like",
+        "springs",
+        "micromoduli",
+        "lennard_jones",
+        "morse",
+        "buckingham",
+        "eam",
+        "eam_form",
+        "truncated",
+        "shifted_force",
+        "smooth_from",
+        "constant",
+        "conical",
+        "cubic_spline",
+        "series",
+        "parallel",
+        "minimum",
+        "exact",
+        "volume",
+        "energy",
+        "force",
+        "critical_stretch",
+        "alpha",
+        "discrete",
+        "stencil",
+        "neighbours",
+        "half_space",
+        "difference",
+        "newton",
+        "relaxation",
+        "cg",
+        "broken",
+        "dilatation",
+        "fragment",
+        "chain",
+        "triangular",
+        "diamond",
+        "young",
+        "dispersion",
+        "length_scale",
+    ] {
+        assert!(words.contains(&name), "{name} is not in\n{said}");
+    }
+}

@@ -47,6 +47,11 @@ fn a_chain_of_neighbours_is_the_textbook_chain() {
     assert!((number(&found, "/elastic/lattice/C/0/0") - 1.0).abs() < 1e-13);
     let c4 = number(&found, "/directions/0/longitudinal_gradient_coefficients/1");
     assert!((c4 - 0.0625 / 12.0).abs() < 1e-14);
+    // 2 a^(2p)/(2p+2)!
+    assert_eq!(
+        found["gradient_fractions"],
+        serde_json::json!(["1", "1/12", "1/360", "1/20160"])
+    );
     for file in [
         "dispersion.png",
         "dispersion.svg",
@@ -62,6 +67,49 @@ fn a_chain_of_neighbours_is_the_textbook_chain() {
     );
     let svg = std::fs::read_to_string(dir.path().join("dispersion.svg")).unwrap();
     assert!(svg.contains(">Γ</text>") && svg.contains(">X</text>"));
+}
+
+/// Springs K_j = K/j to N = 20 neighbours: Σ j^(2p+1) over Σ j (seleson2009), in fractions to the order asked.
+#[test]
+fn coefficients_of_chains_are_fractions_to_the_order_asked() {
+    let dir = tempfile::tempdir().unwrap();
+    let found = survey("good/spring_chain.toml", &["--order", "12"], dir.path());
+    let fractions = found["gradient_fractions"].as_array().unwrap();
+    assert_eq!(fractions.len(), 6);
+    let sum = |power: u32| (1..=20u128).map(|j| j.pow(power)).sum::<u128>();
+    for (p, fraction) in fractions.iter().enumerate() {
+        let factorial: u128 = (1..=2 * p as u128 + 2).product();
+        let (above, below) = fraction
+            .as_str()
+            .unwrap()
+            .split_once('/')
+            .unwrap_or((fraction.as_str().unwrap(), "1"));
+        let [above, below]: [u128; 2] = [above, below].map(|t| t.parse().unwrap());
+        assert_eq!(
+            above * sum(1) * factorial,
+            below * 2 * sum(2 * p as u32 + 1),
+            "{p}"
+        );
+    }
+    let done = waves(
+        &deck("good/spring_chain.toml"),
+        &["--order", "12"],
+        dir.path(),
+    );
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(
+        said.contains("∂^4: 35/2 a^2") && said.contains("∂^12: "),
+        "{said}"
+    );
+    let wrong = waves(
+        &deck("good/spring_chain.toml"),
+        &["--order", "7"],
+        dir.path(),
+    );
+    assert_eq!(wrong.status.code(), Some(2));
+    // roots of whole numbers are no fractions
+    let plate = survey("good/exact_plate.toml", &[], dir.path());
+    assert_eq!(plate["gradient_fractions"], serde_json::json!([]));
 }
 
 #[test]

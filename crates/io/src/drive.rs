@@ -60,6 +60,8 @@ pub struct AtomsPlan {
     pub species: String,
     /// Mass density (mass / length³).
     pub density: f64,
+    /// How much computed velocity one of ASE is.
+    pub ase_velocity: f64,
     /// How many units of mass of a data file a computed mass of 1 is.
     pub mass_scale: f64,
     /// Lower corner of the periods.
@@ -91,6 +93,9 @@ impl AtomsPlan {
         let n = sim.info().points as usize;
         let (x, u) = (sim.reference(), sim.displacements());
         let volume = sim.volumes();
+        let mass = volume
+            .first()
+            .map(|v| rounded(self.density * v * self.mass_scale));
         let position: Vec<[f64; 3]> = x
             .iter()
             .zip(&u)
@@ -107,7 +112,7 @@ impl AtomsPlan {
         Atoms {
             species: vec![Species {
                 name: self.species.clone(),
-                mass: None,
+                mass,
             }],
             kind: vec![0; n],
             velocity: Some(sim.velocities()),
@@ -125,6 +130,7 @@ impl AtomsPlan {
             periodic: self.periodic.map(|p| p.is_some()),
             step: Some(sim.step_number()),
             time: Some(sim.time()),
+            from_momenta: false,
         }
     }
 
@@ -139,8 +145,6 @@ impl AtomsPlan {
                 atoms.high[a] += 0.5;
             }
         }
-        let volume = sim.volumes().first().copied().unwrap_or(0.0);
-        atoms.species[0].mass = Some(rounded(self.density * volume * self.mass_scale));
         atoms
     }
 }
@@ -197,10 +201,13 @@ pub fn drive(
         columns.push(Column::new("temperature", &atoms.temperature_unit));
         columns.push(Column::new("pressure", &atoms.pressure_unit));
     }
-    let trajectories = plan.atoms.iter().flat_map(|a| &a.trajectories);
-    let mut trajectories: Vec<Trajectory> = trajectories
-        .map(|(path, format)| Trajectory::create(&plan.dir.join(path), *format))
-        .collect::<Result<_, _>>()?;
+    let mut trajectories = Vec::new();
+    if let Some(atoms) = &plan.atoms {
+        for (path, format) in &atoms.trajectories {
+            let trajectory = Trajectory::create(&plan.dir.join(path), *format)?;
+            trajectories.push(trajectory.with_ase_velocity(atoms.ase_velocity));
+        }
+    }
     let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
     sim.start(true);
     let mut stepping = Duration::ZERO;

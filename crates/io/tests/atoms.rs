@@ -23,6 +23,7 @@ fn sample(step: u64) -> Atoms {
         periodic: [true, true, false],
         step: Some(step),
         time: Some(0.001 * step as f64),
+        from_momenta: false,
     }
 }
 

@@ -5,6 +5,8 @@ use crate::asked::asked;
 use crate::crystal::{Crystal, LatticeSolid, Reference};
 use crate::dispersion::verlet_frequency;
 use crate::dispersion::zone::{SpecialPoint, path, special_points};
+use crate::exact::{Field, Q};
+use crate::gradient::fractions::fractions;
 use crate::gradient::linear::LinearChain;
 use crate::gradient::{Expansion, nonlinear};
 use crate::lattice_elastic::continuum;
@@ -119,29 +121,31 @@ pub struct Survey {
     pub reference: Option<Reference>,
     /// Of a chain of atoms: stretches y′ and the nonlinear gradient equation there.
     pub nonlinear: Vec<(f64, Expansion<f64>)>,
+    /// Of a bond-based chain: `c_{2p+2}/(c_2 a^{2p})`; empty where they are no fractions.
+    pub fractions: Vec<Q>,
 }
 
 /// Steps along each line of the path.
 const STEPS: usize = 80;
-/// Gradient coefficients per direction.
-const TERMS: usize = 4;
+/// Gradient coefficients per direction if nobody says otherwise: up to ∂⁸.
+pub const TERMS: usize = 4;
 /// Stretches and gradient orders of nonlinear equations.
 pub const STRETCHES: [f64; 3] = [0.98, 1.0, 1.02];
 pub const NONLINEAR_TERMS: usize = 3;
 
-/// What waves a lattice spec carries, with steps of `time_step`.
-pub fn survey(spec: &Spec, time_step: f64) -> Result<Survey, UpscaleError> {
+/// What waves a lattice spec carries, with steps of `time_step`, and so many gradient coefficients.
+pub fn survey(spec: &Spec, time_step: f64, terms: usize) -> Result<Survey, UpscaleError> {
     if spec.materials.len() != 1 {
         return Err(UpscaleError::SeveralMaterials);
     }
     match spec.dimension {
-        1 => survey_in::<1>(spec, time_step),
-        2 => survey_in::<2>(spec, time_step),
-        _ => survey_in::<3>(spec, time_step),
+        1 => survey_in::<1>(spec, time_step, terms),
+        2 => survey_in::<2>(spec, time_step, terms),
+        _ => survey_in::<3>(spec, time_step, terms),
     }
 }
 
-fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleError> {
+fn survey_in<const D: usize>(spec: &Spec, dt: f64, terms: usize) -> Result<Survey, UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
     let (crystal, reference) = crystal::<D>(spec)?;
     let points = special_points(kind);
@@ -184,6 +188,20 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleErro
             rate: worst.growth,
         });
     }
+    let directions = directions(&crystal, &points, spacing, dt, scale, section, terms);
+    // the fractions are of this very chain
+    let same = |all: &Vec<Q>| {
+        let c = directions
+            .first()
+            .map(Direction::longitudinal)
+            .unwrap_or_default();
+        all.len() == c.len()
+            && all.iter().enumerate().all(|(p, q)| {
+                let found = c[p] / c[0] / spacing.powi(2 * p as i32);
+                (found - q.value()).abs() <= 1e-9 * q.value().abs()
+            })
+    };
+    let fractions = fractions(spec, terms).filter(same).unwrap_or_default();
     Ok(Survey {
         dimension: D,
         kind,
@@ -193,7 +211,8 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64) -> Result<Survey, UpscaleErro
         sites: crystal.basis.len(),
         time_step: dt,
         path: along_path(&crystal, &points, spacing, dt, scale),
-        directions: directions(&crystal, &points, spacing, dt, scale, section),
+        directions,
+        fractions,
         unstable_part: instability.map_or(0.0, |i| i.part),
         growing,
         bound: crystal.bound(),
@@ -344,6 +363,7 @@ fn directions<const D: usize>(
     dt: f64,
     scale: f64,
     section: f64,
+    terms: usize,
 ) -> Vec<Direction> {
     let ends = points.windows(2).filter_map(|pair| {
         if pair[0].name == "Γ" {
@@ -367,7 +387,7 @@ fn directions<const D: usize>(
             }
         });
         let gradients = crystal
-            .gradient_coefficients(unit, TERMS)
+            .gradient_coefficients(unit, terms)
             .unwrap_or_default();
         Direction {
             name: format!("Γ–{}", end.name),
@@ -417,7 +437,7 @@ mod tests {
     #[test]
     fn springs_of_one_neighbour_are_the_textbook_chain() {
         let law = LawSpec::Springs(PmbStiffness::Young(8.0));
-        let found = survey(&spec(LatticeKind::Chain, law, 1), 0.2).unwrap();
+        let found = survey(&spec(LatticeKind::Chain, law, 1), 0.2, TERMS).unwrap();
         // c = 2, ω_max = 2c/a = 8; at the edge sin(ω Δt/2) = ω Δt/2 of the wave
         assert!((found.sharp - 0.25).abs() < 1e-14);
         let edge = found.path.last().unwrap();
@@ -435,7 +455,7 @@ mod tests {
         assert!((found.continuum.unwrap().c[0][0] - 8.0).abs() < 1e-12);
         assert!(found.growing.is_empty());
         // beyond the limit the shortest waves have no frequency
-        let fast = survey(&spec(LatticeKind::Chain, law, 1), 0.26).unwrap();
+        let fast = survey(&spec(LatticeKind::Chain, law, 1), 0.26, TERMS).unwrap();
         assert_eq!(fast.path.last().unwrap().branches[0].verlet, None);
         assert!(fast.path[1].branches[0].verlet.is_some());
     }
@@ -459,7 +479,7 @@ mod tests {
             young: 3.0,
             poisson: 0.3,
         });
-        let found = survey(&spec(LatticeKind::Square, law, 3), 0.01).unwrap();
+        let found = survey(&spec(LatticeKind::Square, law, 3), 0.01, TERMS).unwrap();
         let names: Vec<&str> = found.directions.iter().map(|d| d.name.as_str()).collect();
         assert_eq!(names, ["Γ–X", "Γ–M"]);
         assert!(found.bound <= found.sharp * (1.0 + 1e-9));

@@ -196,6 +196,7 @@ pub fn json(found: &Found) -> Value {
             "gradient_coefficients": d.gradients,
             "longitudinal_gradient_coefficients": d.longitudinal(),
         })).collect::<Vec<_>>(),
+        "gradient_fractions": s.fractions.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "nonlinear_gradient_equation": s.nonlinear.iter().map(|(stretch, equation)| json!({
             "stretch": stretch,
             "terms": equation.orders.iter().enumerate().flat_map(|(p, order)| {

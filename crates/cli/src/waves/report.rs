@@ -218,12 +218,13 @@ fn gradients(t: &mut String, found: &Found) {
             .enumerate()
             .map(|(p, c)| match p {
                 0 => format!("∂²: {}", found.deck.units.write(*c, Dim::PRESSURE)),
-                _ => format!(
-                    "∂^{}: {:.8} a^{}",
-                    2 * p + 2,
-                    c / first / s.spacing.powi(2 * p as i32),
-                    2 * p
-                ),
+                _ => {
+                    let part = match s.fractions.get(p) {
+                        Some(fraction) => fraction.to_string(),
+                        None => format!("{:.8}", c / first / s.spacing.powi(2 * p as i32)),
+                    };
+                    format!("∂^{}: {part} a^{}", 2 * p + 2, 2 * p)
+                }
             })
             .collect();
         let _ = writeln!(t, "  {}  {}", d.name, each.join(", "));

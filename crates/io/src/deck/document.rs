@@ -103,7 +103,7 @@ pub struct Body {
     pub region: Option<At<Shape>>,
     /// Whole cells along each axis from the origin on, instead of a region.
     pub cells: Option<At<Vec<At<u32>>>>,
-    /// Points `x y z volume [mark]` (.txt), a mesh (.inp, .msh), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
+    /// Points `x y z volume [mark]` (.txt), a mesh (Abaqus .inp, gmsh .msh as text or binary; its groups are sets), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
     /// and density of each point, the atom type as mark), or atoms: LAMMPS data of `atom_style atomic`, a LAMMPS dump
     /// (.lammpstrj, .dump), extended XYZ (.extxyz). Relative to the deck.
     pub file: Option<At<String>>,
@@ -192,24 +192,28 @@ pub struct Material {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Law {
-    /// Bond-based: one of young, bulk, micromodulus.
+    /// Bond-based, prototype microelastic brittle: f = c ω ν V s. One of young, bulk, micromodulus; Poisson ratio 1/4, plane
+    /// stress 1/3.
     Pmb(Elastic),
-    /// State-based: two of young, poisson, bulk, shear.
+    /// Linear peridynamic solid, state-based: W = ½ κ θ² + β/(2m) Σ ω ν V e². Two of young, poisson, bulk, shear.
     Lps(Elastic),
-    /// State-based with the three-dimensional formulas in any dimension: bulk and shear.
+    /// The linear peridynamic solid with the three-dimensional formulas in any dimension: bulk and shear.
     LpsAsTyped(Elastic),
     /// W = E(θ) + bonds, with the two stiffnesses.
     EamLike(EamLike),
     /// Linear springs, the bond-based law linearised about the reference: one of young, bulk, micromodulus.
     Springs(Elastic),
-    /// The blocks of the body's file (.npz).
+    /// The blocks of a linear body, which is the body's file (.npz).
     Micromoduli,
+    /// Atoms: 4ε [(σ/r)¹² − (σ/r)⁶]. Neighbours of atoms are the current ones, or with family = "stencil" those of the lattice.
     LennardJones(LennardJones),
+    /// Atoms: D [e^(−2α(r−r0)) − 2 e^(−α(r−r0))].
     Morse(Morse),
+    /// Atoms: A e^(−r/ρ) − C/r⁶.
     Buckingham(Buckingham),
-    /// Embedded-atom model from a file.
+    /// Atoms: embedded-atom model from a table, eam/alloy (setfl) or .eam (funcfl).
     Eam(Eam),
-    /// Embedded-atom model in closed form.
+    /// Atoms: embedded-atom model in closed form (Mei, Davenport & Fernando 1991).
     EamForm(Box<EamForm>),
 }
 
@@ -469,7 +473,7 @@ pub struct Safety {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// Folder; beside the deck when left out.
+    /// Folder of the results, relative to the deck; when left out, out/NAME in the working folder for the deck NAME.toml.
     pub dir: Option<String>,
     /// Steps between frames; only the first and the last state when left out.
     pub every: Option<At<u64>>,
@@ -498,11 +502,11 @@ pub struct Output {
 }
 
 macro_rules! names {
-    ($($(#[$doc:meta])* $name:ident { $($variant:ident),+ $(,)? })+) => {$(
+    ($($(#[$doc:meta])* $name:ident { $($(#[$each:meta])* $variant:ident),+ $(,)? })+) => {$(
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case")]
-        pub enum $name { $($variant),+ }
+        pub enum $name { $($(#[$each])* $variant),+ }
     )+};
 }
 
@@ -510,12 +514,59 @@ names! {
     PlaneName { Stress, Strain }
     LatticeName { Chain, Square, Triangular, Cubic, Bcc, Fcc, Diamond }
     AxisName { X, Y, Z }
-    InterfaceName { Series, Parallel, Minimum }
-    InfluenceName { Constant, Inverse, Conical, Gaussian, CubicSpline }
-    CalibrationName { Continuum, Discrete }
-    SurfaceName { None, Exact, Volume, Energy, Force }
-    FamilyName { Auto, Stencil, List, Neighbours }
-    CrackName { Absent, Broken }
+    InterfaceName {
+        /// Harmonic mean: the two half bonds in series.
+        Series,
+        /// Arithmetic mean: side by side.
+        Parallel,
+        /// The weaker of both, as LAMMPS does.
+        Minimum,
+    }
+    InfluenceName {
+        /// 1
+        Constant,
+        /// 1/ξ
+        Inverse,
+        /// 1 − ξ/δ
+        Conical,
+        /// exp(−(2ξ/δ)²)
+        Gaussian,
+        /// Cubic B-spline with support δ, 1 at ξ = 0.
+        CubicSpline,
+    }
+    CalibrationName {
+        /// Constants from the integrals over the full ball.
+        Continuum,
+        /// Constants from the sums over a full family of this body.
+        Discrete,
+    }
+    SurfaceName {
+        None,
+        /// Every uniform strain is an equilibrium under its uniform traction.
+        Exact,
+        /// By the volume of the families.
+        Volume,
+        /// By the strain energy under uniaxial stretch.
+        Energy,
+        /// By the stiffness that a point feels when the rest stands still.
+        Force,
+    }
+    FamilyName {
+        /// Stencil on lattices, list of a cloud, current neighbours of atoms.
+        Auto,
+        /// Offsets of a lattice, nothing stored per bond.
+        Stencil,
+        /// Stored bonds of the reference.
+        List,
+        /// Atoms within the cut-off now.
+        Neighbours,
+    }
+    CrackName {
+        /// Bonds that never were.
+        Absent,
+        /// Bonds that count as damage.
+        Broken,
+    }
     /// Point fields that can be written.
     FieldName { Displacement, Velocity, Damage, EnergyDensity, Dilatation, Mark, Id, Fragment }
 }

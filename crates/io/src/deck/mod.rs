@@ -123,7 +123,8 @@ impl Deck {
             .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
         let units = lower::units(&document);
-        let lowered = lower::lower(&source, &document, &Files { folder })?;
+        let mut lowered = lower::lower(&source, &document, &Files { folder })?;
+        lowered.output.dir = lowered.output.dir.map(|dir| folder.join(dir));
         Ok(Deck {
             spec: lowered.spec,
             output: lowered.output,

@@ -46,6 +46,8 @@ mod tests {
         match toml {
             // JSON has no infinity
             toml::Value::Float(x) if !x.is_finite() => json!(1e300),
+            // nor a difference between 10000.0 and 10000, which TOML makes
+            toml::Value::Float(x) if x.fract() == 0.0 => json!(x + 0.25),
             toml::Value::Array(items) => items.iter().map(value).collect(),
             toml::Value::Table(table) => {
                 let pairs = table.iter().map(|(k, v)| (k.clone(), value(v)));

@@ -77,7 +77,7 @@ impl JsonSchema for Written {
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "A number in the deck's units, a number with a unit (\"0.5 mm\"), or an expression of constants (where it says so, of x, y, z, t)",
+            "description": "A number in the deck's units, a number with a unit (\"0.5 mm\"), or an expression of constants (where it says so, of x, y, z, t) in which numbers may carry units: \"12 MPa * t / 10 us\". Where a unit is written, dimensions are checked. A number without unit is in the deck's units and of the kind of its place: beside + and < that of the other side, as a divisor of x, y, z, t (t / 1e-5) theirs, and beside a quantity as a factor a pure number. In statics t is a number from 0 to 1.",
             "anyOf": [{ "type": "number" }, { "type": "string" }]
         })
     }

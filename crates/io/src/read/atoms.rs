@@ -21,6 +21,8 @@ pub struct Atoms {
     pub position: Vec<[f64; 3]>,
     pub velocity: Option<Vec<[f64; 3]>>,
     pub force: Option<Vec<[f64; 3]>>,
+    /// The velocities come from momenta over masses: they are in Å, eV and g/mol, as ASE has them, whatever the units of others.
+    pub from_momenta: bool,
     /// Potential energy of each atom.
     pub energy: Option<Vec<f64>>,
     /// Corners of the box.

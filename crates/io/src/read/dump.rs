@@ -275,5 +275,6 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
         periodic: head.periodic,
         step: Some(head.step),
         time: head.time,
+        from_momenta: false,
     })
 }

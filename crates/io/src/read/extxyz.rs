@@ -1,7 +1,8 @@
 //! Extended XYZ: number of atoms; a line of `key=value`; one line per atom with the columns of `Properties`.
 //!
-//! Read are `Lattice` (orthogonal), `Origin`, `pbc`, `step`, `time`, and the columns species, pos, velo (or vel, velocities;
-//! or momenta with masses), forces (or force), energies (or local_energy), masses. Others are passed over.
+//! Read are `Lattice` (orthogonal), `Origin`, `pbc`, `step`, `time`, and the columns species, pos, velo (or vel, velocities; in
+//! the deck's units), else momenta with masses (as ASE writes them: Å, eV, g/mol), forces (or force), energies (or local_energy),
+//! masses. Others are passed over.
 //! Format: libAtoms extended XYZ specification and ASE's documentation of it.
 
 use super::ReadError;
@@ -316,6 +317,7 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, count: usize, head: Head) -> Result
         velocity: velocity.or(momentum).map(|_| Vec::new()),
         force: force.map(|_| Vec::new()),
         energy: energy.map(|_| Vec::new()),
+        from_momenta: velocity.is_none() && momentum.is_some(),
         periodic: head.periodic,
         step: head.step,
         time: head.time,

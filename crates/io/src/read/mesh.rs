@@ -178,18 +178,18 @@ impl Mesh {
 }
 
 fn add(cloud: &mut Cloud, name: &str, ids: BTreeSet<u32>, notes: &mut Vec<String>) {
-    if ids.is_empty() {
-        notes.push(format!(
+    let ids: Vec<u32> = ids.into_iter().collect();
+    match cloud.sets.iter().find(|(known, _)| known == name) {
+        _ if ids.is_empty() => notes.push(format!(
             "the group \"{name}\" of the mesh touches no cell: it makes no set"
-        ));
-    } else if cloud.sets.iter().any(|(known, _)| known == name) {
-        notes.push(format!(
-            "the mesh has several groups \"{name}\": the set is that of the highest dimension"
-        ));
-    } else {
-        cloud
-            .sets
-            .push((name.to_string(), ids.into_iter().collect()));
+        )),
+        Some((_, known)) if **known == *ids => {}
+        Some((_, known)) => notes.push(format!(
+            "the mesh has several groups \"{name}\": the set is the one of {} points, not the one of {}",
+            known.len(),
+            ids.len()
+        )),
+        None => cloud.sets.push((name.to_string(), ids.into())),
     }
 }
 

@@ -56,6 +56,8 @@ pub struct AtomsFile {
     pub mass: Option<f64>,
     /// Names of the kinds of atoms that occur.
     pub species: Vec<String>,
+    /// The velocities are in Å, eV and g/mol.
+    pub from_momenta: bool,
 }
 
 /// What is wrong in a file of points.
@@ -225,6 +227,7 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
             periodic: (!lammps).then_some(atoms.periodic),
             mass,
             species: kinds().map(|s| s.name.clone()).collect(),
+            from_momenta: atoms.from_momenta,
         }),
         cloud: Cloud {
             volume: vec![volume; n],

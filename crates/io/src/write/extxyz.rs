@@ -6,11 +6,12 @@ use super::fields::invalid;
 use crate::read::Atoms;
 
 /// Writes one frame; numbers read back to the same f64. A trajectory is frames one after another, see
-/// [`super::trajectory::Trajectory`].
+/// [`super::trajectory::Trajectory`]. Velocities are the column velo; where masses are known, they are also momenta, as ASE reads
+/// velocities: in its unit, of which a velocity of 1 is `1/ase_velocity`.
 ///
 /// # Errors
 /// Those of `w`; `InvalidInput` for arrays of unequal lengths, and names that would not read back.
-pub fn write_frame<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
+pub fn write_frame<W: Write>(w: &mut W, atoms: &Atoms, ase_velocity: f64) -> io::Result<()> {
     check(atoms)?;
     writeln!(w, "{}", atoms.len())?;
     let [x, y, z]: [f64; 3] = std::array::from_fn(|a| atoms.high[a] - atoms.low[a]);
@@ -32,6 +33,7 @@ pub fn write_frame<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
     let columns = [
         (masses, "masses:R:1"),
         (atoms.velocity.is_some(), "velo:R:3"),
+        (masses && atoms.velocity.is_some(), "momenta:R:3"),
         (atoms.force.is_some(), "forces:R:3"),
         (atoms.energy.is_some(), "energies:R:1"),
     ];
@@ -45,8 +47,15 @@ pub fn write_frame<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
         if let (true, Some(mass)) = (masses, atoms.species[atoms.kind[i] as usize].mass) {
             write!(w, " {mass:?}")?;
         }
-        for v in [&atoms.velocity, &atoms.force].into_iter().flatten() {
-            vector(w, &v[i])?;
+        if let Some(velocity) = &atoms.velocity {
+            vector(w, &velocity[i])?;
+            let mass = atoms.species[atoms.kind[i] as usize].mass;
+            if let Some(mass) = mass.filter(|_| masses) {
+                vector(w, &velocity[i].map(|v| mass * (v / ase_velocity)))?;
+            }
+        }
+        if let Some(force) = &atoms.force {
+            vector(w, &force[i])?;
         }
         if let Some(e) = &atoms.energy {
             write!(w, " {:?}", e[i])?;

@@ -20,17 +20,19 @@ pub enum Format {
 }
 
 impl Format {
-    fn write<W: Write>(self, w: &mut W, atoms: &Atoms) -> io::Result<()> {
+    fn write<W: Write>(self, w: &mut W, atoms: &Atoms, ase_velocity: f64) -> io::Result<()> {
         match self {
-            Format::Extxyz => extxyz::write_frame(w, atoms),
+            Format::Extxyz => extxyz::write_frame(w, atoms, ase_velocity),
             Format::Dump => dump::write_atoms(w, atoms),
         }
     }
 }
 
-/// Writes frames to a file, all or nothing.
+/// Writes frames to a file, all or nothing; their velocities are those of ASE.
 pub fn write_atoms(path: &Path, format: Format, frames: &[Atoms]) -> Result<(), WriteError> {
-    write_file(path, |w| frames.iter().try_for_each(|f| format.write(w, f)))
+    write_file(path, |w| {
+        frames.iter().try_for_each(|f| format.write(w, f, 1.0))
+    })
 }
 
 /// An open trajectory.
@@ -38,6 +40,8 @@ pub fn write_atoms(path: &Path, format: Format, frames: &[Atoms]) -> Result<(), 
 pub struct Trajectory {
     frames: Frames,
     format: Format,
+    /// How much velocity one of ASE is.
+    ase_velocity: f64,
 }
 
 impl Trajectory {
@@ -46,6 +50,7 @@ impl Trajectory {
         Ok(Trajectory {
             frames: Frames::create(path)?,
             format,
+            ase_velocity: 1.0,
         })
     }
 
@@ -54,6 +59,7 @@ impl Trajectory {
         Ok(Trajectory {
             frames: Frames::append(path)?,
             format,
+            ase_velocity: 1.0,
         })
     }
 
@@ -62,7 +68,14 @@ impl Trajectory {
     /// # Errors
     /// The operating system's, and those of the format; the file then ends with the frame before.
     pub fn push(&mut self, atoms: &Atoms) -> Result<(), WriteError> {
-        self.frames.push(|w| self.format.write(w, atoms))
+        let (format, unit) = (self.format, self.ase_velocity);
+        self.frames.push(|w| format.write(w, atoms, unit))
+    }
+
+    /// The velocities to come are in other units than ASE's: `unit` is how much one of those is.
+    pub fn with_ase_velocity(mut self, unit: f64) -> Self {
+        self.ase_velocity = unit;
+        self
     }
 
     /// Waits until all frames are on the disk.

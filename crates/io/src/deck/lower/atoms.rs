@@ -2,7 +2,7 @@
 
 use super::Files;
 use super::context::{Context, Result};
-use crate::deck::document::{Body, EamForm, EndName, Law, Material, Thermal};
+use crate::deck::document::{Body, Document, EamForm, EndName, Law, Material, Thermal};
 use crate::deck::units::{BOLTZMANN, Dim, UnitSystem, short};
 use crate::deck::value::{At, Number, Written};
 use peridyne::family::stencil::Stencil;
@@ -150,6 +150,39 @@ pub(super) fn potential(
         }));
     }
     Ok(None)
+}
+
+/// Plain numbers of atoms are hardly ever in metres and joules: the deck must say in which units they are.
+pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<()> {
+    if document.units.is_some() {
+        return Ok(());
+    }
+    let laws = document.material.values().map(|m| &m.value.law.value);
+    let constants = laws.flat_map(|law| match law {
+        Law::LennardJones(p) => vec![&p.epsilon, &p.sigma],
+        Law::Morse(p) => vec![&p.depth, &p.distance],
+        Law::Buckingham(p) => vec![&p.strength, &p.range],
+        Law::EamForm(p) => vec![&p.cohesive],
+        Law::Eam(_)
+        | Law::Pmb(_)
+        | Law::Lps(_)
+        | Law::LpsAsTyped(_)
+        | Law::EamLike(_)
+        | Law::Springs(_)
+        | Law::Micromoduli => vec![],
+    });
+    let plain = |n: &&Number| match &n.value {
+        Written::Plain(_) => true,
+        Written::Text(text) => text.trim().parse::<f64>().is_ok(),
+    };
+    match constants.chain(&document.body.value.spacing).find(plain) {
+        Some(number) => Err(context.error_with(
+            &number.span,
+            "atoms need units: without `units` this number is in SI (metres, joules)",
+            "write units = \"metal\" (Å, ps, eV) or units = \"lj\", or give the numbers units",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// What a file of atoms means for the potential: it must be one kind of atom, whose mass the file may know.

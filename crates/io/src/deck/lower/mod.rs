@@ -105,6 +105,9 @@ pub(super) fn lower(
     let mut sets = bodies::sets(&context, document, &body)?;
     sets.extend(body::sets(&context, &document.sets, &body)?);
     let mut potential = atoms::potential(&context, &document.material, &body, files)?;
+    if potential.is_some() {
+        atoms::units_are_said(&context, document)?;
+    }
     atoms::of_file(&context, &document.body, potential.as_mut())?;
     let materials = material::materials(&context, document, &sets, &mut body, potential.as_ref())?;
     let current = potential.is_some()

@@ -12,7 +12,7 @@ use peridyne::spec::{Method, Schedule, Solver, TimeStep};
 use std::path::PathBuf;
 
 /// A run of more steps is likely a slip of units.
-pub(in crate::deck) const MANY_STEPS: u64 = 20_000_000;
+pub(in crate::deck) const MANY_STEPS: u64 = 10_000_000;
 
 pub(super) struct RunSpec {
     pub schedule: Schedule,

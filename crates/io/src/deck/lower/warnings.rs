@@ -17,22 +17,11 @@ pub(super) fn warnings(context: &Context, document: &Document) -> Vec<String> {
         .values()
         .any(|m| m.value.fracture.is_some());
     if let (Some(crack), Some(_), false) = (document.precrack.first(), &document.run, breaks) {
+        let help = "give one fracture = { energy = \"10 J/m^2\" }";
         warn(
             &crack.span,
-            "this crack never grows, as no material can break: give one fracture = { energy = \"10 J/m^2\" }".into(),
+            format!("this crack never grows, as no material can break: {help}"),
         );
-    }
-    let threads = [
-        document.run.as_ref().and_then(|r| r.value.threads.as_ref()),
-        document
-            .statics
-            .as_ref()
-            .and_then(|s| s.value.threads.as_ref()),
-    ];
-    for threads in threads.into_iter().flatten() {
-        if let Some(text) = crate::drive::too_many_threads(threads.value) {
-            warn(&threads.span, text);
-        }
     }
     all
 }

@@ -240,6 +240,16 @@ impl UnitSystem {
         }
     }
 
+    /// How many computed velocities one of ASE is: √(eV/(g/mol)) = Å/10.18 fs. Reduced units are their own.
+    pub fn ase_velocity(self) -> f64 {
+        match self {
+            UnitSystem::Si | UnitSystem::Metal => {
+                (EV * 1e3 * AVOGADRO).sqrt() / self.computed(Dim::VELOCITY)
+            }
+            UnitSystem::Lj | UnitSystem::None => 1.0,
+        }
+    }
+
     /// Factor from SI to the unit that a plain number has.
     pub fn from_si(self, dim: Dim) -> f64 {
         1.0 / self.plain(dim)
@@ -308,6 +318,9 @@ mod tests {
         assert_eq!(metal.plain_factor(Dim::LENGTH), 1.0);
         assert_eq!(metal.plain_factor(Dim::ENERGY), 1.0);
         assert!((metal.from_si(Dim::ENERGY) * EV - 1.0).abs() < 1e-15);
+        // ase.units.fs = 0.0982269: Å per fs in ASE's unit of time
+        assert!((metal.ase_velocity() * 1e-3 * 0.09822694788 - 9.648533e-3).abs() < 1e-9);
+        assert!((UnitSystem::Si.ase_velocity() - 9822.694).abs() < 1e-2);
     }
 
     /// Only masses, densities and pressures are made with measured constants.

@@ -113,9 +113,12 @@ pub(super) fn unknown(name: &str) -> String {
     let plain = PREFIXED.iter().chain(OTHERS).map(|u| u.0.to_string());
     let lower = name.to_lowercase();
     // a wrong case is the commonest slip: mpa, gpa, hz
-    let near = plain
+    let same: Vec<String> = plain
         .chain(prefixed)
-        .find(|known| known.to_lowercase() == lower);
+        .filter(|known| known.to_lowercase() == lower)
+        .collect();
+    // nobody means millipascals
+    let near = same.iter().find(|known| *known == "MPa").or(same.first());
     match near {
         Some(near) => format!("unknown unit `{name}`, did you mean `{near}`?"),
         None => format!(
