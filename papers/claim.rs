@@ -4,16 +4,41 @@ use serde::{Deserialize, Serialize};
 
 use crate::experiment::{Computed, Failure};
 
-/// How firmly a claim can be compared.
+/// Where a claim comes from, and how firmly it can be compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// A formula, a count or a printed number.
+    /// The paper prints it: a formula, a count or a number.
     Exact,
-    /// Read off a picture.
+    /// Read off a picture of the paper.
     Digitised,
-    /// A statement in words; the code says whether it holds.
+    /// A statement of the paper in words; the code says whether it holds.
     Qualitative,
+    /// Not in the paper: what its equations, or theory, demand. Words with a verdict of the code, or a number.
+    Own,
+    /// Not in the paper, and demanded by nothing: what was computed here before, so that a change shows.
+    Pin,
+}
+
+impl Kind {
+    /// Does the paper say it?
+    pub fn is_published(self) -> bool {
+        match self {
+            Kind::Exact | Kind::Digitised | Kind::Qualitative => true,
+            Kind::Own | Kind::Pin => false,
+        }
+    }
+}
+
+/// When the bound of a claim (its tolerance, or a number in what the code asks) was set.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Bound {
+    /// By the digits that are printed, by round-off, or by theory.
+    #[default]
+    Before,
+    /// When a result was known.
+    After,
 }
 
 /// A number or words.
@@ -86,10 +111,18 @@ pub struct Published {
     /// By which the code gives the computed value.
     pub key: String,
     pub what: String,
-    pub published: Value,
+    /// What the paper prints, of the kinds that it does.
+    pub published: Option<Value>,
+    /// What is expected, of the kinds that are not in the paper.
+    pub expected: Option<Value>,
+    /// What is right where the paper is wrong: the claim holds if this is found, and not what is published. Words if a
+    /// verdict of the code says so.
+    pub erratum: Option<Value>,
     #[serde(default)]
     pub tolerance: Tolerance,
     pub kind: Kind,
+    #[serde(default)]
+    pub bound: Bound,
     #[serde(default)]
     pub note: String,
     /// Not asked of the small variant.
@@ -97,15 +130,39 @@ pub struct Published {
     pub full_only: bool,
 }
 
+impl Published {
+    /// What the paper says, or what is expected: the parser sees to it that there is one.
+    fn said(&self) -> Result<&Value, Failure> {
+        let said = match self.kind.is_published() {
+            true => &self.published,
+            false => &self.expected,
+        };
+        said.as_ref()
+            .ok_or_else(|| Failure::new(format!("the claim `{}` says nothing", self.key)))
+    }
+
+    /// Are words compared as they are, or may (must) the code say whether they hold?
+    fn words(&self) -> (bool, bool) {
+        match self.kind {
+            Kind::Qualitative => (false, true),
+            Kind::Own => (true, true),
+            Kind::Exact | Kind::Digitised | Kind::Pin => (true, false),
+        }
+    }
+}
+
 /// A claim with its answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Claim {
     pub key: String,
     pub what: String,
-    pub published: Value,
+    pub published: Option<Value>,
+    pub expected: Option<Value>,
+    pub erratum: Option<Value>,
     pub computed: Value,
     pub tolerance: Tolerance,
     pub kind: Kind,
+    pub bound: Bound,
     pub pass: bool,
     pub note: String,
 }
@@ -113,7 +170,8 @@ pub struct Claim {
 /// Reads `claims.toml`.
 ///
 /// # Errors
-/// Line and column; a key that is there twice, words with a tolerance, a tolerance that is negative or no number.
+/// Line and column; a key that is there twice; `published` and `expected` not as the kind has them; words with a tolerance;
+/// a tolerance that is negative or no number; an erratum that is what was published.
 pub fn parse(text: &str) -> Result<Vec<Published>, Failure> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -131,7 +189,21 @@ pub fn parse(text: &str) -> Result<Vec<Published>, Failure> {
         if !(absolute >= 0.0 && relative >= 0.0 && absolute.is_finite() && relative.is_finite()) {
             return wrong("has a tolerance that is negative or not finite");
         }
-        let words = matches!(claim.published, Value::Text(_));
+        let right = match (claim.kind.is_published(), &claim.published, &claim.expected) {
+            (true, Some(said), None) | (false, None, Some(said)) => said,
+            (true, ..) => return wrong("is of the paper: write `published`, and no `expected`"),
+            (false, ..) => {
+                return wrong("is not of the paper: write `expected`, and no `published`");
+            }
+        };
+        if claim.erratum.is_some() && !claim.kind.is_published() {
+            return wrong("has an erratum, and is not of the paper");
+        }
+        if claim.erratum.as_ref() == Some(right) {
+            return wrong("has an erratum that is what was published");
+        }
+        let right = claim.erratum.as_ref().unwrap_or(right);
+        let words = matches!(right, Value::Text(_));
         if words && claim.tolerance != Tolerance::default() {
             return wrong(
                 "is in words and has a tolerance; write the number or leave the tolerance out",
@@ -204,21 +276,31 @@ pub fn compare(
 }
 
 fn judged(p: &Published, value: &Computed) -> Result<Claim, Failure> {
-    let (pass, computed) = match (&p.published, value) {
-        (Value::Number(printed), Computed::Number(x)) => {
-            (p.tolerance.allows(*x, *printed), Value::Number(*x))
+    let said = p.said()?;
+    let right = p.erratum.as_ref().unwrap_or(said);
+    let same = |found: &Value, other: &Value| match (found, other) {
+        (Value::Number(x), Value::Number(y)) => p.tolerance.allows(*x, *y),
+        (x, y) => x == y,
+    };
+    // an erratum that the printed value would pass, too, says nothing
+    let passes = |found: &Value| same(found, right) && (p.erratum.is_none() || !same(found, said));
+    let (pass, computed) = match (right, value) {
+        (Value::Number(_), Computed::Number(x)) => {
+            let found = Value::Number(*x);
+            (passes(&found), found)
         }
-        (Value::Text(printed), Computed::Text(text)) if p.kind != Kind::Qualitative => {
-            (printed == text, Value::Text(text.clone()))
+        (Value::Text(_), Computed::Text(text)) if p.words().0 => {
+            let found = Value::Text(text.clone());
+            (passes(&found), found)
         }
-        (Value::Text(_), Computed::Holds(text, holds)) if p.kind == Kind::Qualitative => {
+        (Value::Text(_), Computed::Holds(text, holds)) if p.words().1 => {
             (*holds, Value::Text(text.clone()))
         }
         _ => {
-            let wants = match (&p.published, p.kind) {
+            let wants = match (right, p.words().1) {
                 (Value::Number(_), _) => "a number: use Findings::number",
-                (_, Kind::Qualitative) => "whether it holds: use Findings::holds",
-                _ => "words: use Findings::text",
+                (Value::Text(_), true) => "whether it holds: use Findings::holds",
+                (Value::Text(_), false) => "words: use Findings::text",
             };
             return Err(Failure::new(format!("the claim `{}` takes {wants}", p.key)));
         }
@@ -227,9 +309,12 @@ fn judged(p: &Published, value: &Computed) -> Result<Claim, Failure> {
         key: p.key.clone(),
         what: p.what.clone(),
         published: p.published.clone(),
+        expected: p.expected.clone(),
+        erratum: p.erratum.clone(),
         computed,
         tolerance: p.tolerance,
         kind: p.kind,
+        bound: p.bound,
         pass,
         note: p.note.clone(),
     })
@@ -306,6 +391,41 @@ kind = "qualitative"
     }
 
     #[test]
+    fn an_erratum_holds_where_the_printed_value_does_not() {
+        let text = "[[claim]]\nkey = \"f\"\nwhat = \"limit\"\npublished = 1.082\nerratum = 1.0802\n\
+                    tolerance = { absolute = 5e-5 }\nkind = \"exact\"\n";
+        let published = parse(text).unwrap();
+        let pass = |x: f64| {
+            let values = [("f".to_string(), Computed::Number(x))];
+            compare(&published, &values, false).unwrap()[0].pass
+        };
+        assert!(pass(1.08018) && !pass(1.082) && !pass(1.0815));
+        // a tolerance so wide that both pass
+        let wide = parse(&text.replace("5e-5", "5e-3")).unwrap();
+        let values = [("f".to_string(), Computed::Number(1.0802))];
+        assert!(!compare(&wide, &values, false).unwrap()[0].pass);
+    }
+
+    #[test]
+    fn own_findings_and_pins_expect() {
+        let text = "[[claim]]\nkey = \"a\"\nwhat = \"words\"\nexpected = \"below 1\"\nkind = \"own\"\n\
+                    [[claim]]\nkey = \"b\"\nwhat = \"number\"\nexpected = 2\nkind = \"own\"\n\
+                    [[claim]]\nkey = \"c\"\nwhat = \"before\"\nexpected = 3\nkind = \"pin\"\nbound = \"after\"\n";
+        let values = [
+            ("a".to_string(), Computed::Holds("0.5".into(), true)),
+            ("b".to_string(), Computed::Number(2.0)),
+            ("c".to_string(), Computed::Number(4.0)),
+        ];
+        let claims = compare(&parse(text).unwrap(), &values, false).unwrap();
+        assert_eq!(
+            claims.iter().map(|c| c.pass).collect::<Vec<_>>(),
+            [true, true, false]
+        );
+        assert_eq!(claims[2].bound, Bound::After);
+        assert!(claims.iter().all(|c| c.published.is_none()));
+    }
+
+    #[test]
     fn every_claim_has_one_value_and_every_value_a_claim() {
         let published = parse(CLAIMS).unwrap();
         let told = |values: &[(String, Computed)], small: bool| {
@@ -360,6 +480,18 @@ kind = "qualitative"
             (
                 ("kind = \"exact\"", "kind = \"exakt\""),
                 "unknown variant `exakt`",
+            ),
+            (
+                ("kind = \"exact\"", "kind = \"pin\""),
+                "`n` is not of the paper: write `expected`",
+            ),
+            (
+                ("published = 184", "expected = 184"),
+                "`n` is of the paper: write `published`",
+            ),
+            (
+                ("published = 184", "published = 184\nerratum = 184"),
+                "`n` has an erratum that is what was published",
             ),
         ] {
             let text = CLAIMS.replacen(change.0, change.1, 1);

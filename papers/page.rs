@@ -1,6 +1,6 @@
 //! Reports as Markdown.
 
-use crate::claim::{Claim, Kind, Value};
+use crate::claim::{Bound, Claim, Kind, Value};
 use crate::reproduce::{Outcome, Report};
 
 /// A cell of a table.
@@ -29,18 +29,31 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Exact => "exact",
         Kind::Digitised => "digitised",
         Kind::Qualitative => "qualitative",
+        Kind::Own => "own",
+        Kind::Pin => "pin",
     }
 }
 
 fn row(c: &Claim) -> String {
     let pass = if c.pass { "yes" } else { "**no**" };
-    let tolerance = match c.kind {
-        Kind::Qualitative => String::new(),
-        _ => c.tolerance.to_string(),
+    let number = matches!(c.computed, Value::Number(_));
+    let mut tolerance = if number {
+        c.tolerance.to_string()
+    } else {
+        String::new()
+    };
+    if c.bound == Bound::After {
+        tolerance = format!("{tolerance} set after").trim_start().to_string();
+    }
+    let said = |value: &Option<Value>| value.as_ref().map_or(String::new(), Value::to_string);
+    let printed = match &c.erratum {
+        None => said(&c.published),
+        Some(right) => format!("{} (erratum: {right})", said(&c.published)),
     };
     let cells = [
         c.what.clone(),
-        c.published.to_string(),
+        printed,
+        said(&c.expected),
         computed(&c.computed),
         tolerance,
         kind(c.kind).to_string(),
@@ -58,7 +71,7 @@ pub fn page(report: &Report, readme: &str) -> String {
         "# {}\n\n{paper}/{figure}, {variant}{:.1} s, peridyne {}\n\n",
         report.title, report.seconds, report.version
     );
-    text += "| claim | published | computed | tolerance | kind | holds | note |\n|---|---|---|---|---|---|---|\n";
+    text += "| claim | published | expected here | computed | bound | kind | holds | note |\n|---|---|---|---|---|---|---|---|\n";
     report.claims.iter().for_each(|c| text += &row(c));
     text.push('\n');
     if !report.measurements.is_empty() {

@@ -1,6 +1,7 @@
 //! Runs experiments and writes what they found: `OUT/PAPER/FIGURE/report.json` and `page.md`, and `OUT/index.md`.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use peridyne_io::write::atomic::{create_directory, write_file};
@@ -30,7 +31,7 @@ pub struct Report {
     pub title: String,
     pub version: String,
     pub small: bool,
-    /// Hash of the variant, the version, the claims and the sources.
+    /// Hash of the program, the variant, the claims and the sources.
     pub inputs: String,
     pub seconds: f64,
     /// All claims pass.
@@ -167,15 +168,30 @@ fn read(folder: &Path) -> Option<Report> {
 
 /// Hash of what the result depends on.
 fn inputs(e: &dyn Experiment, small: bool) -> String {
-    let mut all = vec![
-        env!("CARGO_PKG_VERSION"),
-        if small { "small" } else { "full" },
-    ];
+    let mut all = vec![program(), if small { "small" } else { "full" }];
     all.extend([e.key(), e.figure(), e.claims(), e.readme()]);
     all.extend(e.sources());
     // lengths keep texts apart
     let parts: Vec<String> = all.iter().map(|t| format!("{}:{t}", t.len())).collect();
     deck_hash(parts.concat().as_bytes())
+}
+
+/// Hash of the running program: whatever is compiled into it may change a result.
+fn program() -> &'static str {
+    static HASH: OnceLock<String> = OnceLock::new();
+    HASH.get_or_init(|| {
+        // the file that runs, also where another has taken its name
+        let own = Path::new("/proc/self/exe");
+        let read = match own.exists() {
+            true => std::fs::read(own),
+            false => std::env::current_exe().and_then(std::fs::read),
+        };
+        match read {
+            Ok(bytes) => deck_hash(&bytes),
+            // unknown: like no other, so that nothing is kept
+            Err(_) => format!("{:?} {}", std::time::SystemTime::now(), std::process::id()),
+        }
+    })
 }
 
 /// Every measurement once, and as a number that JSON has.

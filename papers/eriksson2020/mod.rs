@@ -4,6 +4,8 @@
 mod pulled;
 mod rod;
 
+#[path = "equations/mod.rs"]
+mod equations;
 #[path = "figure-2/mod.rs"]
 mod figure_2;
 #[path = "figure-3/mod.rs"]
@@ -28,6 +30,7 @@ use peridyne_theory::homogenize::bar::{Bar, Ends};
 
 pub fn all() -> Vec<&'static dyn Experiment> {
     vec![
+        &equations::Equations,
         &table_1::Table1,
         &figure_2::Figure2,
         &figure_3::Figure3,

@@ -10,6 +10,8 @@ mod beyond_atoms;
 mod beyond_block;
 #[path = "beyond-plates/mod.rs"]
 mod beyond_plates;
+#[path = "equations/mod.rs"]
+mod equations;
 #[path = "figure-3/mod.rs"]
 mod figure_3;
 #[path = "figure-4/mod.rs"]
@@ -25,6 +27,7 @@ use crate::Experiment;
 
 pub fn all() -> Vec<&'static dyn Experiment> {
     vec![
+        &equations::Equations,
         &figure_3::Figure3,
         &figure_4::Figure4,
         &figure_5::Figure5,

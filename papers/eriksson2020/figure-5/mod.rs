@@ -46,7 +46,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         found.file(path);
         let square = (m * m) as i64;
         let constant = bar(m, most, Ends::Half, true)?.f();
-        found.text(&format!("constant-{m}"), constant.to_string());
+        // printed as a decimal where m = 4
+        match m {
+            4 => found.number("constant-4", constant.value()),
+            m => found.text(&format!("constant-{m}"), constant.to_string()),
+        }
         let same = homogenized.iter().all(|f| *f == constant.value());
         let closed = constant == q(2 * square, 2 * square - 1);
         let falls =

@@ -27,6 +27,8 @@ const RUNS: [usize; 7] = [1, 2, 5, 10, 20, 50, 100];
 const SMALL: usize = 4;
 /// Bisection stops at this relative distance of a steady and an unsteady step.
 const CLOSE: f64 = 5e-4;
+/// Euler–Mascheroni constant γ.
+const EULER: f64 = 0.577_215_664_901_532_9;
 /// The pulse has height 1: waves that stay bounded stay below this.
 const BOUNDED: f64 = 100.0;
 
@@ -55,6 +57,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     });
     found.number("bound-formula", largest(formula));
     found.number("bound-local", bound(1));
+    scaling(bound, &mut found);
     let weaker: Vec<f64> = CURVE.map(|n| bound(n) / (HORIZON / n as f64)).to_vec();
     found.holds(
         "weaker-than-cfl",
@@ -164,4 +167,33 @@ fn border(n: usize, bound: f64) -> Result<f64, Failure> {
     let interval = [0.99 * bound, 1.45 * bound];
     observed(steady, interval, CLOSE)
         .ok_or_else(|| Failure::new(format!("N = {n}: {interval:?} do not enclose the border")))
+}
+
+/// Section 4.3: `Δt < δ √(ρ/2K1) √((1 + 1/N)/H_N)`, with `H_N ≈ ln N + γ` and then `1/√ln(1/Δx)`.
+fn scaling(bound: impl Fn(usize) -> f64, found: &mut Findings) {
+    const N: usize = 1_000_000;
+    let n = N as f64;
+    let scale = HORIZON / 2f64.sqrt();
+    // the bound gives back its harmonic number
+    let harmonic = (1.0 + 1.0 / n) * (scale / bound(N)).powi(2);
+    // Euler & Maclaurin: H_N = ln N + γ + 1/2N − …
+    found.number("harmonic", harmonic - n.ln() - 0.5 / n);
+    let root = |x: f64| scale / x.sqrt();
+    found.number("logarithm", bound(N) / root(n.ln() + EULER));
+    // N = 5/Δx up to 10^300: sums of so many terms are what Euler and Maclaurin say
+    let leading = |digits: f64| {
+        let ln = digits * std::f64::consts::LN_10;
+        root(ln + EULER) / root(ln - HORIZON.ln())
+    };
+    let ratios = [6.0, 20.0, 100.0, 300.0].map(leading);
+    found.holds(
+        "leading",
+        format!(
+            "(4.12) over δ √(ρ/2K1)/√ln(1/Δx): {:.3} at N = 10⁶, {:.4} at 10¹⁰⁰, {:.4} at 10³⁰⁰",
+            ratios[0], ratios[2], ratios[3]
+        ),
+        ratios.is_sorted() && ratios[3] < 1.0 && 1.0 - ratios[3] < 0.4 * (1.0 - ratios[2]),
+    );
+    let twice = springs_bound(1.0, 1.0, 2.0 * HORIZON, 20) / springs_bound(1.0, 1.0, HORIZON, 20);
+    found.number("horizon", twice);
 }

@@ -67,9 +67,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
 
     let dt = Chain::thousand(100_001, 500).time_step(SAFETY);
     found.number("time", FRAME * dt);
-    found.number(
-        "landed",
+    found.measured(
+        "largest distance of the compared states from the printed time (steps are changed to land there)",
         largest(ends.iter().map(|p| (p.time - TIME).abs())),
+        "",
     );
     let apart = |a: &[f64], b: &[f64]| distance(a.iter().zip(b));
     let from_fine = [MD, COARSE, CCM].map(|k| apart(&at_time[k], &at_time[FINE]));

@@ -63,10 +63,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.measured("memory that the model holds", wave.bytes as f64 / 1e9, "GB");
     // some systems do not tell
     let peak = peak_memory_bytes().unwrap_or(wave.bytes as u64);
-    found.holds(
-        "memory",
-        format!("the process had {:.2} GB at most", peak as f64 / 1e9),
-        peak < 2_000_000_000,
+    found.measured(
+        "memory of the process at most (in one call with other figures the largest of all; paper: 4,096 cores)",
+        peak as f64 / 1e9,
+        "GB",
     );
     Ok(found)
 }

@@ -70,11 +70,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             .for_each(|(column, x)| column.push(x));
     }
     found.holds("displacement", said.join("; "), close);
-    let ratio = levels.body[0].points() as f64 / levels.body[times].points() as f64;
-    found.holds(
-        "cost",
+    found.measured(
+        "solution at each level (section 6 prints 81^M for dense elimination; (3³)³ is 19683 per level)",
         costs(&levels, &pulled),
-        ratio > 15f64.powi(times as i32),
+        "",
     );
     let path = context.out.join("block.csv");
     let mut csv = Table::new();

@@ -177,12 +177,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             close,
         );
         if key == "fibres" {
-            let points = |m: usize| levels.body[m].points() as f64;
-            let ratio = points(0) / points(times);
-            found.holds(
-                "cost",
+            found.measured(
+                "solution at each level (section 6: dense elimination L^(nM) times less; coarse bonds are many, so that a sparse solver gains less)",
                 costs(&levels, &pulled),
-                ratio > 8f64.powi(times as i32) * 0.6,
+                "",
             );
         }
     }
