@@ -73,7 +73,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
     }
     let (time_step, estimate) = match deck.spec.schedule.time_step {
         TimeStep::Fixed(dt) => (dt, None),
-        TimeStep::Fraction(_) => {
+        TimeStep::Fraction(_) | TimeStep::Auto => {
             let mut trusting = deck.clone();
             trusting.spec.schedule.force_unstable = true;
             let sim = deck::model(&trusting, &arguments.input)?;

@@ -3,8 +3,9 @@
 //! Under homogeneous strains the strain energy density of every point is a quadratic form, whose coefficients the
 //! D(D+1)/2 unit strains and their pair sums give. Points are sorted by how much of a full family they have.
 
+use crate::crystal::Bond;
 use crate::stiffness::{Stiffness, axes, components};
-use peridyne::run::Simulation;
+use peridyne::run::{Info, Simulation};
 use std::f64::consts::PI;
 
 /// So small that laws are linear, so large that round-off of positions does not count.
@@ -81,9 +82,47 @@ impl PatchTest {
     }
 }
 
-/// Stiffness of every class of points. Takes one pass over the bonds per coefficient: 1, 6 or 21.
-pub fn patch_test(sim: &dyn Simulation) -> PatchTest {
-    let info = sim.info();
+/// Stiffness of every class of points. Takes one pass over the bonds per coefficient: 1, 6 or 21; of atoms one in all.
+///
+/// Atoms at rest have energy and may be under stress, so that the energy of a strain is no measure of stiffness; theirs is `B`
+/// of [`crate::lattice_elastic`] about the displacements of now, stress against strain with all atoms carried along.
+pub fn patch_test(sim: &mut dyn Simulation) -> PatchTest {
+    let info = sim.info().clone();
+    let info = &info;
+    let mut found = classes(sim, info);
+    let atoms = match info.dimension {
+        1 => of_atoms::<1>(sim, &found),
+        2 => of_atoms::<2>(sim, &found),
+        _ => of_atoms::<3>(sim, &found),
+    };
+    match atoms {
+        Some(stiffness) => {
+            for (class, stiffness) in found.classes.iter_mut().zip(stiffness) {
+                class.stiffness = stiffness;
+            }
+        }
+        None => by_strains(sim, &mut found),
+    }
+    found.classes.sort_by_key(|c| (c.material, c.place));
+    PatchTest {
+        full: found.full,
+        classes: found.classes,
+    }
+}
+
+/// Classes whose stiffness is not known yet, and the class of every point.
+struct Sorted {
+    full: f64,
+    classes: Vec<Class>,
+    /// `[N]`
+    of_point: Vec<usize>,
+    /// `[N]` volumes of points.
+    volume: Vec<f64>,
+    /// `[classes]` volumes.
+    weight: Vec<f64>,
+}
+
+fn classes(sim: &dyn Simulation, info: &Info) -> Sorted {
     let d = info.dimension;
     let families = sim.families();
     let volume = sim.volumes();
@@ -131,9 +170,28 @@ pub fn patch_test(sim: &dyn Simulation) -> PatchTest {
         class.family /= class.points as f64;
         class.part /= class.points as f64;
     }
+    Sorted {
+        full,
+        classes,
+        of_point,
+        volume,
+        weight,
+    }
+}
+
+/// From the energies of homogeneous strains.
+fn by_strains(sim: &dyn Simulation, found: &mut Sorted) {
+    let Sorted {
+        classes,
+        of_point,
+        volume,
+        weight,
+        ..
+    } = found;
+    let d = sim.info().dimension;
     let mut add = |strain: [f64; 6], i: usize, j: usize| {
         let energies = sim.energy_under_strain(tensor(d, strain));
-        for ((w, &k), v) in energies.iter().zip(&of_point).zip(&volume) {
+        for ((w, &k), v) in energies.iter().zip(&*of_point).zip(&*volume) {
             classes[k].stiffness.c[i][j] += w * v / weight[k] / (STRAIN * STRAIN);
         }
     };
@@ -147,7 +205,7 @@ pub fn patch_test(sim: &dyn Simulation) -> PatchTest {
             add(strain, i, j);
         }
     }
-    for class in &mut classes {
+    for class in classes {
         let energy = class.stiffness.c;
         for i in 0..components(d) {
             for j in 0..i {
@@ -158,8 +216,33 @@ pub fn patch_test(sim: &dyn Simulation) -> PatchTest {
             class.stiffness.c[i][i] = 2.0 * energy[i][i];
         }
     }
-    classes.sort_by_key(|c| (c.material, c.place));
-    PatchTest { full, classes }
+}
+
+/// From the bonds of atoms; `None` if the points are no atoms.
+fn of_atoms<const D: usize>(sim: &mut dyn Simulation, found: &Sorted) -> Option<Vec<Stiffness>> {
+    let mut stiffness: Vec<Stiffness> = found.classes.iter().map(|c| c.stiffness.clone()).collect();
+    let mut stress = vec![[[0.0; D]; D]; stiffness.len()];
+    let mut shares = vec![[0.0; 6]; found.of_point.len()];
+    let curvature = sim.bonds_of_atoms(&mut |bond| {
+        let (from, to) = (bond.from as usize, bond.to as usize);
+        let class = found.of_point[from];
+        let v = found.weight[class];
+        let bond = Bond {
+            from,
+            to,
+            xi: std::array::from_fn(|a| bond.xi[a]),
+            tension: bond.tension,
+            stiffness: bond.stiffness,
+            share: bond.share,
+        };
+        stiffness[class].add_bond::<D>(&bond, &mut shares[from], v);
+        bond.add_stress(&mut stress[class], v);
+    })?;
+    for ((share, curvature), class) in shares.iter().zip(curvature).zip(&found.of_point) {
+        stiffness[*class].add_site(share, curvature, found.weight[*class]);
+    }
+    let both = stiffness.into_iter().zip(&stress);
+    Some(both.map(|(c, s)| c.under_stress(s)).collect())
 }
 
 /// Strain tensor of Voigt components with engineering shears.

@@ -1,6 +1,6 @@
 //! What looks wrong, and what to write instead.
 
-use super::Findings;
+use super::{Findings, atoms};
 use peridyne::spec::{Calibration, Horizon, LawSpec};
 use peridyne_io::deck::UnitSystem;
 use peridyne_theory::elastic::Place;
@@ -22,6 +22,11 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     let (spec, info) = (found.spec, found.sim.info());
     for warning in &info.warnings {
         say(warning.clone(), "");
+    }
+    if let Some(potential) = &spec.potential {
+        atoms::advice(found, potential, &mut say);
+        trial(found, &mut say);
+        return all;
     }
     geometry(found, &mut say);
     let fraction = info.time_step / info.stable_step;
@@ -81,13 +86,17 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
             );
         }
     }
+    trial(found, &mut say);
+    all
+}
+
+fn trial(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     if let Some(why) = &found.trial.failed {
         say(
             format!("trial steps failed: {why}"),
             "a smaller time step; slower initial velocities; softer contact or indenter",
         );
     }
-    all
 }
 
 fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {

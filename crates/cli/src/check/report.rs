@@ -70,9 +70,10 @@ fn points(found: &Findings) -> String {
             units.write(info.mass, Dim::MASS)
         ),
     );
+    let atoms = found.spec.potential.is_some();
     row(
         &mut out,
-        "horizon",
+        if atoms { "cut-off" } else { "horizon" },
         format!(
             "{} = {:.4} spacings of {}",
             units.write(info.horizon, Dim::LENGTH),
@@ -120,7 +121,9 @@ fn points(found: &Findings) -> String {
         0 => "none".to_string(),
         n => format!("{} bonds within round-off of it", whole(n)),
     };
-    row(&mut out, "near the horizon", near);
+    if !atoms {
+        row(&mut out, "near the horizon", near);
+    }
     if info.cut > 0 {
         row(
             &mut out,
@@ -175,7 +178,12 @@ fn stiffness(found: &Findings) -> String {
             "Stiffness\n  not measured: a patch test of this body would take minutes; check a smaller body of the same lattice and horizon\n",
         );
     };
-    let mut out = String::from("Stiffness that this body really has, by place (patch test)\n");
+    let mut out = String::from(match found.spec.potential {
+        None => "Stiffness that this body really has, by place (patch test)\n",
+        Some(_) => {
+            "Stiffness of the state that the run starts from, stress against strain, all atoms carried along, by place\n"
+        }
+    });
     for (n, m) in found.materials.iter().enumerate() {
         material(&mut out, found, patch, n, m);
     }

@@ -228,7 +228,12 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         self.links.each_directed(grid, |i, j, sub, k| {
             let factor = self.factor(grid, i, k);
             let stiffness = self.stiffness[sub][k].map(|row| row.map(|c| factor * c));
-            visit(BondTangent::direct(i, original(j), stiffness))
+            visit(BondTangent::direct(
+                i,
+                original(j),
+                self.links.links[sub][k].xi,
+                stiffness,
+            ))
         });
     }
 

@@ -1,6 +1,7 @@
 //! Any law on a horizon list: bonds of an arbitrary cloud. A bond is a partner and a bit; its geometry and constant
 //! are computed anew from two records whenever it is met, so that nothing else is stored.
 
+mod images;
 mod kernel;
 
 use super::bond::critical_stretch;
@@ -8,7 +9,7 @@ use super::pairs::BondTable;
 use super::weight::BondWeight;
 use super::{
     BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
-    Repulsion, Sweep, Tally, Toughness, add_virial,
+    Repulsion, Sweep, Tally, Toughness, add_virial, along,
 };
 use crate::body::{Body, Field, zeros};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -18,6 +19,7 @@ use crate::family::horizon::HorizonList;
 use crate::law::BondFactors;
 use crate::law::Law;
 use crate::spec::CrackKind;
+use images::Images;
 use kernel::{BLOCK, Energies, Forces, Pack, Share, View};
 use std::ops::AddAssign;
 use std::sync::Arc;
@@ -229,9 +231,14 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     fn sums(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         let mut moved = vec![0.0; 4 * body.len];
         self.pack(u, &mut moved);
+        self.sums_of(body, self.view(&moved), out);
+    }
+
+    /// The same of what a view shows.
+    fn sums_of(&self, body: &Body<D>, view: View<D, W>, out: &mut PointEnergies) {
         out.zeros(body.len);
         let kernel = Energies {
-            view: self.view(&moved),
+            view,
             fields: Some(EnergyFields {
                 strain: Shared(out.strain.as_mut_ptr()),
                 repulsion: Shared(out.repulsion.as_mut_ptr()),
@@ -304,6 +311,16 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
 
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         self.sums(body, u, out);
+        out.dilate::<W, D>(body, |i| self.per_weight(body, i));
+    }
+
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        let images = Images::new(self);
+        let mut moved = vec![0.0; images.reference.len()];
+        for (u, x) in moved.chunks_mut(4).zip(images.reference.chunks(4)) {
+            u[..D].copy_from_slice(&along(gradient, x));
+        }
+        self.sums_of(body, images.view(self, &moved), out);
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 

@@ -184,10 +184,22 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
     }
 
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        out.zeros(body.len);
+        for (row, &slot) in self.slots.iter().enumerate() {
+            for (_, c, xi) in self.bonds(row) {
+                let eta = super::along(gradient, xi);
+                let pull = super::along(c, &eta);
+                let work: f64 = pull.iter().zip(&eta).map(|(f, e)| f * e).sum();
+                out.strain[slot as usize] += 0.25 * work;
+            }
+        }
+    }
+
     fn tangents(&mut self, _: &Body<D>, _: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         for (row, &slot) in self.slots.iter().enumerate() {
-            for (j, c, _) in self.bonds(row) {
-                visit(BondTangent::direct(slot as usize, j, *c));
+            for (j, c, xi) in self.bonds(row) {
+                visit(BondTangent::direct(slot as usize, j, *xi, *c));
             }
         }
     }

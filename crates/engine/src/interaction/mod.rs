@@ -207,6 +207,11 @@ fn add_virial<const D: usize>(sum: &mut [f64; 6], pull: &[f64; D], y: &[f64; D],
     }
 }
 
+/// `gradient · x`
+fn along<const D: usize>(gradient: &[[f64; D]; D], x: &[f64]) -> [f64; D] {
+    gradient.map(|row| row.iter().zip(x).map(|(g, x)| g * x).sum())
+}
+
 /// A law on a family.
 pub trait Interaction<const D: usize>: Send + Sync {
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
@@ -226,6 +231,26 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Energy densities and dilatation of all points at `u`.
     fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
+
+    /// Energy densities and dilatation of all points under a homogeneous displacement gradient `∂u_a/∂x_b`, so small that
+    /// nobody gets other neighbours; periodic images move like everything else.
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        // images of a grid have displacements of their own
+        let mut u = body.at_rest();
+        let images = body.images.iter().map(|(copy, _)| copy);
+        for &s in body.slots.iter().chain(images) {
+            let moved = along(gradient, &body.position(s as usize));
+            for a in 0..D {
+                u[a][s as usize] = moved[a];
+            }
+        }
+        self.observe(body, &u, out);
+    }
+
+    /// Is it a potential between atoms, per atom and not per volume?
+    fn is_potential(&self) -> bool {
+        false
+    }
 
     /// Every directed bond that is whole with its tangent at `u`, images of which are fresh, in order of slots. Repulsion inside
     /// the family is left out. The scalars' gains are in [`Interaction::gain`] afterwards.

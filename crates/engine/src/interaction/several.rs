@@ -189,6 +189,15 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        out.zeros(body.len);
+        for (p, bonds) in self.each(body) {
+            let mut seen = PointEnergies::default();
+            bonds.observe_gradient(&p.body, gradient, &mut seen);
+            put(&seen, p.first, out);
+        }
+    }
+
     fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {

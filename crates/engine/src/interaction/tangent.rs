@@ -13,6 +13,10 @@ pub struct BondTangent<const D: usize> {
     /// Slots of points, images resolved.
     pub i: usize,
     pub j: usize,
+    /// From i to j now (length).
+    pub y: [f64; D],
+    /// What of C acts across the bond as along it (force density / length): pull over length.
+    pub tension: f64,
     /// C (force density / length).
     pub stiffness: [[f64; D]; D],
     /// What the bond adds to the scalar of i.
@@ -22,11 +26,13 @@ pub struct BondTangent<const D: usize> {
 }
 
 impl<const D: usize> BondTangent<D> {
-    /// Without scalar.
-    pub fn direct(i: usize, j: usize, stiffness: [[f64; D]; D]) -> Self {
+    /// Of a linear bond: without scalar and tension.
+    pub fn direct(i: usize, j: usize, y: [f64; D], stiffness: [[f64; D]; D]) -> Self {
         BondTangent {
             i,
             j,
+            y,
+            tension: 0.0,
             stiffness,
             share: [0.0; D],
             pull: [[0.0; D]; 2],
@@ -64,6 +70,8 @@ impl<const D: usize> BondTangent<D> {
         BondTangent {
             i,
             j,
+            y,
+            tension,
             stiffness: central(tension, slope * r0 / r, &n),
             share,
             pull,
@@ -92,6 +100,8 @@ impl<const D: usize> BondTangent<D> {
         BondTangent {
             i,
             j,
+            y,
+            tension: scale * first,
             stiffness: central(scale * first, scale * 2.0 * second, &y),
             share,
             pull,

@@ -4,7 +4,7 @@ use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
 use crate::family::stencil::Stencil;
-use crate::law::potential::{PotentialSpec, bulk::bulk};
+use crate::law::potential::{Potential, PotentialSpec, Visitor, bulk::bulk};
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{Horizon, Spec, ThermalSpec};
@@ -84,7 +84,64 @@ pub(super) fn crystal(
     }))
 }
 
+/// Part of the stability limit `2/ω` that atoms run at if nobody says otherwise: π/0.1, 31 steps in the shortest period.
+pub(super) const FRACTION: f64 = 0.1;
+/// Part of the length on which the potential changes that the fastest atom may go in a step.
+const STRIDE: f64 = 0.02;
+/// Speed of the fastest atoms of a Maxwellian, in standard deviations of a component.
+const FASTEST: f64 = 4.0;
+
+/// The distance at which the pair energy has reached `energy` (length), if it ever does.
+struct Closest {
+    from: f64,
+    energy: f64,
+}
+
+impl Visitor for Closest {
+    type Out = Option<f64>;
+    fn visit<P: Potential>(self, potential: P) -> Option<f64> {
+        let steps = (0..300).map(|n| self.from * 0.99f64.powi(n));
+        steps
+            .map(|r| (r, potential.pair(r * r)))
+            .take_while(|(_, e)| e.is_finite())
+            .find(|(_, e)| *e >= self.energy)
+            .map(|(r, _)| r)
+    }
+}
+
 impl<const D: usize> Model<D> {
+    /// The step that the atoms' speeds allow (time): none goes further than a small part of the shortest bond, nor of the
+    /// distance to which two of the fastest come when they meet head on.
+    pub(super) fn step_of_speeds(&self, potential: &PotentialSpec) -> f64 {
+        let slots = || self.body.slots.iter().map(|s| *s as usize);
+        let mass = |s: usize| self.body.volume.at(s) * self.body.density.at(s);
+        let total: f64 = slots().map(mass).sum();
+        let mean: [f64; D] =
+            std::array::from_fn(|a| slots().map(|s| mass(s) * self.v[a][s]).sum::<f64>() / total);
+        let square = |s: usize| {
+            (0..D)
+                .map(|a| (self.v[a][s] - mean[a]).powi(2))
+                .sum::<f64>()
+        };
+        let twice: f64 = slots().map(|s| mass(s) * square(s)).sum();
+        let fastest = slots().map(square).fold(0.0, f64::max).sqrt();
+        let speed = fastest.max(FASTEST * (twice / (D as f64 * total)).sqrt());
+        if speed == 0.0 {
+            return f64::INFINITY;
+        }
+        let mut shortest = f64::INFINITY;
+        self.interaction.each_bond(&self.body, &mut |_, _, xi, _| {
+            shortest = xi.iter().map(|c| c * c).sum::<f64>().min(shortest);
+        });
+        let shortest = shortest.sqrt();
+        let heaviest = slots().map(mass).fold(0.0, f64::max);
+        let closest = potential.apply(Closest {
+            from: shortest.min(potential.cut_off()),
+            energy: heaviest * speed * speed,
+        });
+        STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed
+    }
+
     /// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to
     /// the temperature `(D N − D) k_B T / 2 = kinetic energy`. The same for a seed on every machine and number of threads.
     pub(super) fn heat(&mut self, thermal: ThermalSpec) {

@@ -128,6 +128,22 @@ pub struct Observed {
     pub whole: Vec<f64>,
 }
 
+/// A directed bond between atoms about the state of now, with `V = φ + (F′ + F′) f`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtomBond {
+    /// Ids.
+    pub from: u32,
+    pub to: u32,
+    /// Vector (length); 0 on axes beyond the dimension.
+    pub xi: Point,
+    /// `V′(r)/r` (force / length).
+    pub tension: f64,
+    /// `V″(r)` (force / length).
+    pub stiffness: f64,
+    /// `f′(r)`: what the extension adds to the density at `from`.
+    pub share: f64,
+}
+
 /// A mode of vibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModeShape {
@@ -188,6 +204,9 @@ pub trait Simulation: Send {
     fn families(&self) -> Families;
     /// Strain energy density of every point under the homogeneous strain ε (`[3][3]`, no contact, whole bonds).
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64>;
+    /// Every directed bond between atoms about the displacements of now; returns F″ of every atom, `None` if the law is
+    /// no potential (nothing is visited then).
+    fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>>;
     /// Force densities under a given displacement (bonds and repulsion in the family, no breaking).
     fn forces_under(&mut self, u: &[Point]) -> Vec<Point>;
 

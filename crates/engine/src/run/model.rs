@@ -2,7 +2,9 @@
 
 use super::equilibrium::StaticState;
 use super::recipe::Recipes;
-use super::{Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions};
+use super::{
+    AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions,
+};
 use crate::body::{Body, Field};
 use crate::condition::constraint::Constraint;
 use crate::condition::driven::{Drive, Driven, Reaction};
@@ -258,6 +260,10 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
         self.strained(strain)
+    }
+
+    fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
+        Model::bonds_of_atoms(self, visit)
     }
 
     fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {

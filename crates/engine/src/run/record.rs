@@ -1,12 +1,10 @@
 //! What is written down of a model: snapshots, families, energies under strain.
 
 use super::model::Model;
-use super::{Families, Simulation, SnapshotOptions};
-use crate::body::Layout;
+use super::{AtomBond, Families, Simulation, SnapshotOptions};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondState, PointEnergies};
 use crate::observe::Snapshot;
-use crate::space::Point;
 
 impl<const D: usize> Model<D> {
     pub(super) fn record(&mut self, options: SnapshotOptions) -> Snapshot {
@@ -83,52 +81,46 @@ impl<const D: usize> Model<D> {
 
     /// Energy densities of bonds under a homogeneous displacement gradient.
     pub(super) fn strained(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
-        // images of a grid have displacements of their own; a list knows none, so the jump of a homogeneous strain
-        // lies somewhere in a periodic cloud: it is put in several places, and each point asked when it is far away
-        let cut: [bool; D] = std::array::from_fn(|a| {
-            !matches!(self.body.layout, Layout::Grid(_)) && self.body.period[a].is_some()
-        });
-        let reach = self.info.horizon * (1.0 + 1e-6);
-        let period = |a: usize| self.body.period[a].unwrap_or(0.0);
-        // so many places that every point is at least a horizon from one of them
-        let places: [usize; D] = std::array::from_fn(|a| match cut[a] {
-            true => (1.0 / (1.0 - 2.0 * reach / period(a)).max(1e-2)).ceil() as usize + 1,
-            false => 1,
-        });
-        let mut energy = vec![0.0; self.body.points()];
-        let mut u = self.body.at_rest();
+        let gradient: [[f64; D]; D] =
+            std::array::from_fn(|a| std::array::from_fn(|b| strain[a][b]));
         let mut out = PointEnergies::default();
-        for n in 0..places.iter().product() {
-            let mut rest: usize = n;
-            let at: [f64; D] = std::array::from_fn(|a| {
-                let k = rest % places[a];
-                rest /= places[a];
-                k as f64 / places[a] as f64 * period(a)
-            });
-            // position in the period that begins at the cut
-            let unwrapped = |slot: usize| -> Point {
-                let mut x = self.body.position(slot);
-                for a in (0..D).filter(|a| cut[*a]) {
-                    x[a] = (x[a] - at[a]).rem_euclid(period(a));
-                }
-                x
-            };
-            // images are periodic in displacement; a homogeneous strain is not: give each its own
-            let images = self.body.images.iter().map(|(copy, _)| copy);
-            for &s in self.body.slots.iter().chain(images) {
-                let x = unwrapped(s as usize);
-                for a in 0..D {
-                    u[a][s as usize] = (0..D).map(|b| strain[a][b] * x[b]).sum();
-                }
-            }
-            self.interaction.observe(&self.body, &u, &mut out);
-            for (e, &s) in energy.iter_mut().zip(&self.body.slots) {
-                let x = unwrapped(s as usize);
-                if (0..D).all(|a| !cut[a] || (reach..=period(a) - reach).contains(&x[a])) {
-                    *e = out.strain[s as usize];
-                }
-            }
+        self.interaction
+            .observe_gradient(&self.body, &gradient, &mut out);
+        self.by_id(|i| out.strain[i])
+    }
+
+    /// Bonds between atoms about the displacements of now, and F″ of every atom, in order of ids.
+    pub(super) fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
+        if !self.interaction.is_potential() {
+            return None;
         }
-        energy
+        self.refresh_images();
+        let mut id = vec![0u32; self.body.len];
+        for (n, &s) in self.body.slots.iter().enumerate() {
+            id[s as usize] = n as u32;
+        }
+        let body = &self.body;
+        self.interaction.tangents(body, &self.u, &mut |bond| {
+            let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+            let q = square(&bond.y);
+            let along: f64 = (0..D)
+                .map(|a| {
+                    (0..D)
+                        .map(|b| bond.y[a] * bond.stiffness[a][b] * bond.y[b])
+                        .sum::<f64>()
+                })
+                .sum();
+            // tangents are force densities
+            let volume = body.volume.at(bond.i);
+            visit(AtomBond {
+                from: id[bond.i],
+                to: id[bond.j],
+                xi: std::array::from_fn(|a| bond.y.get(a).copied().unwrap_or(0.0)),
+                tension: volume * bond.tension,
+                stiffness: volume * along / q,
+                share: (0..D).map(|a| bond.share[a] * bond.y[a]).sum::<f64>() / q.sqrt(),
+            });
+        });
+        Some(self.by_id(|i| self.interaction.gain(i)))
     }
 }

@@ -158,6 +158,10 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     }
     let step = match spec.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
+        TimeStep::Auto if spec.potential.is_some() => {
+            "a tenth of the stability limit, less for fast atoms".into()
+        }
+        TimeStep::Auto => "0.8 of the stability limit".into(),
         TimeStep::Fraction(fraction) => format!("{fraction} of the stability limit"),
     };
     let steps = match spec.schedule.steps {

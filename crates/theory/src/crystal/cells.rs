@@ -49,6 +49,7 @@ pub fn links<const D: usize>(
     horizon: Horizon,
 ) -> Result<Vec<Link<D>>, CrystalError> {
     same_dimension::<D>(kind)?;
+    Stencil::fits(kind, spacing, horizon).map_err(|e| CrystalError::TooManyBonds(e.message))?;
     let stencil = Stencil::new(kind, spacing, horizon);
     let edges = kind.edges();
     // sites of the conventional cell that stand for those of the primitive one

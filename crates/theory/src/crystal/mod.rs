@@ -40,6 +40,15 @@ impl<const D: usize> Bond<D> {
         self.xi.map(|x| x / r)
     }
 
+    /// What it adds to the stress of a volume `v`.
+    pub(crate) fn add_stress(&self, stress: &mut [[f64; D]; D], v: f64) {
+        for i in 0..D {
+            for j in 0..D {
+                stress[i][j] += 0.5 * self.tension * self.xi[i] * self.xi[j] / v;
+            }
+        }
+    }
+
     /// `tension (1 − n⊗n) + stiffness n⊗n` (force / length).
     pub fn force_constants(&self) -> [[f64; D]; D] {
         let n = self.direction();
@@ -95,6 +104,9 @@ pub enum CrystalError {
     Density { density: f64 },
     #[error("atoms have a potential: take `Crystal::of_potential`")]
     NotASolid,
+    /// The horizon is in another unit, most likely.
+    #[error("{0}")]
+    TooManyBonds(String),
     #[error("the potential has no value at the distance {distance} of the reference")]
     Distance { distance: f64 },
 }
@@ -140,11 +152,7 @@ impl<const D: usize> Crystal<D> {
         let v = self.volume();
         let mut s = [[0.0; D]; D];
         for b in &self.bonds {
-            for i in 0..D {
-                for j in 0..D {
-                    s[i][j] += 0.5 * b.tension * b.xi[i] * b.xi[j] / v;
-                }
-            }
+            b.add_stress(&mut s, v);
         }
         s
     }

@@ -12,7 +12,7 @@
 //!   B11 = C11 − P, B12 = C12 + P, B44 = C44 − P; it decides stability,
 //! - `A_ijkl = C_ijkl + δ_ik σ_jl` of waves: `ρ ω² u_i = A_ijkl k_j k_l u_k`.
 
-use crate::crystal::Crystal;
+use crate::crystal::{Bond, Crystal};
 use crate::dispersion::hermitian::{Matrix, eigen};
 use crate::stiffness::{Stiffness, axes, components};
 use peridyne::spec::{Moduli, Plane};
@@ -43,6 +43,55 @@ impl Cubic {
 }
 
 impl Stiffness {
+    /// What a directed bond adds to `C` of sites carried along, in the volume `v`, and to the strain of its site's scalar.
+    pub(crate) fn add_bond<const D: usize>(
+        &mut self,
+        bond: &Bond<D>,
+        share: &mut [f64; 6],
+        v: f64,
+    ) {
+        let n = components(D);
+        let r = bond.length();
+        let pair = |c: usize| {
+            let (a, b) = axes(D, c);
+            bond.xi[a] * bond.xi[b]
+        };
+        for i in 0..n {
+            for j in 0..n {
+                let k = (bond.stiffness - bond.tension) / (r * r);
+                self.c[i][j] += 0.5 * k * pair(i) * pair(j) / v;
+            }
+            share[i] += bond.share * pair(i) / r;
+        }
+    }
+
+    /// What a site's scalar adds to `C`, all its bonds seen.
+    pub(crate) fn add_site(&mut self, share: &[f64; 6], curvature: f64, v: f64) {
+        let n = components(self.dimension);
+        for i in 0..n {
+            for j in 0..n {
+                self.c[i][j] += curvature * share[i] * share[j] / v;
+            }
+        }
+    }
+
+    /// From `C`, of the energy, to `B`, of stress against strain, under the stress `s`.
+    pub(crate) fn under_stress<const D: usize>(mut self, s: &[[f64; D]; D]) -> Stiffness {
+        let d = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        for v in 0..components(D) {
+            for w in 0..components(D) {
+                let ((i, j), (k, l)) = (axes(D, v), axes(D, w));
+                self.c[v][w] += 0.5
+                    * (d(i, k) * s[j][l]
+                        + d(j, k) * s[i][l]
+                        + d(i, l) * s[j][k]
+                        + d(j, l) * s[i][k])
+                    - s[i][j] * d(k, l);
+            }
+        }
+        self
+    }
+
     /// The three constants of a square or cubic crystal along its axes, or `None` if some component differs by more than
     /// `tolerance` of the largest.
     pub fn cubic(&self, tolerance: f64) -> Option<Cubic> {
@@ -122,32 +171,18 @@ impl<const D: usize> Crystal<D> {
 
     /// `C` with all sites carried along by the strain.
     pub fn rigid_elastic_constants(&self) -> Stiffness {
-        let v = self.volume();
-        let n = components(D);
-        let mut c = [[0.0; 6]; 6];
+        let mut stiffness = Stiffness {
+            dimension: D,
+            c: [[0.0; 6]; 6],
+        };
         let mut shares = vec![[0.0; 6]; self.basis.len()];
         for bond in &self.bonds {
-            let r = bond.length();
-            let pair = |c: usize| {
-                let (a, b) = axes(D, c);
-                bond.xi[a] * bond.xi[b]
-            };
-            for i in 0..n {
-                for j in 0..n {
-                    let k = (bond.stiffness - bond.tension) / (r * r);
-                    c[i][j] += 0.5 * k * pair(i) * pair(j) / v;
-                }
-                shares[bond.from][i] += bond.share * pair(i) / r;
-            }
+            stiffness.add_bond(bond, &mut shares[bond.from], self.volume());
         }
-        for (g, curvature) in shares.iter().zip(&self.curvature) {
-            for i in 0..n {
-                for j in 0..n {
-                    c[i][j] += curvature * g[i] * g[j] / v;
-                }
-            }
+        for (share, curvature) in shares.iter().zip(&self.curvature) {
+            stiffness.add_site(share, *curvature, self.volume());
         }
-        Stiffness { dimension: D, c }
+        stiffness
     }
 
     /// `[site·D + axis][Voigt]`: `∂²(energy per cell)/∂w ∂E`, w the displacement of a site beyond the strain's, where no net force acts on sites
@@ -214,21 +249,7 @@ impl<const D: usize> Crystal<D> {
 
     /// `B`: stress against strain about the stressed reference. Symmetric if the stress is a pressure.
     pub fn stress_strain(&self) -> Option<Stiffness> {
-        let mut b = self.elastic_constants()?;
-        let s = self.stress();
-        let d = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-        for v in 0..components(D) {
-            for w in 0..components(D) {
-                let ((i, j), (k, l)) = (axes(D, v), axes(D, w));
-                b.c[v][w] += 0.5
-                    * (d(i, k) * s[j][l]
-                        + d(j, k) * s[i][l]
-                        + d(i, l) * s[j][k]
-                        + d(j, l) * s[i][k])
-                    - s[i][j] * d(k, l);
-            }
-        }
-        Some(b)
+        Some(self.elastic_constants()?.under_stress(&self.stress()))
     }
 
     /// The long-wave (acoustic) tensor `A_ijkl n_j n_l` of a unit direction (energy / volume); its eigenvalues are ρv².

@@ -258,7 +258,8 @@ pub fn upscale_keeping(
         steps: spec.schedule.steps.div_ceil(u64::from(factor)),
         time_step: match spec.schedule.time_step {
             TimeStep::Fixed(dt) => TimeStep::Fixed(dt * n),
-            fraction => fraction,
+            TimeStep::Fraction(x) => TimeStep::Fraction(x),
+            TimeStep::Auto => TimeStep::Auto,
         },
         ..spec.schedule
     };

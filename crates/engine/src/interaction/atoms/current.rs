@@ -6,6 +6,7 @@ use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::NearList;
+use crate::interaction::along;
 use crate::interaction::tangent::curvature;
 use crate::interaction::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
 use crate::law::number::Dual;
@@ -346,6 +347,23 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
             let list = list_at(body, self.cutoff, u, self.simd);
             self.see(body, &list, list.positions(), out);
         }
+    }
+
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        let list = list_at(body, self.cutoff, &body.at_rest(), self.simd);
+        let mut position = list.positions().to_vec();
+        // what is nowhere stays there
+        for x in position.iter_mut().filter(|x| x[0].is_finite()) {
+            let moved = along(gradient, &x[..D]);
+            for a in 0..D {
+                x[a] += moved[a];
+            }
+        }
+        self.see(body, &list, &position, out);
+    }
+
+    fn is_potential(&self) -> bool {
+        true
     }
 
     fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {

@@ -355,6 +355,10 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
             .collect();
     }
 
+    fn is_potential(&self) -> bool {
+        true
+    }
+
     fn gain(&self, slot: usize) -> f64 {
         self.curvature.get(slot).copied().unwrap_or(0.0)
     }

@@ -23,7 +23,7 @@ pub use share::Share;
 /// Tiles per block of work.
 pub const BLOCK: usize = 32;
 /// Longest stencil that a sweep can keep account of.
-pub const MOST: usize = 32768;
+pub use crate::family::stencil::MOST;
 
 /// State of a tile: every bond of `reach` is whole for all eight points.
 pub const WHOLE: u8 = 1;
