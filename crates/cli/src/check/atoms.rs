@@ -49,7 +49,7 @@ pub fn advice(found: &Findings, potential: &PotentialSpec, say: &mut dyn FnMut(S
     }
     let resting = match &spec.body {
         BodySpec::Cloud(cloud) => cloud.velocity.is_empty(),
-        BodySpec::Lattice { .. } | BodySpec::Sites { .. } => true,
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Several(_) => true,
     };
     if resting && spec.thermal.is_none() && spec.initial.is_empty() {
         say(

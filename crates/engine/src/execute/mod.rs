@@ -2,4 +2,5 @@
 
 pub mod blocks;
 pub mod lane;
+pub mod memory;
 pub mod simd;

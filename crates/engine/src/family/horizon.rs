@@ -8,6 +8,7 @@ use super::cells::Cells;
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
+use crate::execute::memory;
 use crate::space::AXES;
 use rayon::prelude::*;
 
@@ -101,6 +102,19 @@ impl HorizonList {
             start.push(start[start.len() - 1] + lines as usize);
         }
         let lines = start[start.len() - 1];
+        memory::afford(
+            "horizon",
+            &format!(
+                "{:.2e} bonds",
+                size.iter().map(|s| f64::from(*s)).sum::<f64>()
+            ),
+            lines as f64 * (4 * TILE + 1) as f64,
+            &format!(
+                "the horizon {horizon:e} is {:.1} spacings: check its unit and its decimal point; three to six spacings are \
+                 usual",
+                horizon / body.spacing
+            ),
+        )?;
         let mut list = HorizonList {
             rows,
             start,

@@ -1,5 +1,6 @@
 //! Stencils: on a lattice every point has the same bonds, given by integers.
 
+use crate::error::BuildError;
 use crate::space::lattice::LatticeKind;
 use crate::spec::Horizon;
 
@@ -27,7 +28,33 @@ pub struct Stencil {
     pub near_horizon: usize,
 }
 
+/// Most bonds of a point; kernels have room for so many.
+pub const MOST: usize = 32_768;
+
 impl Stencil {
+    /// Would [`Stencil::new`] find at most [`MOST`] bonds, by the volume of the ball? To be asked before: a horizon in the
+    /// wrong unit makes more bonds than any memory holds.
+    ///
+    /// # Errors
+    /// It has far more.
+    pub fn fits(kind: LatticeKind, spacing: f64, horizon: Horizon) -> Result<(), BuildError> {
+        let spacings = match horizon {
+            Horizon::Ratio(m) => f64::from(m),
+            Horizon::Length(d) => d / spacing,
+        };
+        let ball = match kind.dimension() {
+            1 => 2.0 * spacings,
+            2 => std::f64::consts::PI * spacings.powi(2),
+            _ => 4.0 / 3.0 * std::f64::consts::PI * spacings.powi(3),
+        };
+        let bonds = ball / kind.site_volume();
+        // the ball's surface blurs small counts
+        if bonds <= 1.5 * MOST as f64 {
+            return Ok(());
+        }
+        Err(too_many(bonds, horizon, spacings))
+    }
+
     /// All sites within the horizon, inclusive. A ratio is decided by integers; a length by comparison in floating
     /// point, and bonds that round-off could decide are counted in `near_horizon`.
     pub fn new(kind: LatticeKind, spacing: f64, horizon: Horizon) -> Stencil {
@@ -103,6 +130,24 @@ impl Stencil {
     pub fn bonds(&self) -> usize {
         self.offsets.iter().map(Vec::len).max().unwrap_or(0)
     }
+}
+
+/// A point has too many bonds.
+pub(crate) fn too_many(bonds: f64, horizon: Horizon, spacings: f64) -> BuildError {
+    let cause = match horizon {
+        Horizon::Ratio(_) => {
+            "write horizon = { m_ratio = 3 }: three to six spacings are usual".into()
+        }
+        Horizon::Length(d) => format!(
+            "the horizon {d:e} is {spacings:.1} spacings: check its unit and its decimal point, and those of the spacing; \
+             three to six spacings are usual"
+        ),
+    };
+    BuildError::new(
+        "horizon",
+        format!("{bonds:.4e} bonds per point are too many: at most {MOST}"),
+    )
+    .help(cause)
 }
 
 #[cfg(test)]

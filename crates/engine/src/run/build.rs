@@ -15,12 +15,17 @@ use crate::body::{Body, Layout, Values, zeros};
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
+use crate::execute::memory;
 use crate::execute::simd::Simd;
+use crate::family::stencil::Stencil;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
 use crate::spec::{BodySpec, Cloud, CrackKind, Spec, TimeStep};
+
+/// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
+const SOLID_FRACTION: f64 = 0.8;
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,6 +63,50 @@ pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, Build
     }
 }
 
+/// Does the model fit into memory? Of bonds a stencil keeps bits, a list partners and bits, and atoms about the partners
+/// of their cut-off.
+fn enough_memory<const D: usize>(
+    body: &Body<D>,
+    stencil: Option<&Stencil>,
+    horizon: f64,
+    atoms: bool,
+) -> Result<(), BuildError> {
+    let slots = body.len as f64;
+    let spacings = horizon / body.spacing;
+    let (bonds, each) = match stencil {
+        Some(s) => (slots * s.bonds() as f64, 0.125),
+        None => {
+            // no point has more partners than the ball holds, or the body
+            let ball = match D {
+                1 => 2.0 * spacings,
+                2 => std::f64::consts::PI * spacings.powi(2),
+                _ => 4.0 / 3.0 * std::f64::consts::PI * spacings.powi(3),
+            };
+            // the estimate may be some times too high where bodies are thin: the list itself is counted before it is made
+            let doubt = if atoms { 1.0 } else { 4.0 };
+            (slots * ball.min(body.points() as f64) / doubt, 4.125)
+        }
+    };
+    let (what, path, help) = if bonds * each > slots * 24.0 * D as f64 {
+        (
+            format!("{:.2e} bonds of {:.2e} points", bonds, body.points() as f64),
+            "horizon",
+            format!(
+                "the horizon {horizon:e} is {spacings:.1} spacings: check its unit and its decimal point, and those of the \
+                 spacing; three to six spacings are usual"
+            ),
+        )
+    } else {
+        (
+            format!("a body of {:.2e} points", body.points() as f64),
+            "body.spacing",
+            "check the units of the spacing and of the region; a larger spacing makes fewer points"
+                .into(),
+        )
+    };
+    memory::afford(path, &what, slots * 24.0 * D as f64 + bonds * each, &help)
+}
+
 /// Build the model of a spec in D dimensions.
 pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D>, BuildError> {
     let simd = options.simd.unwrap_or_else(Simd::detect);
@@ -70,6 +119,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         parts[0].horizon = potential.cut_off();
     }
     let horizon = parts[0].horizon;
+    for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
+        let own = body.pieces().get(n).map_or(&body, |p| &p.body);
+        let atoms = current_neighbours(spec);
+        enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
+    }
     let sets = sets(spec, &body)?;
     assign_materials(spec, &mut body, &sets)?;
     own_densities(spec, &mut body);
@@ -163,23 +217,29 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         contact_step = touching.map_or(f64::INFINITY, |t| probe::step(t.lambda));
     }
     let stable_step = bond_step.min(contact_step);
-    let dt = match spec.schedule.time_step {
-        TimeStep::Fraction(x) if stable_step.is_finite() => x * stable_step,
-        TimeStep::Fraction(_) if body.points() == 1 => {
+    let fraction = match spec.schedule.time_step {
+        TimeStep::Fixed(_) => None,
+        TimeStep::Fraction(x) => Some(x),
+        TimeStep::Auto if spec.potential.is_some() => Some(atoms::FRACTION),
+        TimeStep::Auto => Some(SOLID_FRACTION),
+    };
+    let dt = match (spec.schedule.time_step, fraction) {
+        (_, Some(x)) if stable_step.is_finite() => x * stable_step,
+        (TimeStep::Fraction(_) | TimeStep::Auto, _) if body.points() == 1 => {
             return Err(BuildError::new(
                 "body",
                 "the body has one point, and a point alone has no bonds: no stable step can be derived",
             )
             .help("a larger region or a smaller spacing, or time_step as a number"));
         }
-        TimeStep::Fraction(_) => {
+        (TimeStep::Fraction(_) | TimeStep::Auto, _) => {
             return Err(BuildError::new(
                 "schedule.time_step",
                 "nothing resists: no stable step can be derived",
             )
             .help("give time_step as a number"));
         }
-        TimeStep::Fixed(dt) => dt,
+        (TimeStep::Fixed(dt), _) => dt,
     };
     if !(dt > 0.0 && dt.is_finite()) {
         return Err(BuildError::new(
@@ -290,6 +350,10 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         model.set_velocities(&velocity);
     }
     initial(spec, &mut model)?;
+    if let (TimeStep::Auto, Some(potential)) = (spec.schedule.time_step, &spec.potential) {
+        model.dt = model.dt.min(model.step_of_speeds(potential));
+        model.info.time_step = model.dt;
+    }
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.sets = sets;

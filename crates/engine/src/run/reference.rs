@@ -2,7 +2,7 @@
 
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
-use crate::family::stencil::Stencil;
+use crate::family::stencil::{MOST, Stencil, too_many};
 use crate::law::influence::influence;
 use crate::law::micromodulus::Moments;
 use crate::space::fill::fill;
@@ -103,6 +103,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
             true => Horizon::Length(spacing * kind.nearest()),
             false => spec.horizon,
         };
+        Stencil::fits(kind, spacing, horizon)?;
         let stencil = Stencil::new(kind, spacing, horizon);
         let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
         let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
@@ -120,16 +121,12 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
             )
             .help("three spacings are usual: horizon = { m_ratio = 3 }"));
         }
-        if stencil.bonds() > crate::interaction::stencil::MOST {
-            return Err(BuildError::new(
-                "horizon",
-                format!(
-                    "{} bonds per point; at most {}",
-                    stencil.bonds(),
-                    crate::interaction::stencil::MOST
-                ),
-            )
-            .help("choose a shorter horizon: three to six spacings are usual"));
+        if stencil.bonds() > MOST {
+            return Err(too_many(
+                stencil.bonds() as f64,
+                spec.horizon,
+                horizon / spacing,
+            ));
         }
         let body = Body::<D>::on_lattice(
             Lattice {

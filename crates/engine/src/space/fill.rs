@@ -5,6 +5,12 @@ use super::membership::Membership;
 use super::region::Region;
 use super::{AXES, Point};
 use crate::error::BuildError;
+use crate::execute::memory;
+
+/// The least that a point takes (bytes): its place, displacement, velocity and force.
+const POINT: f64 = 88.0;
+/// Places per axis at which a large region is looked at to guess how many points it holds.
+const SAMPLES: usize = 24;
 
 /// Sites of a lattice, in quarters of the cell's edges, ordered by cell (z, y, x with x fastest), then basis.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +72,34 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
             format!("the region spans {cells:.3e} lattice cells"),
         )
         .help("points are numbered up to 4.29e9: use a larger spacing or a smaller region"));
+    }
+    let inside = |n: usize, of: usize| -> f64 {
+        // cells in the middle of n³ equal parts of the box
+        let mut found = 0usize;
+        for i in 0..n.pow(dimension as u32) {
+            let mut rest = i;
+            let q = std::array::from_fn(|a| {
+                if a >= dimension {
+                    return 0;
+                }
+                let k = rest % n;
+                rest /= n;
+                let cells = i64::from(last[a]) - i64::from(first[a]) + 1;
+                4 * (i64::from(first[a]) + cells * (2 * k as i64 + 1) / of as i64) as i32
+            });
+            found += usize::from(membership.contains(q));
+        }
+        found as f64 / (n as f64).powi(dimension as i32)
+    };
+    let all = cells * basis.len() as f64;
+    if memory::available().is_some_and(|left| all * POINT > left) {
+        let points = all * inside(SAMPLES, 2 * SAMPLES);
+        memory::afford(
+            "body.spacing",
+            &format!("a body of {points:.2e} points"),
+            points * POINT,
+            "check the units of the spacing and of the region; a larger spacing or a smaller region makes fewer points",
+        )?;
     }
     let mut quarters = Vec::new();
     // room for the whole box is only address space until it is written, and saves copying while growing

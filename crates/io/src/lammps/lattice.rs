@@ -1,5 +1,7 @@
 //! `lattice`: the grid that atoms are created on and the unit of `units lattice`.
 
+use peridyne::execute::memory;
+
 use super::atoms::SiteLattice;
 
 /// A square or simple cubic lattice along the axes.
@@ -58,7 +60,14 @@ impl Lattice {
         }
         let lattice = self.site_lattice();
         let mut sites = Vec::new();
+        // an atom takes this and more before it moves (bytes)
+        let most = memory::available().map_or(f64::INFINITY, |left| left / 120.0);
         for k in range[2].0..=range[2].1 {
+            if sites.len() as f64 > most {
+                return Err(format!(
+                    "more than {most:.1e} atoms do not fit into the memory that is left; the box holds {total:.1e} lattice sites: check the lattice constant and the region"
+                ));
+            }
             for j in range[1].0..=range[1].1 {
                 for i in range[0].0..=range[0].1 {
                     if accept(lattice.position([i, j, k])) {

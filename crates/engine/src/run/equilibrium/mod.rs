@@ -7,9 +7,11 @@ use super::model::Model;
 use crate::body::{Field, zeros};
 use crate::condition::load::LoadKind;
 use crate::error::{BuildError, RunError};
+use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::run::Simulation;
+use crate::run::recipe::Laws;
 use crate::space::Point;
 use crate::spec::{Method, Statics};
 use crate::statics::modes::{self, Mode};
@@ -108,6 +110,11 @@ impl<const D: usize> Model<D> {
                 .help("prescribe a displacement, as a function of t from 0 to 1"));
         }
         if options.method != Method::Relaxation
+            && (self.factored(options, &support) || matches!(self.recipe.laws, Laws::Atoms(_)))
+        {
+            self.enough_memory_for_rows()?;
+        }
+        if options.method != Method::Relaxation
             && (self.contact.is_some() || !self.indenters.is_empty())
         {
             return Err(BuildError::new(
@@ -117,6 +124,23 @@ impl<const D: usize> Model<D> {
             .help("write method = \"relaxation\", or contact = false"));
         }
         Ok(())
+    }
+
+    /// Do the rows of the equations fit into memory? Laws with a point scalar reach two families. What the factors fill in
+    /// comes on top.
+    fn enough_memory_for_rows(&self) -> Result<(), BuildError> {
+        let points = self.body.points() as f64;
+        let families: f64 = match &self.recipe.laws {
+            Laws::Solid(_) | Laws::Atoms(_) => 2f64.powi(D as i32),
+            Laws::Bond(_) | Laws::Springs(_) | Laws::Micromoduli(_) => 1.0,
+        };
+        let row = (families * self.info.family.1).min(points) + 1.0;
+        memory::afford(
+            "statics.solver",
+            &format!("the equations of {points:.2e} points"),
+            points * row * (8 * D * D + 4) as f64,
+            "leave solver out, or write solver = \"cg\", which needs no matrix; a shorter horizon makes shorter rows",
+        )
     }
 
     /// The state before any load: displacements as they are, forces of bonds alone.

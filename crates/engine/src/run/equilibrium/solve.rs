@@ -61,7 +61,7 @@ impl<const D: usize> Model<D> {
         self.refresh_images();
     }
 
-    fn factored(&self, options: Statics, support: &Support<D>) -> bool {
+    pub(super) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
         match options.solver {
             Solver::Direct => true,
             Solver::ConjugateGradients => false,
