@@ -1,18 +1,20 @@
 //! `peridyne check`: what would run, what the body really is, and what it costs.
 
 mod advice;
+mod atoms;
 mod json;
 mod report;
 
 use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
-use crate::run::with_threads;
+use crate::run::{enough_disk, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Simulation};
 use peridyne::spec::{Criterion, Moduli, Spec};
 use peridyne_io::deck::UnitSystem;
+use peridyne_io::drive::default_dir;
 use peridyne_io::lammps::Units;
 use peridyne_theory::asked::asked;
 use peridyne_theory::elastic::{PatchTest, patch_test};
@@ -31,6 +33,9 @@ pub struct CheckArguments {
     /// Print JSON instead of a table; numbers are in the units of the run.
     #[arg(long)]
     pub json: bool,
+    /// As for `run`: the deck or script may name files outside the folder of the results. `check` itself writes none.
+    #[arg(long)]
+    pub allow_outside: bool,
     /// Threads for the trial steps; all cores if not given.
     #[arg(long)]
     pub threads: Option<usize>,
@@ -110,6 +115,10 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         });
     }
     let deck = deck::read(input)?;
+    if !arguments.allow_outside {
+        deck.stays_inside(false)
+            .map_err(|e| Failure::Input(e.into()))?;
+    }
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |threads| {
         let sim = deck::model(&deck, input)?;
@@ -117,6 +126,9 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         if !remarks.is_empty() {
             eprintln!("{}", remarks.trim_start());
         }
+        let dir = deck.output.dir.clone();
+        let dir = dir.unwrap_or_else(|| default_dir(&input.file));
+        enough_disk(&deck, sim.as_ref(), &dir)?;
         let subject = Subject {
             steps: deck.steps(sim.info().time_step),
             units: deck.units,

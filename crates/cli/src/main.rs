@@ -12,6 +12,7 @@ mod reproduce;
 mod run;
 mod script;
 mod side_by_side;
+mod signals;
 mod upscale;
 mod waves;
 
@@ -78,7 +79,14 @@ fn pair(text: &str) -> Result<(String, String), String> {
 }
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().verb {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(answer) => return answered(&answer),
+    };
+    if let Err(failure) = signals::listen() {
+        return failure.report();
+    }
+    let outcome = match arguments.verb {
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
         Verb::Upscale(arguments) => upscale::upscale(&arguments),
@@ -90,7 +98,22 @@ fn main() -> ExitCode {
         Verb::Laws => laws::print(),
         Verb::Schema => print_schema(),
     };
-    match outcome {
+    match outcome.and_then(|()| failure::printed()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Help or the version were asked for, or the command line is wrong.
+fn answered(answer: &clap::Error) -> ExitCode {
+    if answer.use_stderr() {
+        // clap knows how to colour it; nobody can be told if standard error is closed
+        let _ = answer.print();
+        return ExitCode::from(2);
+    }
+    // not clap's own printing, which forgets that the disk is full
+    failure::say(answer.render().to_string().trim_end());
+    match failure::printed() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

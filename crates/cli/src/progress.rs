@@ -1,5 +1,7 @@
 //! Progress: a live bar on a terminal, plain lines in a pipe.
 
+use crate::failure::note;
+use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::Ledger;
 use peridyne_io::drive::Progress;
@@ -54,11 +56,11 @@ impl Progress for Terminal {
         } else if self.spoken.elapsed() >= INTERVAL {
             self.spoken = Instant::now();
             let left = per_step * (total - done) as f64;
-            eprintln!(
+            note(&format!(
                 "step {done} of {total}, {:.1} steps/s, {left:.0} s left, {} bonds broken",
                 1.0 / per_step,
                 self.broken
-            );
+            ));
         }
     }
 
@@ -70,7 +72,11 @@ impl Progress for Terminal {
         let line = format!("warning: {message}");
         match &self.bar {
             Some(bar) => bar.println(line),
-            None => eprintln!("{line}"),
+            None => note(&line),
         }
+    }
+
+    fn ended(&mut self) -> Option<String> {
+        signals::asked().map(|s| s.to_string())
     }
 }

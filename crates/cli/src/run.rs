@@ -5,13 +5,18 @@ use crate::deck;
 use crate::failure::{Failure, say};
 use crate::progress::Terminal;
 use crate::script;
-use peridyne::run::SnapshotOptions;
+use crate::signals;
+use peridyne::error::BuildError;
+use peridyne::execute::memory::size;
+use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne_io::deck::{Deck, Dim, FieldName, UnitSystem};
 use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
-use std::path::PathBuf;
+use peridyne_io::write::run_json::Status;
+use peridyne_io::write::space::{Amount, free};
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct RunArguments {
@@ -21,6 +26,9 @@ pub struct RunArguments {
     /// LAMMPS script names go there too; without it, to the current folder.
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Let the deck or script write outside the folder of the results.
+    #[arg(long)]
+    pub allow_outside: bool,
     /// Threads; all cores if not given. Results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
@@ -33,6 +41,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         });
     }
     let deck = deck::read(&arguments.input)?;
+    if !arguments.allow_outside {
+        deck.stays_inside(arguments.out.is_some())
+            .map_err(|e| Failure::Input(e.into()))?;
+    }
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |threads| run_deck(arguments, &deck, threads))
 }
@@ -62,11 +74,12 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .clone()
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
+    enough_disk(deck, sim.as_ref(), &dir)?;
     say(&deck.describe());
     let remarks = deck::remarks(deck, sim.info().time_step);
     say(&(deck::headline(sim.as_ref()) + &remarks));
     let steps = deck.steps(sim.info().time_step);
-    let plan = plan(deck, steps, dir, threads);
+    let plan = plan(deck, steps, dir, threads, arguments.allow_outside);
     say(&format!(
         "threads   {threads}\nrunning {steps} steps, results in {}",
         plan.dir.display()
@@ -77,7 +90,8 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     match result {
         Ok(report) => {
             say(&format!(
-                "done: {} steps in {:.2} s{}{}",
+                "{}: {} steps in {:.2} s{}{}",
+                report.outcome(),
                 report.steps,
                 report.seconds_stepping,
                 report.ns_per_bond_step.map_or(String::new(), |ns| format!(
@@ -97,13 +111,68 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                     plan.dir.join("damage.png").display()
                 ));
             }
-            Ok(())
+            match signals::asked() {
+                Some(signal) if report.status == Status::Ended => Err(Failure::Ended(signal)),
+                _ => Ok(()),
+            }
         }
         Err(e) => Err(Failure::Run(e.to_string())),
     }
 }
 
-fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
+/// Does the disk have room for what the deck asks to write?
+pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), Failure> {
+    let (info, output) = (sim.info(), &deck.output);
+    let steps = deck.steps(info.time_step);
+    let amount = Amount {
+        steps,
+        every: output.every,
+        history: output.history.unwrap_or((steps / 200).max(1)),
+        points: info.points,
+        vtu: output.vtu,
+        bonds: if output.bonds {
+            info.directed_bonds / 2
+        } else {
+            0
+        },
+        atoms: if output.trajectory.is_some() {
+            info.points
+        } else {
+            0
+        },
+    };
+    let Some(free) = free(dir) else {
+        return Ok(());
+    };
+    let what = [
+        ("output.every", "frames"),
+        ("output.history", "rows of history.csv"),
+    ];
+    match amount
+        .bytes()
+        .into_iter()
+        .zip(what)
+        .find(|(b, _)| *b > free)
+    {
+        None => Ok(()),
+        Some((bytes, (key, what))) => {
+            let error = BuildError::new(
+                key,
+                format!(
+                    "{steps} steps would write about {} of {what}; the disk has {} left",
+                    size(bytes),
+                    size(free)
+                ),
+            )
+            .help(format!(
+                "write a larger {key}, or fewer steps; or --out on another disk"
+            ));
+            Err(Failure::Input(deck.explain(&error).into()))
+        }
+    }
+}
+
+fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bool) -> Plan {
     let output = &deck.output;
     let (length_unit, time_unit, energy_unit) = match deck.units {
         UnitSystem::Si => ("m", "s", "J"),
@@ -119,6 +188,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize) -> Plan {
         deck: deck.file().to_string(),
         deck_text: deck.text().to_string(),
         dir,
+        allow_outside,
         steps,
         every: output.every,
         modes: deck.modes,

@@ -2,13 +2,15 @@
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, note, say};
+use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne_io::drive::default_dir;
-use peridyne_io::lammps::host::{Console, Engine, Host, HostError, Setup, StandardConsole};
+use peridyne_io::lammps::host::{Console, Engine, Host, HostError, Setup};
 use peridyne_io::lammps::model::{ModelEngine, ModelHost, Prepared};
 use peridyne_io::lammps::{Options, Outcome, run_text};
+use peridyne_io::write::folder::Folder;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::run_json::{self, EnergyReport, RunReport, Status};
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
@@ -64,7 +66,7 @@ struct Quiet;
 impl Console for Quiet {
     fn print(&mut self, _: &str) {}
     fn note(&mut self, line: &str) {
-        StandardConsole.note(line);
+        note(&format!("note: {line}"));
     }
 }
 
@@ -91,16 +93,25 @@ pub fn run(input: &Input, out: Option<&Path>, threads: usize) -> Result<(), Fail
     let name = input.file.display().to_string();
     let results = out.map_or_else(|| folder(&input.file), Path::to_path_buf);
     let options = options(input, out.unwrap_or(Path::new("")))?;
-    if let Some(dir) = out {
-        std::fs::create_dir_all(dir)
-            .map_err(|e| Failure::Run(format!("cannot create {}: {e}", dir.display())))?;
-    }
-    let mut host = ModelHost {
-        simd: deck::simd(input)?,
+    let mut host = Holder {
+        host: ModelHost {
+            simd: deck::simd(input)?,
+        },
+        dir: results.clone(),
+        held: None,
     };
+    if out.is_some() {
+        host.claim();
+    }
     let mut console = Terminal::default();
-    let result = run_text(&name, &text, &options, &mut host, &mut console);
+    let result = match &host.held {
+        Some(Err(e)) => return Err(Failure::Run(e.to_string())),
+        _ => run_text(&name, &text, &options, &mut host, &mut console),
+    };
     console.end();
+    if let Some(Err(e)) = host.held {
+        return Err(Failure::Run(e.to_string()));
+    }
     let mut outcome = result.map_err(|e| {
         if e.while_running {
             Failure::Run(match &e.help {
@@ -111,7 +122,36 @@ pub fn run(input: &Input, out: Option<&Path>, threads: usize) -> Result<(), Fail
             Failure::Input((*e).into())
         }
     })?;
-    finish(&mut outcome, &name, &text, &results, threads).map_err(|e| Failure::Run(e.to_string()))
+    let signal = signals::asked().filter(|_| outcome.ended);
+    finish(&mut outcome, &name, &text, &results, threads)
+        .map_err(|e| Failure::Run(e.to_string()))?;
+    signal.map_or(Ok(()), |s| Err(Failure::Ended(s)))
+}
+
+/// Holds the folder of the results from the first `run` on (a script that is wrong before makes no folder).
+struct Holder {
+    host: ModelHost,
+    dir: PathBuf,
+    held: Option<Result<Folder, WriteError>>,
+}
+
+impl Holder {
+    fn claim(&mut self) {
+        if self.held.is_none() {
+            self.held = Some(Folder::claim(&self.dir));
+        }
+    }
+}
+
+impl Host for Holder {
+    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
+        let engine = self.host.build(setup)?;
+        self.claim();
+        match &self.held {
+            Some(Err(e)) => Err(HostError::new(e.to_string())),
+            _ => Ok(engine),
+        }
+    }
 }
 
 /// Report, last state and picture of a script that ran.
@@ -145,6 +185,10 @@ fn finish(
         text,
         threads,
     );
+    if let Some(signal) = signals::asked().filter(|_| outcome.ended) {
+        report.status = Status::Ended;
+        report.ended_by = Some(signal.to_string());
+    }
     let snapshot = sim.snapshot(SnapshotOptions {
         energies: true,
         ..SnapshotOptions::default()
@@ -157,7 +201,8 @@ fn finish(
     report.peak_memory_bytes = run_json::peak_memory_bytes();
     report.write(&dir.join("run.json"))?;
     say(&format!(
-        "done: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
+        "{}: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
+        report.outcome(),
         report.steps,
         report.seconds_stepping,
         report.ns_per_bond_step.map_or(String::new(), |ns| format!(
@@ -193,6 +238,7 @@ fn report(
         deck_hash: run_json::deck_hash(text.as_bytes()),
         title: info_title(name),
         status: Status::Done,
+        ended_by: None,
         particles: info.points,
         directed_bonds: info.directed_bonds,
         steps,
@@ -231,7 +277,6 @@ fn folder(script: &Path) -> PathBuf {
 #[derive(Default)]
 struct Terminal {
     bar: Option<ProgressBar>,
-    lines: StandardConsole,
 }
 
 impl Terminal {
@@ -245,16 +290,21 @@ impl Terminal {
 impl Console for Terminal {
     fn print(&mut self, line: &str) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| self.lines.print(line)),
-            None => self.lines.print(line),
+            Some(bar) => bar.suspend(|| say(line)),
+            None => say(line),
         }
     }
 
     fn note(&mut self, line: &str) {
+        let line = format!("note: {line}");
         match &self.bar {
-            Some(bar) => bar.suspend(|| self.lines.note(line)),
-            None => self.lines.note(line),
+            Some(bar) => bar.suspend(|| note(&line)),
+            None => note(&line),
         }
+    }
+
+    fn ended(&mut self) -> bool {
+        signals::asked().is_some()
     }
 
     fn progress(&mut self, done: u64, of: u64) {

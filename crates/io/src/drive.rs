@@ -1,5 +1,6 @@
 //! Drives a simulation through its steps: observers at their intervals, files as they come, a report at the end.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -11,6 +12,7 @@ use peridyne::statics::{AnyLinearBody, SolveError};
 use crate::balance::BalanceWatch;
 use crate::read::{Atoms, Species};
 use crate::write::data::write_data;
+use crate::write::folder::{Folder, is_inside};
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::linear::write_linear;
 use crate::write::run_json::{self, EnergyReport, RunReport, Status};
@@ -26,6 +28,8 @@ pub struct Plan {
     pub deck: String,
     pub deck_text: String,
     pub dir: PathBuf,
+    /// May files that the deck names lie outside `dir`?
+    pub allow_outside: bool,
     pub steps: u64,
     /// Steps between frames; `None`: first and last.
     pub every: Option<u64>,
@@ -43,6 +47,24 @@ pub struct Plan {
     pub threads: usize,
     /// What atoms have besides.
     pub atoms: Option<AtomsPlan>,
+}
+
+impl Plan {
+    /// Do the files that the deck names lie inside the folder, links included, or may they be anywhere?
+    fn stays_inside(&self) -> Result<(), WriteError> {
+        let named = self.atoms.iter().flat_map(|a| {
+            let trajectory = a.trajectory.as_ref().map(|(path, _)| path);
+            [trajectory, a.data.as_ref()].into_iter().flatten()
+        });
+        for name in named {
+            if !self.allow_outside && !is_inside(&self.dir, name) {
+                let path = self.dir.join(name);
+                let error = io::Error::other("it is outside the folder of the results");
+                return Err(WriteError::at("write", &path)(error));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Temperature, pressure, trajectory and last state of atoms.
@@ -162,6 +184,10 @@ pub trait Progress {
     fn row(&mut self, step: u64, time: f64, ledger: &Ledger, broken: u64);
     /// Something that the user should know now.
     fn warning(&mut self, message: &str);
+    /// Asked after each step: shall the run end here, and who says so? What it has done is then written as at its end.
+    fn ended(&mut self) -> Option<String> {
+        None
+    }
 }
 
 /// Why a run did not end well.
@@ -179,7 +205,7 @@ pub enum DriveError {
     Modes { error: SolveError, dir: PathBuf },
 }
 
-/// Run and write. On a [`RunError`] the last good state is written like a last frame and `run.json` says why.
+/// Run and write. [`Progress::ended`] ends a run early. On a [`RunError`] the last good state is written like a last frame and `run.json` says why.
 ///
 /// # Errors
 /// What stopped the run, or the first file that could not be written.
@@ -188,6 +214,8 @@ pub fn drive(
     plan: &Plan,
     progress: &mut dyn Progress,
 ) -> Result<RunReport, DriveError> {
+    let _held = Folder::claim(&plan.dir)?;
+    plan.stays_inside()?;
     let mut series = Series::new(&plan.dir, plan.series.clone())?;
     let mut columns = vec![Column::new("time", &plan.time_unit)];
     columns.extend(ledger_columns(&plan.energy_unit));
@@ -216,6 +244,7 @@ pub fn drive(
     let mut framed = None;
     let mut balance = BalanceWatch::default();
     let mut warnings = sim.info().warnings.clone();
+    let mut ended = None;
     for n in 0..=plan.steps {
         if n > 0 {
             let begin = Instant::now();
@@ -227,7 +256,10 @@ pub fn drive(
             }
             progress.step(n, plan.steps, stepping);
         }
-        let last = n == plan.steps;
+        if n < plan.steps {
+            ended = progress.ended();
+        }
+        let last = n == plan.steps || ended.is_some();
         if n % plan.history == 0 || last {
             match sim.ledger() {
                 Ok(l) => ledger = l,
@@ -266,6 +298,9 @@ pub fn drive(
         {
             series.write(&sim.snapshot(plan.snapshot))?;
         }
+        if last {
+            break;
+        }
     }
     let snapshot = sim.snapshot(plan.snapshot);
     series.write(&snapshot)?;
@@ -287,7 +322,7 @@ pub fn drive(
     {
         write_data(&plan.dir.join(name), &atoms.last(sim))?;
     }
-    if plan.modes > 0 && stopped.is_none() {
+    if plan.modes > 0 && stopped.is_none() && ended.is_none() {
         write_modes(sim, plan, &snapshot)?;
     }
     if plan.linear_body {
@@ -299,8 +334,9 @@ pub fn drive(
         }
     }
     let status = match &stopped {
-        None => Status::Done,
         Some(error) => Status::Stopped(error.to_string()),
+        None if ended.is_some() => Status::Ended,
+        None => Status::Done,
     };
     let info = sim.info();
     let report = RunReport {
@@ -309,6 +345,7 @@ pub fn drive(
         deck_hash: run_json::deck_hash(plan.deck_text.as_bytes()),
         title: plan.title.clone(),
         status,
+        ended_by: ended,
         particles: info.points,
         directed_bonds: info.directed_bonds,
         steps: sim.step_number(),

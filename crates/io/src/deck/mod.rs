@@ -86,6 +86,8 @@ pub struct OutputSpec {
     pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state of atoms.
     pub data: Option<PathBuf>,
+    /// Keys whose names lead out of the folder they belong in, and the names.
+    pub outside: Vec<(&'static str, String)>,
 }
 
 impl Deck {
@@ -139,6 +141,25 @@ impl Deck {
             condition_entries: lowered.condition_entries,
             source,
         })
+    }
+
+    /// Do all names of files that the deck gives stay inside the folder of the results (`dir`: inside the folder it is
+    /// relative to)? `dir` is not looked at where the caller has a folder of its own.
+    ///
+    /// # Errors
+    /// The first name that leads out.
+    pub fn stays_inside(&self, own_dir: bool) -> Result<(), DeckError> {
+        let mut outside = self.output.outside.iter();
+        match outside.find(|(key, _)| !(own_dir && *key == "dir")) {
+            None => Ok(()),
+            Some((key, name)) => Err(self.explain(
+                &BuildError::new(
+                    format!("output.{key}"),
+                    format!("output.{key} = {name:?} leads out of the folder of the results"),
+                )
+                .help("give a name without `..` that does not begin with `/`; --allow-outside lets this deck write there"),
+            )),
+        }
     }
 
     /// Boltzmann's constant (energy per kelvin; 1 in reduced and no units, where temperatures are energies).

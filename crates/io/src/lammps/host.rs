@@ -317,20 +317,8 @@ pub trait Console {
     fn note(&mut self, line: &str);
     /// After each step of a run.
     fn progress(&mut self, _done: u64, _of: u64) {}
-}
-
-/// A console that prints to standard output and error.
-#[derive(Debug, Default)]
-pub struct StandardConsole;
-
-impl Console for StandardConsole {
-    fn print(&mut self, line: &str) {
-        use std::io::Write;
-        // a closed pipe (`| head`) is no reason to fail
-        let _ = writeln!(std::io::stdout(), "{line}");
-    }
-    fn note(&mut self, line: &str) {
-        use std::io::Write;
-        let _ = writeln!(std::io::stderr(), "note: {line}");
+    /// Asked after each step: shall the script end here, with the state that it has?
+    fn ended(&mut self) -> bool {
+        false
     }
 }

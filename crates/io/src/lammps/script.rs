@@ -27,6 +27,8 @@ pub struct Outcome {
     pub time: f64,
     /// Wall seconds in the time loops.
     pub seconds_stepping: f64,
+    /// Did [`Console::ended`] end it?
+    pub ended: bool,
 }
 
 /// A script file that is being read.
@@ -93,8 +95,12 @@ pub fn run_text(
             .map_err(|p| ScriptError::locate(*p, name, text, (0, 0)))?;
     }
     script.push(name, text);
-    script.run_open()?;
+    let done = script.run_open();
     let s = script.session;
+    let ended = s.ended;
+    if !ended {
+        done?;
+    }
     let (steps, time_step, time) = (s.progress.steps_done, s.progress.time_step, s.time());
     let seconds_stepping = s.progress.stepping_seconds;
     let engine = match s.store {
@@ -107,6 +113,7 @@ pub fn run_text(
         time_step,
         time,
         seconds_stepping,
+        ended,
     })
 }
 

@@ -107,6 +107,8 @@ pub struct Session<'a> {
     pub random: [Option<Rc<RefCell<Ranmar>>>; 2],
     pub thermo: Thermo,
     pub progress: Progress,
+    /// [`Console::ended`] said so; errors then only lead out of the script.
+    pub ended: bool,
 }
 
 impl<'a> Session<'a> {
@@ -155,6 +157,7 @@ impl<'a> Session<'a> {
                 stepping_seconds: 0.0,
                 steps_done: 0,
             },
+            ended: false,
         }
     }
 

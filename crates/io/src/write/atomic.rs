@@ -3,6 +3,7 @@
 //! A file is written to a temporary beside it and renamed over the old one when it is complete and on the
 //! disk; a killed run, a full disk or an error on the way leaves the old file untouched and no rubbish.
 
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -44,6 +45,9 @@ fn advice(path: &Path, error: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => {
             format!("; make `{parent}` writable or write to another directory")
         }
+        io::ErrorKind::ResourceBusy => {
+            "; wait until it has ended, or give another folder with --out".into()
+        }
         io::ErrorKind::NotFound => format!("; create the directory `{parent}` first"),
         _ => String::new(),
     }
@@ -78,12 +82,23 @@ fn replace(path: &Path, fill: impl FnOnce(&mut Sink) -> io::Result<()>) -> io::R
     file.persist(path).map(drop).map_err(|e| e.error)
 }
 
+/// What names of temporaries begin with, before [`RANDOM`] letters and digits.
+const PREFIX: &str = ".peridyne-";
+const RANDOM: usize = 6;
+
+/// Does a temporary of ours have this name?
+pub(super) fn is_temporary(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|n| n.strip_prefix(PREFIX));
+    random.is_some_and(|r| r.len() == RANDOM && r.bytes().all(|b| b.is_ascii_alphanumeric()))
+}
+
 /// A temporary file with the rights that any other new file gets (tempfile's own are private), and with errors
 /// free of its name: the user knows the path that was asked for.
 fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     let mut code = None;
     let made = tempfile::Builder::new()
-        .prefix(".peridyne-")
+        .prefix(PREFIX)
+        .rand_bytes(RANDOM)
         .make_in(directory, |path| {
             let file = File::options().write(true).create_new(true).open(path);
             file.inspect_err(|e| code = e.raw_os_error())

@@ -20,6 +20,8 @@ pub struct RunReport {
     pub deck_hash: String,
     pub title: String,
     pub status: Status,
+    /// The signal that ended the run early, where one did.
+    pub ended_by: Option<String>,
     pub particles: u64,
     /// Bonds counted from both ends, at the start.
     pub directed_bonds: u64,
@@ -42,10 +44,11 @@ pub struct RunReport {
     pub warnings: Vec<String>,
 }
 
-/// How a run ended; `"done"` or `"stopped: why"`.
+/// How a run ended; `"done"`, `"ended"` (early, because someone asked for it) or `"stopped: why"`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Status {
     Done,
+    Ended,
     Stopped(String),
 }
 
@@ -53,6 +56,7 @@ impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Status::Done => f.write_str("done"),
+            Status::Ended => f.write_str("ended"),
             Status::Stopped(why) => write!(f, "stopped: {why}"),
         }
     }
@@ -95,6 +99,14 @@ impl From<&Ledger> for EnergyReport {
 }
 
 impl RunReport {
+    /// How it ended, in a word or three.
+    pub fn outcome(&self) -> String {
+        match &self.ended_by {
+            Some(signal) => format!("ended by {signal}"),
+            None => self.status.to_string(),
+        }
+    }
+
     /// Writes the report, all or nothing.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         write_file(path, |w| {
@@ -145,6 +157,7 @@ mod tests {
             deck_hash: deck_hash(b"abc"),
             title: "impact".into(),
             status: Status::Done,
+            ended_by: None,
             particles: 103_110,
             directed_bonds: 10_009_800,
             steps: 2000,

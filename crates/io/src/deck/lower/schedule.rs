@@ -7,6 +7,7 @@ use crate::deck::document::{
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
+use crate::write::folder::stays;
 use crate::write::trajectory::Format;
 use peridyne::spec::{Method, Schedule, Solver, TimeStep};
 use std::path::PathBuf;
@@ -101,11 +102,11 @@ fn threads(context: &Context, written: &Option<At<usize>>) -> Result<Option<usiz
 fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
     let written = &run.value;
     let time_step = match &written.time_step {
-        None => TimeStep::Fraction(0.8),
+        None => TimeStep::Auto,
         Some(At {
             value: Or::Bare(Written::Text(text)),
             ..
-        }) if text == "auto" => TimeStep::Fraction(0.8),
+        }) if text == "auto" => TimeStep::Auto,
         Some(At {
             value: Or::Bare(number),
             span,
@@ -157,7 +158,7 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
             }
             (steps, None)
         }
-        (None, Some((duration, _)), TimeStep::Fraction(_)) => (0, Some(duration)),
+        (None, Some((duration, _)), TimeStep::Fraction(_) | TimeStep::Auto) => (0, Some(duration)),
         (None, None, _) => return Err(context.error(&run.span, "run needs one of steps, duration")),
     };
     let schedule = Schedule {
@@ -242,7 +243,19 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         }
         name => name.as_ref().map(|n| n.value.clone().into()),
     };
+    let names = [
+        ("dir", written.dir.as_ref()),
+        ("dump", written.dump.as_ref()),
+        ("trajectory", written.trajectory.as_ref().map(|n| &n.value)),
+        ("data", written.data.as_ref().map(|n| &n.value)),
+    ];
+    let outside = names
+        .into_iter()
+        .filter_map(|(key, name)| Some((key, name?.clone())))
+        .filter(|(_, name)| !stays(name.as_ref()))
+        .collect();
     Ok(OutputSpec {
+        outside,
         dir: written.dir.clone().map(Into::into),
         every: positive(&written.every, "every")?,
         fields: written.fields.clone().unwrap_or(all.to_vec()),

@@ -227,6 +227,11 @@ impl Session<'_> {
             if thermo {
                 self.thermo_line()?;
             }
+            if self.console.ended() {
+                self.ended = true;
+                self.progress.stepping_seconds += start.elapsed().as_secs_f64();
+                return Err(Problem::new("ended from outside"));
+            }
         }
         self.progress.stepping_seconds += start.elapsed().as_secs_f64();
         Ok(())

@@ -1,0 +1,72 @@
+//! SIGINT (Ctrl-C) and SIGTERM.
+//!
+//! Until a run steps there is nothing to keep, and a signal ends the program at once. From its first step on
+//! ([`asked`]) the first signal is a request to end at the next step, and a second one ends the program at once.
+
+use crate::failure::Failure;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
+
+/// A signal that ends runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    Interrupt,
+    Terminate,
+}
+
+impl Signal {
+    const ALL: [Signal; 2] = [Signal::Interrupt, Signal::Terminate];
+
+    fn number(self) -> i32 {
+        match self {
+            Signal::Interrupt => SIGINT,
+            Signal::Terminate => SIGTERM,
+        }
+    }
+
+    /// 128 + its number, as shells say it.
+    pub fn exit_code(self) -> u8 {
+        128 + self.number() as u8
+    }
+}
+
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Signal::Interrupt => "SIGINT",
+            Signal::Terminate => "SIGTERM",
+        })
+    }
+}
+
+/// Does the next signal end the program at once?
+static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
+/// Number of the last signal; 0: none.
+static LAST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(|| Arc::new(AtomicUsize::new(0)));
+
+/// From now on signals end the program as said above.
+pub fn listen() -> Result<(), Failure> {
+    for signal in Signal::ALL {
+        let number = signal.number();
+        // in this order: a signal that finds `AT_ONCE` set never gets to the next two
+        flag::register_conditional_shutdown(number, signal.exit_code().into(), AT_ONCE.clone())
+            .and_then(|_| flag::register_usize(number, LAST.clone(), number as usize))
+            .and_then(|_| flag::register(number, AT_ONCE.clone()))
+            .map_err(|e| Failure::Run(format!("signals cannot be listened to: {e}")))?;
+    }
+    Ok(())
+}
+
+/// Has a signal asked this run to end? From the first call on the run ends at its next step instead of at once.
+pub fn asked() -> Option<Signal> {
+    let last = LAST.load(Ordering::SeqCst);
+    if last == 0 {
+        AT_ONCE.store(false, Ordering::SeqCst);
+    }
+    Signal::ALL
+        .into_iter()
+        .find(|s| s.number() as usize == last)
+}

@@ -1,0 +1,91 @@
+//! How much a run would write, against what the disk has left.
+
+use std::path::Path;
+
+/// A frame of a point in a VTU: positions and vectors as f64, scalars, ids (bytes).
+const POINT: f64 = 120.0;
+/// An undirected bond in a VTU: two ids, offset, type.
+const BOND: f64 = 17.0;
+/// An atom in a text trajectory: three vectors and an energy in full digits.
+const ATOM: f64 = 160.0;
+/// A row of `history.csv`.
+const ROW: f64 = 200.0;
+
+/// What a run writes again and again.
+#[derive(Debug, Clone, Copy)]
+pub struct Amount {
+    pub steps: u64,
+    /// Steps between frames; `None`: first and last.
+    pub every: Option<u64>,
+    /// Steps between rows.
+    pub history: u64,
+    pub points: u64,
+    /// Written as VTU?
+    pub vtu: bool,
+    /// Undirected bonds, where they are written.
+    pub bonds: u64,
+    /// Atoms of a trajectory, where there is one.
+    pub atoms: u64,
+}
+
+impl Amount {
+    /// About how many bytes frames, and rows of the history, take.
+    pub fn bytes(&self) -> [f64; 2] {
+        let frames = self
+            .every
+            .map_or(2.0, |e| self.steps as f64 / e as f64 + 1.0);
+        let points = if self.vtu { self.points as f64 } else { 0.0 };
+        let frame = POINT * points + BOND * self.bonds as f64 + ATOM * self.atoms as f64;
+        [
+            frames * frame,
+            self.steps as f64 / self.history as f64 * ROW,
+        ]
+    }
+}
+
+/// Bytes that the disk of a folder has left, which need not exist yet; `None` where the system does not say.
+#[cfg(unix)]
+pub fn free(folder: &Path) -> Option<f64> {
+    let absolute = std::path::absolute(folder).ok()?;
+    let stat = absolute
+        .ancestors()
+        .find_map(|dir| rustix::fs::statvfs(dir).ok())?;
+    Some(stat.f_bavail as f64 * stat.f_frsize as f64)
+}
+
+/// Bytes that the disk of a folder has left; `None`: the system does not say.
+#[cfg(not(unix))]
+pub fn free(_: &Path) -> Option<f64> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_and_rows_are_counted() {
+        let amount = Amount {
+            steps: 1000,
+            every: Some(10),
+            history: 5,
+            points: 100,
+            vtu: true,
+            bonds: 0,
+            atoms: 0,
+        };
+        assert_eq!(amount.bytes(), [101.0 * 12_000.0, 200.0 * 200.0]);
+        let ends = Amount {
+            every: None,
+            ..amount
+        };
+        assert_eq!(ends.bytes()[0], 24_000.0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_does_not_exist_yet_has_the_space_of_its_disk() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(free(&dir.path().join("a/b/c")).unwrap() > 0.0);
+    }
+}
