@@ -110,7 +110,7 @@ pub(super) fn across<const D: usize>(
     let near = Fragments::by(body, interaction, |i, j, xi, state| {
         state == BondState::Whole && next(i, j, xi)
     });
-    if near.count() == Fragments::of(body, interaction).count() {
+    if near.count() == 1 || near.count() == Fragments::of(body, interaction).count() {
         return vec![];
     }
     let mut label = vec![0; body.len];

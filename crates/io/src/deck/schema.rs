@@ -63,6 +63,7 @@ mod tests {
         let source = Source::new(&text, "deck.toml", &[]);
         let mut tree = source.tree().unwrap();
         locate::name_material(tree.get_mut());
+        locate::first_body(tree.get_mut());
         Document::deserialize(toml::de::Deserializer::from(tree)).is_ok()
     }
 
