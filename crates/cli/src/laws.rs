@@ -33,7 +33,10 @@ const ORDER: [(&str, &str); 15] = [
     ("MethodName", "methods of statics (statics.method)"),
     ("SolverName", "solvers of linear systems (statics.solver)"),
     ("FieldName", "fields (output.fields)"),
-    ("Constants", "physical constants of metal units (units.constants)"),
+    (
+        "Constants",
+        "physical constants of metal units (units.constants)",
+    ),
 ];
 
 /// Said elsewhere, or plain.

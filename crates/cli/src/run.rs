@@ -135,11 +135,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
         } else {
             0
         },
-        atoms: if output.trajectory.is_some() {
-            info.points
-        } else {
-            0
-        },
+        atoms: info.points * output.trajectories.len() as u64,
     };
     let Some(free) = free(dir) else {
         return Ok(());

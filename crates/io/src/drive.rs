@@ -53,8 +53,8 @@ impl Plan {
     /// Do the files that the deck names lie inside the folder, links included, or may they be anywhere?
     fn stays_inside(&self) -> Result<(), WriteError> {
         let named = self.atoms.iter().flat_map(|a| {
-            let trajectory = a.trajectory.as_ref().map(|(path, _)| path);
-            [trajectory, a.data.as_ref()].into_iter().flatten()
+            let trajectories = a.trajectories.iter().map(|(path, _)| path);
+            trajectories.chain(&a.data)
         });
         for name in named {
             if !self.allow_outside && !is_inside(&self.dir, name) {

@@ -24,7 +24,7 @@ pub struct Amount {
     pub vtu: bool,
     /// Undirected bonds, where they are written.
     pub bonds: u64,
-    /// Atoms of a trajectory, where there is one.
+    /// Atoms of all trajectories.
     pub atoms: u64,
 }
 

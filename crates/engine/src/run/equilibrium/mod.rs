@@ -11,7 +11,7 @@ use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::run::Simulation;
-use crate::run::recipe::Laws;
+use crate::run::recipe::{Laws, Recipe};
 use crate::space::Point;
 use crate::spec::{Method, Statics};
 use crate::statics::modes::{self, Mode};
@@ -109,8 +109,9 @@ impl<const D: usize> Model<D> {
             return Err(BuildError::new("conditions", wrong)
                 .help("prescribe a displacement, as a function of t from 0 to 1"));
         }
+        let atoms = |r: &Recipe| matches!(r.laws, Laws::Atoms(_));
         if options.method != Method::Relaxation
-            && (self.factored(options, &support) || matches!(self.recipe.laws, Laws::Atoms(_)))
+            && (self.factored(options, &support) || self.recipes.all().any(atoms))
         {
             self.enough_memory_for_rows()?;
         }
@@ -130,10 +131,11 @@ impl<const D: usize> Model<D> {
     /// comes on top.
     fn enough_memory_for_rows(&self) -> Result<(), BuildError> {
         let points = self.body.points() as f64;
-        let families: f64 = match &self.recipe.laws {
+        let families = self.recipes.all().map(|r| match &r.laws {
             Laws::Solid(_) | Laws::Atoms(_) => 2f64.powi(D as i32),
             Laws::Bond(_) | Laws::Springs(_) | Laws::Micromoduli(_) => 1.0,
-        };
+        });
+        let families = families.fold(1.0, f64::max);
         let row = (families * self.info.family.1).min(points) + 1.0;
         memory::afford(
             "statics.solver",

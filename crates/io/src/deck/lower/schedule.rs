@@ -245,7 +245,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
     };
     let names = [
         ("dir", written.dir.as_ref()),
-        ("dump", written.dump.as_ref()),
+        ("dump", written.dump.as_ref().map(|n| &n.value)),
         ("trajectory", written.trajectory.as_ref().map(|n| &n.value)),
         ("data", written.data.as_ref().map(|n| &n.value)),
     ];

@@ -243,7 +243,7 @@ impl UnitSystem {
     /// How many computed velocities one of ASE is: √(eV/(g/mol)) = Å/10.18 fs. Reduced units are their own.
     pub fn ase_velocity(self) -> f64 {
         match self {
-            UnitSystem::Si | UnitSystem::Metal => {
+            UnitSystem::Si | UnitSystem::Metal(_) => {
                 (EV * 1e3 * AVOGADRO).sqrt() / self.computed(Dim::VELOCITY)
             }
             UnitSystem::Lj | UnitSystem::None => 1.0,
