@@ -127,7 +127,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     let amount = Amount {
         steps,
         every: output.every,
-        history: output.history.unwrap_or((steps / 200).max(1)),
+        history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
         vtu: output.vtu,
         bonds: if output.bonds {
