@@ -497,3 +497,31 @@ fn what_several_bodies_cannot_have_yet_is_refused() {
         "need a law with contact",
     );
 }
+
+/// Without an area, each point has a face of its own body's lattice.
+#[test]
+fn traction_takes_the_faces_of_the_body_it_acts_on() {
+    let mut spec = collision(0.5);
+    spec.sets.push(SetSpec {
+        name: "foot".into(),
+        members: Members::Within {
+            body: "plate".into(),
+            members: Box::new(Members::Where(text("y < 0.5").unwrap())),
+        },
+    });
+    spec.conditions = vec![ConditionSpec {
+        set: "foot".into(),
+        kind: ConditionKind::Traction {
+            value: [text("7"), None, None],
+            area: None,
+        },
+    }];
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let total: f64 = (sim.force_densities().iter())
+        .zip(sim.volumes())
+        .map(|(f, v)| f[0] * v)
+        .sum();
+    // twelve points, a spacing of 1 each
+    assert!((total - 7.0 * 12.0).abs() < 1e-9, "{total}");
+}

@@ -76,6 +76,14 @@ impl<const D: usize> Body<D> {
         piece_of(self.pieces(), slot)
     }
 
+    /// Typical distance of nearest points around a slot (length): that of its body.
+    pub fn spacing_at(&self, slot: usize) -> f64 {
+        match self.pieces() {
+            [] => self.spacing,
+            pieces => pieces[piece_of(pieces, slot)].body.spacing,
+        }
+    }
+
     /// Ids of the points of each of the bodies.
     pub fn ids(&self) -> Vec<std::ops::Range<usize>> {
         let mut first = 0;

@@ -188,7 +188,7 @@ impl<const D: usize> Model<D> {
             .each_bond(&self.body, &mut |i, j, xi, state| {
                 if crossed.is_none()
                     && state == BondState::Whole
-                    && xi[0].abs() < 1.5 * self.body.spacing
+                    && xi[0].abs() < 1.5 * self.body.spacing_at(i)
                     && (xi[0] + self.u[0][j] - self.u[0][i]) * xi[0] <= 0.0
                 {
                     crossed = Some((i, j));

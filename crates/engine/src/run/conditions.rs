@@ -35,12 +35,16 @@ impl<const D: usize> Model<D> {
                 )))),
                 ConditionKind::Traction { value, area } => {
                     let volume: f64 = slots.iter().map(|s| self.body.volume.at(*s as usize)).sum();
-                    let face = self
-                        .body
-                        .volume
-                        .at(slots.first().map_or(0, |s| *s as usize))
-                        / self.body.spacing;
-                    let area = area.unwrap_or(face * slots.len() as f64);
+                    let face = |slot: u32| {
+                        let slot = slot as usize;
+                        self.body.volume.at(slot) / self.body.spacing_at(slot)
+                    };
+                    let first = slots.first().map_or(0.0, |s| face(*s));
+                    let area =
+                        area.unwrap_or_else(|| match slots.iter().all(|s| face(*s) == first) {
+                            true => first * slots.len() as f64,
+                            false => slots.iter().map(|s| face(*s)).sum(),
+                        });
                     loads.push(load(LoadKind::Body(
                         Program::new(value, &points).scaled(area / volume),
                     )));

@@ -98,11 +98,8 @@ pub(super) fn across<const D: usize>(
     interaction: &dyn Interaction<D>,
 ) -> Vec<String> {
     let length = |s: usize| {
-        let (own, all) = (body.volume.at(s), body.pieces());
-        let spacing = all
-            .get(body.piece_of(s))
-            .map_or(body.spacing, |p| p.body.spacing);
-        spacing.max((own / spec.section).powf(1.0 / D as f64))
+        let own = (body.volume.at(s) / spec.section).powf(1.0 / D as f64);
+        body.spacing_at(s).max(own)
     };
     let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
     let next =

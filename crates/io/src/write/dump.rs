@@ -157,7 +157,7 @@ mod tests {
         );
         assert_eq!(lines[4], "ITEM: BOX BOUNDS ss ss ss");
         assert_eq!(lines[5], "-0.25 0.75");
-        let columns = "vx vy vz damage energy_density dilatation mark fragment";
+        let columns = "vx vy vz damage energy_density dilatation mark body fragment";
         assert_eq!(lines[8], format!("ITEM: ATOMS id type x y z {columns}"));
         let rows: Vec<Vec<f64>> = lines[9..]
             .iter()
@@ -173,6 +173,7 @@ mod tests {
                 [s.damage[i], s.energy_density[i], s.dilatation[i]]
             );
             assert_eq!(row[11], f64::from(s.mark[i]));
+            assert_eq!(row[12], f64::from(s.body[i]));
         }
         assert_eq!(
             rows.iter().map(|r| r[1]).collect::<Vec<_>>(),
