@@ -2,6 +2,7 @@
 
 mod advice;
 mod atoms;
+mod directions;
 mod json;
 mod report;
 
@@ -19,6 +20,7 @@ use peridyne_io::lammps::Units;
 use peridyne_theory::asked::asked;
 use peridyne_theory::elastic::{PatchTest, patch_test};
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
+use peridyne_theory::stiffness::{Stiffness, components};
 use std::time::{Duration, Instant};
 
 /// Time spent on trial steps.
@@ -171,10 +173,18 @@ fn find<'a>(
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|a| reference.iter().map(|x| x[a]).fold(start, pick))
     };
+    let low = bound(f64::min, f64::INFINITY);
+    let high = bound(f64::max, f64::NEG_INFINITY);
+    let info = sim.info();
+    // points stand for cells: the body reaches half a spacing beyond them
+    let thin = std::array::from_fn(|a| {
+        let thickness = high[a] - low[a] + info.spacing;
+        subject.spec.periodic[a].is_none() && thickness < info.horizon * (1.0 - 1e-9)
+    });
     Findings {
-        low: bound(f64::min, f64::INFINITY),
-        high: bound(f64::max, f64::NEG_INFINITY),
-        materials: materials(&subject.spec, sim, patch.as_ref()),
+        low,
+        high,
+        materials: materials(&subject.spec, sim, patch.as_ref(), thin),
         steps: subject.steps,
         spec: &subject.spec,
         units: subject.units,
@@ -187,7 +197,39 @@ fn find<'a>(
     }
 }
 
-fn materials(spec: &Spec, sim: &dyn Simulation, patch: Option<&PatchTest>) -> Vec<Material> {
+/// The isotropic mean of a stiffness as the solid's moduli; not numbers where bars along the axes differ so much that a mean of
+/// all directions says nothing.
+fn mean(found: &Findings, stiffness: &Stiffness) -> Moduli {
+    let d = stiffness.dimension;
+    match d == 1 || stiffness.is_even() {
+        true => stiffness.hill().solid(d, found.spec.plane),
+        false => Moduli {
+            young: f64::NAN,
+            poisson: f64::NAN,
+        },
+    }
+}
+
+/// Moduli of long pressure and shear waves (pressure): of an even solid `K + 2G(D − 1)/D`, in 1-D the bar's E, and G; else the
+/// largest along the axes and planes of the body, sides free across the thin ones.
+fn waves(stiffness: &Stiffness, thin: [bool; 3]) -> (f64, f64) {
+    let d = stiffness.dimension;
+    if d == 1 || stiffness.is_even() {
+        let m = stiffness.hill();
+        let pressure = m.bulk + 2.0 * m.shear * (d as f64 - 1.0) / d as f64;
+        return (pressure, m.shear);
+    }
+    let freed = stiffness.freed(&thin[..d]);
+    let most = |range: std::ops::Range<usize>| range.map(|i| freed.c[i][i]).fold(0.0, f64::max);
+    (most(0..d), most(d..components(d)))
+}
+
+fn materials(
+    spec: &Spec,
+    sim: &dyn Simulation,
+    patch: Option<&PatchTest>,
+    thin: [bool; 3],
+) -> Vec<Material> {
     let info = sim.info();
     let d = info.dimension;
     let moments = Moments::continuum(d, info.horizon, spec.section, spec.influence);
@@ -200,21 +242,16 @@ fn materials(spec: &Spec, sim: &dyn Simulation, patch: Option<&PatchTest>) -> Ve
     let each = spec.materials.iter().enumerate().map(|(n, m)| {
         let asked = asked(&m.law, d, spec.plane, moments);
         let s00 = info.critical_stretch.get(n).copied();
-        let (k, g) = match patch.and_then(|p| p.best(n)) {
-            Some(class) => {
-                let m = class.stiffness.hill();
-                (m.bulk, m.shear)
-            }
+        let (pressure, shear) = match patch.and_then(|p| p.best(n)) {
+            Some(class) => waves(&class.stiffness, thin),
             None => (f64::NAN, f64::NAN),
         };
-        // of the D-dimensional solid: K + 2G(D − 1)/D, in 1-D the bar's E
-        let pressure = k + 2.0 * g * (d as f64 - 1.0) / d as f64;
         Material {
             name: m.name.clone(),
             density: m.density,
             asked,
             pressure_wave: (pressure / m.density).sqrt(),
-            shear_wave: (d > 1).then(|| (g / m.density).sqrt()),
+            shear_wave: (d > 1).then(|| (shear / m.density).sqrt()),
             fracture: s00.filter(|s| s.is_finite()).map(|s| {
                 let energy = match m.fracture.map(|f| f.criterion) {
                     Some(Criterion::Energy(energy)) => Some(energy),

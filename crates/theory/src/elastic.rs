@@ -58,6 +58,8 @@ pub struct Class {
     pub material: usize,
     pub place: Place,
     pub points: usize,
+    /// Of these points (length^D times the section).
+    pub volume: f64,
     /// Mean size of their families.
     pub family: f64,
     /// Mean part of a full family.
@@ -79,6 +81,25 @@ impl PatchTest {
     /// The class nearest to the bulk of a material.
     pub fn best(&self, material: usize) -> Option<&Class> {
         self.classes.iter().find(|c| c.material == material)
+    }
+
+    /// Mean stiffness of all points of a material, weighted by volume: that of the body where they share their strains, as the
+    /// layers of a plate in its plane do. `None`: no point is of it.
+    pub fn whole(&self, material: usize) -> Option<Stiffness> {
+        let of = || self.classes.iter().filter(|c| c.material == material);
+        let volume: f64 = of().map(|c| c.volume).sum();
+        let mut mean = Stiffness {
+            dimension: of().next()?.stiffness.dimension,
+            c: [[0.0; 6]; 6],
+        };
+        for class in of() {
+            for i in 0..6 {
+                for j in 0..6 {
+                    mean.c[i][j] += class.volume / volume * class.stiffness.c[i][j];
+                }
+            }
+        }
+        Some(mean)
     }
 }
 
@@ -151,6 +172,7 @@ fn classes(sim: &dyn Simulation, info: &Info) -> Sorted {
             material,
             place,
             points: 0,
+            volume: 0.0,
             family: 0.0,
             part: 0.0,
             stiffness: Stiffness {
@@ -162,6 +184,7 @@ fn classes(sim: &dyn Simulation, info: &Info) -> Sorted {
     let mut weight = vec![0.0; classes.len()];
     for (i, &k) in of_point.iter().enumerate() {
         weight[k] += volume[i];
+        classes[k].volume += volume[i];
         classes[k].points += 1;
         classes[k].family += families.size[i] as f64;
         classes[k].part += part[i];

@@ -32,6 +32,20 @@ pub struct PlaneModuli {
     pub shear: f64,
 }
 
+/// What bars that are cut along the axes would have, their sides free, and shears in the planes of axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Directional {
+    /// `[D]` Young's modulus `1/S_aa` (pressure) along each axis; 0 where nothing resists.
+    pub young: Vec<f64>,
+    /// `[D][D]` Poisson's ratio `−S_ba/S_aa`: what a bar along a loses along b. NaN on the diagonal and where nothing resists.
+    pub poisson: Vec<Vec<f64>>,
+    /// Shear modulus per plane, in Voigt's order (2-D xy; 3-D yz, zx, xy).
+    pub shear: Vec<f64>,
+}
+
+/// How far Young's moduli along the axes may be apart (relative) for a mean to mean something.
+const EVEN: f64 = 0.05;
+
 /// How far from isotropic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anisotropy {
@@ -103,10 +117,64 @@ impl Stiffness {
         })
     }
 
-    /// Young's modulus of the D-dimensional solid along each axis, `1/S_ii`.
+    /// Young's modulus of the D-dimensional solid along each axis, `1/S_ii`; 0 along one that nothing resists.
     pub fn young_along(&self) -> Option<Vec<f64>> {
-        let s = self.inverse()?;
-        Some((0..self.dimension).map(|i| 1.0 / s[i][i]).collect())
+        Some(self.directional()?.young)
+    }
+
+    /// Moduli along the axes. Strains that nothing resists, as those across a sheet of one layer, take part in nothing. `None`: the
+    /// rest is not positive definite.
+    pub fn directional(&self) -> Option<Directional> {
+        let (d, n) = (self.dimension, self.n());
+        let largest = (0..n).map(|i| self.c[i][i]).fold(0.0, f64::max);
+        let stiff: Vec<usize> = (0..n).filter(|i| self.c[*i][*i] > 1e-9 * largest).collect();
+        let inverse = self.inverse_among(&stiff)?;
+        let place = |i: usize| stiff.iter().position(|s| *s == i);
+        let s = |a: usize, b: usize| Some(inverse[place(a)?][place(b)?]);
+        let young = |a: usize| s(a, a).map_or(0.0, |s| 1.0 / s);
+        let poisson = |a: usize, b: usize| match (a == b, s(b, a), s(a, a)) {
+            (false, Some(across), Some(along)) => -across / along,
+            _ => f64::NAN,
+        };
+        Some(Directional {
+            young: (0..d).map(young).collect(),
+            poisson: (0..d)
+                .map(|a| (0..d).map(|b| poisson(a, b)).collect())
+                .collect(),
+            shear: (d..n).map(young).collect(),
+        })
+    }
+
+    /// Do bars along all axes have about the same modulus, so that an isotropic mean stands for them?
+    pub fn is_even(&self) -> bool {
+        self.young_along().is_some_and(|young| {
+            let least = young.iter().copied().fold(f64::INFINITY, f64::min);
+            young.iter().all(|e| *e <= least * (1.0 + EVEN))
+        })
+    }
+
+    /// The same solid with the sides across some axes free: stiffness against strains of the others (pressure).
+    pub fn freed(&self, across: &[bool]) -> Stiffness {
+        let mut c = self.c;
+        for k in (0..self.dimension).filter(|k| across[*k]) {
+            let pivot = c[k][k];
+            let row = c[k];
+            for i in 0..self.n() {
+                for j in 0..self.n() {
+                    if pivot > 0.0 {
+                        c[i][j] -= row[i] * row[j] / pivot;
+                    }
+                }
+            }
+            for i in 0..self.n() {
+                c[i][k] = 0.0;
+                c[k][i] = 0.0;
+            }
+        }
+        Stiffness {
+            dimension: self.dimension,
+            c,
+        }
     }
 
     /// `None` in 1-D.
@@ -132,12 +200,17 @@ impl Stiffness {
 
     /// Inverse by Cholesky's decomposition; `None` if not positive definite to round-off.
     fn inverse(&self) -> Option<[[f64; 6]; 6]> {
-        let n = self.n();
-        let largest = (0..n).map(|i| self.c[i][i]).fold(0.0, f64::max);
+        self.inverse_among(&(0..self.n()).collect::<Vec<_>>())
+    }
+
+    /// The same of the rows and columns of some components.
+    fn inverse_among(&self, some: &[usize]) -> Option<[[f64; 6]; 6]> {
+        let n = some.len();
+        let largest = some.iter().map(|i| self.c[*i][*i]).fold(0.0, f64::max);
         let mut l = [[0.0; 6]; 6];
         for i in 0..n {
             for j in 0..=i {
-                let sum = self.c[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+                let sum = self.c[some[i]][some[j]] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
                 if i == j {
                     if sum.is_nan() || sum <= 1e-9 * largest {
                         return None;
@@ -253,6 +326,29 @@ mod tests {
         let a = c.anisotropy().unwrap();
         assert!((a.zener - 3.21).abs() < 0.01, "{}", a.zener);
         assert!((a.universal.unwrap() - 1.82).abs() < 0.02, "{a:?}");
+    }
+
+    #[test]
+    fn a_sheet_without_stiffness_across_has_moduli_in_its_plane() {
+        // 2-D moduli λ = 3, G = 2 in the plane of x and y, nothing along z
+        let mut c = isotropic(3, 3.0, 2.0);
+        for i in [2, 3, 4] {
+            c.c[i] = [0.0; 6];
+            c.c.iter_mut().for_each(|r| r[i] = 0.0);
+        }
+        let found = c.directional().unwrap();
+        // E = 4 G (λ + G)/(λ + 2G), ν = λ/(λ + 2G)
+        close(found.young[0], 40.0 / 7.0);
+        close(found.young[1], 40.0 / 7.0);
+        assert_eq!(found.young[2], 0.0);
+        close(found.poisson[0][1], 3.0 / 7.0);
+        assert!(found.poisson[0][2].is_nan() && found.poisson[2][0].is_nan());
+        assert_eq!(found.shear, [0.0, 0.0, 2.0]);
+        assert!(!c.is_even() && isotropic(3, 3.0, 2.0).is_even());
+        // a plate of a solid: C_xx − C_xz²/C_zz
+        let plate = isotropic(3, 3.0, 2.0).freed(&[false, false, true]);
+        close(plate.c[0][0], 7.0 - 9.0 / 7.0);
+        close(plate.directional().unwrap().young[0], 2.0 * 13.0 / 5.0);
     }
 
     #[test]

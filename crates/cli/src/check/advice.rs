@@ -1,6 +1,6 @@
 //! What looks wrong, and what to write instead.
 
-use super::{Findings, atoms};
+use super::{Findings, atoms, directions, mean};
 use peridyne::spec::{Calibration, Horizon, LawSpec};
 use peridyne_io::deck::UnitSystem;
 use peridyne_theory::elastic::Place;
@@ -30,7 +30,8 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     }
     geometry(found, &mut say);
     let fraction = info.time_step / info.stable_step;
-    if fraction < 0.05 {
+    // equilibrium has no step and no limit
+    if info.stable_step.is_finite() && fraction < 0.05 {
         say(
             format!(
                 "the time step is {:.1} % of the stability limit",
@@ -150,21 +151,37 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     for (n, m) in found.materials.iter().enumerate() {
         let Some(class) = patch.best(n) else { continue };
         if class.place != Place::Bulk {
+            let young = patch.whole(n).and_then(|w| w.young_along());
+            let told = match (young, directions::asked_along(found, m)) {
+                (Some(young), Some(asked)) => format!(
+                    ", and its Young's modulus is off what was asked for along {}",
+                    directions::against(&young, asked)
+                ),
+                (None, _) => ", and it is not stable".into(),
+                (Some(_), None) => String::new(),
+            };
             say(
                 format!(
-                    "no point of `{}` has a full family: all of it is surface, and softer than asked for",
+                    "no point of `{}` has a full family: all of it is surface{told}",
                     m.name
                 ),
                 "a smaller spacing with the same m_ratio",
             );
             continue;
         }
-        let real = class
-            .stiffness
-            .hill()
-            .solid(class.stiffness.dimension, spec.plane);
+        let real = mean(found, &class.stiffness);
         if let Some(asked) = m.asked {
-            let off = real.young / asked.young - 1.0;
+            let off = match real.young.is_finite() {
+                true => real.young / asked.young - 1.0,
+                // unlike along its axes: the worst of them
+                false => (class.stiffness.young_along().into_iter().flatten())
+                    .zip(directions::asked_along(found, m).into_iter().cycle())
+                    .map(|(e, asked)| e / asked - 1.0)
+                    .fold(0.0, |worst: f64, off| match off.abs() > worst.abs() {
+                        true => off,
+                        false => worst,
+                    }),
+            };
             if off.abs() > 0.05 {
                 let fix = match (spec.calibration, spec.materials[n].law) {
                     (_, LawSpec::Pmb(peridyne::spec::PmbStiffness::Micromodulus(_))) => {

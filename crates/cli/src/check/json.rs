@@ -1,9 +1,9 @@
 //! The findings as JSON.
 
-use super::Findings;
 use super::advice::advice;
+use super::{Findings, directions, mean};
 use peridyne_theory::elastic::Class;
-use peridyne_theory::stiffness::components;
+use peridyne_theory::stiffness::{Stiffness, components};
 use serde_json::{Value, json};
 
 pub fn write(found: &Findings) -> String {
@@ -16,6 +16,8 @@ pub fn write(found: &Findings) -> String {
             "asked": m.asked.map(|a| json!({
                 "young": a.young, "poisson": a.poisson, "bulk": a.bulk(), "shear": a.shear(),
             })),
+            "whole": found.patch.as_ref().and_then(|p| p.whole(n)).map(|w| along(&w)),
+            "asked_along_axes": directions::asked_along(found, m),
             "places": classes.filter(|c| c.material == n).map(|c| class(found, c)).collect::<Vec<_>>(),
             "pressure_wave": m.pressure_wave,
             "shear_wave": m.shear_wave,
@@ -44,7 +46,7 @@ pub fn write(found: &Findings) -> String {
         "cut_by_precracks": info.cut,
         "materials": materials.collect::<Vec<_>>(),
         "steps": found.steps,
-        "time_step": info.time_step,
+        "time_step": found.spec.schedule.statics.is_none().then_some(info.time_step),
         "stable_step": info.stable_step,
         "contact_step": info.contact_step.is_finite().then_some(info.contact_step),
         "bodies": info.bodies.iter().map(|(name, points)| json!({"name": name, "points": points})).collect::<Vec<_>>(),
@@ -63,7 +65,7 @@ pub fn write(found: &Findings) -> String {
 
 fn class(found: &Findings, c: &Class) -> Value {
     let d = c.stiffness.dimension;
-    let solid = c.stiffness.hill().solid(d, found.spec.plane);
+    let solid = mean(found, &c.stiffness);
     let n = components(d);
     json!({
         "place": c.place.name(d),
@@ -77,6 +79,15 @@ fn class(found: &Findings, c: &Class) -> Value {
         "zener": c.stiffness.anisotropy().map(|a| a.zener),
         "universal_anisotropy": c.stiffness.anisotropy().and_then(|a| a.universal),
         "young_along": c.stiffness.young_along(),
+        "along_axes": along(&c.stiffness),
         "stiffness": c.stiffness.c[..n].iter().map(|r| &r[..n]).collect::<Vec<_>>(),
     })
+}
+
+/// Moduli along the axes, sides free; `null` where there are none.
+fn along(stiffness: &Stiffness) -> Value {
+    match stiffness.directional() {
+        Some(m) => json!({"young": m.young, "poisson": m.poisson, "shear": m.shear}),
+        None => Value::Null,
+    }
 }

@@ -1,8 +1,8 @@
 //! The findings as a table for people.
 
 use super::advice::advice;
-use super::{Findings, Material};
-use peridyne::spec::{Criterion, LawSpec, Moduli, PmbStiffness};
+use super::{Findings, Material, directions, mean};
+use peridyne::spec::{Criterion, LawSpec, Method, Moduli, PmbStiffness};
 use peridyne_io::deck::{Dim, UnitSystem, describe};
 use peridyne_theory::elastic::{Class, PatchTest, Place};
 use peridyne_theory::stiffness::components;
@@ -224,7 +224,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
         let cell = |value: f64, asked: Option<f64>, width: usize, scale: f64| {
             let percent = match asked {
                 // + 0.0 makes −0 and 0 one
-                Some(a) if a.is_finite() && a != 0.0 => {
+                Some(a) if value.is_finite() && a.is_finite() && a != 0.0 => {
                     let tenths = (1000.0 * (value / a - 1.0)).round() + 0.0;
                     format!("{:+.1} %", 0.1 * tenths)
                 }
@@ -245,13 +245,17 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
         let _ = writeln!(out, "{}", line("asked", asked, None, ""));
     }
     for class in patch.classes.iter().filter(|c| c.material == n) {
-        let real = class.stiffness.hill().solid(d, found.spec.plane);
+        let real = mean(found, &class.stiffness);
         let more = class.stiffness.anisotropy().map_or(String::new(), |a| {
             let universal = a.universal.map_or("–".into(), |u| format!("{u:.3}"));
             format!("{:>8.3}{universal:>8}", a.zener)
         });
         let text = line(class.place.name(d), real, m.asked, &more);
         let _ = writeln!(out, "{text}");
+    }
+    let number = |value: f64| digits(value / scale.factor);
+    for line in directions::lines(found, patch, n, m, &number) {
+        let _ = writeln!(out, "{line}");
     }
     if let Some(class) = patch.best(n) {
         tensor(out, class, &scale);
@@ -356,15 +360,34 @@ fn waves(found: &Findings) -> String {
             format!("{prefix}{kind}{speeds}{shear}"),
         );
         let crossing = long / m.pressure_wave;
+        let steps = match found.spec.schedule.statics {
+            Some(_) => String::new(),
+            None => format!(
+                " = {} steps",
+                whole((crossing / info.time_step).ceil() as u64)
+            ),
+        };
         row(
             &mut out,
             "crossing",
             format!(
-                "{prefix}{} = {} steps through the longest side",
-                units.write(crossing, Dim::TIME),
-                whole((crossing / info.time_step).ceil() as u64)
+                "{prefix}{}{steps} through the longest side",
+                units.write(crossing, Dim::TIME)
             ),
         );
+    }
+    if let Some(statics) = found.spec.schedule.statics {
+        let how = match statics.method {
+            Method::Linear => "linear about the reference",
+            Method::Newton => "by Newton's method",
+            Method::Relaxation => "by relaxation, which finds its own step",
+        };
+        row(
+            &mut out,
+            "equilibrium",
+            format!("{} increments of load, {how}", whole(found.steps)),
+        );
+        return out;
     }
     row(
         &mut out,
