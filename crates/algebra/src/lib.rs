@@ -92,6 +92,13 @@ pub fn symmetric_eigen(
     Some((values, (0..n).map(vector).collect()))
 }
 
+/// Eigenvalues (real and imaginary parts) of a dense matrix of any kind, in no order; `None` if they are not found.
+pub fn eigenvalues(n: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<[f64; 2]>> {
+    let dense = Mat::from_fn(n, n, entry);
+    let values = dense.eigenvalues().ok()?;
+    Some(values.iter().map(|z| [z.re, z.im]).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,6 +143,17 @@ mod tests {
             let angle = (k + 1) as f64 * std::f64::consts::PI / (n + 1) as f64;
             assert!((value - 2.0 + 2.0 * angle.cos()).abs() < 1e-13);
             assert!((vectors[k].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn eigenvalues_of_a_circulant_are_roots_of_unity() {
+        let n = 7;
+        let values = eigenvalues(n, |i, j| f64::from((i + 1) % n == j)).unwrap();
+        for k in 0..n {
+            let angle = 2.0 * std::f64::consts::PI * k as f64 / n as f64;
+            let apart = |z: &[f64; 2]| (z[0] - angle.cos()).hypot(z[1] - angle.sin());
+            assert!(values.iter().any(|z| apart(z) < 1e-13), "{values:?}");
         }
     }
 }

@@ -26,7 +26,7 @@ fn a_plate_of_fibres_is_coarsened_and_runs() {
     let done = coarsen(
         "good/fibre_plate.toml",
         dir.path(),
-        &["--every", "3", "--run"],
+        &["--every", "3", "--supports", "thinned", "--run"],
     );
     let told = String::from_utf8_lossy(&done.stdout).into_owned();
     assert_eq!(

@@ -1,6 +1,7 @@
 //! Loads: body force, traction, damping, and forces replaced on a set.
 
 use super::Program;
+use super::carried::Carried;
 use crate::body::{Body, Field};
 use crate::space::Point;
 
@@ -20,6 +21,8 @@ pub struct Load<const D: usize> {
     pub kind: LoadKind<D>,
     slots: Vec<u32>,
     points: Vec<Point>,
+    /// Of a condensed body: where this load acts.
+    carried: Option<Carried<D>>,
     /// Force density added last time, for the work of the next step.
     last: Vec<[f64; D]>,
     /// Work done on the body (energy).
@@ -33,8 +36,17 @@ impl<const D: usize> Load<D> {
             kind,
             slots,
             points,
+            carried: None,
             last,
             work: 0.0,
+        }
+    }
+
+    /// A force density on points of a finer body, which reaches these slots.
+    pub fn carried(density: Program<D>, slots: Vec<u32>, carried: Carried<D>) -> Self {
+        Load {
+            carried: Some(carried),
+            ..Load::new(LoadKind::Body(density), slots, vec![])
         }
     }
 
@@ -49,12 +61,18 @@ impl<const D: usize> Load<D> {
 
     /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run.
     pub fn add(&mut self, body: &Body<D>, v: &Field<D>, f: &mut Field<D>, t: f64, dt: f64) {
+        if let (LoadKind::Body(density), Some(carried)) = (&self.kind, &mut self.carried) {
+            carried.evaluate(density, t);
+        }
         for (k, &s) in self.slots.iter().enumerate() {
             let i = s as usize;
             let mut power = 0.0;
             for a in 0..D {
                 let added = match &self.kind {
-                    LoadKind::Body(p) => p.at(a, k, &self.points[k], t),
+                    LoadKind::Body(p) => match &self.carried {
+                        None => p.at(a, k, &self.points[k], t),
+                        Some(carried) => carried.reaching(k, a) / body.volume.at(i),
+                    },
                     // v at the whole step: the middle's and half a kick, of which this force is a part
                     LoadKind::Damping(c) => {
                         let half = 0.5 * dt / body.density.at(i);

@@ -1,6 +1,7 @@
 //! What the world does to a body: loads that add force, constraints that prescribe motion, rigid indenters.
 //! Each keeps the account of its own work.
 
+pub mod carried;
 pub mod constraint;
 pub mod driven;
 pub mod indenter;

@@ -79,6 +79,30 @@ pub fn largest_ratio<const D: usize>(
     MARGIN * largest_of_tridiagonal(&alphas, &betas).max(0.0)
 }
 
+/// A bound on every eigenvalue of `M⁻¹K` (1 / time²) of bonds that act directly: the largest sum of magnitudes of a row
+/// (Gershgorin). Lanczos finds the eigenvalues of symmetric operators only.
+pub fn row_bound<const D: usize>(body: &Body<D>, interaction: &mut dyn Interaction<D>) -> f64 {
+    let mut own = vec![[[0.0; D]; D]; body.len];
+    let mut sum = vec![[0.0f64; D]; body.len];
+    interaction.tangents(body, &body.at_rest(), &mut |bond| {
+        for a in 0..D {
+            for b in 0..D {
+                own[bond.i][a][b] += bond.stiffness[a][b];
+                sum[bond.i][a] += bond.stiffness[a][b].abs();
+            }
+        }
+    });
+    let mut bound = 0.0f64;
+    for &s in &body.slots {
+        let i = s as usize;
+        for a in 0..D {
+            let row = sum[i][a] + (0..D).map(|b| own[i][a][b].abs()).sum::<f64>();
+            bound = bound.max(row / body.density.at(i));
+        }
+    }
+    bound
+}
+
 /// `M⁻¹K w` by one sweep at a displacement so small that the law is linear.
 fn product<const D: usize>(
     body: &Body<D>,

@@ -24,6 +24,7 @@ pub struct MicromoduliInteraction<const D: usize> {
     /// `[partners]` reference vectors (length).
     xi: Vec<[f64; D]>,
     sums: Vec<f64>,
+    asymmetry: f64,
 }
 
 impl<const D: usize> MicromoduliInteraction<D> {
@@ -40,6 +41,7 @@ impl<const D: usize> MicromoduliInteraction<D> {
             block: Vec::with_capacity(linear.partner.len()),
             xi: Vec::with_capacity(linear.partner.len()),
             sums: vec![0.0; ids.len().div_ceil(BLOCK)],
+            asymmetry: linear.soundness().asymmetry,
         };
         for (row, &id) in ids.iter().enumerate() {
             made.row[body.slots[id] as usize] = row as u32;
@@ -57,6 +59,11 @@ impl<const D: usize> MicromoduliInteraction<D> {
     fn bonds(&self, row: usize) -> impl Iterator<Item = (usize, &[[f64; D]; D], &[f64; D])> {
         let bonds = self.start[row]..self.start[row + 1];
         bonds.map(|k| (self.partner[k] as usize, &self.block[k], &self.xi[k]))
+    }
+
+    /// Has the point in slot `i` a bond to slot `j`?
+    fn knows(&self, i: usize, j: usize) -> bool {
+        self.bonds(self.row[i] as usize).any(|(k, ..)| k == j)
     }
 
     /// Force density on a row's point, and the energy density of its bonds.
@@ -207,8 +214,15 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         for (row, &slot) in self.slots.iter().enumerate() {
             let i = slot as usize;
-            for (j, _, xi) in self.bonds(row).filter(|(j, ..)| i < *j) {
-                visit(i, j, *xi, BondState::Whole);
+            // a bond that only its other end knows is visited there
+            let once = |j: usize| i < j || !self.knows(j, i);
+            for (j, _, xi) in self.bonds(row).filter(|(j, ..)| once(*j)) {
+                visit(
+                    i.min(j),
+                    i.max(j),
+                    if i < j { *xi } else { xi.map(|x| -x) },
+                    BondState::Whole,
+                );
             }
         }
     }
@@ -225,6 +239,10 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
             }
         }
         Some(sum)
+    }
+
+    fn asymmetry(&self) -> f64 {
+        self.asymmetry
     }
 
     fn directed_bonds(&self) -> u64 {

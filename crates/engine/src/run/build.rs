@@ -23,6 +23,7 @@ use crate::interaction::Interaction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
 use crate::spec::{BodySpec, Cloud, CrackKind, Spec, TimeStep};
+use crate::statics::SYMMETRIC;
 
 /// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
 const SOLID_FRACTION: f64 = 0.8;
@@ -124,7 +125,11 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         let atoms = current_neighbours(spec);
         enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
     }
-    let sets = sets(spec, &body)?;
+    let carriers = match &spec.micromoduli {
+        Some(linear) => (**linear).clone().of::<D>().and_then(|l| l.carriers),
+        None => None,
+    };
+    let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
     assign_materials(spec, &mut body, &sets)?;
     own_densities(spec, &mut body);
     let ends = parts.iter().flat_map(|p| &p.stencil);
@@ -181,6 +186,12 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             }
             cut += count;
         }
+    }
+    let asymmetry = interaction.asymmetry();
+    if asymmetry > SYMMETRIC {
+        warnings.push(format!(
+            "action is not reaction in this body (asymmetry {asymmetry:.1e}): it has no energy, what is printed as strain energy is that of its symmetric part, and neither energy nor momentum need balance"
+        ));
     }
     let directed_bonds = interaction.directed_bonds();
     let bonded = parts.iter().any(|p| p.bonded);
@@ -331,6 +342,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         virial: None,
         indenters: vec![],
         sets,
+        carriers,
+        carrier_sets,
         dt,
         step: 0,
         origin: (0, 0.0),

@@ -2,13 +2,68 @@
 
 use super::model::Model;
 use crate::condition::Program;
+use crate::condition::carried::Carried;
 use crate::condition::constraint::{Constraint, Prescribed};
 use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
+use crate::expression::Expression;
 use crate::spec::{ConditionKind, ConditionSpec};
+use crate::statics::Carriers;
 use std::collections::HashMap;
 
+/// The value of a load that adds force densities, and the area of a traction; `None`: another condition.
+fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Option<f64>>)> {
+    match kind {
+        ConditionKind::BodyForce(e) => Some((e, None)),
+        ConditionKind::Traction { value, area } => Some((value, Some(*area))),
+        ConditionKind::SetForce(_)
+        | ConditionKind::Damping(_)
+        | ConditionKind::Displacement(_)
+        | ConditionKind::Velocity(_) => None,
+    }
+}
+
 impl<const D: usize> Model<D> {
+    /// A load on points of the finer body from which this one was condensed.
+    fn carried(
+        &self,
+        carriers: &Carriers<D>,
+        set: &str,
+        value: &[Option<Expression>; 3],
+        traction: Option<Option<f64>>,
+    ) -> Result<Load<D>, BuildError> {
+        let named = self.carrier_sets.iter().find(|(name, _)| name == set);
+        let members: Vec<u32> = match (set, named) {
+            ("all", _) => (0..carriers.points() as u32).collect(),
+            (_, Some((_, members))) => members.clone(),
+            (_, None) => return Err(BuildError::new("", format!("there is no set `{set}`"))),
+        };
+        let lost = members
+            .iter()
+            .filter(|p| !carriers.carries(**p as usize))
+            .count();
+        if lost > 0 || members.is_empty() {
+            return Err(BuildError::new(
+                "",
+                format!(
+                    "{lost} of {} points of `{set}` carry no load: the body was condensed for other loads",
+                    members.len()
+                ),
+            )
+            .help("coarsen again, from a deck with this load on this set"));
+        }
+        let (carried, ids) = Carried::new(carriers, &members);
+        let mut program = Program::new(value, carried.points());
+        if let Some(area) = traction {
+            // the face of a point of the finer body
+            let face = carriers.volume[members[0] as usize] / carriers.spacing;
+            let area = area.unwrap_or(face * members.len() as f64);
+            program = program.scaled(area / carried.volume());
+        }
+        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
+        Ok(Load::carried(program, slots.collect(), carried))
+    }
+
     /// Loads in the order in which they act, and constraints.
     pub(super) fn loads_and_constraints(
         &self,
@@ -22,6 +77,26 @@ impl<const D: usize> Model<D> {
                 ..e
             })?;
             let load = |kind| Load::new(kind, slots.clone(), points.clone());
+            if let Some(carriers) = &self.carriers
+                && let Some((value, area)) = density(&c.kind)
+            {
+                let made = self.carried(carriers, &c.set, value, area);
+                loads.push(made.map_err(|e| BuildError {
+                    path: format!("conditions[{n}]"),
+                    ..e
+                })?);
+                continue;
+            }
+            // groups of scripts may be empty
+            if slots.is_empty() && self.carriers.is_some() {
+                return Err(BuildError::new(
+                    format!("conditions[{n}].set"),
+                    format!("no point of `{}` was retained", c.set),
+                )
+                .help(
+                    "peridyne coarsen --supports kept retains points whose motion is prescribed",
+                ));
+            }
             match &c.kind {
                 ConditionKind::BodyForce(e) => {
                     loads.push(load(LoadKind::Body(Program::new(e, &points))))

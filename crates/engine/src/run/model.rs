@@ -19,7 +19,7 @@ use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
 use crate::spec::{ConditionSpec, IndenterSpec, Release};
-use crate::statics::{AnyLinearBody, SolveError, Solved};
+use crate::statics::{AnyLinearBody, Carriers, SolveError, Solved};
 
 /// A model in D dimensions.
 pub struct Model<const D: usize> {
@@ -47,6 +47,9 @@ pub struct Model<const D: usize> {
     pub(super) recipes: Recipes,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
+    /// Of a condensed body: where its loads act, and the named sets there.
+    pub(super) carriers: Option<Carriers<D>>,
+    pub(super) carrier_sets: Vec<(String, Vec<u32>)>,
     pub(super) dt: f64,
     pub(super) step: u64,
     /// Step and time from which time is counted in whole steps.
@@ -412,7 +415,11 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn linear_body(&mut self) -> AnyLinearBody {
-        AnyLinearBody::new(self.linear_now()).expect("there are three dimensions")
+        let body = crate::statics::LinearBody {
+            carriers: self.carriers.clone(),
+            ..self.linear_now()
+        };
+        AnyLinearBody::new(body).expect("there are three dimensions")
     }
 
     fn solved(&self) -> Option<Solved> {

@@ -3,10 +3,11 @@
 use super::recipe::Recipe;
 use super::surface;
 use crate::body::{Body, Layout, Values};
-use crate::dynamics::stable_step::largest_eigenvalue;
+use crate::dynamics::stable_step::{largest_eigenvalue, row_bound};
 use crate::error::BuildError;
 use crate::interaction::Interaction;
 use crate::spec::Spec;
+use crate::statics::SYMMETRIC;
 
 /// Above this a lattice body is represented by a block of itself.
 const LARGE: usize = 20_000;
@@ -79,6 +80,11 @@ pub(super) fn bonds<const D: usize>(
                 lambda = lambda.max(largest_eigenvalue(&block, it.as_mut()));
             }
             lambda
+        }
+        Layout::Grid(_) | Layout::Cloud(_) | Layout::Several(_)
+            if interaction.asymmetry() > SYMMETRIC =>
+        {
+            row_bound(body, interaction)
         }
         Layout::Grid(_) | Layout::Cloud(_) | Layout::Several(_) => {
             largest_eigenvalue(body, interaction)

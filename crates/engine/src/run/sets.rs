@@ -5,26 +5,47 @@ use crate::body::{Body, Values};
 use crate::error::BuildError;
 use crate::space::Point;
 use crate::spec::{BodySpec, Members, Spec};
+use crate::statics::Carriers;
 
 /// Does a point (index, reference position) belong?
 type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;
 
-/// Point ids of every named set.
+/// Named sets and the numbers of their points.
+pub(super) type Sets = Vec<(String, Vec<u32>)>;
+
+/// Point ids of every named set, and its points among those that carry loads. A set may have points of the one kind only.
 pub(super) fn sets<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
-) -> Result<Vec<(String, Vec<u32>)>, BuildError> {
-    let mut out = vec![];
+    carriers: Option<&Carriers<D>>,
+) -> Result<(Sets, Sets), BuildError> {
+    let (mut out, mut carried) = (vec![], vec![]);
     for set in &spec.sets {
-        let member = member(spec, body, &set.name, &set.members, 0)?;
+        let belongs = member(spec, body, &set.name, &set.members, 0, body.spacing)?;
         let ids: Vec<u32> = body
             .slots
             .iter()
             .enumerate()
-            .filter(|(id, s)| member(*id, &body.position(**s as usize)))
+            .filter(|(id, s)| belongs(*id, &body.position(**s as usize)))
             .map(|(id, _)| id as u32)
             .collect();
-        if ids.is_empty() {
+        let mut loaded: Vec<u32> = vec![];
+        let by_place = match &set.members {
+            Members::All | Members::Region(_) | Members::Where(_) => true,
+            Members::Mark(_) | Members::Points(_) | Members::Within { .. } => false,
+        };
+        if let Some(carriers) = carriers
+            && by_place
+        {
+            let belongs = member(spec, body, &set.name, &set.members, 0, carriers.spacing)?;
+            let at = |p: &usize| {
+                let x = &carriers.position[*p];
+                std::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
+            };
+            let points = (0..carriers.points()).filter(|p| belongs(*p, &at(p)));
+            loaded = points.map(|p| p as u32).collect();
+        }
+        if ids.is_empty() && loaded.is_empty() {
             return Err(BuildError::new(
                 format!("sets.{}", set.name),
                 format!("set `{}` has no points", set.name),
@@ -32,22 +53,24 @@ pub(super) fn sets<const D: usize>(
             .help("check it against the body's extent: `peridyne check` prints that"));
         }
         out.push((set.name.clone(), ids));
+        carried.push((set.name.clone(), loaded));
     }
-    Ok(out)
+    Ok((out, carried))
 }
 
-/// The test of a set; `first` is the id of the first point that places count from.
+/// The test of a set; `first` is the id of the first point that places count from, `spacing` that of the points.
 fn member<'a, const D: usize>(
     spec: &Spec,
     body: &'a Body<D>,
     set: &str,
     members: &'a Members,
     first: usize,
+    spacing: f64,
 ) -> Result<Member<'a>, BuildError> {
     Ok(match members {
         Members::All => Box::new(|_, _| true),
         Members::Region(region) => {
-            let slack = 1e-9 * body.spacing;
+            let slack = 1e-9 * spacing;
             Box::new(move |_, x| region.contains(x) || near(region, x, slack))
         }
         Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
@@ -70,7 +93,7 @@ fn member<'a, const D: usize>(
                     format!("set `{set}` is of the body `{name}`, which does not exist"),
                 ));
             };
-            let inner = member(spec, body, set, members, ids.start)?;
+            let inner = member(spec, body, set, members, ids.start, spacing)?;
             Box::new(move |id, x| ids.contains(&id) && inner(id, x))
         }
     })
@@ -170,6 +193,12 @@ pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Resu
         });
         model.sets = sets;
         let (slots, points) = members?;
+        if slots.is_empty() && model.carriers.is_some() {
+            return Err(BuildError::new(
+                format!("initial[{n}].set"),
+                format!("no point of `{}` was retained", init.set),
+            ));
+        }
         for a in 0..D {
             for (field, e) in [
                 (&mut model.u[a], &init.displacement[a]),

@@ -62,6 +62,7 @@ pub fn linear_body<const D: usize>(
         start: vec![0],
         partner: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
         block: Vec::with_capacity(parts.iter().map(|p| p.partner.len()).sum()),
+        carriers: None,
     };
     for part in parts {
         let begin = made.partner.len();

@@ -3,6 +3,7 @@
 //! Force density at i: `L_i = Σ_j C_ij (u_j − u_i)` (silling2010, section 4, with `C_ij` the volume of j included).
 //! State-based laws fit too: their rows reach two horizons.
 
+use super::carriers::Carriers;
 use std::any::Any;
 
 /// Points, and which of them talk to which.
@@ -22,6 +23,8 @@ pub struct LinearBody<const D: usize> {
     pub partner: Vec<u32>,
     /// `C_ij` (force density / length) per partner.
     pub block: Vec<[[f64; D]; D]>,
+    /// Of a condensed body: where its loads act.
+    pub carriers: Option<Carriers<D>>,
 }
 
 /// A linear body of any dimension.
@@ -116,6 +119,7 @@ impl<const D: usize> LinearBody<D> {
             start: vec![0],
             partner: vec![],
             block: vec![],
+            carriers: None,
         }
     }
 
@@ -219,6 +223,7 @@ impl<const D: usize> LinearBody<D> {
             + 8 * self.start.len()
             + 4 * self.partner.len()
             + 8 * D * D * self.block.len()
+            + self.carriers.as_ref().map_or(0, Carriers::bytes)
     }
 }
 
@@ -240,6 +245,7 @@ mod tests {
             start: vec![0, 1, 3, 4],
             partner: vec![1, 0, 2, 1],
             block: [1.0, 0.5, 1.0, 2.0].map(|c| [[c]]).to_vec(),
+            carriers: None,
         }
     }
 
@@ -278,6 +284,7 @@ mod tests {
             start: vec![0, 1, 2],
             partner: vec![1, 0],
             block: vec![c; 2],
+            carriers: None,
         };
         assert_eq!(bond([[3.0, 0.0], [0.0, 0.0]]).soundness().rotation, 0.0);
         assert_eq!(bond([[3.0, 0.0], [0.0, 3.0]]).soundness().rotation, 1.0);

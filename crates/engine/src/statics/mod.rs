@@ -5,10 +5,12 @@
 //! | which linear body is a law about a state? | [`assemble`], [`linear_body`] |
 //! | what does it do to a displacement, with or without a matrix? | [`operator`] |
 //! | is it held? | [`support`] |
+//! | where do loads of a finer body act? | [`carriers`] |
 //! | where is it in equilibrium? | [`direct`] (banded in 1-D), [`cg`]; of any law [`relaxation`] |
 //! | how does it vibrate? | [`modes`] |
 
 pub mod assemble;
+pub mod carriers;
 pub mod cg;
 pub mod direct;
 pub mod linear_body;
@@ -19,6 +21,7 @@ pub mod support;
 mod vectors;
 
 pub use assemble::linear_body;
+pub use carriers::Carriers;
 pub use direct::{Direct, SYMMETRIC};
 pub use linear_body::{AnyLinearBody, LinearBody, Soundness};
 pub use operator::{Assembled, LinearOperator, Swept};
@@ -49,7 +52,9 @@ pub enum SolveError {
     Singular,
     #[error("the matrix does not fit: take conjugate gradients")]
     TooLarge,
-    #[error("the body is not symmetric ({asymmetry:.1e}): conjugate gradients do not solve it")]
+    #[error(
+        "action is not reaction in this body (asymmetry {asymmetry:.1e}): conjugate gradients and modes of vibration need a symmetric one; write solver = \"direct\", and leave modes out"
+    )]
     NotSymmetric { asymmetry: f64 },
     #[error(
         "after {iterations} iterations the residual is {residual:.1e} of that of the start, not {tolerance:.1e}"

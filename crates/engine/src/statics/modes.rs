@@ -1,7 +1,7 @@
 //! Lowest modes of vibration: `K φ = ω² M φ`, by Lanczos on the inverse.
 
 use super::SolveError;
-use super::direct::Direct;
+use super::direct::{Direct, SYMMETRIC};
 use super::linear_body::LinearBody;
 use super::support::Support;
 use super::vectors::{add, dot};
@@ -35,6 +35,10 @@ pub fn lowest<const D: usize>(
     support: &Support<D>,
     count: usize,
 ) -> Result<Vec<Mode<D>>, SolveError> {
+    let asymmetry = body.soundness().asymmetry;
+    if asymmetry > SYMMETRIC {
+        return Err(SolveError::NotSymmetric { asymmetry });
+    }
     let mass: Vec<f64> = (0..body.points())
         .map(|i| body.volume[i] * body.density[i])
         .collect();

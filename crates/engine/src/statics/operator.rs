@@ -1,6 +1,8 @@
-//! Symmetric operators on displacements: `A u`, the forces that hold a body at u (force per point).
+//! Operators on displacements: `A u`, the forces that hold a body at u (force per point).
 
 use super::linear_body::LinearBody;
+use super::support::Support;
+use super::vectors::{dot, norm};
 use crate::body::{Body, Field, zeros};
 use crate::interaction::{Interaction, Sweep};
 use rayon::prelude::*;
@@ -15,6 +17,37 @@ pub trait LinearOperator<const D: usize> {
     fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]);
     /// Blocks of A on the diagonal, or of an operator near to it.
     fn diagonal(&mut self) -> Vec<[[f64; D]; D]>;
+}
+
+/// How far an operator is from symmetric on the free components: `|x·Ay − y·Ax|` over `|x||Ay|` for two fixed vectors in which
+/// every component moves. 0 but for round-off if it is; an asymmetry of a few of many points shows, too.
+pub fn asymmetry<const D: usize>(
+    operator: &mut dyn LinearOperator<D>,
+    support: &Support<D>,
+) -> f64 {
+    let n = operator.points();
+    let vector = |step: f64| {
+        let at = |i: usize| std::array::from_fn(|a| ((i * D + a + 1) as f64 * step).fract() - 0.5);
+        let mut x: Vec<[f64; D]> = (0..n).map(at).collect();
+        support.mask(&mut x);
+        x
+    };
+    // of the golden and the silver ratio: no lattice is in step with both
+    let (x, y) = (
+        vector(0.618_033_988_749_894_9),
+        vector(0.414_213_562_373_095_1),
+    );
+    let mut product = vec![[0.0; D]; n];
+    operator.apply(&y, &mut product);
+    support.mask(&mut product);
+    let (there, size) = (dot(&x, &product), norm(&x) * norm(&product));
+    operator.apply(&x, &mut product);
+    let back = dot(&y, &product);
+    if size > 0.0 {
+        (there - back).abs() / size
+    } else {
+        0.0
+    }
 }
 
 /// A linear body as an operator.

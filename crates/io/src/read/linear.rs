@@ -4,7 +4,7 @@ use super::{Points, ReadError};
 use ndarray::{Array1, Array2, Array3, OwnedRepr};
 use ndarray_npy::{NpzReader, ReadableElement};
 use peridyne::spec::Cloud;
-use peridyne::statics::{AnyLinearBody, LinearBody};
+use peridyne::statics::{AnyLinearBody, Carriers, LinearBody};
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -48,6 +48,89 @@ struct Arrays {
     start: Array1<i64>,
     partner: Array1<i32>,
     block: Array3<f64>,
+    loads: Option<Loads>,
+}
+
+/// Where the loads of a condensed body act.
+struct Loads {
+    position: Array2<f64>,
+    volume: Array1<f64>,
+    spacing: Array1<f64>,
+    start: Array1<i64>,
+    target: Array1<i32>,
+    block: Array3<f64>,
+}
+
+impl Loads {
+    fn read(file: &mut NpzReader<File>) -> Result<Loads, String> {
+        Ok(Loads {
+            position: array(file, "load_position")?,
+            volume: array(file, "load_volume")?,
+            spacing: array(file, "load_spacing")?,
+            start: array(file, "load_start")?,
+            target: array(file, "load_target")?,
+            block: array(file, "load_block")?,
+        })
+    }
+
+    /// Of a body of `n` points in `d` dimensions.
+    fn check(&self, n: usize, d: usize) -> Result<(), String> {
+        let m = self.volume.len();
+        let targets = self.target.len();
+        if self.position.dim() != (m, d)
+            || self.start.len() != m + 1
+            || self.block.dim() != (targets, d, d)
+            || self.spacing.len() != 1
+        {
+            return Err(format!(
+                "`load_position`, `load_volume`, `load_spacing`, `load_start` and `load_block` do not belong together: expected (M, {d}), M, 1, M + 1 and ({targets}, {d}, {d}) entries"
+            ));
+        }
+        let positive = |x: &f64| *x > 0.0 && x.is_finite();
+        if !self.volume.iter().chain(&self.spacing).all(positive) {
+            return Err("`load_volume` and `load_spacing` must be positive".into());
+        }
+        if self
+            .position
+            .iter()
+            .chain(&self.block)
+            .any(|x| !x.is_finite())
+        {
+            return Err("`load_position` and `load_block` must be finite".into());
+        }
+        let ascending = self.start.windows(2).into_iter().all(|w| w[0] <= w[1]);
+        if !ascending || self.start[0] != 0 || self.start[m] != targets as i64 {
+            return Err(format!(
+                "`load_start` must ascend from 0 to the number of targets, {targets}"
+            ));
+        }
+        match self.target.iter().find(|q| **q < 0 || **q as usize >= n) {
+            Some(q) => Err(format!(
+                "`load_target` names point {q}, the body has points 0 to {}",
+                n.saturating_sub(1)
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn carriers<const D: usize>(&self) -> Carriers<D> {
+        Carriers {
+            position: (self.position.outer_iter())
+                .map(|x| std::array::from_fn(|a| x[a]))
+                .collect(),
+            volume: self.volume.to_vec(),
+            spacing: self.spacing[0],
+            start: self.start.iter().map(|s| *s as usize).collect(),
+            target: self.target.iter().map(|q| *q as u32).collect(),
+            block: blocks(&self.block),
+        }
+    }
+}
+
+fn blocks<const D: usize>(block: &Array3<f64>) -> Vec<[[f64; D]; D]> {
+    let of =
+        |c: ndarray::ArrayView2<f64>| std::array::from_fn(|a| std::array::from_fn(|b| c[[a, b]]));
+    block.outer_iter().map(of).collect()
 }
 
 fn array<T: ReadableElement, D: ndarray::Dimension>(
@@ -60,6 +143,9 @@ fn array<T: ReadableElement, D: ndarray::Dimension>(
 
 impl Arrays {
     fn read(file: &mut NpzReader<File>) -> Result<Arrays, String> {
+        let names = file
+            .names()
+            .map_err(|e| format!("its arrays cannot be listed: {e}"))?;
         let arrays = Arrays {
             position: array(file, "position")?,
             volume: array(file, "volume")?,
@@ -68,6 +154,10 @@ impl Arrays {
             start: array(file, "start")?,
             partner: array(file, "partner")?,
             block: array(file, "block")?,
+            loads: match names.iter().any(|n| n == "load_target") {
+                true => Some(Loads::read(file)?),
+                false => None,
+            },
         };
         arrays.check()?;
         Ok(arrays)
@@ -131,7 +221,10 @@ impl Arrays {
                 before = j;
             }
         }
-        Ok(())
+        match &self.loads {
+            Some(loads) => loads.check(n, d),
+            None => Ok(()),
+        }
     }
 
     fn body<const D: usize>(&self) -> Result<AnyLinearBody, String> {
@@ -146,12 +239,10 @@ impl Arrays {
             period: std::array::from_fn(|a| Some(self.period[a]).filter(|p| !p.is_nan())),
             start: self.start.iter().map(|s| *s as usize).collect(),
             partner: self.partner.iter().map(|p| *p as u32).collect(),
-            block: self
-                .block
-                .outer_iter()
-                .map(|c| std::array::from_fn(|a| std::array::from_fn(|b| c[[a, b]])))
-                .collect(),
+            block: blocks(&self.block),
+            carriers: self.loads.as_ref().map(Loads::carriers),
         };
+
         AnyLinearBody::new(body).ok_or_else(|| format!("{D} dimensions"))
     }
 
@@ -181,6 +272,7 @@ mod tests {
             start: vec![0, 1, 3, 4],
             partner: vec![1, 0, 2, 1],
             block: [1.0, 0.5, 1.0, 2.0].map(|c| [[c]]).to_vec(),
+            carriers: None,
         }
     }
 
@@ -195,6 +287,35 @@ mod tests {
             .unwrap();
         assert_eq!(body, chain());
         assert_eq!(points.cloud.position[2], [3.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn loads_and_asymmetry_are_kept() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("body.npz");
+        let mut body = chain();
+        body.block[0][0][0] = 1.5;
+        body.carriers = Some(Carriers {
+            position: vec![[0.0], [0.5], [1.0]],
+            volume: vec![0.5; 3],
+            spacing: 0.5,
+            start: vec![0, 0, 2, 3],
+            target: vec![0, 1, 1],
+            block: vec![[[0.5]], [[0.5]], [[1.0]]],
+        });
+        write_linear(&path, &body).unwrap();
+        let mut file = NpzReader::new(File::open(&path).unwrap()).unwrap();
+        let asymmetry: Array1<f64> = array(&mut file, "asymmetry").unwrap();
+        assert_eq!(asymmetry.to_vec(), [0.25]);
+        let points = read(&path).unwrap();
+        let found = Arc::unwrap_or_clone(points.micromoduli.unwrap()).of::<1>();
+        assert_eq!(found.unwrap(), body);
+        if let Some(carriers) = &mut body.carriers {
+            carriers.target[2] = 3;
+        }
+        write_linear(&path, &body).unwrap();
+        let said = read(&path).unwrap_err().to_string();
+        assert!(said.contains("`load_target` names point 3"), "{said}");
     }
 
     #[test]

@@ -1,6 +1,12 @@
 //! A linear body as a NumPy archive (`.npz`): `position [N][D]`, `volume [N]`, `density [N]`, `period [D]` (not a number: free),
 //! and the micromoduli as a block-sparse matrix, `start [N + 1]`, `partner [bonds]`, `block [bonds][D][D]` (force density / length,
 //! `L_i = Σ_j C_ij (u_j − u_i)`). `scipy.sparse.bsr_matrix((block, partner, start))` is the matrix without its diagonal.
+//! `asymmetry [1]` is the largest `|V_i C_ij − V_j C_jiᵀ|` over the largest `|V_i C_ij|`: 0, or round-off, where action is reaction;
+//! a body of another kind has no energy, and its matrix needs solvers that take no symmetry.
+//!
+//! Bodies that were condensed with their loads say where these act: `load_position [M][D]`, `load_volume [M]` and
+//! `load_spacing [1]` of the points of the finest body, and the matrix that passes their forces on,
+//! `F_q = Σ_p T_qp F_p`: `load_start [M + 1]`, `load_target`, `load_block [..][D][D]`, one row per point p.
 
 use super::atomic::{WriteError, write_file};
 use ndarray::{Array1, Array2, Array3};
@@ -42,5 +48,26 @@ fn archive<const D: usize>(body: &LinearBody<D>) -> Result<Vec<u8>, Error> {
     let block = body.block.iter().flatten().flatten().copied().collect();
     let block = Array3::from_shape_vec((bonds, D, D), block).map_err(shape)?;
     file.add_array("block", &block).map_err(bad)?;
+    file.add_array("asymmetry", &column(&[body.soundness().asymmetry]))
+        .map_err(bad)?;
+    if let Some(carriers) = &body.carriers {
+        let m = carriers.points();
+        let position = carriers.position.iter().flatten().copied().collect();
+        let position = Array2::from_shape_vec((m, D), position).map_err(shape)?;
+        file.add_array("load_position", &position).map_err(bad)?;
+        file.add_array("load_volume", &column(&carriers.volume))
+            .map_err(bad)?;
+        file.add_array("load_spacing", &column(&[carriers.spacing]))
+            .map_err(bad)?;
+        let start: Vec<i64> = carriers.start.iter().map(|s| *s as i64).collect();
+        file.add_array("load_start", &Array1::from_vec(start))
+            .map_err(bad)?;
+        let target: Vec<i32> = carriers.target.iter().map(|p| *p as i32).collect();
+        file.add_array("load_target", &Array1::from_vec(target))
+            .map_err(bad)?;
+        let block = carriers.block.iter().flatten().flatten().copied().collect();
+        let block = Array3::from_shape_vec((carriers.target.len(), D, D), block).map_err(shape)?;
+        file.add_array("load_block", &block).map_err(bad)?;
+    }
     Ok(file.finish().map_err(bad)?.into_inner())
 }

@@ -10,6 +10,8 @@ use super::solve;
 use peridyne::statics::LinearBody;
 
 const NONE: u32 = u32::MAX;
+/// Asymmetry of a ball's matrix up to which conjugate gradients solve it: round-off.
+pub(super) const SYMMETRIC: f64 = 1e-13;
 
 /// What lies beyond the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,17 +184,32 @@ impl<'a, const D: usize> Ball<'a, D> {
             .collect()
     }
 
-    /// Solves `Mᵀ x = (V_i C_ie)ᵀ`: one adjoint system of D right-hand sides (`x[e][a][c]`: side a, component c) stands for the whole
+    /// Solves `Mᵀ x = (V_i C_ie)ᵀ`, `asymmetry` that of the body: one adjoint system of D right-hand sides (`x[e][a][c]`: side a, component c) stands for the whole
     /// resolvent, of which only the product with the centre's row is wanted.
     ///
     /// # Errors
-    /// No stable equilibrium, or no convergence.
-    pub fn adjoint(&self, symmetric: bool) -> Result<(Vec<Block<D>>, solve::Effort), CoarsenError> {
+    /// No stable equilibrium (symmetric), a singular matrix (else), or no convergence.
+    pub fn adjoint(&self, asymmetry: f64) -> Result<(Vec<Block<D>>, solve::Effort), CoarsenError> {
         let load = self.load();
-        match symmetric {
+        match asymmetry.max(self.asymmetry()) < SYMMETRIC {
             true => solve::conjugate_gradients(self, &load),
             false => solve::direct(self, &load),
         }
+    }
+
+    /// Largest `|M_ee − M_eeᵀ|` over the largest `|M_ee|`. A free ball leaves bonds out of these sums: for state-based laws
+    /// the `C_ep` are not symmetric one by one, and what is left of the sum is not either.
+    fn asymmetry(&self) -> f64 {
+        let (mut apart, mut most) = (0.0f64, 0.0f64);
+        for d in &self.diagonal {
+            most = most.max(largest(d));
+            for a in 0..D {
+                for b in 0..a {
+                    apart = apart.max((d[a][b] - d[b][a]).abs());
+                }
+            }
+        }
+        if most > 0.0 { apart / most } else { 0.0 }
     }
 
     /// `V_i C¹_iq` of the centre and every point q of the rim, itself (`q = 0`) included:

@@ -1,7 +1,8 @@
 //! All balls of a body: those that are translations of each other are solved once.
 
 use super::ball::{Ball, Beyond, Scratch, Walk, walk};
-use super::block::Block;
+use super::block::{Block, unit};
+use super::coupling::Coupling;
 use super::error::CoarsenError;
 use super::signature::{Looks, Signature, grain};
 use super::solve::Effort;
@@ -17,7 +18,18 @@ pub(super) struct Task<'a, const D: usize> {
     /// `[N]`
     pub marked: &'a [bool],
     pub range: f64,
-    pub symmetric: bool,
+    /// `Soundness::asymmetry` of the body.
+    pub asymmetry: f64,
+    /// `[N]`: do loads act on this point?
+    pub loaded: &'a [bool],
+}
+
+/// What an elimination makes.
+pub(super) struct Eliminated<const D: usize> {
+    pub coupling: Coupling<D>,
+    pub work: Work,
+    /// `[N]` per loaded point: which coarse points its force reaches, ascending, and the part that does; empty for the others.
+    pub pass: Vec<Vec<(u32, Block<D>)>>,
 }
 
 /// What the balls took.
@@ -25,6 +37,8 @@ pub(super) struct Task<'a, const D: usize> {
 pub struct Work {
     /// Balls that were solved; the others are translations of them.
     pub solved: usize,
+    /// Of these by LU, because their matrix is not symmetric; the others by conjugate gradients.
+    pub direct: usize,
     /// Points of the largest ball.
     pub points: usize,
     /// Products with the stiffness of a ball, over all that were solved; 0 for a direct solution.
@@ -88,6 +102,17 @@ impl<const D: usize> Task<'_, D> {
         )
     }
 
+    /// Where forces go that act on retained points: nowhere else.
+    pub fn kept(&self) -> Vec<Vec<(u32, Block<D>)>> {
+        let mut pass = vec![vec![]; self.body.points()];
+        for (k, &q) in (0..).zip(self.retained) {
+            if self.loaded[q as usize] {
+                pass[q as usize].push((k, unit()));
+            }
+        }
+        pass
+    }
+
     pub fn balls(&self, radius: f64, beyond: Beyond) -> Result<Balls<D>, CoarsenError> {
         let looks = Looks::new(self.body, self.marked, self.range);
         let signatures = self.each(|scratch, k| looks.of(&self.walk(k, radius, scratch)));
@@ -99,7 +124,7 @@ impl<const D: usize> Task<'_, D> {
                 |scratch, &k| {
                     let walk = self.walk(k, radius, scratch);
                     let ball = Ball::new(self.body, &walk, radius, beyond, scratch);
-                    let (adjoint, effort) = ball.adjoint(self.symmetric)?;
+                    let (adjoint, effort) = ball.adjoint(self.asymmetry)?;
                     let row = ball.coarse_row(&adjoint);
                     let row_sum = match beyond {
                         Beyond::Free => ball.row_sum(&row),
@@ -127,6 +152,7 @@ impl<const D: usize> Task<'_, D> {
 impl Work {
     fn take(&mut self, effort: Effort, points: usize, row_sum: f64) {
         self.solved += 1;
+        self.direct += usize::from(effort.direct);
         self.points = self.points.max(points);
         self.products += effort.iterations;
         self.flops += effort.flops;

@@ -3,7 +3,7 @@
 use super::coupling::Coupling;
 use super::error::CoarsenError;
 use peridyne::statics::LinearBody;
-use peridyne_algebra::Factors;
+use peridyne_algebra::{Factors, eigenvalues};
 
 /// Parts of a body that no bond connects: the number of each point's part.
 pub(super) fn parts(points: usize, bonds: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
@@ -81,20 +81,27 @@ pub(super) fn connected<const D: usize>(
 
 /// Unknowns up to which definiteness is decided by factorising.
 pub const DEFINITE_LIMIT: usize = 30_000;
+/// Unknowns up to which the eigenvalues of a body without symmetry are computed.
+pub const EIGEN_LIMIT: usize = 1_500;
+/// Growth of vibrations over the highest frequency that is round-off of eigenvalues.
+const NO_GROWTH: f64 = 1e-7;
 
-/// Is the energy of every displacement at least 0? By Cholesky of the stiffness with a part `slack` of its norm added; `false`: too many
-/// unknowns for that.
-///
-/// # Errors
-/// It is not: an eigenvalue is below `low`, relative to the norm.
-pub(super) fn definite<const D: usize>(
-    coupling: &Coupling<D>,
-    slack: f64,
-) -> Result<bool, CoarsenError> {
-    let n = D * coupling.rows.len();
-    if n > DEFINITE_LIMIT {
-        return Ok(false);
-    }
+/// Are there motions that run away?
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stability {
+    /// Action is reaction, and no displacement has an energy below 0.
+    Definite,
+    /// Action is not reaction; no eigenvalue λ of M⁻¹K has a real part below 0: equilibria are stable. Free vibrations grow at the
+    /// rate `growth = max |Im √λ|` (1 / time); 0 if all eigenvalues are real.
+    Stable { growth: f64 },
+    /// The same by the symmetric part, which has no negative eigenvalue: too many unknowns for the growth.
+    Positive,
+    /// Too many unknowns to look.
+    Unknown,
+}
+
+/// The entries of K, row by row, and the norm of the largest row.
+fn entries<const D: usize>(coupling: &Coupling<D>) -> (Vec<(usize, usize, f64)>, f64) {
     let mut entries = vec![];
     let mut norm = 0.0f64;
     for (i, row) in coupling.rows.iter().enumerate() {
@@ -116,10 +123,14 @@ pub(super) fn definite<const D: usize>(
             }
         }
     }
+    (entries, norm)
+}
+
+/// The lowest of `slack`, 10 `slack` … of which, times its norm, makes a symmetric matrix (lower triangle) positive definite.
+fn least_shift(n: usize, lower: &[(usize, usize, f64)], norm: f64, slack: f64) -> f64 {
     let holds = |shift: f64| {
         let diagonal = (0..n).map(|k| (k, k, shift * norm));
-        let lower = entries.iter().copied().filter(|(i, j, _)| j <= i);
-        let all: Vec<_> = lower.chain(diagonal).collect();
+        let all: Vec<_> = lower.iter().copied().chain(diagonal).collect();
         Factors::symmetric(n, &all).is_ok()
     };
     let mut low = slack;
@@ -129,10 +140,84 @@ pub(super) fn definite<const D: usize>(
             break;
         }
     }
-    match low > slack {
-        true => Err(CoarsenError::Unstable { low: -low / 10.0 }),
-        false => Ok(true),
+    low
+}
+
+/// Is the energy of every displacement at least 0? By Cholesky of the stiffness with a part `slack` of its norm added.
+///
+/// # Errors
+/// It is not: an eigenvalue is below `low`, relative to the norm.
+pub(super) fn definite<const D: usize>(
+    coupling: &Coupling<D>,
+    slack: f64,
+) -> Result<Stability, CoarsenError> {
+    let n = D * coupling.rows.len();
+    if n > DEFINITE_LIMIT {
+        return Ok(Stability::Unknown);
     }
+    let (mut lower, norm) = entries(coupling);
+    lower.retain(|(i, j, _)| j <= i);
+    match least_shift(n, &lower, norm, slack) {
+        low if low > slack => Err(CoarsenError::Unstable { low: -low / 10.0 }),
+        _ => Ok(Stability::Definite),
+    }
+}
+
+/// The eigenvalues of the operator as it is, K not symmetric: of M⁻¹K with the masses of the points (volumes, where points without
+/// mass are among them).
+///
+/// # Errors
+/// A real part is below `−slack` of the largest magnitude.
+pub(super) fn stable<const D: usize>(
+    coupling: &Coupling<D>,
+    body: &LinearBody<D>,
+    slack: f64,
+) -> Result<Stability, CoarsenError> {
+    let n = D * coupling.rows.len();
+    if n > DEFINITE_LIMIT {
+        return Ok(Stability::Unknown);
+    }
+    let (entries, norm) = entries(coupling);
+    if n > EIGEN_LIMIT {
+        // x*Kx = λ x*Mx: what the symmetric part does to an eigenvector is the real part
+        let half = |(i, j, v): &(usize, usize, f64)| match i == j {
+            true => (*i, *j, *v),
+            false => (*i.max(j), *i.min(j), 0.5 * v),
+        };
+        let lower: Vec<_> = entries.iter().map(half).collect();
+        return Ok(match least_shift(n, &lower, norm, slack) > slack {
+            true => Stability::Unknown,
+            false => Stability::Positive,
+        });
+    }
+    let massive = body.density.iter().all(|rho| *rho > 0.0);
+    let mass = |i: usize| match massive {
+        true => body.volume[i] * body.density[i],
+        false => body.volume[i],
+    };
+    let mut dense = vec![0.0; n * n];
+    for (i, j, v) in entries {
+        dense[i * n + j] += v / mass(i / D);
+    }
+    let Some(values) = eigenvalues(n, |i, j| dense[i * n + j]) else {
+        return Ok(Stability::Unknown);
+    };
+    let size = |z: &[f64; 2]| z[0].hypot(z[1]);
+    let most = values.iter().map(size).fold(0.0, f64::max);
+    let low = values.iter().map(|z| z[0]).fold(0.0, f64::min);
+    if low < -slack * most {
+        return Err(CoarsenError::Repelled { low: low / most });
+    }
+    // |Im √λ| = √((|λ| − Re λ)/2); what is 0 but for round-off has no root
+    let growth = (values.iter().filter(|z| size(z) > slack * most))
+        .map(|z| (0.5 * (size(z) - z[0]).max(0.0)).sqrt())
+        .fold(0.0, f64::max);
+    Ok(Stability::Stable {
+        growth: match growth > NO_GROWTH * most.sqrt() {
+            true if massive => growth,
+            _ => 0.0,
+        },
+    })
 }
 
 /// `Σ_ij V_i C_ij[a][b] ξ_c ξ_d`, `[a][c][b][d]`: four times the energy of affine displacements.

@@ -7,7 +7,7 @@
 //! under translation and rotation, and errors of shapes enter its energies squared.
 
 use super::ball::{Beyond, Scratch};
-use super::balls::{Task, Work};
+use super::balls::{Eliminated, Task};
 use super::block::{Block, add_product, largest, scaled, transposed, unit, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
@@ -22,7 +22,7 @@ pub(super) struct Shapes<const D: usize> {
 pub(super) fn energy<const D: usize>(
     task: &Task<D>,
     radius: f64,
-) -> Result<(Coupling<D>, Work), CoarsenError> {
+) -> Result<Eliminated<D>, CoarsenError> {
     let balls = task.balls(radius, Beyond::Held)?;
     let mut rows: Vec<Vec<(u32, Block<D>)>> = vec![vec![]; task.body.points()];
     let mut scratch = Scratch::new(task.body.points());
@@ -42,8 +42,19 @@ pub(super) fn energy<const D: usize>(
             carry_rigid_motions(task, p, radius, row);
         }
     });
+    // the work of a force on p is that of Sᵀ times it
+    let pass = (rows.iter().zip(task.loaded))
+        .map(|(row, loaded)| match loaded {
+            true => row.iter().map(|(k, s)| (*k, transposed(s))).collect(),
+            false => vec![],
+        })
+        .collect();
     let shapes = Shapes { rows };
-    Ok((galerkin(task, &shapes), balls.work))
+    Ok(Eliminated {
+        coupling: galerkin(task, &shapes),
+        work: balls.work,
+        pass,
+    })
 }
 
 /// Rigid motions about a point at `xi` from it: translations, then spins in the planes of two axes (over `length`).

@@ -44,6 +44,14 @@ pub enum CoarsenError {
     )]
     Indefinite { point: usize, radius: f64 },
     #[error(
+        "the equations of the removed points of the ball of radius {radius} about point {point} are singular: some motion of them meets no force; use the energy scheme, a larger radius or the Schur complement, or retain more points"
+    )]
+    Singular { point: usize, radius: f64 },
+    #[error(
+        "the factors of the {unknowns} equations of the ball about point {point} do not fit into memory: use a smaller radius or the energy scheme"
+    )]
+    BallTooLarge { point: usize, unknowns: usize },
+    #[error(
         "the removed points have no stable equilibrium (indefinite or singular operator): the body below is unstable, or a removed point is held by too few bonds; retain such points or repair the body below"
     )]
     IndefiniteBody,
@@ -60,6 +68,10 @@ pub enum CoarsenError {
     )]
     Unstable { low: f64 },
     #[error(
+        "the coarse body, whose rows are not symmetric, has unstable modes: an eigenvalue of its stiffness over its mass has a real part of {low:.1e} of its largest; use the energy scheme, a larger radius, or the Schur complement"
+    )]
+    Repelled { low: f64 },
+    #[error(
         "action is not reaction in the body below (by {0:.1e} of its largest micromodulus), and the energy scheme needs an energy: use the row scheme, or symmetrise the body below"
     )]
     Unsymmetric(f64),
@@ -72,6 +84,14 @@ pub enum CoarsenError {
     )]
     TooLarge {
         removed: usize,
+        retained: usize,
+        limit: usize,
+    },
+    #[error(
+        "the exact elimination passes {loads} components of loads on to {retained} unknowns, more than the {limit} numbers it may hold: coarsen by balls, or load fewer points"
+    )]
+    LoadsTooLarge {
+        loads: usize,
         retained: usize,
         limit: usize,
     },

@@ -83,6 +83,7 @@ impl<const D: usize> LatticeBlock<D> {
             start: vec![0],
             partner: vec![],
             block: vec![],
+            carriers: None,
         };
         let offsets = offsets(self.reach);
         for i in &places {

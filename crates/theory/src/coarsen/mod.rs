@@ -5,10 +5,15 @@
 //! `V_i C¹_iq = K_iq + Σ_e K_ie S_eq`. Over all removed points at once this is the Schur complement, which is exact and full. In balls
 //! about each retained point it is cheap and sparse, by one of two schemes:
 //!
-//! - [`Scheme::Rows`], as published: each coarse row is that of a free ball. In inhomogeneous bodies it is not symmetric (erratum 5)
-//!   and is symmetrised here unless told otherwise; for state-based laws it breaks rotations (erratum 8).
+//! - [`Scheme::Rows`], as published: each coarse row is that of a free ball. In inhomogeneous bodies it is not symmetric (erratum 5),
+//!   and stays so unless told otherwise: rows of central bonds meet no force under rotations as they are, and do when they are
+//!   symmetrised. For state-based laws they break rotations (erratum 8).
 //! - [`Scheme::Energy`]: the shapes S are cut off by balls, and the coarse energy is that of the shapes. Symmetric, positive
 //!   semidefinite and free of force under rigid motions for any law; errors of shapes enter squared.
+//!
+//! Loads on removed points are condensed with them where the body says who carries loads ([`peridyne::statics::Carriers`]):
+//! `b_q + Σ_e K_qe K_ee⁻¹ b_e`. Without, a load acts on the retained points alone, as in the paper, which has none on removed ones
+//! (5); with [`Volume::Kept`] the same force density is then the same force at every level.
 //!
 //! The balls' radius can be chosen by the effective modulus: [`Radius::Tolerance`]. Interior points of lattices share one ball.
 //! The result is a [`LinearBody`] again: it runs, and it can be coarsened further.
@@ -35,15 +40,18 @@ mod sublattice;
 mod tests;
 
 pub use balls::Work;
-pub use check::DEFINITE_LIMIT;
+pub use check::{DEFINITE_LIMIT, EIGEN_LIMIT, Stability};
 pub use error::CoarsenError;
 pub use lump::{Lumping, Volume};
 pub use schur::SCHUR_LIMIT;
 pub use select::Selection;
 
-use balls::Task;
+use balls::{Eliminated, Task};
 use coupling::Coupling;
 use peridyne::statics::{LinearBody, Soundness};
+
+/// Asymmetry of a body that still has an energy: the round-off of levels below.
+const ENERGY: f64 = 1e-9;
 
 /// How coarse micromoduli are found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -70,7 +78,7 @@ pub struct Options {
     pub scheme: Scheme,
     pub radius: Radius,
     pub volume: Volume,
-    /// Makes action reaction where the rows do not: `K_ij ← ½ (K_ij + K_jiᵀ)`.
+    /// Makes action reaction where the rows do not: `K_ij ← ½ (K_ij + K_jiᵀ)`. Rotations of such a body may meet forces.
     pub symmetrise: bool,
     /// Largest force under a rigid rotation that is accepted, as [`Soundness::rotation`], beyond that of the body below.
     pub rotation: f64,
@@ -82,7 +90,7 @@ impl Default for Options {
             scheme: Scheme::default(),
             radius: Radius::Tolerance(0.01),
             volume: Volume::default(),
-            symmetrise: true,
+            symmetrise: false,
             rotation: 1e-3,
         }
     }
@@ -113,12 +121,16 @@ pub struct Report {
     pub work: Work,
     /// Of the body below.
     pub below: Soundness,
-    /// [`Soundness::asymmetry`] before it was repaired.
+    /// [`Soundness::asymmetry`] as it came, before it was repaired if that was asked for.
     pub asymmetry: f64,
     /// Of the coarse body.
     pub soundness: Soundness,
-    /// Were all energies found to be at least 0, but for what a rotation meets? `false`: more than [`DEFINITE_LIMIT`] unknowns, not looked at.
+    /// Of the operator as it is, symmetric or not, but for what a rotation meets.
+    pub stability: Stability,
+    /// Were all energies found to be at least 0? `false`: action is not reaction, or more than [`DEFINITE_LIMIT`] unknowns.
     pub definite: bool,
+    /// The largest part of a force on a removed point that is lost on its way to the retained ones; `None`: loads are not condensed.
+    pub loss: Option<f64>,
     pub lumping: Lumping,
     /// Mass of the body below and of the coarse one.
     pub mass: [f64; 2],
@@ -148,20 +160,25 @@ pub fn coarsen<const D: usize>(
     let parts = check::parts(body.points(), check::bonds(body));
     check::represented(&parts, &marked)?;
     let below = body.soundness();
+    let loaded = match &body.carriers {
+        Some(carriers) => carriers.reached(body.points()),
+        None => vec![false; body.points()],
+    };
     let task = Task {
         body,
         retained: &retained,
         marked: &marked,
         range: body.range(),
-        // round-off of levels below
-        symmetric: below.asymmetry < 1e-9,
+        asymmetry: below.asymmetry,
+        loaded: &loaded,
     };
     let plan = Plan {
         task,
         options,
         lumped: lump::lump(body, &retained, &marked, spacing(body, retained.len())),
     };
-    let (made, radius, convergence) = plan.converged()?;
+    let (mut made, radius, convergence) = plan.converged()?;
+    made.body.carriers = body.carriers.clone().map(|c| c.passed(&made.pass));
     check::connected(&made.coupling, &retained, &parts, radius)?;
     let soundness = made.body.soundness();
     let allowed = options.rotation + 2.0 * below.rotation;
@@ -180,7 +197,10 @@ pub fn coarsen<const D: usize>(
     }
     // where a rotation meets forces, its energy may be as much below 0
     let slack = soundness.rotation.max(1e-10);
-    let definite = check::definite(&made.coupling.symmetrised(), slack)?;
+    let stability = match soundness.asymmetry < ENERGY {
+        true => check::definite(&made.coupling.symmetrised(), slack)?,
+        false => check::stable(&made.coupling, &made.body, slack)?,
+    };
     let (mass, centre) = mass_and_centre(body);
     let (coarse, moved) = mass_and_centre(&made.body);
     let shift = (0..D).filter(|a| body.period[*a].is_none());
@@ -192,7 +212,9 @@ pub fn coarsen<const D: usize>(
         below,
         asymmetry: made.asymmetry,
         soundness,
-        definite,
+        stability,
+        definite: stability == Stability::Definite,
+        loss: made.body.carriers.as_ref().map(|c| c.loss()),
         lumping: plan.lumped.lumping,
         mass: [mass, coarse],
         shift: shift.sqrt(),
@@ -273,6 +295,7 @@ struct Made<const D: usize> {
     body: LinearBody<D>,
     asymmetry: f64,
     work: Work,
+    pass: Vec<Vec<(u32, block::Block<D>)>>,
 }
 
 impl<const D: usize> Plan<'_, D> {
@@ -288,13 +311,15 @@ impl<const D: usize> Plan<'_, D> {
                 range: task.range,
             });
         }
-        let (coupling, work) = match self.options.scheme {
+        let Eliminated {
+            coupling,
+            work,
+            pass,
+        } = match self.options.scheme {
             Scheme::Rows => rows::rows(task, radius)?,
             Scheme::Schur => schur::schur(task)?,
-            Scheme::Energy if task.symmetric => energy::energy(task, radius)?,
-            Scheme::Energy => {
-                return Err(CoarsenError::Unsymmetric(task.body.soundness().asymmetry));
-            }
+            Scheme::Energy if task.asymmetry < ENERGY => energy::energy(task, radius)?,
+            Scheme::Energy => return Err(CoarsenError::Unsymmetric(task.asymmetry)),
         };
         let volume = match self.options.volume {
             Volume::Lumped => self.lumped.volume.clone(),
@@ -305,7 +330,10 @@ impl<const D: usize> Plan<'_, D> {
         let body =
             |c: &Coupling<D>| c.body(task.body, task.retained, volume.clone(), &self.lumped.mass);
         let asymmetry = body(&coupling).soundness().asymmetry;
-        let coupling = match self.options.symmetrise && asymmetry > 0.0 {
+        // an elimination of a symmetric body is symmetric but for round-off
+        let round_off =
+            asymmetry < ENERGY && task.asymmetry < ENERGY && self.options.scheme != Scheme::Rows;
+        let coupling = match asymmetry > 0.0 && (self.options.symmetrise || round_off) {
             true => coupling.symmetrised(),
             false => coupling,
         };
@@ -315,6 +343,7 @@ impl<const D: usize> Plan<'_, D> {
             body,
             asymmetry,
             work,
+            pass,
         })
     }
 
@@ -362,7 +391,11 @@ impl<const D: usize> Plan<'_, D> {
         loop {
             let made = match self.make(radius) {
                 // a larger ball may do
-                Err(e @ (CoarsenError::Uncovered { .. } | CoarsenError::Indefinite { .. })) => {
+                Err(
+                    e @ (CoarsenError::Uncovered { .. }
+                    | CoarsenError::Indefinite { .. }
+                    | CoarsenError::Singular { .. }),
+                ) => {
                     if radius >= span {
                         return Err(e);
                     }

@@ -1,24 +1,54 @@
 //! Row by row, as published: each coarse row is that of the free ball about its point (silling2010, (3)–(11)).
+//!
+//! A load b on the removed points of a ball adds `xᵀ b` to its row, x the adjoint displacements: the condensed load. Balls that cut
+//! bonds give back less than they get, so that each point's shares are scaled to carry all of its force.
 
 use super::ball::Beyond;
-use super::balls::{Task, Work};
+use super::balls::{Eliminated, Task};
+use super::block::{Block, add, inverse, product, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
 
 pub(super) fn rows<const D: usize>(
     task: &Task<D>,
     radius: f64,
-) -> Result<(Coupling<D>, Work), CoarsenError> {
+) -> Result<Eliminated<D>, CoarsenError> {
     let balls = task.balls(radius, Beyond::Free)?;
     let rows = task.each(|scratch, k| {
         let walk = task.walk(k, radius, scratch);
-        let row = &balls.solved[balls.class[k]].row;
+        let solved = &balls.solved[balls.class[k]];
         // the centre itself never acts
-        walk.rim[1..]
-            .iter()
-            .copied()
-            .zip(row[1..].iter().copied())
-            .collect()
+        let row: Vec<(u32, Block<D>)> = (walk.rim[1..].iter().copied())
+            .zip(solved.row[1..].iter().copied())
+            .collect();
+        let loads: Vec<(u32, Block<D>)> = (walk.removed.iter().copied())
+            .zip(solved.adjoint.iter().copied())
+            .filter(|(e, _)| task.loaded[*e as usize])
+            .collect();
+        (row, loads)
     });
-    Ok((Coupling::new(task.retained, rows), balls.work))
+    let mut pass = task.kept();
+    let mut coarse = vec![];
+    for (k, (row, loads)) in (0..).zip(rows) {
+        coarse.push(row);
+        for (e, x) in loads {
+            pass[e as usize].push((k, x));
+        }
+    }
+    for (e, row) in pass.iter_mut().enumerate() {
+        if !task.loaded[e] || task.marked[e] {
+            continue;
+        }
+        let mut sum = zero();
+        row.iter().for_each(|(_, x)| add(&mut sum, x));
+        let all = inverse(&sum).ok_or(CoarsenError::Uncovered { point: e, radius })?;
+        for (_, x) in row {
+            *x = product(x, &all);
+        }
+    }
+    Ok(Eliminated {
+        coupling: Coupling::new(task.retained, coarse),
+        work: balls.work,
+        pass,
+    })
 }

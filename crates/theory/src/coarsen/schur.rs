@@ -1,6 +1,7 @@
 //! The exact elimination of all removed points at once: the reference for every ball and every number of levels.
 
-use super::balls::{Task, Work};
+use super::ball::SYMMETRIC;
+use super::balls::{Eliminated, Task, Work};
 use super::block::{Block, add_product, scaled, transposed, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
@@ -10,12 +11,21 @@ use rayon::prelude::*;
 /// Numbers that the exact elimination may hold: the coarse stiffness is full.
 pub const SCHUR_LIMIT: usize = 60_000_000;
 
-pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<(Coupling<D>, Work), CoarsenError> {
+pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, CoarsenError> {
     let (body, retained) = (task.body, task.retained);
     let (n, m) = (D * (body.points() - retained.len()), D * retained.len());
     if m * m > SCHUR_LIMIT {
         return Err(CoarsenError::TooLarge {
             removed: n,
+            retained: m,
+            limit: SCHUR_LIMIT,
+        });
+    }
+    let loaded = |e: &usize| task.loaded[*e] && !task.marked[*e];
+    let loads = D * (0..body.points()).filter(loaded).count();
+    if loads * m > SCHUR_LIMIT {
+        return Err(CoarsenError::LoadsTooLarge {
+            loads,
             retained: m,
             limit: SCHUR_LIMIT,
         });
@@ -68,12 +78,54 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<(Coupling<D>, Work
             rows[i].push((q as u32, block));
         }
     }
+    let mut pass = task.kept();
+    if let Some(factors) = &factors {
+        let passed: Vec<Vec<(u32, Block<D>)>> = (0..body.points())
+            .into_par_iter()
+            .map(|e| match loaded(&e) {
+                true => reaching(task, factors, e),
+                false => vec![],
+            })
+            .collect();
+        for (row, passed) in pass.iter_mut().zip(passed) {
+            row.extend(passed);
+        }
+    }
     let work = Work {
         solved: 1,
+        direct: usize::from(task.asymmetry > SYMMETRIC),
         points: body.points(),
         ..Work::default()
     };
-    Ok((Coupling { rows }, work))
+    Ok(Eliminated {
+        coupling: Coupling { rows },
+        work,
+        pass,
+    })
+}
+
+/// Forces on retained points, which are held, when forces of 1 act on point e.
+fn reaching<const D: usize>(task: &Task<D>, factors: &Direct<D>, e: usize) -> Vec<(u32, Block<D>)> {
+    let body = task.body;
+    let mut displaced = vec![zero::<D>(); body.points()];
+    for b in 0..D {
+        let mut force = vec![[0.0; D]; body.points()];
+        force[e][b] = 1.0;
+        for (block, u) in displaced.iter_mut().zip(factors.solve(&force)) {
+            for a in 0..D {
+                block[a][b] = u[a];
+            }
+        }
+    }
+    let passed = (0..).zip(task.retained).map(|(k, &i)| {
+        let (partners, blocks) = body.row(i as usize);
+        let mut sum = zero();
+        for (j, c) in partners.iter().zip(blocks) {
+            add_product(&mut sum, c, &displaced[*j as usize]);
+        }
+        (k, scaled(body.volume[i as usize], &sum))
+    });
+    passed.collect()
 }
 
 /// Forces on removed points when component b of point q is displaced by 1.
@@ -85,7 +137,7 @@ fn forces<const D: usize>(task: &Task<D>, q: u32, b: usize) -> Vec<[f64; D]> {
             force[e][a] += k[a][b];
         }
     };
-    if task.symmetric {
+    if task.asymmetry < SYMMETRIC {
         let (partners, blocks) = body.row(q as usize);
         for (j, c) in partners.iter().zip(blocks) {
             take(

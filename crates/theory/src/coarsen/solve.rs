@@ -1,21 +1,28 @@
-//! The adjoint system of a ball: conjugate gradients where action is reaction, sparse LU else.
+//! The adjoint system `Mᵀ x = c` of a ball: conjugate gradients where M is symmetric, sparse LU of Mᵀ else.
 //!
+//! M is not symmetric where action is not reaction, and where a free ball cuts a state-based body: the blocks of M on the
+//! diagonal are sums of the `C_zp` within the ball, which are symmetric for whole families only.
 //! Removed points are held by retained ones nearby, so the condition number is that of one coarse cell, whatever the ball:
 //! a few dozen products replace a factorisation, which in three dimensions fills in.
 
 use super::ball::Ball;
-use super::block::{Block, zero};
+use super::block::{Block, add, add_product, largest, scaled, zero};
 use super::error::CoarsenError;
-use peridyne_algebra::Factors;
+use peridyne_algebra::{FactorError, Factors};
 
 /// Of the largest component of the load, preconditioned.
 const RESIDUAL: f64 = 1e-14;
+
+/// Relative residual of a direct solution above which the matrix is singular to round-off.
+const SOLVED: f64 = 1e-9;
 
 /// What a solution took.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Effort {
     pub iterations: usize,
     pub flops: f64,
+    /// By LU?
+    pub direct: bool,
 }
 
 /// `(Σ_e x_a·y_a)` per side a.
@@ -31,7 +38,7 @@ fn dots<const D: usize>(x: &[Block<D>], y: &[Block<D>]) -> [f64; D] {
     sum
 }
 
-/// `y = M x` for all sides at once.
+/// `y = M x` for all sides at once; M is symmetric.
 fn apply<const D: usize>(ball: &Ball<D>, x: &[Block<D>], y: &mut [Block<D>]) {
     let n = ball.removed() as u32;
     for (e, y) in y.iter_mut().enumerate() {
@@ -140,18 +147,33 @@ pub(super) fn conjugate_gradients<const D: usize>(
     Ok((x, effort))
 }
 
-/// Sparse LU of `Mᵀ`.
+/// `y = Mᵀ x` for all sides at once.
+fn apply_transposed<const D: usize>(ball: &Ball<D>, x: &[Block<D>], y: &mut [Block<D>]) {
+    let n = ball.removed();
+    y.fill(zero());
+    for (e, x) in x.iter().enumerate() {
+        add_product(&mut y[e], x, &ball.diagonal[e]);
+        let (partners, blocks) = ball.row(e);
+        for (&p, k) in partners.iter().zip(blocks) {
+            if (p as usize) < n {
+                add_product(&mut y[p as usize], &scaled(-1.0, x), k);
+            }
+        }
+    }
+}
+
+/// Sparse LU of `Mᵀ`, refined once.
 pub(super) fn direct<const D: usize>(
     ball: &Ball<D>,
     load: &[Block<D>],
 ) -> Result<(Vec<Block<D>>, Effort), CoarsenError> {
     let n = ball.removed();
-    let indefinite = CoarsenError::Indefinite {
-        point: ball.walk.rim[0] as usize,
-        radius: ball.radius,
+    let effort = Effort {
+        direct: true,
+        ..Effort::default()
     };
     if n == 0 {
-        return Ok((vec![], Effort::default()));
+        return Ok((vec![], effort));
     }
     let mut entries = vec![];
     for e in 0..n {
@@ -168,24 +190,46 @@ pub(super) fn direct<const D: usize>(
             }
         }
     }
-    let Ok(factors) = Factors::general(D * n, &entries) else {
-        return Err(indefinite);
+    let singular = || CoarsenError::Singular {
+        point: ball.walk.rim[0] as usize,
+        radius: ball.radius,
     };
-    let mut x = vec![[[0.0; D]; D]; n];
-    for a in 0..D {
-        let mut side: Vec<f64> = (0..D * n).map(|k| load[k / D][a][k % D]).collect();
-        factors.solve(&mut side);
-        for (k, value) in side.iter().enumerate() {
-            x[k / D][a][k % D] = *value;
+    let factors = Factors::general(D * n, &entries).map_err(|e| match e {
+        FactorError::Singular | FactorError::NotPositive { .. } => singular(),
+        FactorError::TooLarge => CoarsenError::BallTooLarge {
+            point: ball.walk.rim[0] as usize,
+            unknowns: D * n,
+        },
+    })?;
+    let solve = |load: &[Block<D>]| {
+        let mut x = vec![zero::<D>(); n];
+        for a in 0..D {
+            let mut side: Vec<f64> = (0..D * n).map(|k| load[k / D][a][k % D]).collect();
+            factors.solve(&mut side);
+            for (k, value) in side.iter().enumerate() {
+                x[k / D][a][k % D] = *value;
+            }
         }
+        x
+    };
+    let mut product = vec![zero(); n];
+    let mut left = |x: &[Block<D>]| -> Vec<Block<D>> {
+        apply_transposed(ball, x, &mut product);
+        let mut r = load.to_vec();
+        for (r, p) in r.iter_mut().zip(&product) {
+            add(r, &scaled(-1.0, p));
+        }
+        r
+    };
+    let size = |x: &[Block<D>]| x.iter().map(largest).fold(0.0, f64::max);
+    let mut x = solve(load);
+    let correction = solve(&left(&x));
+    for (x, c) in x.iter_mut().zip(&correction) {
+        add(x, c);
     }
-    if !x
-        .as_flattened()
-        .as_flattened()
-        .iter()
-        .all(|x| x.is_finite())
-    {
-        return Err(indefinite);
+    // not a number is no solution
+    if size(load) > 0.0 && !(size(&left(&x)) <= SOLVED * size(load)) || !size(&x).is_finite() {
+        return Err(singular());
     }
-    Ok((x, Effort::default()))
+    Ok((x, effort))
 }

@@ -1,5 +1,7 @@
 mod bodies;
 mod errors;
 mod exactness;
+mod loads;
+mod published;
 mod schemes;
 mod selection;

@@ -13,7 +13,7 @@ use crate::interaction::Sweep;
 use crate::run::Simulation;
 use crate::run::recipe::{Laws, Recipe};
 use crate::space::Point;
-use crate::spec::{Method, Statics};
+use crate::spec::{Method, Solver, Statics};
 use crate::statics::modes::{self, Mode};
 use crate::statics::{self, Direct, LinearBody, SolveError, Solved, Support};
 
@@ -25,6 +25,8 @@ pub(super) struct StaticState<const D: usize> {
     pub options: Statics,
     /// The linear body about the reference and its factors, as long as no bond broke.
     factors: Option<(LinearBody<D>, Direct<D>)>,
+    /// Of the operator about the reference, once looked at.
+    asymmetry: Option<f64>,
     /// Of the last increment.
     pub solved: Solved,
 }
@@ -34,6 +36,7 @@ impl<const D: usize> StaticState<D> {
         StaticState {
             options,
             factors: None,
+            asymmetry: None,
             solved: Solved::default(),
         }
     }
@@ -123,6 +126,29 @@ impl<const D: usize> Model<D> {
                 "contact and indenters have no tangent here",
             )
             .help("write method = \"relaxation\", or contact = false"));
+        }
+        let asymmetry = self.interaction.asymmetry();
+        if asymmetry > statics::SYMMETRIC {
+            let wrong = match (options.solver, options.method) {
+                (Solver::ConjugateGradients, _) => Some((
+                    "statics.solver",
+                    "conjugate gradients need a symmetric body",
+                    "write solver = \"direct\"",
+                )),
+                (_, Method::Relaxation) => Some((
+                    "statics.method",
+                    "relaxation seeks the least energy",
+                    "write method = \"linear\"",
+                )),
+                (Solver::Auto | Solver::Direct, Method::Linear | Method::Newton) => None,
+            };
+            if let Some((path, wrong, help)) = wrong {
+                return Err(BuildError::new(
+                    path,
+                    format!("{wrong}, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
+                )
+                .help(help));
+            }
         }
         Ok(())
     }
@@ -218,6 +244,7 @@ impl<const D: usize> Model<D> {
                 return Ok(total);
             }
             state.factors = None;
+            state.asymmetry = None;
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
     }

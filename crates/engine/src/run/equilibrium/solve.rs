@@ -62,6 +62,9 @@ impl<const D: usize> Model<D> {
     }
 
     pub(super) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
+        if self.interaction.asymmetry() > statics::SYMMETRIC {
+            return true;
+        }
         match options.solver {
             Solver::Direct => true,
             Solver::ConjugateGradients => false,
@@ -142,6 +145,12 @@ impl<const D: usize> Model<D> {
         let goal = Self::goal(state.options);
         if self.at_peace() {
             let mut operator = Swept::new(&self.body, self.interaction.as_mut());
+            let asymmetry = *state
+                .asymmetry
+                .get_or_insert_with(|| statics::operator::asymmetry(&mut operator, support));
+            if asymmetry > statics::SYMMETRIC {
+                return Err(SolveError::NotSymmetric { asymmetry });
+            }
             cg::solve(&mut operator, support, b, x, goal)
         } else {
             let body = self.reference_body();
