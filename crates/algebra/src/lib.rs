@@ -1,7 +1,8 @@
 //! Factors of sparse and banded matrices and eigenvalues of small ones: faer behind a small face. A crate of its own, because faer is
-//! generic and slow to compile: here it is compiled once.
+//! generic and slow to compile: here it is compiled once. The same bits for any number of threads.
 
 pub mod banded;
+mod plan;
 
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::linalg::solvers::Solve;
@@ -44,6 +45,7 @@ impl Factors {
     /// # Errors
     /// A pivot that is not positive, by its row (in an order that may be the solver's own); no memory.
     pub fn symmetric(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
+        plan::fix();
         let factors = matrix(n, entries)?.sp_cholesky(Side::Lower);
         factors
             .map(|f| Factors::Symmetric(Box::new(f)))
@@ -60,6 +62,7 @@ impl Factors {
     /// # Errors
     /// It is singular; no memory.
     pub fn general(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
+        plan::fix();
         let factors = matrix(n, entries)?.sp_lu();
         factors
             .map(|f| Factors::General(Box::new(f)))
@@ -68,6 +71,7 @@ impl Factors {
 
     /// The solution takes the place of the right-hand side.
     pub fn solve(&self, rhs: &mut [f64]) {
+        plan::fix();
         let column = Mat::from_fn(rhs.len(), 1, |i, _| rhs[i]);
         let x = match self {
             Factors::Symmetric(f) => f.solve(&column),
@@ -85,6 +89,7 @@ pub fn symmetric_eigen(
     n: usize,
     entry: impl Fn(usize, usize) -> f64,
 ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    plan::fix();
     let dense = Mat::from_fn(n, n, |i, j| if i >= j { entry(i, j) } else { 0.0 });
     let eigen = dense.self_adjoint_eigen(Side::Lower).ok()?;
     let values = (0..n).map(|k| eigen.S()[k]).collect();
@@ -128,6 +133,47 @@ mod tests {
         }
         let refused = Factors::symmetric(2, &[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)]);
         assert!(matches!(refused, Err(FactorError::NotPositive { .. })));
+    }
+
+    /// Second differences in a square of `n` by `n`, so stiff from place to place that every sum rounds; unsymmetric with `skew`.
+    fn sheet(n: usize, skew: f64) -> Vec<(usize, usize, f64)> {
+        let mut entries = vec![];
+        let stiff = |i: usize| 1.0 + 0.3 * (i as f64 * 0.618).sin();
+        for i in 0..n * n {
+            entries.push((i, i, 12.0 * stiff(i)));
+            for j in [i + 1, i + 2, i + n, i + n + 1] {
+                if j < n * n {
+                    entries.push((j, i, -0.7 * stiff(i)));
+                    entries.push((i, j, (skew - 0.7) * stiff(i)));
+                }
+            }
+        }
+        entries
+    }
+
+    #[test]
+    fn the_same_bits_on_any_number_of_threads() {
+        let n = 70;
+        let rhs: Vec<f64> = (0..n * n).map(|i| (i as f64).cos()).collect();
+        let all = sheet(n, 0.2);
+        let lower: Vec<_> = sheet(n, 0.0).into_iter().filter(|e| e.1 <= e.0).collect();
+        let entry = |i: usize, j: usize| ((i * 31 + j * 17) as f64).sin();
+        let bits = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| {
+                let (mut x, mut y) = (rhs.clone(), rhs.clone());
+                Factors::symmetric(n * n, &lower).unwrap().solve(&mut x);
+                Factors::general(n * n, &all).unwrap().solve(&mut y);
+                let (values, vectors) = symmetric_eigen(300, entry).unwrap();
+                let numbers = x.iter().chain(&y).chain(&values);
+                let numbers = numbers.chain(vectors.iter().flatten());
+                numbers.map(|x| x.to_bits()).collect::<Vec<_>>()
+            })
+        };
+        let one = bits(1);
+        for threads in [2, 3, 4, 7] {
+            assert!(bits(threads) == one, "{threads} threads");
+        }
     }
 
     #[test]
