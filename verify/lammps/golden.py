@@ -27,13 +27,16 @@ def skin(text, factor):
 
 def sort_bin(text):
     """A bin of 1.3 lattice constants for sorting, 1 step apart: particles change their order in memory."""
-    return "0.0065" if "0.005\n" in text else "0.00065"
+    return repr(1.3 * lattice(text))
 
 
 def spacing(name):
     """The lattice constant of a case: the number of its last `lattice` line, or of the variable named there."""
     with open(os.path.join(CASES, "in." + name)) as file:
-        text = file.read()
+        return lattice(file.read())
+
+
+def lattice(text):
     word = re.findall(r"(?m)^lattice\s+\S+\s+(\S+)", text)[-1]
     if "$" in word:
         word = re.search(r"(?m)^variable\s+" + word.strip("${}") + r"\s+equal\s+(\S+)", text)[1]
@@ -155,6 +158,8 @@ def check(name, path):
     for label, change, extra in VARIANTS:
         if label == "omp 2" and "_lps" in name:
             continue  # peri/lps/omp computes no bond forces at all
+        if label.startswith("skin") and name.startswith("lost_"):
+            continue  # which atoms are lost depends on it
         frames, _, _ = execute(name, path, change, extra)
         other = golden(frames)
         place = damage = 0.0

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::Deck;
+use std::io::Read;
 
 /// Is this file a deck, as opposed to a LAMMPS script?
 pub fn is_deck(input: &Input) -> bool {
@@ -13,6 +14,9 @@ pub fn is_deck(input: &Input) -> bool {
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
+
+/// Bytes of a deck or a script.
+const LARGEST: u64 = 16 << 20;
 
 /// Files that are no decks and no scripts, by how they begin: what they are, and whether a body can be made of them.
 const OTHERS: [(&[u8], &str, bool); 7] = [
@@ -51,7 +55,17 @@ fn refuse_others(name: &str, bytes: &[u8]) -> Result<(), Failure> {
 
 pub fn text(input: &Input) -> Result<String, Failure> {
     let name = input.file.display();
-    let bytes = std::fs::read(&input.file).map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    let mut bytes = Vec::new();
+    // a device has no end
+    std::fs::File::open(&input.file)
+        .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes))
+        .map_err(|e| Failure::input(format!("{name}: {e}")))?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(Failure::input(format!(
+            "{name} is larger than {} MiB, which no deck or script is",
+            LARGEST >> 20
+        )));
+    }
     refuse_others(&name.to_string(), &bytes)?;
     let table =
         |line: &[u8]| [&b"[body]"[..], b"[material]", b"[run]"].contains(&line.trim_ascii());

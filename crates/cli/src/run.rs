@@ -37,7 +37,8 @@ pub struct RunArguments {
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if !deck::is_deck(&arguments.input) {
         return with_threads(arguments.threads, |threads| {
-            script::run(&arguments.input, arguments.out.as_deref(), threads)
+            let out = arguments.out.as_deref();
+            script::run(&arguments.input, out, arguments.allow_outside, threads)
         });
     }
     let deck = deck::read(&arguments.input)?;

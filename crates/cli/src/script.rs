@@ -17,14 +17,14 @@ use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-/// The model of a script as it stands at its first `run`, which does not take place. Files that the script writes before
-/// are lost.
+/// The model of a script as it stands at its first `run`, which does not take place. Nothing is written.
 pub fn prepare(input: &Input) -> Result<(Prepared, Setup), Failure> {
     let text = deck::text(input)?;
     let name = input.file.display().to_string();
-    let lost =
-        tempfile::tempdir().map_err(|e| Failure::Run(format!("no temporary folder: {e}")))?;
-    let options = options(input, lost.path())?;
+    let options = Options {
+        dry: true,
+        ..options(input, Path::new(""))?
+    };
     let mut host = Inspector {
         host: ModelHost {
             simd: deck::simd(input)?,
@@ -83,16 +83,25 @@ fn options(input: &Input, output: &Path) -> Result<Options, Failure> {
     Ok(Options {
         variables: input.var.iter().map(variable).collect(),
         output: output.to_path_buf(),
+        ..Options::default()
     })
 }
 
 /// Run a script. Files that it names go to `out`, or to the current folder as with LAMMPS; the report, the picture
 /// and the last state go to `out`, or to `out/<name of the script>`.
-pub fn run(input: &Input, out: Option<&Path>, threads: usize) -> Result<(), Failure> {
+pub fn run(
+    input: &Input,
+    out: Option<&Path>,
+    allow_outside: bool,
+    threads: usize,
+) -> Result<(), Failure> {
     let text = deck::text(input)?;
     let name = input.file.display().to_string();
     let results = out.map_or_else(|| folder(&input.file), Path::to_path_buf);
-    let options = options(input, out.unwrap_or(Path::new("")))?;
+    let options = Options {
+        allow_outside,
+        ..options(input, out.unwrap_or(Path::new("")))?
+    };
     let mut host = Holder {
         host: ModelHost {
             simd: deck::simd(input)?,
@@ -167,12 +176,13 @@ fn finish(
         say("the script has no `run`: nothing was computed");
         return Ok(());
     };
+    let (length_unit, time_unit) = model.units().labels();
     let sim = model.simulation();
     let series_options = SeriesOptions {
         picture: Some(PictureOptions {
             title: info_title(name),
-            length_unit: "m".into(),
-            time_unit: "s".into(),
+            length_unit: length_unit.into(),
+            time_unit: time_unit.into(),
             ..PictureOptions::default()
         }),
         ..SeriesOptions::default()

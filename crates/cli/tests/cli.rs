@@ -498,3 +498,43 @@ fn laws_are_complete() {
         assert!(words.contains(&name), "{name} is not in\n{said}");
     }
 }
+
+#[test]
+fn scripts_write_where_they_may_and_checks_nowhere() {
+    let dir = TempDir::new().unwrap();
+    let script = |file: &str| {
+        format!(
+            "units si\nboundary f f f\natom_style peri\nlattice sc 0.5\nregion b block -4 4 -4 4 -4 4\ncreate_box 1 b\n\
+             region c block 0 2 0 2 0 2\ncreate_atoms 1 region c\npair_style peri/pmb\npair_coeff * * 1.0 1.6 0.5 0.25\n\
+             fix 1 all nve\nlog run.log\nprint hello file {file}\nwrite_data a.data\nrun 1\n"
+        )
+    };
+    let path = dir.path().join("in.writes");
+    let files = |folder: &Path| -> Vec<String> {
+        let names = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = names
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    };
+    std::fs::write(&path, script("hello.txt")).unwrap();
+    good(peridyne(&["check", path.to_str().unwrap()]));
+    assert_eq!(files(dir.path()), ["in.writes"]);
+    assert!(!Path::new("run.log").exists() && !Path::new("hello.txt").exists());
+
+    let out = dir.path().join("results");
+    good(run(&path, &out, &[]));
+    for name in ["hello.txt", "run.log", "a.data", "run.json"] {
+        assert!(out.join(name).exists(), "{name}: {:?}", files(&out));
+    }
+    let outside = TempDir::new().unwrap();
+    let target = outside.path().join("hello.txt");
+    std::fs::write(&path, script(target.to_str().unwrap())).unwrap();
+    let refused = run(&path, &out, &[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(errors(&refused).contains("lies outside the output folder"));
+    assert!(!target.exists());
+    good(run(&path, &out, &["--allow-outside"]));
+    assert!(target.exists());
+}

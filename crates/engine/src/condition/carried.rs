@@ -1,84 +1,71 @@
-//! A load on points of a finer body, passed on by the body that was condensed from it.
+//! Points that are carried: where they are at the end of a step, and how fast, is told from outside before it (LAMMPS's
+//! `fix move`). Components that are not told move as forces say.
 
-use super::Program;
-use crate::space::Point;
-use crate::statics::Carriers;
+use crate::body::Field;
 
-/// The points that carry a load, and what of their forces reaches each slot.
-#[derive(Debug, Clone)]
-pub struct Carried<const D: usize> {
-    points: Vec<Point>,
-    volume: Vec<f64>,
-    /// `[slots + 1]`
-    start: Vec<usize>,
-    /// Numbers of the points.
-    from: Vec<u32>,
-    block: Vec<[[f64; D]; D]>,
-    /// `[points]` forces of now.
-    force: Vec<[f64; D]>,
+/// Where a point is next on one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Carry {
+    /// Displacement at the end of the step.
+    pub displacement: f64,
+    /// Velocity there.
+    pub velocity: f64,
 }
 
-impl<const D: usize> Carried<D> {
-    /// Of some points of a finer body; also the ids of the points of the body that their forces reach, in order of which slots
-    /// are numbered here.
-    pub fn new(carriers: &Carriers<D>, members: &[u32]) -> (Carried<D>, Vec<u32>) {
-        let mut reached: Vec<(u32, u32, [[f64; D]; D])> = vec![];
-        for (n, p) in (0..).zip(members) {
-            let (targets, blocks) = carriers.row(*p as usize);
-            reached.extend(targets.iter().zip(blocks).map(|(q, t)| (*q, n, *t)));
-        }
-        reached.sort_by_key(|r| (r.0, r.1));
-        let (mut ids, mut start) = (vec![], vec![]);
-        for (k, r) in reached.iter().enumerate() {
-            if ids.last() != Some(&r.0) {
-                ids.push(r.0);
-                start.push(k);
-            }
-        }
-        start.push(reached.len());
-        let at = |p: &u32| {
-            let x = &carriers.position[*p as usize];
-            std::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
-        };
-        let carried = Carried {
-            points: members.iter().map(at).collect(),
-            volume: members
-                .iter()
-                .map(|p| carriers.volume[*p as usize])
-                .collect(),
-            start,
-            from: reached.iter().map(|r| r.1).collect(),
-            block: reached.iter().map(|r| r.2).collect(),
-            force: vec![[0.0; D]; members.len()],
-        };
-        (carried, ids)
-    }
+/// A point's next place; `None`: forces move it on this axis.
+pub type Motion = [Option<Carry>; 3];
 
-    pub fn points(&self) -> &[Point] {
-        &self.points
-    }
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Carried {
+    slots: Vec<u32>,
+    next: Vec<Motion>,
+}
 
-    /// Total volume of the points (length^D times the section).
-    pub fn volume(&self) -> f64 {
-        self.volume.iter().sum()
-    }
-
-    /// Forces of force densities at time `t`.
-    pub fn evaluate(&mut self, density: &Program<D>, t: f64) {
-        for (k, force) in self.force.iter_mut().enumerate() {
-            let at = |a| self.volume[k] * density.at(a, k, &self.points[k], t);
-            *force = std::array::from_fn(at);
+impl Carried {
+    pub fn new(slots: Vec<u32>) -> Self {
+        Carried {
+            next: vec![[None; 3]; slots.len()],
+            slots,
         }
     }
 
-    /// Component `a` of the force that reaches the k-th slot.
-    pub fn reaching(&self, k: usize, a: usize) -> f64 {
-        let range = self.start[k]..self.start[k + 1];
-        let each = self.from[range.clone()].iter().zip(&self.block[range]);
-        each.map(|(p, t)| {
-            let force = &self.force[*p as usize];
-            (0..D).map(|b| t[a][b] * force[b]).sum::<f64>()
+    /// Places for the end of the next step, one for each point.
+    pub fn tell(&mut self, next: &[Motion]) {
+        self.next.copy_from_slice(next);
+    }
+
+    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
+        let mut kept = self.slots.iter().map(|s| keep(*s));
+        self.next.retain(|_| kept.next().unwrap_or(false));
+        self.slots.retain(|s| keep(*s));
+    }
+
+    fn each(&self) -> impl Iterator<Item = (usize, usize, Carry)> {
+        self.slots.iter().zip(&self.next).flat_map(|(s, next)| {
+            let told = |(a, c): (usize, &Option<Carry>)| c.map(|c| (*s as usize, a, c));
+            next.iter().enumerate().filter_map(told)
         })
-        .sum()
+    }
+
+    /// Let the coming pass carry the points: no force, and the velocity of the step's middle.
+    pub fn begin<const D: usize>(&self, u: &Field<D>, v: &mut Field<D>, f: &mut Field<D>, dt: f64) {
+        for (i, a, c) in self.each().filter(|(_, a, _)| *a < D) {
+            f[a][i] = 0.0;
+            v[a][i] = (c.displacement - u[a][i]) / dt;
+        }
+    }
+
+    /// After the drift: displacements exactly as told.
+    pub fn drift<const D: usize>(&self, u: &mut Field<D>) {
+        for (i, a, c) in self.each().filter(|(_, a, _)| *a < D) {
+            u[a][i] = c.displacement;
+        }
+    }
+
+    /// Velocities of the whole step, after the last half kick.
+    pub fn settle<const D: usize>(&self, v: &mut Field<D>) {
+        for (i, a, c) in self.each().filter(|(_, a, _)| *a < D) {
+            v[a][i] = c.velocity;
+        }
     }
 }

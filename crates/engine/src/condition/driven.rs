@@ -2,32 +2,43 @@
 //! each on the force that the ones before it left.
 
 use super::Program;
-use super::indenter::Indenter;
+use super::indenter::{Form, Indenter, Push};
 use super::load::{Load, LoadKind};
 use crate::body::{Body, Field};
 use crate::space::Point;
 
-/// The values of a driven condition at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The values of a driven condition at one instant. Lists are in order of the condition's points.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Drive {
-    /// Rigid sphere: force density `stiffness (r − radius)²` away from `center` for r < `radius`.
+    /// Rigid surface: force density `stiffness g²` along its normal where the gap g is negative; a plane has the radius 0
+    /// and goes through the centre.
     Indent {
         stiffness: f64,
+        form: Form,
+        push: Push,
         center: [f64; 3],
         radius: f64,
     },
     /// The force density on these components becomes this.
     Replace([Option<f64>; 3]),
+    /// The same, with values for each point.
+    ReplaceEach(Vec<[Option<f64>; 3]>),
     /// A force density (force / volume) is added.
     Add([f64; 3]),
+    /// The same, with values for each point; nothing where there are none.
+    AddEach(Vec<[Option<f64>; 3]>),
+    /// The force density −γ v is added, v as it is when forces are evaluated (in a step: of its middle); γ of each point
+    /// (mass / volume / time).
+    Drag(Vec<f64>),
 }
 
-/// What an indenter had at the last force evaluation, in sums over points of *densities* (as LAMMPS prints them).
+/// What a condition had at the last force evaluation, in sums over points of *densities* (as LAMMPS prints them).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reaction {
-    /// `Σ K (R − r)³ / 3`.
+    /// `Σ K (R − r)³ / 3` of an indenter.
     pub energy: f64,
-    /// Minus the sum of the force densities on the points.
+    /// Of an indenter minus the sum of the force densities on the points; of a load the sum of the force densities on
+    /// its points before it acted, without points that its list leaves alone.
     pub force: [f64; 3],
 }
 
@@ -38,48 +49,61 @@ pub(crate) enum Driven<const D: usize> {
     Load(Load<D>),
 }
 
+/// The load of a drive; `None` for an indenter.
+fn load<const D: usize>(drive: &Drive) -> Option<LoadKind<D>> {
+    Some(match drive {
+        Drive::Indent { .. } => return None,
+        Drive::Replace(values) => LoadKind::Replace(Program::given(*values)),
+        Drive::ReplaceEach(values) => LoadKind::Replace(Program::listed(values)),
+        Drive::Add(values) => LoadKind::Body(Program::given(values.map(Some))),
+        Drive::AddEach(values) => LoadKind::Body(Program::listed(values)),
+        Drive::Drag(gamma) => LoadKind::Drag(gamma.clone()),
+    })
+}
+
 impl<const D: usize> Driven<D> {
     /// `slots`: the points it acts on.
     pub fn new(drive: &Drive, slots: Vec<u32>, points: Vec<Point>) -> Self {
-        match *drive {
-            Drive::Indent {
-                stiffness,
-                center,
-                radius,
-            } => Driven::Indenter(Indenter::driven(stiffness, center, radius, slots)),
-            Drive::Replace(values) => Driven::Load(Load::new(
-                LoadKind::Replace(Program::given(values)),
-                slots,
-                points,
-            )),
-            Drive::Add(values) => Driven::Load(Load::new(
-                LoadKind::Body(Program::given(values.map(Some))),
-                slots,
-                points,
-            )),
+        if let Drive::Indent {
+            stiffness,
+            form,
+            push,
+            center,
+            radius,
+        } = *drive
+        {
+            let surface = Indenter::driven(stiffness, (form, push), center, radius, slots);
+            return Driven::Indenter(surface);
         }
+        let kind = load(drive).expect("all but indenters are loads");
+        Driven::Load(Load::new(kind, slots, points))
     }
 
     /// New values; false if they are of another kind.
     pub fn set(&mut self, drive: &Drive) -> bool {
-        match (self, *drive) {
+        match (self, drive) {
             (
                 Driven::Indenter(i),
                 Drive::Indent {
                     stiffness,
+                    form,
+                    push,
                     center,
                     radius,
                 },
-            ) => i.drive(stiffness, center, radius),
-            (Driven::Load(l), Drive::Replace(values)) => match &mut l.kind {
-                LoadKind::Replace(p) => p.give(values),
-                _ => return false,
+            ) if i.form() == (*form, *push) => i.drive(*stiffness, *center, *radius),
+            (Driven::Load(l), drive) => match (&mut l.kind, drive) {
+                // the values of every step: nothing is allocated
+                (LoadKind::Replace(p), Drive::Replace(values)) => p.give(*values),
+                (LoadKind::Body(p), Drive::Add(values)) => p.give(values.map(Some)),
+                (kind, drive) => match load(drive) {
+                    Some(new) if std::mem::discriminant(kind) == std::mem::discriminant(&new) => {
+                        *kind = new;
+                    }
+                    _ => return false,
+                },
             },
-            (Driven::Load(l), Drive::Add(values)) => match &mut l.kind {
-                LoadKind::Body(p) => p.give(values.map(Some)),
-                _ => return false,
-            },
-            _ => return false,
+            (Driven::Indenter(_), _) => return false,
         }
         true
     }
@@ -111,7 +135,18 @@ impl<const D: usize> Driven<D> {
     pub fn reaction(&self) -> Reaction {
         match self {
             Driven::Indenter(i) => i.reaction,
-            Driven::Load(_) => Reaction::default(),
+            Driven::Load(l) => Reaction {
+                energy: 0.0,
+                force: l.before,
+            },
+        }
+    }
+
+    /// Points have the slots that `keep` holds for only, from now on; new values must follow before the next forces.
+    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
+        match self {
+            Driven::Indenter(i) => i.retain(keep),
+            Driven::Load(l) => l.retain(keep),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Rigid spheres that push points out: force density `K (r − R)²` away from the centre for r < R (LAMMPS's
-//! `fix indent`; sandia2010 ch. 3, The Projectile).
+//! Rigid spheres, cylinders and planes that push points: force density `K g²` along the normal where the gap g between
+//! point and surface is negative (LAMMPS's `fix indent`; sandia2010 ch. 3, The Projectile).
 
 use super::driven::Reaction;
 use crate::body::{Body, Field};
@@ -18,9 +18,45 @@ enum Motion {
     Driven([f64; 3]),
 }
 
+/// The surface of an indenter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// About a centre.
+    Sphere,
+    /// About the line through the centre along this axis.
+    Cylinder(usize),
+    /// Across this axis, through the centre.
+    Plane(usize),
+}
+
+/// Which way an indenter pushes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Push {
+    /// Out of a sphere or cylinder; up what is below a plane.
+    Out,
+    /// Back into a sphere or cylinder; down what is above a plane.
+    In,
+}
+
+impl Form {
+    /// Length of `d`, the way from the centre, across the form; `aside` is squared on axes that the body does not have.
+    fn distance<const D: usize>(self, d: &[f64; D], aside: f64) -> f64 {
+        match self {
+            Form::Sphere => (d.iter().map(|c| c * c).sum::<f64>() + aside).sqrt(),
+            Form::Cylinder(axis) => {
+                let across = (0..D).filter(|a| *a != axis).map(|a| d[a] * d[a]);
+                (across.sum::<f64>() + aside).sqrt()
+            }
+            Form::Plane(axis) => d.get(axis).copied().unwrap_or(0.0),
+        }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub struct Indenter<const D: usize> {
     stiffness: f64,
+    form: Form,
+    push: Push,
     radius: f64,
     motion: Motion,
     pub center: [f64; 3],
@@ -56,20 +92,35 @@ impl<const D: usize> Indenter<D> {
                 *center,
             ),
         };
-        Self::with(spec.stiffness, spec.radius, motion, center)
+        let form = (Form::Sphere, Push::Out);
+        Self::with(spec.stiffness, form, spec.radius, motion, center)
     }
 
-    /// A sphere whose values come from outside, touching the points in `members`.
-    pub fn driven(stiffness: f64, center: [f64; 3], radius: f64, members: Vec<u32>) -> Self {
+    /// A surface whose values come from outside, touching the points in `members`; a plane has the radius 0.
+    pub fn driven(
+        stiffness: f64,
+        form: (Form, Push),
+        center: [f64; 3],
+        radius: f64,
+        members: Vec<u32>,
+    ) -> Self {
         Indenter {
             members: Some(members),
-            ..Self::with(stiffness, radius, Motion::Driven(center), center)
+            ..Self::with(stiffness, form, radius, Motion::Driven(center), center)
         }
     }
 
-    fn with(stiffness: f64, radius: f64, motion: Motion, center: [f64; 3]) -> Self {
+    fn with(
+        stiffness: f64,
+        (form, push): (Form, Push),
+        radius: f64,
+        motion: Motion,
+        center: [f64; 3],
+    ) -> Self {
         Indenter {
             stiffness,
+            form,
+            push,
             radius,
             motion,
             center,
@@ -84,10 +135,24 @@ impl<const D: usize> Indenter<D> {
 
     /// Values for the coming force evaluation.
     pub fn drive(&mut self, stiffness: f64, center: [f64; 3], radius: f64) {
-        self.slack -= (radius - self.radius).max(0.0);
+        self.slack -= (radius - self.radius).abs();
         self.stiffness = stiffness;
         self.radius = radius;
         self.motion = Motion::Driven(center);
+    }
+
+    /// Its form and which way it pushes.
+    pub fn form(&self) -> (Form, Push) {
+        (self.form, self.push)
+    }
+
+    /// Points have the slots that `keep` holds for only, from now on.
+    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
+        if let Some(members) = &mut self.members {
+            members.retain(|s| keep(*s));
+        }
+        self.touched.retain(|(s, _)| keep(*s));
+        self.look_again();
     }
 
     /// Move to the end of a step and account for half of the old force's work. `moved` bounds the path of any point.
@@ -123,24 +188,34 @@ impl<const D: usize> Indenter<D> {
         if let Motion::Driven(next) = self.motion {
             self.center = next;
         }
+        let (form, push) = (self.form, self.push);
         // the centre may lie off a plane or line of points
-        let aside: f64 = self.center[D..].iter().map(|c| c * c).sum();
+        let off = (D..3).filter(|a| form != Form::Cylinder(*a));
+        let aside: f64 = off.map(|a| self.center[a] * self.center[a]).sum();
         let offset = |i: usize| -> ([f64; D], f64) {
             let x = body.position(i);
             let d: [f64; D] = std::array::from_fn(|a| {
                 let d = x[a] + u[a][i] - self.center[a];
-                body.period[a].map_or(d, |p| d - p * (d / p).round())
+                match (form, body.period[a]) {
+                    (Form::Sphere | Form::Cylinder(_), Some(p)) => d - p * (d / p).round(),
+                    (Form::Plane(_), _) | (_, None) => d,
+                }
             });
-            (d, (d.iter().map(|c| c * c).sum::<f64>() + aside).sqrt())
+            (d, form.distance(&d, aside))
+        };
+        let gap = |r: f64| match push {
+            Push::Out => r - self.radius,
+            Push::In => self.radius - r,
         };
         if self.slack <= 0.0 {
             // two spacings: a fast indenter looks around every few dozen steps
             self.slack = 2.0 * body.spacing;
-            let reach = self.radius + self.slack;
             self.candidates.clear();
             let all = self.members.as_ref().unwrap_or(&body.slots);
-            self.candidates
-                .extend(all.iter().filter(|&&s| offset(s as usize).1 < reach));
+            self.candidates.extend(
+                all.iter()
+                    .filter(|&&s| gap(offset(s as usize).1) < self.slack),
+            );
         }
         self.touched.clear();
         let mut total = [0.0; 3];
@@ -148,13 +223,23 @@ impl<const D: usize> Indenter<D> {
         for &s in &self.candidates {
             let i = s as usize;
             let (d, r) = offset(i);
-            if r >= self.radius || r == 0.0 {
+            let gap = gap(r);
+            if gap >= 0.0 || (r == 0.0 && !matches!(form, Form::Plane(_))) {
                 continue;
             }
-            let push = self.stiffness * (r - self.radius) * (r - self.radius) / r;
-            let force = d.map(|c| push * c);
+            let strength = match push {
+                Push::Out => self.stiffness * gap * gap,
+                Push::In => -self.stiffness * gap * gap,
+            };
+            let force: [f64; D] = std::array::from_fn(|a| match form {
+                Form::Sphere => strength / r * d[a],
+                Form::Cylinder(axis) if a == axis => 0.0,
+                Form::Cylinder(_) => strength / r * d[a],
+                Form::Plane(axis) if a == axis => strength,
+                Form::Plane(_) => 0.0,
+            });
             let volume = body.volume.at(i);
-            reaction.energy += self.stiffness / 3.0 * (self.radius - r).powi(3);
+            reaction.energy += self.stiffness / 3.0 * (-gap).powi(3);
             for a in 0..D {
                 reaction.force[a] -= force[a];
                 f[a][i] += force[a];

@@ -1,7 +1,7 @@
 //! Loads: body force, traction, damping, and forces replaced on a set.
 
 use super::Program;
-use super::carried::Carried;
+use super::condensed::Condensed;
 use crate::body::{Body, Field};
 use crate::space::Point;
 
@@ -13,6 +13,18 @@ pub enum LoadKind<const D: usize> {
     Damping(Program<D>),
     /// The force density becomes this, whatever else acts.
     Replace(Program<D>),
+    /// Force density −γ v, v as it is when forces are evaluated; γ per point of the list (mass / volume / time).
+    Drag(Vec<f64>),
+}
+
+impl<const D: usize> LoadKind<D> {
+    /// Does its list have a value for point `k`?
+    fn counts(&self, k: usize) -> bool {
+        match self {
+            LoadKind::Body(p) | LoadKind::Replace(p) => !p.leaves(k),
+            LoadKind::Damping(_) | LoadKind::Drag(_) => true,
+        }
+    }
 }
 
 /// A load on a set of points.
@@ -22,9 +34,11 @@ pub struct Load<const D: usize> {
     slots: Vec<u32>,
     points: Vec<Point>,
     /// Of a condensed body: where this load acts.
-    carried: Option<Carried<D>>,
+    condensed: Option<Condensed<D>>,
     /// Force density added last time, for the work of the next step.
     last: Vec<[f64; D]>,
+    /// Sum of the force densities on the points before this load acted, without those that a list leaves alone.
+    pub before: [f64; 3],
     /// Work done on the body (energy).
     pub work: f64,
 }
@@ -36,17 +50,37 @@ impl<const D: usize> Load<D> {
             kind,
             slots,
             points,
-            carried: None,
+            condensed: None,
             last,
+            before: [0.0; 3],
             work: 0.0,
         }
     }
 
     /// A force density on points of a finer body, which reaches these slots.
-    pub fn carried(density: Program<D>, slots: Vec<u32>, carried: Carried<D>) -> Self {
+    pub fn condensed(density: Program<D>, slots: Vec<u32>, condensed: Condensed<D>) -> Self {
         Load {
-            carried: Some(carried),
+            condensed: Some(condensed),
             ..Load::new(LoadKind::Body(density), slots, vec![])
+        }
+    }
+
+    /// Points have the slots that `keep` holds for only, from now on.
+    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
+        let kept: Vec<usize> = (0..self.slots.len())
+            .filter(|k| keep(self.slots[*k]))
+            .collect();
+        self.slots = kept.iter().map(|k| self.slots[*k]).collect();
+        self.last = kept.iter().map(|k| self.last[*k]).collect();
+        if let Some(condensed) = &mut self.condensed {
+            return condensed.pick(&kept);
+        }
+        self.points = kept.iter().map(|k| self.points[*k]).collect();
+        if let LoadKind::Drag(gamma) = &mut self.kind {
+            *gamma = kept.iter().map(|k| gamma[*k]).collect();
+        }
+        if let LoadKind::Body(p) | LoadKind::Replace(p) | LoadKind::Damping(p) = &mut self.kind {
+            p.pick(&kept);
         }
     }
 
@@ -61,17 +95,22 @@ impl<const D: usize> Load<D> {
 
     /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run.
     pub fn add(&mut self, body: &Body<D>, v: &Field<D>, f: &mut Field<D>, t: f64, dt: f64) {
-        if let (LoadKind::Body(density), Some(carried)) = (&self.kind, &mut self.carried) {
-            carried.evaluate(density, t);
+        if let (LoadKind::Body(density), Some(condensed)) = (&self.kind, &mut self.condensed) {
+            condensed.evaluate(density, t);
         }
+        self.before = [0.0; 3];
         for (k, &s) in self.slots.iter().enumerate() {
             let i = s as usize;
             let mut power = 0.0;
+            let counts = self.kind.counts(k);
             for a in 0..D {
+                if counts {
+                    self.before[a] += f[a][i];
+                }
                 let added = match &self.kind {
-                    LoadKind::Body(p) => match &self.carried {
+                    LoadKind::Body(p) => match &self.condensed {
                         None => p.at(a, k, &self.points[k], t),
-                        Some(carried) => carried.reaching(k, a) / body.volume.at(i),
+                        Some(condensed) => condensed.reaching(k, a) / body.volume.at(i),
                     },
                     // v at the whole step: the middle's and half a kick, of which this force is a part
                     LoadKind::Damping(c) => {
@@ -79,8 +118,11 @@ impl<const D: usize> Load<D> {
                         let c = c.at(0, k, &self.points[k], t);
                         -c * (v[a][i] + half * f[a][i]) / (1.0 + half * c)
                     }
-                    LoadKind::Replace(p) if p.acts(a) => p.at(a, k, &self.points[k], t) - f[a][i],
+                    LoadKind::Replace(p) if p.acts_on(a, k) => {
+                        p.at(a, k, &self.points[k], t) - f[a][i]
+                    }
                     LoadKind::Replace(_) => 0.0,
+                    LoadKind::Drag(gamma) => -gamma[k] * v[a][i],
                 };
                 f[a][i] += added;
                 self.last[k][a] = added;

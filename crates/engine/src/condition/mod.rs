@@ -2,6 +2,7 @@
 //! Each keeps the account of its own work.
 
 pub mod carried;
+pub mod condensed;
 pub mod constraint;
 pub mod driven;
 pub mod indenter;
@@ -25,6 +26,8 @@ enum Component {
     Changing(Expression),
     /// The same everywhere, set from outside.
     Given(f64),
+    /// One for each point that it acts on, set from outside.
+    Listed(Vec<Option<f64>>),
 }
 
 impl<const D: usize> Program<D> {
@@ -48,6 +51,27 @@ impl<const D: usize> Program<D> {
         }
     }
 
+    /// Values of each point, set from outside.
+    pub fn listed(values: &[[Option<f64>; 3]]) -> Self {
+        Program {
+            component: std::array::from_fn(|a| {
+                Component::Listed(values.iter().map(|v| v[a]).collect())
+            }),
+            scale: 1.0,
+        }
+    }
+
+    /// The points of the list become those at these places of it.
+    pub fn pick(&mut self, kept: &[usize]) {
+        for c in &mut self.component {
+            match c {
+                Component::Fixed(v) => *v = kept.iter().map(|k| v[*k]).collect(),
+                Component::Listed(v) => *v = kept.iter().map(|k| v[*k]).collect(),
+                Component::Free | Component::Changing(_) | Component::Given(_) => {}
+            }
+        }
+    }
+
     /// New values for [`Program::given`].
     pub fn give(&mut self, values: [Option<f64>; 3]) {
         for (c, v) in self.component.iter_mut().zip(values) {
@@ -67,6 +91,22 @@ impl<const D: usize> Program<D> {
         !matches!(self.component[axis], Component::Free)
     }
 
+    /// Does it act on point `k` of the list?
+    pub fn acts_on(&self, axis: usize, k: usize) -> bool {
+        match &self.component[axis] {
+            Component::Free => false,
+            Component::Listed(v) => v[k].is_some(),
+            Component::Fixed(_) | Component::Changing(_) | Component::Given(_) => true,
+        }
+    }
+
+    /// Is there a list of values that has none for point `k`?
+    pub fn leaves(&self, k: usize) -> bool {
+        self.component
+            .iter()
+            .all(|c| matches!(c, Component::Listed(v) if v[k].is_none()))
+    }
+
     /// Value at point `k` of the list, whose reference position is `x`.
     pub fn at(&self, axis: usize, k: usize, x: &Point, t: f64) -> f64 {
         match &self.component[axis] {
@@ -74,6 +114,7 @@ impl<const D: usize> Program<D> {
             Component::Fixed(v) => self.scale * v[k],
             Component::Changing(e) => self.scale * e.eval(x, t),
             Component::Given(v) => self.scale * v,
+            Component::Listed(v) => self.scale * v[k].unwrap_or(0.0),
         }
     }
 }

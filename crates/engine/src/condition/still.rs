@@ -18,6 +18,13 @@ impl<const D: usize> Still<D> {
         }
     }
 
+    /// Points have the slots that `keep` holds for only, from now on.
+    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
+        let mut kept = self.slots.iter().map(|s| keep(*s));
+        self.velocity.retain(|_| kept.next().unwrap_or(false));
+        self.slots.retain(|s| keep(*s));
+    }
+
     /// Let the coming pass leave the points alone. `whole`: does `v` hold the velocities of the whole step?
     pub fn begin(&mut self, v: &mut Field<D>, f: &mut Field<D>, whole: bool) {
         for (kept, &s) in self.velocity.iter_mut().zip(&self.slots) {

@@ -12,6 +12,7 @@ use super::{Info, Simulation};
 use super::{bonds, surface};
 use super::{contact, gaps};
 use crate::body::{Body, Layout, Values, zeros};
+use crate::condition::carried::Carried;
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
@@ -336,10 +337,14 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         constraints: vec![],
         driven: vec![],
         still: Still::new(vec![]),
+        carried: Carried::default(),
+        fastest: 0.0,
         watch: false,
         watched: None,
         watch_virial: false,
         virial: None,
+        watch_virials: false,
+        virials: None,
         indenters: vec![],
         sets,
         carriers,

@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use crate::condition::Program;
-use crate::condition::carried::Carried;
+use crate::condition::condensed::Condensed;
 use crate::condition::constraint::{Constraint, Prescribed};
 use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
@@ -25,7 +25,7 @@ fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Opt
 
 impl<const D: usize> Model<D> {
     /// A load on points of the finer body from which this one was condensed.
-    fn carried(
+    fn condensed(
         &self,
         carriers: &Carriers<D>,
         set: &str,
@@ -52,16 +52,16 @@ impl<const D: usize> Model<D> {
             )
             .help("coarsen again, from a deck with this load on this set"));
         }
-        let (carried, ids) = Carried::new(carriers, &members);
-        let mut program = Program::new(value, carried.points());
+        let (condensed, ids) = Condensed::new(carriers, &members);
+        let mut program = Program::new(value, condensed.points());
         if let Some(area) = traction {
             // the face of a point of the finer body
             let face = carriers.volume[members[0] as usize] / carriers.spacing;
             let area = area.unwrap_or(face * members.len() as f64);
-            program = program.scaled(area / carried.volume());
+            program = program.scaled(area / condensed.volume());
         }
         let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        Ok(Load::carried(program, slots.collect(), carried))
+        Ok(Load::condensed(program, slots.collect(), condensed))
     }
 
     /// Loads in the order in which they act, and constraints.
@@ -80,7 +80,7 @@ impl<const D: usize> Model<D> {
             if let Some(carriers) = &self.carriers
                 && let Some((value, area)) = density(&c.kind)
             {
-                let made = self.carried(carriers, &c.set, value, area);
+                let made = self.condensed(carriers, &c.set, value, area);
                 loads.push(made.map_err(|e| BuildError {
                     path: format!("conditions[{n}]"),
                     ..e
@@ -141,7 +141,7 @@ impl<const D: usize> Model<D> {
         // damping looks at what was added, and a replaced force is replaced whatever else there is
         loads.sort_by_key(|l: &Load<D>| match l.kind {
             LoadKind::Body(_) => 0,
-            LoadKind::Damping(_) => 1,
+            LoadKind::Damping(_) | LoadKind::Drag(_) => 1,
             LoadKind::Replace(_) => 2,
         });
         Ok((loads, constraints))

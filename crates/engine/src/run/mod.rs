@@ -5,6 +5,7 @@ mod atoms;
 mod bonds;
 mod build;
 mod calibration;
+mod changes;
 mod conditions;
 mod contact;
 mod equilibrium;
@@ -24,6 +25,7 @@ mod virial;
 pub use build::{Options, build, build_in};
 pub use model::Model;
 
+use crate::condition::carried::Motion;
 use crate::condition::driven::{Drive, Reaction};
 use crate::error::{BuildError, RunError};
 use crate::observe::{Ledger, Snapshot};
@@ -155,6 +157,16 @@ pub struct ModeShape {
     pub shape: Vec<Point>,
 }
 
+/// A wall that points bounce off without loss.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wall {
+    pub axis: usize,
+    /// Is the body below it?
+    pub above: bool,
+    /// Position along the axis (length).
+    pub position: f64,
+}
+
 /// A running model of any dimension, law and family. All arrays are in order of point id.
 pub trait Simulation: Send {
     fn info(&self) -> &Info;
@@ -165,6 +177,29 @@ pub trait Simulation: Send {
 
     /// One step. On an error the state is that of the step before (up to round-off).
     fn step(&mut self) -> Result<(), RunError>;
+
+    /// The first half of a step of a model in time: displacements of its end. Until [`Simulation::arrive`] the
+    /// velocities are those of the step's middle, forces those of its start; values of driven conditions may be set.
+    /// Answers a bound on the path of any point (length).
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`], whose state is left behind then.
+    fn depart(&mut self) -> Result<f64, RunError>;
+    /// The second half of a step: the forces at its end.
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`].
+    fn arrive(&mut self) -> Result<(), RunError>;
+    /// Mirrors points (`None`: all) that are behind the wall, with their velocity across it; between
+    /// [`Simulation::depart`] and [`Simulation::arrive`].
+    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
+    /// Points that go where [`Simulation::carry`] says before every step. Replaces those of the last call.
+    fn set_carried(&mut self, ids: &[u32]);
+    /// Where the carried points are at the end of the next step, in their order.
+    fn carry(&mut self, next: &[Motion]);
+    /// Takes points away for ever: their bonds break without a force, all ids above theirs move down. Driven values must
+    /// be set anew before the next forces.
+    fn remove(&mut self, ids: &[u32]);
 
     fn step_number(&self) -> u64;
     fn time(&self) -> f64;
@@ -237,6 +272,12 @@ pub trait Simulation: Send {
     /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion, positive where pairs
     /// repel: of the last force evaluation if that was watched, else of the current state with the bonds that are whole.
     fn virial(&mut self) -> [f64; 6];
+
+    /// Keep the virials of points of the next force evaluation, with the bonds that break in it.
+    fn watch_virials_next(&mut self);
+    /// Half of the virial of its pairs for each point, xx yy zz xy xz yz (energy), as [`Simulation::virial`]; their sum
+    /// is that.
+    fn virials(&mut self) -> Vec<[f64; 6]>;
 
     /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
     /// order in which they act, after all other forces. Replaces those of the last call.

@@ -3,9 +3,10 @@
 use super::equilibrium::StaticState;
 use super::recipe::Recipes;
 use super::{
-    AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions,
+    AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions, Wall,
 };
 use crate::body::{Body, Field};
+use crate::condition::carried::{Carried, Motion};
 use crate::condition::constraint::Constraint;
 use crate::condition::driven::{Drive, Driven, Reaction};
 use crate::condition::indenter::Indenter;
@@ -37,12 +38,18 @@ pub struct Model<const D: usize> {
     pub(super) indenters: Vec<Indenter<D>>,
     pub(super) driven: Vec<Driven<D>>,
     pub(super) still: Still<D>,
+    pub(super) carried: Carried,
+    /// Bound on the path of any point in the last drift (length).
+    pub(super) fastest: f64,
     /// Shall the next force evaluation be watched, and what the last watched one saw.
     pub(super) watch: bool,
     pub(super) watched: Option<PointEnergies>,
     /// The same for the virial.
     pub(super) watch_virial: bool,
     pub(super) virial: Option<[f64; 6]>,
+    /// The same for the virial of each slot.
+    pub(super) watch_virials: bool,
+    pub(super) virials: Option<Vec<[f64; 6]>>,
     /// Laws and constants, for what is computed pair by pair.
     pub(super) recipes: Recipes,
     /// Named sets of point ids.
@@ -153,6 +160,33 @@ impl<const D: usize> Simulation for Model<D> {
         self.advance()
     }
 
+    fn depart(&mut self) -> Result<f64, RunError> {
+        Model::depart(self)?;
+        Ok(self.fastest)
+    }
+
+    fn arrive(&mut self) -> Result<(), RunError> {
+        Model::arrive(self)
+    }
+
+    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
+        self.bounce(wall, ids);
+    }
+
+    fn set_carried(&mut self, ids: &[u32]) {
+        self.finish();
+        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
+        self.carried = Carried::new(slots.collect());
+    }
+
+    fn carry(&mut self, next: &[Motion]) {
+        self.carried.tell(next);
+    }
+
+    fn remove(&mut self, ids: &[u32]) {
+        self.take_away(ids);
+    }
+
     fn step_number(&self) -> u64 {
         self.step
     }
@@ -196,6 +230,7 @@ impl<const D: usize> Simulation for Model<D> {
     fn set_displacements(&mut self, u: &[Point]) {
         self.finish();
         self.virial = None;
+        self.virials = None;
         Self::scatter(&self.body, &mut self.u, u);
         self.refresh_images();
         self.look_again();
@@ -330,8 +365,11 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn write(&mut self, field: PointField, first: usize, values: &[f64]) {
         self.finish();
-        self.look_again();
-        self.virial = None;
+        if matches!(field, PointField::Displacement(_)) {
+            self.look_again();
+            self.virial = None;
+            self.virials = None;
+        }
         let component = match field {
             PointField::Displacement(a) => self.u.get_mut(a),
             PointField::Velocity(a) => self.v.get_mut(a),
@@ -369,6 +407,27 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn watch_virial_next(&mut self) {
         self.watch_virial = true;
+    }
+
+    fn watch_virials_next(&mut self) {
+        self.watch_virials = true;
+    }
+
+    fn virials(&mut self) -> Vec<[f64; 6]> {
+        let points = match &self.virials {
+            Some(points) => points.clone(),
+            None => {
+                self.refresh_images();
+                if let Some(pairs) = &mut self.contact {
+                    let (body, interaction) = (&self.body, &self.interaction);
+                    pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+                }
+                let mut points = self.virials_of_bonds();
+                self.add_virials_of_contact(&mut points);
+                points
+            }
+        };
+        self.by_id(|i| points[i])
     }
 
     fn virial(&mut self) -> [f64; 6] {

@@ -29,6 +29,10 @@ impl<const D: usize> Model<D> {
             true => self.virial_of_bonds(),
             false => [0.0; 6],
         });
+        self.virials = std::mem::take(&mut self.watch_virials).then(|| match bonds {
+            true => self.virials_of_bonds(),
+            false => vec![[0.0; 6]; self.body.len],
+        });
         if bonds {
             let tally = self.interaction.forces(
                 &self.body,
@@ -59,6 +63,10 @@ impl<const D: usize> Model<D> {
         if let Some(mut virial) = self.virial {
             self.add_virial_of_contact(&mut virial);
             self.virial = Some(virial);
+        }
+        if let Some(mut points) = self.virials.take() {
+            self.add_virials_of_contact(&mut points);
+            self.virials = Some(points);
         }
     }
 
@@ -107,6 +115,7 @@ impl<const D: usize> Model<D> {
                 c.settle(&mut self.v, t, dt);
             }
             self.still.settle(&mut self.v);
+            self.carried.settle(&mut self.v);
             self.pending = false;
         }
     }
@@ -127,11 +136,18 @@ impl<const D: usize> Model<D> {
 
     /// One step.
     pub(super) fn advance(&mut self) -> Result<(), RunError> {
+        self.depart()?;
+        self.arrive()
+    }
+
+    /// The first half of a step: displacements of its end, velocities of its middle.
+    pub(super) fn depart(&mut self) -> Result<(), RunError> {
         let (t, dt) = (self.time(), self.dt);
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
         }
         self.still.begin(&mut self.v, &mut self.f, !self.pending);
+        self.carried.begin(&self.u, &mut self.v, &mut self.f, dt);
         // linear springs may go through each other: they know no distance that is too far for a step
         let limit = match self.recipes.first().laws {
             Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
@@ -162,14 +178,24 @@ impl<const D: usize> Model<D> {
         for c in &self.constraints {
             c.drift(&mut self.u, t, dt);
         }
+        self.carried.drift(&mut self.u);
+        self.fastest = fastest.sqrt();
+        // whoever asks for velocities now gets those of the middle
+        self.pending = false;
+        Ok(())
+    }
+
+    /// The second half of a step: forces at its end.
+    pub(super) fn arrive(&mut self) -> Result<(), RunError> {
+        let (t, dt, path) = (self.time(), self.dt, self.fastest);
         for load in &mut self.loads {
             load.begin(&self.body, &self.v, dt);
         }
         for indenter in &mut self.indenters {
-            indenter.begin(&self.body, &self.v, t, dt, fastest.sqrt());
+            indenter.begin(&self.body, &self.v, t, dt, path);
         }
         for d in &mut self.driven {
-            d.begin(&self.body, &self.v, t, dt, fastest.sqrt());
+            d.begin(&self.body, &self.v, t, dt, path);
         }
         self.forces(true, dt);
         if let Some(fault) = self.fault {

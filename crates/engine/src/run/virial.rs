@@ -26,6 +26,14 @@ impl<const D: usize> Model<D> {
         if let Some(virial) = self.interaction.virial(&self.body, &self.u) {
             return virial;
         }
+        let mut virial = [0.0; 6];
+        self.each_pull(&mut |_, y, pull, volumes| add(&mut virial, y, pull, volumes));
+        virial
+    }
+
+    /// Every bond whose ends pull or push each other: slots, the way between them now, and `pull`, which times the
+    /// partner's volume and that way is the force density on an end; images of `u` must be fresh.
+    fn each_pull(&self, visit: &mut dyn FnMut([usize; 2], &[f64; D], f64, [f64; 2])) {
         let recipes = &self.recipes;
         let mut dilatation = vec![];
         if recipes.all().any(|r| matches!(r.laws, Laws::Solid(_))) {
@@ -58,7 +66,6 @@ impl<const D: usize> Model<D> {
             matches!(recipe.laws, Laws::Bond(_))
                 && recipe.repulsion.as_ref().is_none_or(|c| c.bonded <= 1.0)
         });
-        let mut virial = [0.0; 6];
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
                 let eta: [f64; D] = std::array::from_fn(|a| self.u[a][j] - self.u[a][i]);
@@ -100,9 +107,34 @@ impl<const D: usize> Model<D> {
                         pull += repulsion.of(materials) * (r - d) / r;
                     }
                 }
-                add(&mut virial, &y, pull, volumes);
+                visit([i, j], &y, pull, volumes);
             });
-        virial
+    }
+
+    /// Half of the virial of its pairs for each slot, of bonds and of repulsion inside families.
+    pub(super) fn virials_of_bonds(&mut self) -> Vec<[f64; 6]> {
+        let mut points = vec![[0.0; 6]; self.body.len];
+        let original = self.body.originals();
+        self.each_pull(&mut |ends, y, pull, volumes| {
+            for i in ends {
+                add(&mut points[original(i)], y, 0.5 * pull, volumes);
+            }
+        });
+        points
+    }
+
+    /// Adds those of repulsion between points that are in no common family.
+    pub(super) fn add_virials_of_contact(&self, points: &mut [[f64; 6]]) {
+        let Some(contact) = &self.contact else {
+            return;
+        };
+        contact.each_contact(&self.u, |touch| {
+            if let Some(pull) = touch.pull() {
+                let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
+                add(&mut points[touch.i], &touch.y, 0.5 * pull, volumes);
+                add(&mut points[touch.j], &touch.y, 0.5 * pull, volumes);
+            }
+        });
     }
 
     /// Adds repulsion between points that are in no common family, at the `u` of the contact's last update.

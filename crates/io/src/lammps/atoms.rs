@@ -28,6 +28,13 @@ impl<T: Copy + PartialEq> Column<T> {
         }
     }
 
+    /// The atoms at these places, in this order.
+    pub fn pick(&mut self, places: &[usize]) {
+        if let Column::Each(v) = self {
+            *v = places.iter().map(|i| v[*i]).collect();
+        }
+    }
+
     /// Makes room for atoms `old..new`.
     fn extend(&mut self, old: usize, new: usize, value: T) {
         match self {
@@ -93,6 +100,17 @@ impl Ids {
             Ids::List(v) => u64::from(v[i]),
         }
     }
+    /// Those at these places, which ascend.
+    pub fn only(&self, places: &[usize]) -> Ids {
+        if places
+            .iter()
+            .enumerate()
+            .all(|(k, p)| self.get(*p) == k as u64 + 1)
+        {
+            return Ids::Count(places.len());
+        }
+        Ids::List(places.iter().map(|p| self.get(*p) as u32).collect())
+    }
     /// Index of an id.
     pub fn find(&self, id: u64) -> Option<usize> {
         match self {
@@ -145,6 +163,22 @@ impl Atoms {
         match &self.moved {
             Some(p) => p[i],
             None => self.reference.get(i),
+        }
+    }
+
+    /// The atoms at these places, in this order, with these ids.
+    pub fn pick(&mut self, places: &[usize], ids: Ids) {
+        self.ids = ids;
+        self.types.pick(places);
+        self.velocity.pick(places);
+        self.density.pick(places);
+        self.volume.pick(places);
+        match &mut self.reference {
+            Reference::Sites { sites, .. } => *sites = places.iter().map(|i| sites[*i]).collect(),
+            Reference::Points(p) => *p = places.iter().map(|i| p[*i]).collect(),
+        }
+        if let Some(p) = &mut self.moved {
+            *p = places.iter().map(|i| p[*i]).collect();
         }
     }
 
@@ -208,7 +242,8 @@ impl Particles for Atoms {
                 Quantity::Damage
                 | Quantity::Dilatation
                 | Quantity::CriticalStretch
-                | Quantity::Energy => {
+                | Quantity::Energy
+                | Quantity::Virial(_) => {
                     return Err(HostError::new("bonds do not exist before the first `run`")
                         .help("write `run 0` first"));
                 }
@@ -288,6 +323,13 @@ impl Members {
             bits[i / 64] |= 1 << (i % 64);
         }
         Members::Some(bits)
+    }
+    /// Only the atoms at these places are left, in this order.
+    pub fn only(&self, places: &[usize]) -> Members {
+        match self {
+            Members::All => Members::All,
+            Members::Some(_) => Members::collect(places.len(), |k| self.contains(places[k])),
+        }
     }
     /// Does atom `i` (from 0) belong to it?
     pub fn contains(&self, i: usize) -> bool {

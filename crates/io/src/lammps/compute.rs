@@ -1,13 +1,17 @@
 //! `compute`: values that other commands ask for.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 use super::atoms::Members;
 use super::error::{Problem, Result, suggestion};
+use super::fix::{FixKind, Start};
 use super::host::{BLOCK, Quantity};
 use super::particles::Field;
+use super::rigid::Rigid;
 use super::session::Session;
 use super::thermo::BUILT_IN;
+use super::thermo::columns::Column;
 use super::variable::ast::Expr;
 use super::variable::tree::Tree;
 
@@ -22,23 +26,58 @@ pub struct Compute {
 pub enum ComputeKind {
     /// One or more values for each atom; 0 outside the group.
     Atoms(Vec<Field>),
+    /// For each atom the way from where it was, and its length.
+    Displace {
+        start: Rc<Start>,
+    },
+    /// For each atom minus its part of the virial, xx yy zz xy xz yz, and of the flow of momentum.
+    Stress {
+        kinetic: bool,
+        virial: bool,
+    },
     Kinetic,
     Potential,
+    Temperature,
+    /// Centre of mass.
+    Center,
     Reduce {
         mode: Mode,
         inputs: Vec<Source>,
+        /// Only of atoms in it.
+        region: Option<String>,
     },
 }
 
-pub const STYLES: [&str; 8] = [
+impl ComputeKind {
+    /// Columns of a compute with values for each atom.
+    pub fn columns(&self) -> Option<usize> {
+        match self {
+            ComputeKind::Atoms(fields) => Some(fields.len()),
+            ComputeKind::Displace { .. } => Some(4),
+            ComputeKind::Stress { .. } => Some(6),
+            ComputeKind::Kinetic
+            | ComputeKind::Potential
+            | ComputeKind::Temperature
+            | ComputeKind::Center
+            | ComputeKind::Reduce { .. } => None,
+        }
+    }
+}
+
+pub const STYLES: [&str; 13] = [
+    "com",
     "damage/atom",
     "dilatation/atom",
+    "displace/atom",
     "ke/atom",
     "pe/atom",
     "property/atom",
+    "stress/atom",
     "ke",
     "pe",
     "reduce",
+    "reduce/region",
+    "temp",
 ];
 
 /// Where per-atom values come from.
@@ -158,11 +197,11 @@ impl Session<'_> {
     /// A per-atom column (from 1) of a compute; `None` if it has one value for all.
     fn compute_column(&self, id: &str, column: Option<usize>) -> Result<Option<Tree>> {
         let compute = self.compute(id)?;
-        let ComputeKind::Atoms(fields) = &compute.kind else {
+        let Some(columns) = compute.kind.columns() else {
             return Ok(None);
         };
-        let field = match (column, fields.len()) {
-            (None, 1) => fields[0],
+        let place = match (column, columns) {
+            (None, 1) => 0,
             (None, n) => {
                 return Err(Problem::new(format!(
                     "compute `{id}` has {n} columns: write c_{id}[1] to c_{id}[{n}]"
@@ -173,15 +212,134 @@ impl Session<'_> {
                     "compute `{id}` has one value for each atom: write c_{id}"
                 )));
             }
-            (Some(k), n) => *fields.get(k.wrapping_sub(1)).ok_or_else(|| {
-                Problem::new(format!("compute `{id}` has columns 1 to {n}, not {k}"))
-            })?,
+            (Some(k), n) if (1..=n).contains(&k) => k - 1,
+            (Some(k), n) => {
+                return Err(Problem::new(format!(
+                    "compute `{id}` has columns 1 to {n}, not {k}"
+                )));
+            }
         };
-        let tree = Tree::Field(field);
+        let tree = match &compute.kind {
+            ComputeKind::Atoms(fields) => Tree::Field(fields[place]),
+            ComputeKind::Displace { start } => {
+                Tree::Values(Rc::new(self.displacements(start, place)?))
+            }
+            ComputeKind::Stress { kinetic, virial } => {
+                Tree::Values(Rc::new(self.stress(place, *kinetic, *virial)?))
+            }
+            ComputeKind::Kinetic
+            | ComputeKind::Potential
+            | ComputeKind::Temperature
+            | ComputeKind::Center
+            | ComputeKind::Reduce { .. } => return Ok(None),
+        };
         Ok(Some(match compute.members.as_ref() {
             Members::All => tree,
             Members::Some(_) => Tree::Masked(Box::new(tree), compute.members.clone()),
         }))
+    }
+
+    /// Has a compute this column?
+    ///
+    /// # Errors
+    /// It has not.
+    pub fn check_columns(&self, id: &str, column: Option<usize>) -> Result<()> {
+        let wrong = |what: String| Err(Problem::new(format!("compute `{id}` {what}")));
+        match (self.compute(id)?.kind.columns(), column) {
+            (None, _) => wrong("gives one number, values for each atom are needed here".into()),
+            (Some(1), None) => Ok(()),
+            (Some(1), Some(_)) => wrong(format!("has one value for each atom: write c_{id}")),
+            (Some(n), None) => wrong(format!("has {n} columns: write c_{id}[1] to c_{id}[{n}]")),
+            (Some(n), Some(k)) if (1..=n).contains(&k) => Ok(()),
+            (Some(n), Some(k)) => wrong(format!("has columns 1 to {n}, not {k}")),
+        }
+    }
+
+    /// Component `axis` of the way of each atom from where it was, or the length of the way (axis 3).
+    fn displacements(&self, start: &Start, axis: usize) -> Result<Vec<f64>> {
+        let now = self.unwrapped()?;
+        let way = |(i, x): (usize, &[f64; 3])| {
+            let from = start.ids.binary_search(&self.ids.get(i)).ok();
+            let from = from.map_or(*x, |k| start.places[k]);
+            let d = [0, 1, 2].map(|a| x[a] - from[a]);
+            match d.get(axis) {
+                Some(d) => *d,
+                None => (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt(),
+            }
+        };
+        Ok(now.iter().enumerate().map(way).collect())
+    }
+
+    /// Component of `−(ρ v v + virial)` of each atom, in pressure · volume as LAMMPS has it.
+    fn stress(&self, place: usize, kinetic: bool, virial: bool) -> Result<Vec<f64>> {
+        const AXES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+        let (a, b) = AXES[place];
+        let factor = self.units.pressure();
+        let mut stress = vec![0.0; self.count()];
+        if virial {
+            stress = self.raw(Quantity::Virial(place))?;
+        }
+        if kinetic {
+            let rho = self.raw(Quantity::Density)?;
+            let (v, w) = (
+                self.raw(Quantity::Velocity(a))?,
+                self.raw(Quantity::Velocity(b))?,
+            );
+            for (i, s) in stress.iter_mut().enumerate() {
+                *s += self.units.kinetic() * rho[i] * v[i] * w[i];
+            }
+        }
+        stress.iter_mut().for_each(|s| *s *= -factor);
+        Ok(stress)
+    }
+
+    /// May output ask for the virials of atoms?
+    pub fn stress_wanted(&self) -> bool {
+        let asks = |c: &Compute| matches!(c.kind, ComputeKind::Stress { virial: true, .. });
+        self.computes.iter().any(asks)
+    }
+
+    /// A list of numbers: `c_ID` or `f_ID`.
+    ///
+    /// # Errors
+    /// There is no such list.
+    pub fn column_vector(&mut self, column: &Column) -> Result<Vec<f64>> {
+        let no_list = |what: &str| Problem::new(format!("`{what}` is no list of numbers"));
+        match column {
+            Column::Compute(text, id, None) => {
+                let length = match &self.compute(id)?.kind {
+                    ComputeKind::Center => 3,
+                    ComputeKind::Reduce { inputs, .. } if inputs.len() > 1 => inputs.len(),
+                    _ => return Err(no_list(text)),
+                };
+                let mut values = Vec::new();
+                for k in 1..=length {
+                    values.push(self.compute_scalar(id, &[k as f64])?);
+                }
+                Ok(values)
+            }
+            Column::Fix(text, id, None) => {
+                let fix = self.fixes.iter().find(|f| f.id == *id).cloned();
+                match fix.as_ref().map(|f| &f.kind) {
+                    Some(FixKind::Average(a)) if a.borrow().vector => {
+                        Ok(a.borrow().result.iter().map(|r| r[0]).collect())
+                    }
+                    Some(
+                        FixKind::Indent { .. }
+                        | FixKind::SetForce { .. }
+                        | FixKind::AddForce { .. },
+                    ) => {
+                        let mut values = Vec::new();
+                        for k in 1..=3 {
+                            values.push(self.fix_value(id, &[f64::from(k)])?);
+                        }
+                        Ok(values)
+                    }
+                    _ => Err(no_list(text)),
+                }
+            }
+            other => Err(no_list(&other.heading())),
+        }
     }
 
     /// `c_ID` or `c_ID[i]` of a per-atom formula; `None` if it is one number.
@@ -192,7 +350,7 @@ impl Session<'_> {
         if BUILT_IN.contains(&id) {
             return Ok(None);
         }
-        if !matches!(self.compute(id)?.kind, ComputeKind::Atoms(_)) {
+        if self.compute(id)?.kind.columns().is_none() {
             return Ok(None);
         }
         let column = match index {
@@ -213,8 +371,10 @@ impl Session<'_> {
         }
         let compute = self.compute(id)?.clone();
         match (&compute.kind, index) {
-            (ComputeKind::Atoms(fields), [atom, rest @ ..])
-                if rest.len() == usize::from(fields.len() > 1) =>
+            (kind, [atom, rest @ ..])
+                if kind
+                    .columns()
+                    .is_some_and(|n| rest.len() == usize::from(n > 1)) =>
             {
                 let column = rest.first().map(|c| *c as usize);
                 match self.compute_column(id, column)? {
@@ -222,7 +382,7 @@ impl Session<'_> {
                     None => Ok(0.0),
                 }
             }
-            (ComputeKind::Atoms(_), _) => Err(Problem::new(format!(
+            (kind, _) if kind.columns().is_some() => Err(Problem::new(format!(
                 "compute `{id}` has values for each atom, one number is needed here"
             ))
             .help(format!("reduce it: compute NAME all reduce sum c_{id}"))),
@@ -230,7 +390,21 @@ impl Session<'_> {
                 self.reduce(Mode::Sum, &compute.members, &Tree::Field(Field::Kinetic))
             }
             (ComputeKind::Potential, []) => Ok(self.engine()?.energies()?.potential),
-            (ComputeKind::Reduce { mode, inputs }, _) => {
+            (ComputeKind::Temperature, []) => self.temperature_of(&compute.members),
+            (ComputeKind::Center, [k]) if [1.0, 2.0, 3.0].contains(k) => {
+                Ok(self.rigid(&compute.members)?.center[*k as usize - 1])
+            }
+            (ComputeKind::Center, _) => Err(Problem::new(format!(
+                "compute `{id}` has 3 numbers: write c_{id}[1] to c_{id}[3]"
+            ))),
+            (
+                ComputeKind::Reduce {
+                    mode,
+                    inputs,
+                    region,
+                },
+                _,
+            ) => {
                 let input = match (index, inputs.len()) {
                     ([], 1) => &inputs[0],
                     ([k], n) if n > 1 && *k >= 1.0 && *k <= n as f64 => &inputs[*k as usize - 1],
@@ -246,7 +420,11 @@ impl Session<'_> {
                     }
                 };
                 let tree = self.source_tree(input)?;
-                self.reduce(*mode, &compute.members, &tree)
+                let mut members = compute.members.clone();
+                if let Some(region) = region {
+                    members = self.inside(&members, region)?;
+                }
+                self.reduce(*mode, &members, &tree)
             }
             _ => Err(Problem::new(format!(
                 "compute `{id}` is one number: write c_{id}"
@@ -280,6 +458,17 @@ impl Session<'_> {
         })
     }
 
+    /// The members that are in a region now.
+    ///
+    /// # Errors
+    /// There is no such region.
+    pub fn inside(&mut self, members: &Members, region: &str) -> Result<Arc<Members>> {
+        let region = self.region(region)?;
+        let x = self.positions()?;
+        let inside = |i: usize| members.contains(i) && region.contains(x[i]);
+        Ok(Arc::new(Members::collect(x.len(), inside)))
+    }
+
     /// A group function of a formula.
     ///
     /// # Errors
@@ -291,50 +480,42 @@ impl Session<'_> {
                 arguments.join(",")
             ))
         };
+        let plain = match name {
+            "count" | "mass" | "ke" | "gyration" => 1,
+            _ => 2,
+        };
         let group = arguments.first().ok_or_else(wrong)?;
         let mut members = self.group(group)?;
-        let plain = match name {
-            "xcm" | "vcm" | "bound" => 2,
-            _ => 1,
-        };
-        match arguments.len() - plain.min(arguments.len()) {
-            0 if arguments.len() == plain => {}
-            1 => {
-                let region = self.region(&arguments[plain])?.clone();
-                let x = self.positions()?;
-                let inside =
-                    Members::collect(x.len(), |i| members.contains(i) && region.contains(x[i]));
-                members = Arc::new(inside);
-            }
+        match arguments.len().checked_sub(plain) {
+            Some(0) => {}
+            Some(1) => members = self.inside(&members, &arguments[plain])?,
             _ => return Err(wrong()),
         }
-        let axis = |text: &str| match text {
-            "x" => Ok(0),
-            "y" => Ok(1),
-            "z" => Ok(2),
-            _ => Err(wrong()),
+        let axis = |text: &str| {
+            ["x", "y", "z"]
+                .iter()
+                .position(|a| *a == text)
+                .ok_or_else(wrong)
         };
         let density = Tree::Field(Field::Raw(Quantity::Density));
-        let mean = |s: &Self, q: Quantity| -> Result<f64> {
-            use super::variable::ast::Op;
-            let product = Tree::Binary(
-                Op::Mul,
-                Box::new(density.clone()),
-                Box::new(Tree::Field(Field::Raw(q))),
-            );
-            let mass = s.reduce(Mode::Sum, &members, &density)?;
-            Ok(if mass > 0.0 {
-                s.reduce(Mode::Sum, &members, &product)? / mass
-            } else {
-                0.0
-            })
+        let of = |s: &Self, what: fn(&Rigid) -> [f64; 3]| -> Result<f64> {
+            Ok(what(&s.rigid(&members)?)[axis(&arguments[1])?])
         };
         match name {
             "count" => Ok(members.count(self.count()) as f64),
             "mass" => self.reduce(Mode::Sum, &members, &density),
             "ke" => self.reduce(Mode::Sum, &members, &Tree::Field(Field::Kinetic)),
-            "xcm" => mean(self, Quantity::Position(axis(&arguments[1])?)),
-            "vcm" => mean(self, Quantity::Velocity(axis(&arguments[1])?)),
+            "gyration" => Ok(self.rigid(&members)?.gyration),
+            "xcm" => of(self, |r| r.center),
+            "vcm" => of(self, |r| r.velocity),
+            "fcm" => of(self, |r| r.force),
+            "angmom" => of(self, |r| r.momentum),
+            "torque" => of(self, |r| r.torque),
+            "omega" => of(self, Rigid::rotation),
+            "inertia" => {
+                let (a, b) = arguments[1].split_at_checked(1).ok_or_else(wrong)?;
+                Ok(self.rigid(&members)?.inertia[axis(a)?][axis(b)?])
+            }
             _ => {
                 let side = &arguments[1];
                 let (letter, mode) = match (side.strip_suffix("min"), side.strip_suffix("max")) {

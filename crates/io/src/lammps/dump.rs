@@ -1,18 +1,18 @@
 //! `dump`, `write_dump`: snapshots in LAMMPS's text format.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::atoms::Members;
 use super::compute::Source;
 use super::error::{Problem, Result};
+use super::files::Sink;
 use super::host::{BLOCK, Quantity};
 use super::particles::Field;
 use super::printf::{Format, Value};
 use super::session::Session;
+use super::variable::ast::Op;
 use super::variable::tree::Tree;
+use crate::write::picture::{self, PictureOptions};
 
 /// A column of a snapshot.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +28,16 @@ pub enum DumpSource {
     Element,
 }
 
+/// What a snapshot is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DumpStyle {
+    Custom,
+    Atom,
+    Xyz,
+    /// A picture of our own.
+    Image,
+}
+
 #[derive(Debug)]
 pub struct Dump {
     pub id: String,
@@ -36,12 +46,18 @@ pub struct Dump {
     /// As written; `*` stands for the step.
     pub file: String,
     pub columns: Vec<DumpColumn>,
-    /// `dump atom`: columns follow from `scale` and `image`.
-    pub atom_style: bool,
+    pub style: DumpStyle,
+    /// Of `dump atom`: columns follow from these.
     pub scale: bool,
     pub image: bool,
     pub first: bool,
     pub append: bool,
+    /// A variable that says the next step, instead of `every`, and what it said.
+    pub every_variable: Option<(String, Option<u64>)>,
+    /// The column (from 0; `None`: the id) that rows are in the order of, and whether it falls.
+    pub sort: (Option<usize>, bool),
+    /// Only atoms for which all of these hold.
+    pub thresholds: Vec<(Source, Op, f64)>,
     /// Digits of the step in file names.
     pub pad: usize,
     pub units: bool,
@@ -52,7 +68,7 @@ pub struct Dump {
     pub single: Vec<(usize, Format)>,
     pub elements: Vec<String>,
     pub last_written: Option<u64>,
-    pub writer: Option<BufWriter<File>>,
+    pub writer: Option<Sink>,
 }
 
 impl Dump {
@@ -63,11 +79,14 @@ impl Dump {
             every,
             file: file.to_string(),
             columns: Vec::new(),
-            atom_style: false,
+            style: DumpStyle::Custom,
             scale: true,
             image: false,
             first: false,
             append: false,
+            every_variable: None,
+            sort: (None, false),
+            thresholds: Vec::new(),
             pad: 0,
             units: false,
             time: false,
@@ -101,6 +120,32 @@ impl Dump {
             .collect();
     }
 
+    /// Columns of `dump xyz`.
+    pub fn xyz_columns(&mut self) {
+        self.atom_columns();
+        self.columns = ["x", "y", "z"]
+            .map(|name| DumpColumn {
+                heading: name.to_string(),
+                source: DumpSource::Values(Source::Field(Field::parse(name).unwrap_or(Field::Id))),
+            })
+            .to_vec();
+        self.columns.insert(
+            0,
+            DumpColumn {
+                heading: "element".to_string(),
+                source: DumpSource::Element,
+            },
+        );
+    }
+
+    /// Is it written at this step of a run?
+    fn due(&self, step: u64) -> bool {
+        match &self.every_variable {
+            Some((_, next)) => *next == Some(step),
+            None => step.is_multiple_of(self.every),
+        }
+    }
+
     fn path_name(&self, step: u64) -> String {
         self.file
             .replace('*', &format!("{step:0>w$}", w = self.pad))
@@ -128,11 +173,15 @@ impl Dump {
     }
 }
 
-fn failed(path: &std::path::Path, error: &std::io::Error) -> Box<Problem> {
-    Problem::new(format!("cannot write {}: {error}", path.display()))
-}
-
 impl Session<'_> {
+    /// Is a dump due at this step?
+    ///
+    /// # Errors
+    /// A variable cannot be evaluated.
+    pub fn dumps_due(&mut self, step: u64) -> Result<bool> {
+        Ok(self.dumps.iter().any(|d| d.due(step)))
+    }
+
     /// Writes the dumps that are due at this step.
     ///
     /// # Errors
@@ -141,9 +190,21 @@ impl Session<'_> {
         for k in 0..self.dumps.len() {
             let step = self.progress.step;
             let dump = &self.dumps[k];
-            let due = step.is_multiple_of(dump.every)
-                || (at_start && dump.first && dump.last_written.is_none());
-            if due && dump.last_written != Some(step) {
+            let due = dump.due(step) || (at_start && dump.first && dump.last_written.is_none());
+            let write = due && dump.last_written != Some(step);
+            if let Some((name, next)) = &dump.every_variable
+                && (due || (at_start && next.is_none_or(|n| n <= step)))
+            {
+                let name = name.clone();
+                let next = self.variable_number(&name)?;
+                if !(next > step as f64) {
+                    return Err(Problem::new(format!(
+                        "variable `{name}` of `dump_modify every` gives step {next}, which is not after step {step}"
+                    )));
+                }
+                self.dumps[k].every_variable = Some((name, Some(next as u64)));
+            }
+            if write {
                 self.shrink_box()?;
                 let mut dump = self.dumps.remove(k);
                 let result = self.write_snapshot(&mut dump);
@@ -160,27 +221,24 @@ impl Session<'_> {
     /// A value does not exist; the file cannot be written.
     pub fn write_snapshot(&mut self, dump: &mut Dump) -> Result<()> {
         let step = self.progress.step;
-        let path: PathBuf = self.output_path(&dump.path_name(step));
         let mut writer = match dump.writer.take() {
             Some(w) => w,
-            None => {
-                let file = if dump.append {
-                    File::options().append(true).create(true).open(&path)
-                } else {
-                    File::create(&path)
-                };
-                BufWriter::new(file.map_err(|e| failed(&path, &e))?)
-            }
+            None => self.folder.open(&dump.path_name(step), dump.append)?,
         };
-        let mut trees = Vec::new();
-        for column in &dump.columns {
-            trees.push(match &column.source {
-                DumpSource::Element => Tree::Field(Field::Raw(Quantity::Type)),
-                DumpSource::Values(source) => self.source_tree(source)?,
-            });
+        if dump.style == DumpStyle::Image {
+            self.picture(&mut writer)?;
+        } else {
+            let mut trees = Vec::new();
+            for column in &dump.columns {
+                trees.push(match &column.source {
+                    DumpSource::Element => Tree::Field(Field::Raw(Quantity::Type)),
+                    DumpSource::Values(source) => self.source_tree(source)?,
+                });
+            }
+            let rows = self.rows(dump, &trees)?;
+            self.snapshot_text(dump, &trees, rows.as_deref(), &mut writer)?;
         }
-        self.snapshot_text(dump, &trees, &mut writer, &path)?;
-        writer.flush().map_err(|e| failed(&path, &e))?;
+        writer.flush()?;
         dump.last_written = Some(step);
         if !dump.file.contains('*') {
             dump.writer = Some(writer);
@@ -188,15 +246,58 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn snapshot_text(
-        &self,
-        dump: &Dump,
-        trees: &[Tree],
-        out: &mut dyn Write,
-        path: &std::path::Path,
-    ) -> Result<()> {
-        let io = |e: std::io::Error| failed(path, &e);
-        let (domain, n) = (self.domain()?, self.count());
+    /// The atoms of a snapshot in their order; `None`: all members in order of id.
+    fn rows(&mut self, dump: &Dump, trees: &[Tree]) -> Result<Option<Vec<u32>>> {
+        if dump.thresholds.is_empty() && dump.sort == (None, false) {
+            return Ok(None);
+        }
+        let n = self.count();
+        let mut rows: Vec<u32> = (0..n as u32)
+            .filter(|i| dump.members.contains(*i as usize))
+            .collect();
+        for (source, op, limit) in &dump.thresholds {
+            let tree = self.source_tree(source)?;
+            let values = self.values(&tree)?;
+            let holds = |i: u32| op.apply(values[i as usize], *limit).is_ok_and(|t| t != 0.0);
+            rows.retain(|i| holds(*i));
+        }
+        if let (Some(column), _) = dump.sort {
+            let values = self.values(&trees[column])?;
+            rows.sort_by(|a, b| values[*a as usize].total_cmp(&values[*b as usize]));
+        }
+        if dump.sort.1 {
+            rows.reverse();
+        }
+        Ok(Some(rows))
+    }
+
+    /// Our own picture of the damage.
+    fn picture(&mut self, out: &mut Sink) -> Result<()> {
+        let (length_unit, time_unit) = self.units.labels();
+        let title = self.title.clone();
+        let Some(snapshot) = self.engine()?.snapshot() else {
+            return Err(Problem::new("there is no picture of this model"));
+        };
+        let options = PictureOptions {
+            title,
+            length_unit: length_unit.to_string(),
+            time_unit: time_unit.to_string(),
+            ..PictureOptions::default()
+        };
+        let mut bytes = Vec::new();
+        picture::damage(&snapshot, &options)
+            .and_then(|image| image.write_png(&mut bytes))
+            .map_err(|e| Problem::new(format!("the picture cannot be drawn: {e}")))?;
+        out.write_bytes(&bytes)
+    }
+
+    /// The head of a snapshot.
+    fn head(&self, dump: &Dump, atoms: usize) -> Result<String> {
+        let step = self.progress.step;
+        if dump.style == DumpStyle::Xyz {
+            return Ok(format!("{atoms}\n Atoms. Timestep: {step}\n"));
+        }
+        let domain = self.domain()?;
         let mut head = String::new();
         if dump.units && dump.last_written.is_none() {
             head += &format!("ITEM: UNITS\n{}\n", self.units.name());
@@ -207,11 +308,7 @@ impl Session<'_> {
                 .unwrap_or_default();
             head += &format!("ITEM: TIME\n{time}\n");
         }
-        head += &format!(
-            "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n",
-            self.progress.step,
-            dump.members.count(n)
-        );
+        head += &format!("ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{atoms}\n");
         let faces = domain
             .faces
             .map(|[a, b]| format!("{}{}", a.letter(), b.letter()))
@@ -224,35 +321,35 @@ impl Session<'_> {
         }
         let headings: Vec<&str> = dump.columns.iter().map(|c| c.heading.as_str()).collect();
         head += &format!("ITEM: ATOMS {}\n", headings.join(" "));
-        out.write_all(head.as_bytes()).map_err(io)?;
+        Ok(head)
+    }
 
-        struct Cell {
-            format: Format,
-            integer: bool,
-            element: bool,
-        }
-        let mut cells = Vec::new();
-        for (k, column) in dump.columns.iter().enumerate() {
-            let element = column.source == DumpSource::Element;
-            let integer =
-                matches!(&column.source, DumpSource::Values(Source::Field(f)) if f.is_integer());
-            let format = dump.format(k, integer, element);
-            let format = format.ok_or_else(|| {
-                Problem::new(format!(
-                    "dump `{}`: no format for column {}",
-                    dump.id,
-                    k + 1
-                ))
-            })?;
-            cells.push(Cell {
-                format,
-                integer,
-                element,
-            });
+    fn snapshot_text(
+        &self,
+        dump: &Dump,
+        trees: &[Tree],
+        rows: Option<&[u32]>,
+        out: &mut Sink,
+    ) -> Result<()> {
+        let n = self.count();
+        let atoms = rows.map_or_else(|| dump.members.count(n), <[u32]>::len);
+        out.write(&self.head(dump, atoms)?)?;
+        let cells = cells(dump)?;
+        let mut text = String::new();
+        if let Some(rows) = rows {
+            let columns = trees.iter().map(|t| self.values(t));
+            let columns = columns.collect::<Result<Vec<_>>>()?;
+            for block in rows.chunks(BLOCK) {
+                text.clear();
+                for i in block {
+                    print_row(dump, &cells, &columns, *i as usize, &mut text);
+                }
+                out.write(&text)?;
+            }
+            return Ok(());
         }
         let (view, clock) = (self.view()?, self.clock());
         let mut values = vec![vec![0.0; BLOCK]; trees.len()];
-        let mut text = String::new();
         for first in (0..n).step_by(BLOCK) {
             let m = BLOCK.min(n - first);
             for (tree, column) in trees.iter().zip(&mut values) {
@@ -260,28 +357,65 @@ impl Session<'_> {
             }
             text.clear();
             for i in (0..m).filter(|i| dump.members.contains(first + i)) {
-                for (k, (cell, column)) in cells.iter().zip(&values).enumerate() {
-                    if k > 0 {
-                        text.push(' ');
-                    }
-                    let x = column[i];
-                    let value = if cell.element {
-                        Value::Text(
-                            dump.elements
-                                .get((x as usize).wrapping_sub(1))
-                                .map_or("C", String::as_str),
-                        )
-                    } else if cell.integer {
-                        Value::Integer(x as i64)
-                    } else {
-                        Value::Float(x)
-                    };
-                    text.push_str(&cell.format.print(value));
-                }
-                text.push('\n');
+                print_row(dump, &cells, &values, i, &mut text);
             }
-            out.write_all(text.as_bytes()).map_err(io)?;
+            out.write(&text)?;
         }
         Ok(())
     }
+}
+
+/// How a column is printed.
+struct Cell {
+    format: Format,
+    integer: bool,
+    element: bool,
+}
+
+fn cells(dump: &Dump) -> Result<Vec<Cell>> {
+    let mut cells = Vec::new();
+    for (k, column) in dump.columns.iter().enumerate() {
+        let element = column.source == DumpSource::Element;
+        let integer =
+            matches!(&column.source, DumpSource::Values(Source::Field(f)) if f.is_integer());
+        let format = dump.format(k, integer, element);
+        let format = format.ok_or_else(|| {
+            Problem::new(format!(
+                "dump `{}`: no format for column {}",
+                dump.id,
+                k + 1
+            ))
+        })?;
+        cells.push(Cell {
+            format,
+            integer,
+            element,
+        });
+    }
+    Ok(cells)
+}
+
+fn print_row(dump: &Dump, cells: &[Cell], columns: &[Vec<f64>], row: usize, text: &mut String) {
+    for (k, (cell, column)) in cells.iter().zip(columns).enumerate() {
+        if k > 0 {
+            text.push(' ');
+        }
+        let x = column[row];
+        if cell.element {
+            let name = dump.elements.get((x as usize).wrapping_sub(1));
+            let unnamed = match dump.style {
+                DumpStyle::Xyz => format!("{x}"),
+                DumpStyle::Custom | DumpStyle::Atom | DumpStyle::Image => "C".to_string(),
+            };
+            let name = name.map_or(unnamed.as_str(), String::as_str);
+            text.push_str(&cell.format.print(Value::Text(name)));
+            continue;
+        }
+        let value = match cell.integer {
+            true => Value::Integer(x as i64),
+            false => Value::Float(x),
+        };
+        text.push_str(&cell.format.print(value));
+    }
+    text.push('\n');
 }

@@ -10,6 +10,9 @@ use std::sync::Arc;
 use super::atoms::{Atoms, Members};
 use super::domain::SimBox;
 use super::units::Units;
+pub use peridyne::condition::carried::{Carry, Motion};
+pub use peridyne::condition::indenter::{Form, Push};
+pub use peridyne::run::Wall;
 
 /// Why a host cannot do something; the interpreter adds file and line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -64,6 +67,8 @@ pub enum Quantity {
     CriticalStretch,
     /// Strain and contact energy density W as LAMMPS counts it, without the indenter (energy / volume).
     Energy,
+    /// Half the virial of the pairs of an atom, one of xx yy zz xy xz yz (energy): weighted with volumes.
+    Virial(usize),
 }
 
 /// Per-atom data in blocks, so that nobody needs a second copy of everything.
@@ -195,10 +200,13 @@ pub struct LpsCoefficients {
 /// by the ones before it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// Adds the force density `K (R − r)²` along `x − center` where `r < R`; minimum image on periodic axes.
+    /// Adds the force density `K g²` along the surface's normal where the gap g between atom and surface is negative;
+    /// minimum image on periodic axes.
     Indent {
         members: Arc<Members>,
         stiffness: f64,
+        form: Form,
+        push: Push,
         center: [f64; 3],
         radius: f64,
     },
@@ -207,10 +215,25 @@ pub enum Condition {
         members: Arc<Members>,
         force: [Option<f64>; 3],
     },
+    /// The same, with values for each member.
+    SetForceEach {
+        members: Arc<Members>,
+        force: Vec<[Option<f64>; 3]>,
+    },
     /// Adds a force density.
     AddForce {
         members: Arc<Members>,
         force: [f64; 3],
+    },
+    /// The same, with values for each member.
+    AddForceEach {
+        members: Arc<Members>,
+        force: Vec<[Option<f64>; 3]>,
+    },
+    /// Adds the force density −γ v with the γ of each member, v as it is at that moment (in a step: of its middle).
+    Drag {
+        members: Arc<Members>,
+        gamma: Vec<f64>,
     },
     /// Zeroes the z components of force density and velocity.
     Enforce2d { members: Arc<Members> },
@@ -224,8 +247,10 @@ pub struct RunStart {
     /// Number of steps of this run.
     pub steps: u64,
     pub time_step: f64,
-    /// Atoms of `fix nve`; `None`: nothing moves.
+    /// Atoms that forces move; `None`: none.
     pub moving: Option<Arc<Members>>,
+    /// Atoms (from 0) that are carried.
+    pub carried: Vec<u32>,
     /// The box as it is now.
     pub domain: SimBox,
 }
@@ -237,12 +262,13 @@ pub struct Energies {
     pub potential: f64,
 }
 
-/// Energy and force that a [`Condition::Indent`] had at the last force evaluation.
+/// What a [`Condition`] had at the last force evaluation.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reaction {
-    /// Σ K (R − r)³ / 3.
+    /// Σ K g³ / 3 of an indenter.
     pub energy: f64,
-    /// Minus the sum of the force densities on the atoms.
+    /// Of an indenter minus the sum of the force densities on the atoms; of other conditions the sum of the force
+    /// densities on their atoms before they acted.
     pub force: [f64; 3],
 }
 
@@ -255,12 +281,26 @@ pub trait Engine: Particles {
     /// The model cannot be run like this.
     fn setup(&mut self, run: &RunStart, conditions: &[Condition]) -> Result<(), HostError>;
 
-    /// One velocity-Verlet step; `conditions` hold the values at the *end* of the step, in the order (and
-    /// number) of `setup`.
+    /// The first half of a velocity-Verlet step: positions of its end. `carried` says where the atoms of
+    /// [`RunStart::carried`] are then, in displacements from their reference. Answers a bound on the path of any atom
+    /// (length).
     ///
     /// # Errors
     /// The state went bad.
-    fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError>;
+    fn depart(&mut self, carried: &[Motion]) -> Result<f64, HostError>;
+
+    /// Mirrors atoms behind a wall, with their velocity across it.
+    fn reflect(&mut self, wall: &Wall, members: &Members);
+
+    /// The second half of a step: forces at its end. `conditions` hold their values there, in the order (and number) of
+    /// `setup`.
+    ///
+    /// # Errors
+    /// The state went bad.
+    fn arrive(&mut self, conditions: &[Condition]) -> Result<(), HostError>;
+
+    /// Takes atoms (from 0) away for ever; their bonds break, those above move down.
+    fn remove(&mut self, atoms: &[u32]);
 
     /// Values will be asked for after the next step: LAMMPS's energies and dilatations still have the bonds that
     /// break in that step. [`Engine::setup`] expects it always.
@@ -275,6 +315,9 @@ pub trait Engine: Particles {
     /// The virial will be asked for after the next step or [`Engine::setup`].
     fn expect_virial(&mut self) {}
 
+    /// The same for [`Quantity::Virial`].
+    fn expect_virials(&mut self) {}
+
     /// Σ of distance times force over bonds and contacts, xx yy zz xy xz yz (energy; weighted with volumes, unlike
     /// [`Energies`]).
     ///
@@ -282,8 +325,13 @@ pub trait Engine: Particles {
     /// It cannot be computed.
     fn virial(&mut self) -> Result<[f64; 6], HostError>;
 
-    /// Of condition number `index`; zero if it is no indenter.
+    /// Of condition number `index`.
     fn reaction(&self, index: usize) -> Reaction;
+
+    /// Everything about the model now, for a picture.
+    fn snapshot(&mut self) -> Option<peridyne::observe::Snapshot> {
+        None
+    }
 
     /// Directed bonds of the reference family (each bond counts twice).
     fn directed_bonds(&self) -> u64;

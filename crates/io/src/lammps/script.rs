@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::error::{Problem, Result, ScriptError};
+use super::files::Folder;
 use super::host::{Console, Engine, Host};
+use super::lines;
 use super::session::{Session, Store};
 use super::text::{Text, logical_lines, words};
 
@@ -15,6 +17,10 @@ pub struct Options {
     pub variables: Vec<(String, Vec<String>)>,
     /// Folder of output files (`dump`, `write_data`, `print file`); the current one if empty.
     pub output: PathBuf,
+    /// Files may be written anywhere, not only there and beside the script.
+    pub allow_outside: bool,
+    /// Nothing is written at all: the script is only checked.
+    pub dry: bool,
 }
 
 /// What a script left behind.
@@ -60,14 +66,9 @@ pub fn run_file(
     console: &mut dyn Console,
 ) -> std::result::Result<Outcome, Box<ScriptError>> {
     let shown = path.display().to_string();
-    let text = std::fs::read(path).map_err(|e| ScriptError::unreadable(&shown, &e))?;
-    run_text(
-        &shown,
-        &String::from_utf8_lossy(&text),
-        options,
-        host,
-        console,
-    )
+    let text =
+        lines::text(path, &shown).map_err(|p| ScriptError::locate(*p, &shown, "", (0, 0)))?;
+    run_text(&shown, &text, options, host, console)
 }
 
 /// Runs a script given as text; `name` is the file name for messages.
@@ -81,7 +82,16 @@ pub fn run_text(
     host: &mut dyn Host,
     console: &mut dyn Console,
 ) -> std::result::Result<Outcome, Box<ScriptError>> {
-    let session = Session::new(host, console, options.output.clone(), name.to_string());
+    let folder = Folder {
+        output: options.output.clone(),
+        script: Path::new(name)
+            .parent()
+            .map(Path::to_path_buf)
+            .unwrap_or_default(),
+        outside: options.allow_outside,
+        dry: options.dry,
+    };
+    let session = Session::new(host, console, folder, name.to_string());
     let mut script = Script {
         session,
         open: Vec::new(),
@@ -159,9 +169,8 @@ impl Script<'_> {
             ));
         }
         let path = self.session.input_path(name);
-        let text = std::fs::read(&path)
-            .map_err(|e| Problem::new(format!("cannot read {}: {e}", path.display())))?;
-        self.push(&path.display().to_string(), &String::from_utf8_lossy(&text));
+        let text = lines::text(&path, &path.display().to_string())?;
+        self.push(&path.display().to_string(), &text);
         Ok(())
     }
 

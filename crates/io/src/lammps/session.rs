@@ -1,28 +1,32 @@
 //! The state of a script between commands.
 
 use std::cell::RefCell;
-use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::atoms::{Atoms, Ids, Members};
 use super::compute::Compute;
+use super::console::Output;
 use super::domain::{Face, SimBox};
 use super::dump::Dump;
 use super::error::{Place, Problem, Result, Span, suggestion};
+use super::files::Folder;
 use super::fix::Fix;
 use super::host::{
-    BLOCK, Condition, Console, Engine, Host, LpsCoefficients, Particles, PmbCoefficients, Quantity,
+    BLOCK, Condition, Console, Engine, Host, LpsCoefficients, Motion, Particles, PmbCoefficients,
+    Quantity,
 };
 use super::lattice::Lattice;
+use super::lost::{Rebuild, Schedule};
 use super::particles::{Field, View};
 use super::random::Ranmar;
-use super::region::Region;
+use super::region::Definition;
 use super::thermo::Thermo;
 use super::units::Units;
 use super::variable::Variables;
 use super::variable::functions::Clock;
+use super::variable::tree::Tree;
 
 /// Who holds the atoms.
 pub enum Store {
@@ -76,16 +80,16 @@ pub struct Progress {
 
 pub struct Session<'a> {
     pub host: &'a mut dyn Host,
-    pub console: &'a mut dyn Console,
-    /// Relative output paths start here.
-    pub output: PathBuf,
+    pub console: Output<'a>,
+    /// Where files are written.
+    pub folder: Folder,
     pub title: String,
     pub units: Units,
     pub dimension: usize,
     pub faces: [[Face; 2]; 3],
     pub atom_style: bool,
     pub lattice: Option<Lattice>,
-    pub regions: Vec<(String, Region)>,
+    pub regions: Vec<(String, Rc<Definition>)>,
     pub domain: Option<SimBox>,
     /// Number of atom types.
     pub types: usize,
@@ -93,6 +97,8 @@ pub struct Session<'a> {
     pub ids: Ids,
     pub groups: Vec<(String, Arc<Members>)>,
     pub skin: f64,
+    pub neighbors: Schedule,
+    pub rebuild: Rebuild,
     pub pair: Option<PairState>,
     /// Where each pair of types got its coefficients, `[types²]`.
     pub pair_places: Vec<Place>,
@@ -101,6 +107,7 @@ pub struct Session<'a> {
     pub fixes: Vec<Rc<Fix>>,
     /// Values of the fixes at this step: kept so that a step allocates nothing.
     pub acting: Vec<Condition>,
+    pub told: Vec<Motion>,
     pub computes: Vec<Compute>,
     pub dumps: Vec<Dump>,
     pub variables: Variables,
@@ -115,13 +122,13 @@ impl<'a> Session<'a> {
     pub fn new(
         host: &'a mut dyn Host,
         console: &'a mut dyn Console,
-        output: PathBuf,
+        folder: Folder,
         title: String,
     ) -> Self {
         Session {
             host,
-            console,
-            output,
+            console: Output::new(console),
+            folder,
             title,
             units: Units::Lj,
             dimension: 3,
@@ -135,11 +142,14 @@ impl<'a> Session<'a> {
             ids: Ids::Count(0),
             groups: vec![("all".into(), Arc::new(Members::All))],
             skin: Units::Lj.skin(),
+            neighbors: Schedule::default(),
+            rebuild: Rebuild::default(),
             pair: None,
             pair_places: Vec::new(),
             here: (String::new(), "".into(), (0, 0)),
             fixes: Vec::new(),
             acting: Vec::new(),
+            told: Vec::new(),
             computes: Vec::new(),
             dumps: Vec::new(),
             variables: Variables::default(),
@@ -219,19 +229,6 @@ impl<'a> Session<'a> {
                 Problem::new(format!("there is no group `{name}`")).help(suggestion(
                     name,
                     self.groups.iter().map(|(n, _)| n.as_str()),
-                ))
-            })
-    }
-
-    pub fn region(&self, name: &str) -> Result<&Region> {
-        self.regions
-            .iter()
-            .find(|(n, _)| n == name)
-            .map(|(_, r)| r)
-            .ok_or_else(|| {
-                Problem::new(format!("there is no region `{name}`")).help(suggestion(
-                    name,
-                    self.regions.iter().map(|(n, _)| n.as_str()),
                 ))
             })
     }
@@ -321,9 +318,108 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Path of an output file.
-    pub fn output_path(&self, name: &str) -> PathBuf {
-        self.output.join(name)
+    /// One quantity of all atoms.
+    ///
+    /// # Errors
+    /// It does not exist (yet).
+    pub fn raw(&self, quantity: Quantity) -> Result<Vec<f64>> {
+        let mut values = vec![0.0; self.count()];
+        for (b, block) in values.chunks_mut(BLOCK).enumerate() {
+            self.store.particles().read(quantity, b * BLOCK, block)?;
+        }
+        Ok(values)
+    }
+
+    /// One quantity of one atom.
+    ///
+    /// # Errors
+    /// It does not exist (yet).
+    pub fn one(&self, quantity: Quantity, atom: usize) -> Result<f64> {
+        let mut value = [0.0];
+        self.store.particles().read(quantity, atom, &mut value)?;
+        Ok(value[0])
+    }
+
+    /// Positions of all atoms, not wrapped into a periodic box, `[N][3]`.
+    ///
+    /// # Errors
+    /// They cannot be read.
+    pub fn unwrapped(&self) -> Result<Vec<[f64; 3]>> {
+        let axes = [0, 1, 2].map(|a| self.raw(Quantity::Position(a)));
+        let [x, y, z] = axes;
+        let (x, y, z) = (x?, y?, z?);
+        Ok((0..x.len()).map(|i| [x[i], y[i], z[i]]).collect())
+    }
+
+    /// Values of a formula for all atoms.
+    ///
+    /// # Errors
+    /// They do not exist (yet).
+    pub fn values(&self, tree: &Tree) -> Result<Vec<f64>> {
+        let (view, clock) = (self.view()?, self.clock());
+        let mut values = vec![0.0; self.count()];
+        for (b, block) in values.chunks_mut(BLOCK).enumerate() {
+            tree.fill(&view, &clock, b * BLOCK, block)?;
+        }
+        Ok(values)
+    }
+
+    /// Only the atoms at these places are left: groups, and what was made of them.
+    pub fn forget(&mut self, places: &[usize]) {
+        for (_, members) in &mut self.groups {
+            *members = Arc::new(members.only(places));
+        }
+        for fix in &mut self.fixes {
+            let mut new = fix.as_ref().clone();
+            new.members = Arc::new(new.members.only(places));
+            *fix = Rc::new(new);
+        }
+        for compute in &mut self.computes {
+            compute.members = Arc::new(compute.members.only(places));
+        }
+        for dump in &mut self.dumps {
+            dump.members = Arc::new(dump.members.only(places));
+        }
+    }
+
+    /// Everything as it was before the first command, but variables, the log and the wall clock.
+    pub fn clear(&mut self) {
+        self.units = Units::Lj;
+        self.dimension = 3;
+        self.faces = [[Face::Periodic; 2]; 3];
+        self.atom_style = false;
+        self.lattice = None;
+        self.regions.clear();
+        self.domain = None;
+        self.types = 0;
+        self.store = Store::Atoms(Atoms::default());
+        self.ids = Ids::Count(0);
+        self.groups = vec![("all".into(), Arc::new(Members::All))];
+        self.skin = Units::Lj.skin();
+        self.neighbors = Schedule::default();
+        self.rebuild = Rebuild::default();
+        self.pair = None;
+        self.pair_places.clear();
+        self.fixes.clear();
+        self.acting.clear();
+        self.told.clear();
+        self.computes.clear();
+        self.dumps.clear();
+        self.random = [None, None];
+        self.thermo = Thermo::default();
+        self.progress = Progress {
+            step: 0,
+            begin: 0,
+            end: 0,
+            whole: None,
+            first: 0,
+            time_step: Units::Lj.time_step(),
+            time_base: (0, 0.0),
+            started: None,
+            // what was done stays done
+            stepping_seconds: self.progress.stepping_seconds,
+            steps_done: self.progress.steps_done,
+        };
     }
 }
 

@@ -36,6 +36,20 @@ impl Units {
             .map_or("lj", |(n, _)| n)
     }
 
+    /// Names of the units of length and time, for pictures; lj has none.
+    pub fn labels(self) -> (&'static str, &'static str) {
+        match self {
+            Units::Lj => ("", ""),
+            Units::Real => ("Å", "fs"),
+            Units::Electron => ("Bohr", "fs"),
+            Units::Si => ("m", "s"),
+            Units::Metal => ("Å", "ps"),
+            Units::Cgs => ("cm", "s"),
+            Units::Micro => ("µm", "µs"),
+            Units::Nano => ("nm", "ns"),
+        }
+    }
+
     /// Boltzmann's constant (energy / temperature).
     pub fn boltzmann(self) -> f64 {
         match self {

@@ -1,9 +1,7 @@
 //! `write_data` for `atom_style peri`.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
-
-use super::error::{Problem, Result};
+use super::error::Result;
+use super::files::Sink;
 use super::host::Quantity;
 use super::particles::Field;
 use super::printf::shortest;
@@ -16,12 +14,8 @@ impl Session<'_> {
     /// It cannot be written.
     pub fn write_data(&mut self, name: &str) -> Result<()> {
         self.shrink_box()?;
-        let path = self.output_path(name);
-        let io = |e: std::io::Error| Problem::new(format!("cannot write {}: {e}", path.display()));
         // a half-written file must not look like a whole one
-        let mut part = path.clone().into_os_string();
-        part.push(".part");
-        let mut out = BufWriter::new(File::create(&part).map_err(io)?);
+        let mut out = self.folder.open_part(name)?;
         let domain = *self.domain()?;
         let n = self.count();
         let step = self.progress.step;
@@ -45,32 +39,22 @@ impl Session<'_> {
             .into_iter()
             .chain([0, 1, 2].map(Field::Image));
         let fields: Vec<Field> = atom_fields.into_iter().chain(places).collect();
-        self.write_rows(&fields, &mut text, &mut out)
-            .map_err(|e| e.unwrap_or_else(io))?;
+        self.write_rows(&fields, &mut text, &mut out)?;
         text += "\nVelocities\n\n";
         let fields = [0, 1, 2].map(|a| Field::Raw(Quantity::Velocity(a)));
-        self.write_rows(&fields, &mut text, &mut out)
-            .map_err(|e| e.unwrap_or_else(io))?;
-        out.flush().map_err(io)?;
-        std::fs::rename(&part, &path).map_err(io)?;
-        Ok(())
+        self.write_rows(&fields, &mut text, &mut out)?;
+        self.folder.whole(name, out)
     }
 
-    fn write_rows(
-        &self,
-        fields: &[Field],
-        text: &mut String,
-        out: &mut dyn Write,
-    ) -> std::result::Result<(), RowError> {
-        let view = self.view().map_err(RowError::Problem)?;
+    fn write_rows(&self, fields: &[Field], text: &mut String, out: &mut Sink) -> Result<()> {
+        let view = self.view()?;
         let n = self.count();
         let block = super::host::BLOCK;
         let mut values = vec![vec![0.0; block]; fields.len()];
         for first in (0..n).step_by(block) {
             let m = block.min(n - first);
             for (f, v) in fields.iter().zip(&mut values) {
-                view.read(*f, first, &mut v[..m])
-                    .map_err(RowError::Problem)?;
+                view.read(*f, first, &mut v[..m])?;
             }
             for i in 0..m {
                 *text += &self.ids.get(first + i).to_string();
@@ -80,25 +64,11 @@ impl Session<'_> {
                 }
                 text.push('\n');
             }
-            out.write_all(text.as_bytes()).map_err(RowError::Io)?;
+            out.write(text)?;
             text.clear();
         }
-        out.write_all(text.as_bytes()).map_err(RowError::Io)?;
+        out.write(text)?;
         text.clear();
         Ok(())
-    }
-}
-
-enum RowError {
-    Problem(Box<Problem>),
-    Io(std::io::Error),
-}
-
-impl RowError {
-    fn unwrap_or_else(self, io: impl FnOnce(std::io::Error) -> Box<Problem>) -> Box<Problem> {
-        match self {
-            RowError::Problem(p) => p,
-            RowError::Io(e) => io(e),
-        }
     }
 }

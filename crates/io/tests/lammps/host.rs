@@ -4,7 +4,7 @@ use std::any::Any;
 use std::sync::{Arc, Mutex};
 
 use peridyne_io::lammps::host::*;
-use peridyne_io::lammps::{Atoms, Options, Outcome, ScriptError, run_text};
+use peridyne_io::lammps::{Atoms, Members, Options, Outcome, ScriptError, run_text};
 
 /// Atoms that fly freely; forces come from conditions only.
 pub struct Flight {
@@ -48,6 +48,7 @@ impl Flight {
                         stiffness,
                         center,
                         radius,
+                        ..
                     } if members.contains(i) => {
                         let x = self.atoms.position(i);
                         let d = [0, 1, 2].map(|a| x[a] - center[a]);
@@ -98,7 +99,7 @@ impl Engine for Flight {
         self.forces(conditions);
         Ok(())
     }
-    fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
+    fn depart(&mut self, _: &[Motion]) -> Result<f64, HostError> {
         self.kick();
         if let Some(RunStart {
             moving: Some(moving),
@@ -116,9 +117,21 @@ impl Engine for Flight {
                 self.atoms.write(Quantity::Position(a), 0, &x)?;
             }
         }
+        Ok(f64::INFINITY)
+    }
+    fn reflect(&mut self, _: &Wall, _: &Members) {}
+    fn arrive(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
         self.forces(conditions);
         self.kick();
         Ok(())
+    }
+    fn remove(&mut self, atoms: &[u32]) {
+        let n = self.atoms.len();
+        let stays = |i: &usize| atoms.binary_search(&(*i as u32)).is_err();
+        let places: Vec<usize> = (0..n).filter(stays).collect();
+        let ids = self.atoms.ids.only(&places);
+        self.atoms.pick(&places, ids);
+        self.force = places.iter().map(|i| self.force[*i]).collect();
     }
     fn energies(&mut self) -> Result<Energies, HostError> {
         Ok(Energies { potential: 0.0 })

@@ -23,6 +23,7 @@ fn deck(name: &str, variables: &[(&str, &str)], steps: Option<(&str, &str)>) -> 
         &Options {
             variables,
             output: output.path().into(),
+            ..Options::default()
         },
     );
     if let Err(e) = &ran.outcome {

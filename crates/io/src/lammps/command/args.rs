@@ -29,6 +29,11 @@ impl<'a> Args<'a> {
         self.words.get(self.at).map(Word::as_str)
     }
 
+    /// The third word from here: the style of `fix ID GROUP STYLE`.
+    pub fn third(&self) -> Option<&'a str> {
+        self.words.get(self.at + 2).map(Word::as_str)
+    }
+
     /// Takes the next word if it is this one.
     pub fn eat(&mut self, word: &str) -> bool {
         let found = self.peek() == Some(word);
@@ -159,6 +164,27 @@ impl<'a> Args<'a> {
             "no" | "off" | "false" => Ok(false),
             _ => Err(self.not(word, &format!("{what} (yes or no)"))),
         }
+    }
+
+    /// A seed of random numbers.
+    ///
+    /// # Errors
+    /// It is missing or no seed.
+    pub fn seed(&mut self) -> Result<i64> {
+        let word = self.next("a seed")?;
+        let seed = word.as_str().parse::<i64>().ok();
+        seed.filter(|s| (1..=2_147_483_646).contains(s))
+            .ok_or_else(|| self.not(word, "a seed (a whole number from 1 to 2147483646)"))
+    }
+
+    /// `x`, `y` or `z`.
+    ///
+    /// # Errors
+    /// It is missing or none of them.
+    pub fn axis(&mut self) -> Result<usize> {
+        let word = self.next("the axis x, y or z")?;
+        let found = ["x", "y", "z"].iter().position(|a| *a == word.as_str());
+        found.ok_or_else(|| self.unknown(word, "the axis", ["x", "y", "z"]))
     }
 
     /// `box` (false) or `lattice` (true).

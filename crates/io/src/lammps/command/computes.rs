@@ -1,5 +1,7 @@
 //! `compute`, `uncompute`.
 
+use std::rc::Rc;
+
 use super::Args;
 use crate::lammps::compute::{Compute, ComputeKind, Mode, STYLES, Source};
 use crate::lammps::error::{Problem, Result, suggestion};
@@ -28,6 +30,12 @@ impl Session<'_> {
             "ke/atom" => ComputeKind::Atoms(vec![Field::Kinetic]),
             "ke" => ComputeKind::Kinetic,
             "pe" => ComputeKind::Potential,
+            "temp" => ComputeKind::Temperature,
+            "com" => ComputeKind::Center,
+            "displace/atom" => ComputeKind::Displace {
+                start: Rc::new(self.start_of_motion()?),
+            },
+            "stress/atom" => stress(args)?,
             "property/atom" => {
                 let mut fields = Vec::new();
                 while let Some(word) = args.optional() {
@@ -49,7 +57,15 @@ impl Session<'_> {
                 }
                 ComputeKind::Atoms(fields)
             }
-            "reduce" => {
+            "reduce" | "reduce/region" => {
+                let region = match style.as_str() {
+                    "reduce" => None,
+                    _ => {
+                        let word = args.next("a region ID")?;
+                        self.region(word.as_str()).map_err(|p| p.or_at(word.span))?;
+                        Some(word.as_str().to_string())
+                    }
+                };
                 let word = args.next("sum, min, max or ave")?;
                 let mode = Mode::ALL
                     .iter()
@@ -72,7 +88,11 @@ impl Session<'_> {
                 if inputs.is_empty() {
                     args.next("an input")?;
                 }
-                ComputeKind::Reduce { mode, inputs }
+                ComputeKind::Reduce {
+                    mode,
+                    inputs,
+                    region,
+                }
             }
             _ => return Err(args.unknown(style, "the compute style", STYLES)),
         };
@@ -89,7 +109,8 @@ impl Session<'_> {
     pub(super) fn check_source(&mut self, source: &Source) -> Result<()> {
         match source {
             Source::Variable(name) => self.variable_exists(name),
-            other => self.source_tree(other).map(|_| ()),
+            Source::Compute(id, column) => self.check_columns(id, *column),
+            Source::Field(_) => Ok(()),
         }
     }
 
@@ -107,4 +128,33 @@ impl Session<'_> {
         }
         Ok(())
     }
+}
+
+/// `NULL [ke|pair|virial ...]`: which parts.
+fn stress(args: &mut Args) -> Result<ComputeKind> {
+    let temperature = args.next("NULL")?;
+    if temperature.as_str() != "NULL" {
+        return Err(Problem::at(
+            temperature.span,
+            "`compute stress/atom` with a temperature of its own is not supported",
+        )
+        .help("write NULL"));
+    }
+    if args.left() == 0 {
+        return Ok(ComputeKind::Stress {
+            kinetic: true,
+            virial: true,
+        });
+    }
+    let (mut kinetic, mut virial) = (false, false);
+    while let Some(word) = args.optional() {
+        match word.as_str() {
+            "ke" => kinetic = true,
+            "pair" | "virial" => virial = true,
+            // there are none of these
+            "bond" | "angle" | "dihedral" | "improper" | "kspace" | "fix" => {}
+            _ => return Err(args.unknown(word, "the part", ["ke", "pair", "virial"])),
+        }
+    }
+    Ok(ComputeKind::Stress { kinetic, virial })
 }

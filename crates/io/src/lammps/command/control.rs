@@ -1,6 +1,5 @@
 //! Commands that steer the script: `if`, `print`, `label`, `jump`, `next`, `include`, `run`, `quit`.
 
-use std::io::Write;
 use std::time::Instant;
 
 use super::Args;
@@ -12,6 +11,9 @@ use crate::lammps::text::{Text, Word, words};
 const NAMES: [&str; 9] = [
     "if", "print", "label", "jump", "next", "include", "run", "quit", "clear",
 ];
+
+/// Characters of a line after substitution.
+const LONGEST_LINE: usize = 1 << 20;
 
 /// Is it a command of [`Script::control`]?
 fn is_control(name: &str) -> bool {
@@ -49,10 +51,11 @@ impl Script<'_> {
                 self.stop();
                 Ok(())
             }
-            _ => Err(
-                Problem::new("`clear` is not supported: one script makes one model")
-                    .help("write a script for each model"),
-            ),
+            _ => {
+                args.finish()?;
+                self.session.clear();
+                Ok(())
+            }
         }
     }
 
@@ -124,18 +127,10 @@ impl Script<'_> {
             self.session.console.print(&text);
         }
         if let Some((name, append)) = file {
-            let path = self.session.output_path(name.as_str());
-            let opened = std::fs::File::options()
-                .create(true)
-                .write(true)
-                .append(append)
-                .truncate(!append)
-                .open(&path);
-            opened
-                .and_then(|mut f| writeln!(f, "{text}"))
-                .map_err(|e| {
-                    Problem::at(name.span, format!("cannot write {}: {e}", path.display()))
-                })?;
+            let opened = self.session.folder.open(name.as_str(), append);
+            let mut file = opened.map_err(|p| p.or_at(name.span))?;
+            file.line(&text)?;
+            file.flush()?;
         }
         Ok(())
     }
@@ -165,13 +160,13 @@ impl Script<'_> {
                     .session
                     .variable_exists(name)
                     .map_err(|p| p.or_at(word.span))?,
-                Some(kind) if !["index", "loop"].contains(&kind.style()) => {
+                Some(kind) if !["index", "loop", "file"].contains(&kind.style()) => {
                     let style = kind.style();
                     return Err(Problem::at(
                         word.span,
                         format!("variable `{name}` has the style {style}"),
                     )
-                    .help("`next` works on index and loop variables"));
+                    .help("`next` works on index, loop and file variables"));
                 }
                 Some(kind) => exhausted |= !kind.advance(),
             }
@@ -191,8 +186,10 @@ impl Script<'_> {
         let end = begin + plan.steps;
         let Some((every, commands)) = &plan.every else {
             self.session.start_run(&plan)?;
+            self.end_of_step(true)?;
+            self.session.first_output()?;
             let clock = Instant::now();
-            self.session.steps_until(end)?;
+            self.steps_until(end)?;
             self.session.end_run(&plan, clock.elapsed().as_secs_f64());
             return Ok(());
         };
@@ -207,9 +204,11 @@ impl Script<'_> {
                 every: None,
             };
             self.session.start_run(&part)?;
+            self.end_of_step(true)?;
+            self.session.first_output()?;
             let clock = Instant::now();
             let target = self.session.progress.step + steps;
-            self.session.steps_until(target)?;
+            self.steps_until(target)?;
             self.session.end_run(&part, clock.elapsed().as_secs_f64());
             for command in commands {
                 self.line(&command.text)?;
@@ -247,6 +246,12 @@ impl Script<'_> {
                 continue;
             }
             let (value, used) = self.dollar(line, k)?;
+            if out.as_str().len() + value.len() > LONGEST_LINE {
+                return Err(Problem::at(
+                    line.span(k, k + 1),
+                    format!("the line is longer than {LONGEST_LINE} characters with its variables"),
+                ));
+            }
             out.push_str(&value, line.span(k, k + 1).0);
             k += used;
         }
@@ -318,7 +323,8 @@ impl Script<'_> {
     pub fn line(&mut self, line: &Text) -> Result<()> {
         let line = crate::lammps::text::without_comment(line);
         let line = self.substitute(&line)?;
-        let words = words(&line)?;
+        let mut words = words(&line)?;
+        self.session.without_suffix(&mut words);
         let Some((command, rest)) = words.split_first() else {
             return Ok(());
         };
@@ -332,6 +338,7 @@ impl Script<'_> {
             self.session.command(args)
         };
         self.depth -= 1;
+        let result = result.and_then(|()| self.session.console.check());
         result.map_err(|p| p.or_at(line.whole()))
     }
 }

@@ -3,17 +3,23 @@
 mod args;
 mod computes;
 mod control;
+mod create;
+mod displace;
+mod fix_output;
 mod fixes;
 mod geometry;
 mod groups;
+mod molecular;
 mod output;
 mod pair;
 mod particles;
+mod region;
 mod run;
 mod set;
 mod settings;
 mod thermo;
 mod variables;
+mod velocity;
 
 pub use self::args::Args;
 
@@ -21,16 +27,19 @@ use super::error::{Problem, Result, suggestion};
 use super::session::Session;
 
 /// Every command, for messages.
-pub const COMMANDS: [&str; 53] = [
+pub const COMMANDS: [&str; 56] = [
     "atom_modify",
     "atom_style",
     "boundary",
+    "clear",
     "comm_modify",
     "comm_style",
     "compute",
     "create_atoms",
     "create_box",
+    "delete_atoms",
     "dimension",
+    "displace_atoms",
     "dump",
     "dump_modify",
     "echo",
@@ -84,6 +93,7 @@ impl Session<'_> {
     /// The command is unknown or cannot be done.
     pub fn command(&mut self, mut args: Args) -> Result<()> {
         let args = &mut args;
+        self.no_molecules(args)?;
         match args.command.as_str() {
             "units" => self.set_units(args),
             "dimension" => self.set_dimension(args),
@@ -92,14 +102,19 @@ impl Session<'_> {
             "timestep" => self.set_timestep(args),
             "reset_timestep" => self.reset_timestep(args),
             "neighbor" => self.set_neighbor(args),
-            "atom_modify" | "neigh_modify" | "newton" | "processors" | "comm_modify"
-            | "comm_style" | "suffix" | "package" | "balance" | "run_style" | "log" | "echo"
-            | "pair_modify" => self.without_effect(args),
+            "neigh_modify" => self.neigh_modify(args),
+            "log" => self.set_log(args),
+            "atom_modify" | "newton" | "processors" | "comm_modify" | "comm_style" | "suffix"
+            | "package" | "balance" | "run_style" | "echo" | "pair_modify" => {
+                self.without_effect(args)
+            }
             "info" => self.info(),
             "lattice" => self.set_lattice(args),
             "region" => self.add_region(args),
             "create_box" => self.create_box(args),
             "create_atoms" => self.create_atoms(args),
+            "displace_atoms" => self.displace_atoms(args),
+            "delete_atoms" => self.delete_atoms(args),
             "read_data" => self.read_data(args),
             "read_dump" => self.read_dump(args),
             "write_data" => self.write_data_command(args),

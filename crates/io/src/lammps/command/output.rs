@@ -3,19 +3,22 @@
 use super::Args;
 use super::thermo::number_format;
 use crate::lammps::compute::Source;
-use crate::lammps::dump::{Dump, DumpColumn, DumpSource};
+use crate::lammps::dump::{Dump, DumpColumn, DumpSource, DumpStyle};
 use crate::lammps::error::{Problem, Result, suggestion};
+use crate::lammps::fix::Input;
 use crate::lammps::printf::Format;
 use crate::lammps::session::Session;
+use crate::lammps::variable::ast::Op;
 
 const COLUMNS: [&str; 24] = [
     "id", "type", "element", "mass", "proc", "x", "y", "z", "xs", "ys", "zs", "xu", "yu", "zu",
     "ix", "iy", "iz", "vx", "vy", "vz", "fx", "c_ID", "c_ID[i]", "v_name",
 ];
-const OPTIONS: [&str; 12] = [
+const OPTIONS: [&str; 13] = [
     "append", "element", "every", "first", "flush", "format", "image", "pad", "scale", "sort",
-    "time", "units",
+    "thresh", "time", "units",
 ];
+const STYLES: [&str; 4] = ["custom", "atom", "xyz", "image"];
 
 impl Session<'_> {
     pub(super) fn add_dump(&mut self, args: &mut Args) -> Result<()> {
@@ -37,10 +40,14 @@ impl Session<'_> {
     fn read_dump_shape(&mut self, args: &mut Args, id: &str, with_every: bool) -> Result<Dump> {
         let word = args.next("a group ID")?;
         let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
-        let style = args.next("custom or atom")?;
-        if !["custom", "atom"].contains(&style.as_str()) {
-            return Err(args.unknown(style, "the dump style", ["custom", "atom"]));
-        }
+        let word = args.next("custom, atom, xyz or image")?;
+        let style = match word.as_str() {
+            "custom" => DumpStyle::Custom,
+            "atom" => DumpStyle::Atom,
+            "xyz" => DumpStyle::Xyz,
+            "image" => DumpStyle::Image,
+            _ => return Err(args.unknown(word, "the dump style", STYLES)),
+        };
         let every = if with_every {
             args.count("the number of steps between snapshots", 1)?
         } else {
@@ -59,10 +66,39 @@ impl Session<'_> {
             .help("use a name without `%`, .gz, .bz2, .zst and .bin"));
         }
         let mut dump = Dump::new(id, members, every, file.as_str());
-        if style.as_str() == "atom" {
-            dump.atom_style = true;
-            dump.atom_columns();
-            return Ok(dump);
+        dump.style = style;
+        match style {
+            DumpStyle::Custom => {}
+            DumpStyle::Atom => {
+                dump.atom_columns();
+                return Ok(dump);
+            }
+            DumpStyle::Xyz => {
+                dump.xyz_columns();
+                return Ok(dump);
+            }
+            DumpStyle::Image => {
+                let (stem, end) = file
+                    .as_str()
+                    .rsplit_once('.')
+                    .unwrap_or((file.as_str(), ""));
+                if !["png", "jpg", "jpeg", "ppm"].contains(&end) {
+                    return Err(Problem::at(
+                        file.span,
+                        "a picture needs a name that ends in .png",
+                    ));
+                }
+                if end != "png" {
+                    self.console
+                        .note(&format!("pictures are PNG: {stem}.png is written"));
+                }
+                dump.file = format!("{stem}.png");
+                self.console.note("`dump image` draws peridyne's own picture, of all points and their damage: colours, views and zoom of the script have no effect");
+                while args.peek().is_some_and(|w| with_every || w != "modify") {
+                    args.optional();
+                }
+                return Ok(dump);
+            }
         }
         while let Some(word) = args.optional() {
             if word.as_str() == "modify" && !with_every {
@@ -118,7 +154,18 @@ impl Session<'_> {
                             .push(args.next("a name for each atom type")?.as_str().to_string());
                     }
                 }
-                "every" => dump.every = args.count("the number of steps", 1)?,
+                "every" => match args.input("the number of steps, or a variable")? {
+                    Input::Variable(name) => {
+                        self.variable_exists(&name)?;
+                        dump.every_variable = Some((name, None));
+                    }
+                    Input::Number(_) => {
+                        args.back();
+                        dump.every_variable = None;
+                        dump.every = args.count("the number of steps", 1)?;
+                    }
+                },
+                "thresh" => self.threshold(args, dump)?,
                 "first" => dump.first = args.yes("first")?,
                 "flush" => {
                     args.yes("flush")?;
@@ -127,7 +174,7 @@ impl Session<'_> {
                 "pad" => dump.pad = args.count("the number of digits", 0)?.min(30) as usize,
                 "time" => dump.time = args.yes("time")?,
                 "units" => dump.units = args.yes("units")?,
-                "image" | "scale" if dump.atom_style => {
+                "image" | "scale" if dump.style == DumpStyle::Atom => {
                     let on = args.yes(word.as_str())?;
                     *(if word.as_str() == "image" {
                         &mut dump.image
@@ -137,12 +184,20 @@ impl Session<'_> {
                     dump.atom_columns();
                 }
                 "sort" => {
-                    let how = args.next("id or off")?;
-                    if !["id", "off"].contains(&how.as_str()) {
-                        return Err(args
-                            .unknown(how, "sorting by", ["id", "off"])
-                            .help("atoms are always written in order of id"));
-                    }
+                    let how = args.next("id, off or a column number")?;
+                    let column = how.as_str().parse::<i64>().ok();
+                    let place = column.map_or(0, |c| c.unsigned_abs() as usize);
+                    dump.sort = match column {
+                        // unsorted atoms are in order of id here
+                        None if ["id", "off"].contains(&how.as_str()) => (None, false),
+                        Some(c) if (1..=dump.columns.len()).contains(&place) => {
+                            (Some(place - 1), c < 0)
+                        }
+                        _ => {
+                            let known = ["id", "off", "a column number"];
+                            return Err(args.unknown(how, "sorting by", known));
+                        }
+                    };
                 }
                 _ => {
                     return Err(args.unknown(word, "the option", OPTIONS));
@@ -189,6 +244,29 @@ impl Session<'_> {
         }
         let name = file.as_str().replace('*', &self.progress.step.to_string());
         self.write_data(&name)
+    }
+}
+
+impl Session<'_> {
+    /// `thresh ATTRIBUTE OPERATOR VALUE`, or `none`.
+    fn threshold(&mut self, args: &mut Args, dump: &mut Dump) -> Result<()> {
+        let word = args.next("an attribute, or none")?;
+        if word.as_str() == "none" {
+            dump.thresholds.clear();
+            return Ok(());
+        }
+        let source = Source::parse(word.as_str());
+        let source = source.ok_or_else(|| args.unknown(word, "the attribute", COLUMNS))?;
+        self.check_source(&source).map_err(|p| p.or_at(word.span))?;
+        const KNOWN: [&str; 7] = ["<", "<=", ">", ">=", "==", "!=", "|^"];
+        let word = args.next("an operator")?;
+        let op = Op::SPELLING
+            .into_iter()
+            .find(|(s, _)| KNOWN.contains(s) && *s == word.as_str());
+        let (_, op) = op.ok_or_else(|| args.unknown(word, "the operator", KNOWN))?;
+        let limit = args.number("a value")?;
+        dump.thresholds.push((source, op, limit));
+        Ok(())
     }
 }
 

@@ -1,15 +1,15 @@
-//! `create_box`, `create_atoms`, `read_data`, `read_dump`.
+//! `create_box`, `read_data`, `read_dump`.
 
 use std::path::PathBuf;
 
 use super::Args;
-use crate::lammps::atoms::Reference;
 use crate::lammps::data;
 use crate::lammps::domain::{Face, SimBox, corners};
 use crate::lammps::error::{Problem, Result};
 use crate::lammps::host::Quantity;
 use crate::lammps::lines;
 use crate::lammps::read_dump::read_frame;
+use crate::lammps::region::Shape;
 use crate::lammps::session::Session;
 
 impl Session<'_> {
@@ -38,6 +38,12 @@ impl Session<'_> {
         args.finish()?;
         self.no_box_yet()?;
         let region = self.region(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        if let Shape::Prism { tilt, .. } = region.shape
+            && tilt != [0.0; 3]
+        {
+            return Err(Problem::at(word.span, "tilted boxes are not supported")
+                .help("use a block, cylinder or sphere with finite sides"));
+        }
         let Some((low, high)) = region.bounds() else {
             return Err(Problem::at(
                 word.span,
@@ -60,91 +66,6 @@ impl Session<'_> {
             .print(&format!("Created orthogonal box = {}", corners(low, high)));
         self.domain = Some(domain);
         self.types = types as usize;
-        Ok(())
-    }
-
-    pub(super) fn create_atoms(&mut self, args: &mut Args) -> Result<()> {
-        let domain = *self.domain()?;
-        let kind = args.count("an atom type", 1)? as usize;
-        if kind > self.types {
-            return Err(Problem::new(format!(
-                "atom type {kind} is not between 1 and {}",
-                self.types
-            )));
-        }
-        let style = args.next("`box`, `region` or `single`")?;
-        let mut region = None;
-        let mut single = None;
-        match style.as_str() {
-            "box" => {}
-            "region" => {
-                let word = args.next("a region ID")?;
-                region = Some(
-                    self.region(word.as_str())
-                        .map_err(|p| p.or_at(word.span))?
-                        .clone(),
-                );
-            }
-            "single" => {
-                let mut x = [0.0; 3];
-                for x in &mut x {
-                    *x = args.number("x y z")?;
-                }
-                single = Some(x);
-            }
-            _ => return Err(args.unknown(style, "the style", ["box", "region", "single"])),
-        }
-        let mut lattice_units = true;
-        while let Some(word) = args.optional() {
-            match word.as_str() {
-                "units" => lattice_units = args.units()?,
-                _ => return Err(args.unknown(word, "the option", ["units"])),
-            }
-        }
-        let new = if let Some(x) = single {
-            let unit = self.length_unit(lattice_units)?;
-            let x = x.map(|x| x * unit);
-            Reference::Points(if domain.owns(x) { vec![x] } else { Vec::new() })
-        } else {
-            let lattice = self.lattice.filter(|l| l.sites).ok_or_else(|| {
-                Problem::new("`create_atoms` needs a lattice")
-                    .help("write `lattice sc CONSTANT` before")
-            })?;
-            let inside =
-                |x: [f64; 3]| region.as_ref().is_none_or(|r| r.contains(x)) && domain.owns(x);
-            // sites outside the region's own bounds need no test
-            let (mut low, mut high) = (domain.low, domain.high);
-            if let Some((a, b)) = region.as_ref().and_then(|r| r.bounds()) {
-                for k in 0..3 {
-                    (low[k], high[k]) = (low[k].max(a[k]), high[k].min(b[k]));
-                }
-            }
-            let sites = lattice
-                .sites_in(self.dimension, low, high, inside)
-                .map_err(Problem::new)?;
-            Reference::Sites {
-                lattice: lattice.site_lattice(),
-                sites,
-            }
-        };
-        let made = new.len();
-        let atoms = self.atoms()?;
-        let was = atoms.len();
-        if was + made > u32::MAX as usize {
-            return Err(Problem::new("more than 4294967295 atoms"));
-        }
-        atoms.append(kind as u32, new);
-        self.ids = atoms.ids.clone();
-        self.console.print(&format!("Created {made} atoms"));
-        self.console.print(&format!(
-            "  using lattice units in orthogonal box = {}",
-            domain.describe()
-        ));
-        if made == 0 {
-            self.console
-                .note("no atoms were created: no lattice site lies in the region and the box");
-        }
-        // groups made before do not hold the new atoms, as in LAMMPS
         Ok(())
     }
 

@@ -7,6 +7,7 @@ use crate::lammps::atoms::Atoms;
 use crate::lammps::error::{Problem, Result};
 use crate::lammps::host::{Pair, PairTable, RunStart, Setup};
 use crate::lammps::printf::general;
+use crate::lammps::script::Script;
 use crate::lammps::session::{PairState, Session, Store};
 use crate::lammps::text::Word;
 
@@ -132,6 +133,8 @@ impl Session<'_> {
         self.progress.begin = self.progress.step;
         self.progress.end = self.progress.step + plan.steps;
         self.nobody_twice()?;
+        // atoms outside are lost before there are bonds
+        self.rebuild()?;
         self.build()?;
         self.shrink_box()?;
         if self.moving().is_none() && plan.steps > 0 {
@@ -150,13 +153,18 @@ impl Session<'_> {
                 steps: plan.steps,
                 time_step: self.progress.time_step,
                 moving: self.moving(),
+                carried: self.carried(),
                 domain: *self.domain()?,
             };
             let atoms = self.count();
             let wanted = self.pressure_wanted();
+            let stress = self.stress_wanted();
             let engine = self.engine()?;
             if wanted {
                 engine.expect_virial();
+            }
+            if stress {
+                engine.expect_virials();
             }
             engine.setup(&start, &conditions)?;
             self.acting = conditions;
@@ -177,6 +185,14 @@ impl Session<'_> {
             ));
         }
         self.progress.started = Some(Instant::now());
+        Ok(())
+    }
+
+    /// Output at the start of a run.
+    ///
+    /// # Errors
+    /// A value or a file is not there.
+    pub fn first_output(&mut self) -> Result<()> {
         self.thermo_header();
         self.write_dumps(true)?;
         self.thermo_line()
@@ -186,59 +202,9 @@ impl Session<'_> {
         self.console.print(line);
     }
 
-    /// Steps until step `end`, with output on the way and at the end of the run.
-    ///
-    /// # Errors
-    /// The state went bad; a value or a file is not there.
-    pub fn steps_until(&mut self, end: u64) -> Result<()> {
-        let start = Instant::now();
-        let wanted = self.pressure_wanted();
-        while self.progress.step < end {
-            // conditions hold at the end of the step
-            self.progress.step += 1;
-            let now = self.progress.step;
-            let last = now == self.progress.end;
-            let thermo = last || (self.thermo.every > 0 && now.is_multiple_of(self.thermo.every));
-            let output = thermo || self.dumps.iter().any(|d| now.is_multiple_of(d.every));
-            let mut conditions = std::mem::take(&mut self.acting);
-            let result = self.conditions(&mut conditions).and_then(|()| {
-                let engine = self.engine()?;
-                if output {
-                    engine.expect_output();
-                    if wanted && thermo {
-                        engine.expect_virial();
-                    }
-                }
-                engine.step(&conditions).map_err(|e| {
-                    let mut problem = Box::<Problem>::from(e);
-                    problem.while_running = true;
-                    problem
-                })
-            });
-            self.acting = conditions;
-            if let Err(p) = result {
-                self.progress.step -= 1;
-                return Err(p);
-            }
-            self.progress.steps_done += 1;
-            let p = &self.progress;
-            self.console.progress(now - p.begin, p.end - p.begin);
-            self.write_dumps(false)?;
-            if thermo {
-                self.thermo_line()?;
-            }
-            if self.console.ended() {
-                self.ended = true;
-                self.progress.stepping_seconds += start.elapsed().as_secs_f64();
-                return Err(Problem::new("ended from outside"));
-            }
-        }
-        self.progress.stepping_seconds += start.elapsed().as_secs_f64();
-        Ok(())
-    }
-
     /// The line after a run.
     pub fn end_run(&mut self, plan: &RunPlan, seconds: f64) {
+        self.thermo_footer();
         let steps = self.progress.step - self.progress.begin;
         let seconds = general(seconds, 6, false);
         let atoms = self.count();
@@ -250,5 +216,82 @@ impl Session<'_> {
         }
         self.progress.begin = self.progress.step;
         self.progress.end = self.progress.step;
+    }
+}
+
+impl Session<'_> {
+    /// One step: atoms go on, some may be lost, and forces are those of the step's end.
+    ///
+    /// # Errors
+    /// The state went bad; a value is not there.
+    fn step(&mut self, output: bool, virial: bool) -> Result<()> {
+        let running = |e| {
+            let mut problem = Box::<Problem>::from(e);
+            problem.while_running = true;
+            problem
+        };
+        let mut told = std::mem::take(&mut self.told);
+        self.carry(&mut told)?;
+        let stress = self.stress_wanted();
+        let engine = self.engine()?;
+        if output {
+            engine.expect_output();
+        }
+        if virial {
+            engine.expect_virial();
+        }
+        if output && stress {
+            engine.expect_virials();
+        }
+        let path = engine.depart(&told).map_err(running)?;
+        self.told = told;
+        self.reflect()?;
+        self.rebuild_if_due(path)?;
+        // conditions hold at the end of the step, where the atoms are now
+        let mut conditions = std::mem::take(&mut self.acting);
+        self.conditions(&mut conditions)?;
+        self.engine()?.arrive(&conditions).map_err(running)?;
+        self.acting = conditions;
+        Ok(())
+    }
+}
+
+impl Script<'_> {
+    /// Steps until step `end`, with output on the way and at the end of the run.
+    ///
+    /// # Errors
+    /// The state went bad; a value or a file is not there.
+    pub fn steps_until(&mut self, end: u64) -> Result<()> {
+        let start = Instant::now();
+        let wanted = self.session.pressure_wanted();
+        while self.session.progress.step < end {
+            let s = &mut self.session;
+            s.progress.step += 1;
+            let now = s.progress.step;
+            let last = now == s.progress.end;
+            let thermo = last || (s.thermo.every > 0 && now.is_multiple_of(s.thermo.every));
+            let looked = s.fixes_look(now);
+            let output = thermo || looked || s.dumps_due(now)?;
+            if let Err(p) = s.step(output, wanted && (thermo || looked)) {
+                s.progress.step -= 1;
+                return Err(p);
+            }
+            s.progress.steps_done += 1;
+            let p = &s.progress;
+            s.console.progress(now - p.begin, p.end - p.begin);
+            self.end_of_step(false)?;
+            let s = &mut self.session;
+            s.write_dumps(false)?;
+            if thermo {
+                s.thermo_line()?;
+            }
+            if s.console.ended() {
+                s.ended = true;
+                s.progress.stepping_seconds += start.elapsed().as_secs_f64();
+                return Err(Problem::new("ended from outside"));
+            }
+        }
+        self.session.progress.stepping_seconds += start.elapsed().as_secs_f64();
+        Ok(())
     }
 }

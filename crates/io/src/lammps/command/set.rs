@@ -1,11 +1,13 @@
-//! `set`, `velocity`.
+//! `set`.
 
 use super::Args;
 use crate::lammps::atoms::Members;
 use crate::lammps::error::{Problem, Result};
 use crate::lammps::fix::Input;
 use crate::lammps::host::{BLOCK, Quantity};
+use crate::lammps::park::Park;
 use crate::lammps::session::Session;
+use crate::lammps::text::Word;
 use crate::lammps::variable::tree::Tree;
 
 impl Session<'_> {
@@ -43,6 +45,10 @@ impl Session<'_> {
         self.console.print("Setting atom values ...");
         while let Some(word) = args.optional() {
             let name = word.as_str();
+            if name.starts_with("type/") {
+                self.set_some_types(args, word, &members)?;
+                continue;
+            }
             let quantity = match name {
                 "density" | "mass" => Quantity::Density,
                 "volume" => Quantity::Volume,
@@ -54,7 +60,18 @@ impl Session<'_> {
                 "vy" => Quantity::Velocity(1),
                 "vz" => Quantity::Velocity(2),
                 _ => {
-                    let known = ["density", "volume", "type", "x", "y", "z", "vx", "vy", "vz"];
+                    let known = [
+                        "density",
+                        "volume",
+                        "type",
+                        "type/fraction",
+                        "x",
+                        "y",
+                        "z",
+                        "vx",
+                        "vy",
+                        "vz",
+                    ];
                     return Err(args.unknown(word, "the property", known));
                 }
             };
@@ -70,7 +87,8 @@ impl Session<'_> {
                 | Quantity::Damage
                 | Quantity::Dilatation
                 | Quantity::CriticalStretch
-                | Quantity::Energy => x.is_finite(),
+                | Quantity::Energy
+                | Quantity::Virial(_) => x.is_finite(),
             };
             let wrong = |x: f64, who: String| {
                 let what = match quantity {
@@ -83,7 +101,8 @@ impl Session<'_> {
                     | Quantity::Damage
                     | Quantity::Dilatation
                     | Quantity::CriticalStretch
-                    | Quantity::Energy => "be finite".to_string(),
+                    | Quantity::Energy
+                    | Quantity::Virial(_) => "be finite".to_string(),
                 };
                 Problem::at(word.span, format!("{name} must {what}, found {x}{who}"))
             };
@@ -129,74 +148,43 @@ impl Session<'_> {
         Ok(())
     }
 
-    pub(super) fn set_velocity(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
-        let word = args.next("a group ID")?;
-        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
-        let style = args.next("`set`")?;
-        if style.as_str() != "set" {
-            return Err(args.unknown(style, "the style", ["set"]));
+    /// `type/fraction TYPE FRACTION SEED`: atoms become this type with a probability. Each draws its own number, which
+    /// depends on its place.
+    fn set_some_types(&mut self, args: &mut Args, word: &Word, members: &Members) -> Result<()> {
+        if word.as_str() != "type/fraction" {
+            return Err(args.unknown(word, "the property", ["type/fraction"]).help(
+                "type/ratio and type/subset pick atoms in LAMMPS's order; type/fraction does not",
+            ));
         }
-        let mut values = [const { None }; 3];
-        for v in &mut values {
-            if !args.eat("NULL") {
-                *v = Some(args.input("vx vy vz (NULL leaves one as it is)")?);
+        let kind = args.count("an atom type", 1)?;
+        if kind > self.types as u64 {
+            return Err(Problem::at(
+                word.span,
+                format!("atom type {kind} is not between 1 and {}", self.types),
+            ));
+        }
+        let fraction = args.number("the fraction")?;
+        if !(0.0..=1.0).contains(&fraction) {
+            return Err(Problem::at(
+                word.span,
+                format!("the fraction must be from 0 to 1, found {fraction}"),
+            ));
+        }
+        let seed = args.seed()?;
+        let x = self.positions()?;
+        let mut types = self.raw(Quantity::Type)?;
+        let mut made = 0;
+        for i in (0..types.len()).filter(|i| members.contains(*i)) {
+            if Park::at(seed, x[i]).uniform() <= fraction {
+                types[i] = kind as f64;
+                made += 1;
             }
         }
-        let (mut sum, mut lattice_units) = (false, true);
-        while let Some(word) = args.optional() {
-            match word.as_str() {
-                "sum" => sum = args.yes("sum")?,
-                "units" => lattice_units = args.units()?,
-                _ => return Err(args.unknown(word, "the option", ["sum", "units"])),
-            }
-        }
-        let unit = self.length_unit(lattice_units)?;
-        if self.dimension == 2
-            && !matches!(
-                values[2],
-                None | Some(Input::Number(0.0) | Input::Variable(_))
-            )
-        {
-            return Err(Problem::new("vz must be 0 in two dimensions"));
-        }
-        // evaluated together, before any of them is set
-        let mut trees = Vec::new();
-        for value in &values {
-            trees.push(match value {
-                None => None,
-                Some(Input::Number(x)) => Some(Tree::Number(x * unit)),
-                Some(Input::Variable(name)) => Some(self.variable_tree(name)?), // not scaled, as in LAMMPS
-            });
-        }
-        let n = self.count();
-        let mut new = vec![[0.0; BLOCK]; 3];
-        let mut old = [0.0; BLOCK];
-        for first in (0..n).step_by(BLOCK) {
-            let m = BLOCK.min(n - first);
-            for (tree, new) in trees.iter().zip(&mut new) {
-                if let Some(tree) = tree {
-                    tree.fill(&self.view()?, &self.clock(), first, &mut new[..m])?;
-                }
-            }
-            for a in (0..3).filter(|a| trees[*a].is_some()) {
-                self.store
-                    .particles()
-                    .read(Quantity::Velocity(a), first, &mut old[..m])?;
-                for k in (0..m).filter(|k| members.contains(first + k)) {
-                    old[k] = if sum { old[k] + new[a][k] } else { new[a][k] };
-                    if !old[k].is_finite() {
-                        return Err(Problem::new(format!(
-                            "the velocity of atom {} is not finite",
-                            self.ids.get(first + k)
-                        )));
-                    }
-                }
-                self.store
-                    .particles_mut()
-                    .write(Quantity::Velocity(a), first, &old[..m])?;
-            }
-        }
+        self.store
+            .particles_mut()
+            .write(Quantity::Type, 0, &types)?;
+        self.console
+            .print(&format!("  {made} settings made for type/fraction"));
         Ok(())
     }
 }

@@ -3,7 +3,9 @@
 use super::Args;
 use crate::lammps::domain::Face;
 use crate::lammps::error::{Problem, Result};
+use crate::lammps::fix::{Fix, FixKind};
 use crate::lammps::session::{Session, Store};
+use crate::lammps::text::Word;
 use crate::lammps::units::Units;
 
 impl Session<'_> {
@@ -97,6 +99,15 @@ impl Session<'_> {
             counted
         };
         args.finish()?;
+        let counts =
+            |f: &&std::rc::Rc<Fix>| matches!(f.kind, FixKind::Average(_) | FixKind::Move { .. });
+        if let Some(fix) = self.fixes.iter().find(counts) {
+            return Err(Problem::new(format!(
+                "fix `{}` counts steps: they cannot be set anew",
+                fix.id
+            ))
+            .help("`unfix` it before, and define it again afterwards"));
+        }
         self.progress.step = step;
         self.progress.time_base = (step, time);
         for dump in &mut self.dumps {
@@ -117,6 +128,81 @@ impl Session<'_> {
         args.finish()
     }
 
+    /// `neigh_modify`: when lists are rebuilt decides when atoms are lost.
+    pub(super) fn neigh_modify(&mut self, args: &mut Args) -> Result<()> {
+        args.next("an option")?;
+        args.back();
+        while let Some(word) = args.optional() {
+            match word.as_str() {
+                "every" => self.neighbors.every = args.count("the number of steps", 1)?,
+                "delay" => self.neighbors.delay = args.count("the number of steps", 0)?,
+                "check" => self.neighbors.check = args.yes("check")?,
+                "once" => self.neighbors.once = args.yes("once")?,
+                // how lists are stored
+                "one" | "page" | "binsize" | "cluster" | "include" => {
+                    args.next("a value")?;
+                }
+                "exclude" => {
+                    return Err(Problem::at(
+                        word.span,
+                        "`neigh_modify exclude` would change the forces, it is not supported",
+                    ));
+                }
+                _ => {
+                    let known = ["every", "delay", "check", "once", "one", "page", "binsize"];
+                    return Err(args.unknown(word, "the option", known));
+                }
+            }
+        }
+        self.console
+            .note("`neigh_modify` decides only when atoms outside fixed faces are lost");
+        Ok(())
+    }
+
+    /// `log NAME [append]`, `log none`: what is printed goes into a file, too.
+    pub(super) fn set_log(&mut self, args: &mut Args) -> Result<()> {
+        let name = args.next("a file name, or none")?;
+        let append = args.eat("append");
+        args.finish()?;
+        let log = match name.as_str() {
+            "none" => None,
+            file => {
+                let opened = self.folder.open(file, append);
+                Some(opened.map_err(|p| p.or_at(name.span))?)
+            }
+        };
+        self.console.log(log);
+        Ok(())
+    }
+
+    /// Takes `/omp`, `/opt` and the like off a style: they say how LAMMPS computes, not what.
+    pub fn without_suffix(&mut self, words: &mut [Word]) {
+        let place = match words.first().map(Word::as_str) {
+            Some("pair_style" | "atom_style" | "run_style") => 1,
+            Some("fix" | "compute") => 3,
+            _ => return,
+        };
+        let Some(word) = words.get_mut(place) else {
+            return;
+        };
+        let text = word.as_str();
+        let known = [
+            "/omp",
+            "/opt",
+            "/kk",
+            "/kk/host",
+            "/kk/device",
+            "/gpu",
+            "/intel",
+        ];
+        let Some(plain) = known.iter().find_map(|s| text.strip_suffix(s)) else {
+            return;
+        };
+        let (length, note) = (plain.len(), format!("`{text}` is taken as `{plain}`"));
+        word.text = word.text.slice(0, length);
+        self.console.note(&note);
+    }
+
     /// Commands about how LAMMPS computes, not what.
     pub(super) fn without_effect(&mut self, args: &mut Args) -> Result<()> {
         let name = args.command.as_str();
@@ -131,14 +217,7 @@ impl Session<'_> {
         if name != "run_style" {
             args.back();
         }
-        while let Some(word) = args.optional() {
-            if (name, word.as_str()) == ("neigh_modify", "exclude") {
-                return Err(Problem::at(
-                    word.span,
-                    "`neigh_modify exclude` would change the forces, it is not supported",
-                ));
-            }
-        }
+        while args.optional().is_some() {}
         self.console.note(&format!("`{name}` has no effect here"));
         Ok(())
     }

@@ -6,7 +6,7 @@ use crate::lammps::printf::Format;
 use crate::lammps::session::Session;
 use crate::lammps::text::Word;
 use crate::lammps::thermo::columns::{self, Column};
-use crate::lammps::thermo::{Lost, Thermo};
+use crate::lammps::thermo::{Line, Lost, Thermo};
 
 /// One conversion, which must suit a number.
 pub(super) fn number_format(word: &Word) -> Result<Format> {
@@ -25,10 +25,11 @@ impl Session<'_> {
 
     pub(super) fn thermo_style(&mut self, args: &mut Args) -> Result<()> {
         self.domain()?;
-        let style = args.next("one, multi or custom")?;
+        let style = args.next("one, multi, yaml or custom")?;
         let columns = match style.as_str() {
             "one" => columns::one(),
             "multi" => columns::multi(),
+            "yaml" => columns::yaml(),
             "custom" => {
                 let mut columns = Vec::new();
                 while let Some(word) = args.optional() {
@@ -41,7 +42,10 @@ impl Session<'_> {
                 }
                 columns
             }
-            _ => return Err(args.unknown(style, "the style", ["one", "multi", "custom"])),
+            _ => {
+                let known = ["one", "multi", "yaml", "custom"];
+                return Err(args.unknown(style, "the style", known));
+            }
         };
         args.finish()?;
         let old = &self.thermo;
@@ -56,7 +60,11 @@ impl Session<'_> {
         self.thermo = Thermo {
             columns,
             add_volume: style.as_str() != "custom",
-            multi: style.as_str() == "multi",
+            line: match style.as_str() {
+                "multi" => Line::Multi,
+                "yaml" => Line::Yaml,
+                _ => Line::One,
+            },
             every: self.thermo.every,
             ..Thermo::default()
         };
@@ -73,7 +81,8 @@ impl Session<'_> {
                     let how = args.next("error, warn or ignore")?;
                     self.thermo.lost = match how.as_str() {
                         "error" => Lost::Error,
-                        "warn" | "ignore" => Lost::Allow,
+                        "warn" => Lost::Warn,
+                        "ignore" => Lost::Ignore,
                         _ => {
                             return Err(args.unknown(
                                 how,
@@ -88,11 +97,12 @@ impl Session<'_> {
                     args.yes("flush")?;
                 }
                 "line" => {
-                    let how = args.next("one or multi")?;
-                    self.thermo.multi = match how.as_str() {
-                        "one" => false,
-                        "multi" => true,
-                        _ => return Err(args.unknown(how, "the value", ["one", "multi"])),
+                    let how = args.next("one, multi or yaml")?;
+                    self.thermo.line = match how.as_str() {
+                        "one" => Line::One,
+                        "multi" => Line::Multi,
+                        "yaml" => Line::Yaml,
+                        _ => return Err(args.unknown(how, "the value", ["one", "multi", "yaml"])),
                     };
                 }
                 "format" => self.thermo_format(args)?,

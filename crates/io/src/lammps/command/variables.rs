@@ -4,14 +4,15 @@ use std::rc::Rc;
 
 use super::Args;
 use crate::lammps::error::{Problem, Result, suggestion};
+use crate::lammps::lines;
 use crate::lammps::printf::Format;
 use crate::lammps::session::Session;
 use crate::lammps::text::Word;
 use crate::lammps::variable::parse::parse;
 use crate::lammps::variable::{Formula, Kind, is_name};
 
-const STYLES: [&str; 8] = [
-    "index", "loop", "string", "equal", "atom", "internal", "format", "delete",
+const STYLES: [&str; 10] = [
+    "index", "loop", "string", "file", "getenv", "equal", "atom", "internal", "format", "delete",
 ];
 
 impl Session<'_> {
@@ -39,6 +40,21 @@ impl Session<'_> {
                 Kind::Index { values, at: 0 }
             }
             "loop" => self.loop_kind(args)?,
+            "file" => self.file_kind(args)?,
+            "getenv" => {
+                let of = args.next("the name of a variable of the environment")?;
+                if std::env::var(of.as_str()).is_err() {
+                    return Err(Problem::at(
+                        of.span,
+                        format!("the environment has no variable `{}`", of.as_str()),
+                    )
+                    .help(format!(
+                        "set it before: {}=VALUE peridyne run ...",
+                        of.as_str()
+                    )));
+                }
+                Kind::Environment(of.as_str().to_string())
+            }
             "string" => Kind::Text(args.next("a text")?.as_str().to_string()),
             "equal" => Kind::Equal(Rc::new(read_formula(&args.rest("a formula")?)?)),
             "atom" => Kind::Atom(Rc::new(read_formula(&args.rest("a formula")?)?)),
@@ -59,7 +75,12 @@ impl Session<'_> {
             .map_err(|p| p.help("put a formula or text with blanks into quotes"))?;
         match defined {
             // these keep their first definition, so that the command line and loops can set them
-            Some("index" | "loop") if matches!(kind, Kind::Index { .. } | Kind::Loop { .. }) => {
+            Some("index" | "loop" | "file")
+                if matches!(
+                    kind,
+                    Kind::Index { .. } | Kind::Loop { .. } | Kind::File { .. }
+                ) =>
+            {
                 Ok(())
             }
             Some(old) if old != kind.style() => Err(Problem::at(
@@ -74,6 +95,27 @@ impl Session<'_> {
                 Ok(())
             }
         }
+    }
+
+    /// The lines of a file beside the script, without comments and empty lines.
+    fn file_kind(&mut self, args: &mut Args) -> Result<Kind> {
+        let word = args.next("a file name")?;
+        let path = self.input_path(word.as_str());
+        self.folder.inside(&path).map_err(|p| p.or_at(word.span))?;
+        let text = lines::text(&path, word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let plain = |line: &str| line.split('#').next().unwrap_or("").trim().to_string();
+        let values: Vec<String> = text
+            .lines()
+            .map(plain)
+            .filter(|line| !line.is_empty())
+            .collect();
+        if values.is_empty() {
+            return Err(Problem::at(word.span, "the file holds no values"));
+        }
+        Ok(Kind::File {
+            values: values.into(),
+            at: 0,
+        })
     }
 
     fn loop_kind(&mut self, args: &mut Args) -> Result<Kind> {

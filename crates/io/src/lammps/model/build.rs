@@ -43,6 +43,7 @@ impl Host for ModelHost {
         let Setup {
             dimension,
             domain,
+            units,
             atoms,
             pair,
             ..
@@ -56,6 +57,7 @@ impl Host for ModelHost {
             sim: RefCell::new(simulation),
             dimension,
             domain,
+            units,
             height,
             types: atoms.types,
             density: atoms.density,

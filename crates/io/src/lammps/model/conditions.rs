@@ -6,20 +6,29 @@ use crate::lammps::atoms::Members;
 use crate::lammps::host::Condition;
 
 /// Its values at this instant; `None` for `enforce2d`, which a body in two dimensions obeys by itself.
-pub fn drive(condition: &Condition) -> Option<Drive> {
+///
+/// `height`: z of a body in two dimensions, which the engine puts at 0.
+pub fn drive(condition: &Condition, height: f64) -> Option<Drive> {
     match condition {
         Condition::Indent {
             stiffness,
-            center,
+            form,
+            push,
+            center: [x, y, z],
             radius,
             ..
         } => Some(Drive::Indent {
             stiffness: *stiffness,
-            center: *center,
+            form: *form,
+            push: *push,
+            center: [*x, *y, z - height],
             radius: *radius,
         }),
         Condition::SetForce { force, .. } => Some(Drive::Replace(*force)),
+        Condition::SetForceEach { force, .. } => Some(Drive::ReplaceEach(force.clone())),
         Condition::AddForce { force, .. } => Some(Drive::Add(*force)),
+        Condition::AddForceEach { force, .. } => Some(Drive::AddEach(force.clone())),
+        Condition::Drag { gamma, .. } => Some(Drive::Drag(gamma.clone())),
         Condition::Enforce2d { .. } => None,
     }
 }
@@ -28,9 +37,17 @@ pub fn drive(condition: &Condition) -> Option<Drive> {
 pub fn members(condition: &Condition, n: usize) -> Option<Vec<u32>> {
     let (Condition::Indent { members, .. }
     | Condition::SetForce { members, .. }
+    | Condition::SetForceEach { members, .. }
     | Condition::AddForce { members, .. }
+    | Condition::AddForceEach { members, .. }
+    | Condition::Drag { members, .. }
     | Condition::Enforce2d { members }) = condition;
-    match members.as_ref() {
+    ids(members, n)
+}
+
+/// Ids (from 0) of members; `None`: all `n`.
+pub fn ids(members: &Members, n: usize) -> Option<Vec<u32>> {
+    match members {
         Members::All => None,
         some => Some(
             (0..n as u32)

@@ -15,13 +15,16 @@ use std::cell::RefCell;
 
 use peridyne::condition::driven::Drive;
 use peridyne::error::RunError;
-use peridyne::run::{Observed, PointField, Simulation};
+use peridyne::observe::Snapshot;
+use peridyne::run::{Observed, PointField, Simulation, SnapshotOptions};
 
-use super::atoms::Column;
+use super::atoms::{Column, Members};
 use super::domain::SimBox;
 use super::host::{
-    BLOCK, Condition, Energies, Engine, HostError, Particles, Quantity, Reaction, RunStart,
+    BLOCK, Condition, Energies, Engine, HostError, Motion, Particles, Quantity, Reaction, RunStart,
+    Wall,
 };
+use super::units::Units;
 
 /// In two dimensions nothing leaves the plane.
 fn in_plane(what: &str, values: &[f64], expected: f64) -> Result<(), HostError> {
@@ -40,6 +43,7 @@ struct Derived {
     damage: Option<Vec<f64>>,
     dilatation: Option<Vec<f64>>,
     energy: Option<Vec<f64>>,
+    virials: Option<Vec<[f64; 6]>>,
 }
 
 /// A peridyne model that a script runs.
@@ -47,6 +51,7 @@ pub struct ModelEngine {
     sim: RefCell<Box<dyn Simulation>>,
     dimension: usize,
     domain: SimBox,
+    units: Units,
     /// z of all points in two dimensions.
     height: f64,
     types: Column<u32>,
@@ -66,6 +71,11 @@ pub struct ModelEngine {
 }
 
 impl ModelEngine {
+    /// The units of the script.
+    pub fn units(&self) -> Units {
+        self.units
+    }
+
     /// The model itself.
     pub fn simulation(&mut self) -> &mut dyn Simulation {
         self.sim.get_mut().as_mut()
@@ -117,7 +127,8 @@ impl ModelEngine {
     fn drive(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
         let sim = self.sim.get_mut();
         for (condition, place) in conditions.iter().zip(&self.driven) {
-            let (Some(place), Some(value)) = (place, conditions::drive(condition)) else {
+            let value = conditions::drive(condition, self.height);
+            let (Some(place), Some(value)) = (place, value) else {
                 continue;
             };
             if !sim.drive(*place, &value) {
@@ -136,6 +147,13 @@ impl Particles for ModelEngine {
     fn read(&self, quantity: Quantity, first: usize, out: &mut [f64]) -> Result<(), HostError> {
         let mut sim = self.sim.borrow_mut();
         let mut kept = self.derived.borrow_mut();
+        if let Quantity::Virial(place) = quantity {
+            let all = kept.virials.get_or_insert_with(|| sim.virials());
+            for (k, x) in out.iter_mut().enumerate() {
+                *x = all[first + k][place];
+            }
+            return Ok(());
+        }
         let mut copy = |kept: &mut Option<Vec<f64>>,
                         make: &dyn Fn(&mut dyn Simulation) -> Vec<f64>| {
             let all = kept.get_or_insert_with(|| make(sim.as_mut()));
@@ -178,12 +196,16 @@ impl Particles for ModelEngine {
                     .filter(|s0| **s0 == f64::INFINITY)
                     .for_each(|s0| *s0 = f64::MAX);
             }
+            Quantity::Virial(_) => {}
         }
         Ok(())
     }
 
     fn write(&mut self, quantity: Quantity, first: usize, values: &[f64]) -> Result<(), HostError> {
-        self.changed();
+        // energies and the like do not know velocities
+        if !matches!(quantity, Quantity::Velocity(_)) {
+            self.changed();
+        }
         let mut before = [0.0; BLOCK];
         for (b, values) in values.chunks(BLOCK).enumerate() {
             let first = first + b * BLOCK;
@@ -250,11 +272,12 @@ impl Engine for ModelEngine {
             .filter(|i| !run.moving.as_ref().is_some_and(|m| m.contains(*i as usize)))
             .collect();
         sim.set_still(&still);
+        sim.set_carried(&run.carried);
         let mut driven: Vec<(Drive, Option<Vec<u32>>)> = Vec::new();
         self.driven.clear();
         for condition in conditions {
-            let drive = conditions::drive(condition);
-            self.driven.push(drive.map(|_| driven.len()));
+            let drive = conditions::drive(condition, self.height);
+            self.driven.push(drive.as_ref().map(|_| driven.len()));
             driven.extend(drive.map(|d| (d, conditions::members(condition, n))));
         }
         sim.set_driven(&driven);
@@ -275,15 +298,37 @@ impl Engine for ModelEngine {
         Ok(())
     }
 
-    fn step(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
+    fn depart(&mut self, carried: &[Motion]) -> Result<f64, HostError> {
+        self.changed();
+        let sim = self.sim.get_mut();
+        sim.carry(carried);
+        sim.depart().map_err(|e| HostError::new(e.to_string()))
+    }
+
+    fn reflect(&mut self, wall: &Wall, members: &Members) {
+        let n = self.count();
+        let ids = conditions::ids(members, n);
+        self.sim.get_mut().reflect(wall, ids.as_deref());
+    }
+
+    fn arrive(&mut self, conditions: &[Condition]) -> Result<(), HostError> {
         self.changed();
         self.drive(conditions)?;
         let sim = self.sim.get_mut();
-        if let Err(e) = sim.step() {
+        if let Err(e) = sim.arrive() {
             return Err(self.explained(&e));
         }
         self.keep_watched();
         Ok(())
+    }
+
+    fn remove(&mut self, atoms: &[u32]) {
+        self.changed();
+        let stays = |i: &usize| atoms.binary_search(&(*i as u32)).is_err();
+        let places: Vec<usize> = (0..self.count()).filter(stays).collect();
+        self.types.pick(&places);
+        self.density.pick(&places);
+        self.sim.get_mut().remove(atoms);
     }
 
     fn expect_output(&mut self) {
@@ -305,6 +350,10 @@ impl Engine for ModelEngine {
         self.sim.get_mut().watch_virial_next();
     }
 
+    fn expect_virials(&mut self) {
+        self.sim.get_mut().watch_virials_next();
+    }
+
     fn virial(&mut self) -> Result<[f64; 6], HostError> {
         Ok(self.sim.get_mut().virial())
     }
@@ -318,6 +367,10 @@ impl Engine for ModelEngine {
                 force: r.force,
             }
         })
+    }
+
+    fn snapshot(&mut self) -> Option<Snapshot> {
+        Some(self.sim.get_mut().snapshot(SnapshotOptions::default()))
     }
 
     fn directed_bonds(&self) -> u64 {

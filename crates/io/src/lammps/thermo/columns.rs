@@ -1,7 +1,6 @@
 //! Columns of thermodynamic output.
 
 use super::keyword;
-use crate::lammps::compute::ComputeKind;
 use crate::lammps::error::{Problem, Result, suggestion};
 use crate::lammps::session::Session;
 
@@ -26,6 +25,16 @@ pub fn multi() -> Vec<Column> {
     [
         "etotal", "ke", "temp", "pe", "ebond", "eangle", "edihed", "eimp", "evdwl", "ecoul",
         "elong", "press",
+    ]
+    .map(Column::Keyword)
+    .to_vec()
+}
+
+/// `thermo_style yaml`
+pub fn yaml() -> Vec<Column> {
+    [
+        "step", "temp", "ke", "pe", "ebond", "eangle", "edihed", "eimp", "evdwl", "ecoul", "elong",
+        "press",
     ]
     .map(Column::Keyword)
     .to_vec()
@@ -90,7 +99,7 @@ impl Session<'_> {
                 self.check_built_in(id, &index)?;
             }
             Column::Compute(_, id, _) => {
-                if let ComputeKind::Atoms(_) = self.compute(id)?.kind {
+                if self.compute(id)?.kind.columns().is_some() {
                     return Err(
                         Problem::new(format!("compute `{id}` has a value for each atom"))
                             .help(format!("reduce it: compute NAME all reduce sum c_{id}")),
@@ -110,7 +119,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    pub(super) fn column_value(&mut self, column: &Column) -> Result<f64> {
+    pub fn column_value(&mut self, column: &Column) -> Result<f64> {
         let index = |i: &Option<usize>| i.iter().map(|i| *i as f64).collect::<Vec<f64>>();
         Ok(match column {
             Column::Keyword(k) => {

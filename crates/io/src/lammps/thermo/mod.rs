@@ -7,8 +7,7 @@ mod pressure;
 pub use self::pressure::BUILT_IN;
 
 use self::columns::Column;
-use super::error::{Problem, Result};
-use super::host::Quantity;
+use super::error::Result;
 use super::particles::Field;
 use super::printf::{Format, Value};
 use super::session::Session;
@@ -17,8 +16,19 @@ use super::session::Session;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lost {
     Error,
-    /// `warn`, `ignore`
-    Allow,
+    Warn,
+    Ignore,
+}
+
+/// How values stand together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Line {
+    /// A line under a heading.
+    One,
+    /// A block with a name beside each value.
+    Multi,
+    /// A list in a YAML document for each run.
+    Yaml,
 }
 
 #[derive(Debug, Clone)]
@@ -29,7 +39,7 @@ pub struct Thermo {
     pub every: u64,
     pub lost: Lost,
     pub normalize: Option<bool>,
-    pub multi: bool,
+    pub line: Line,
     /// `thermo_modify format`
     pub integer: Option<Format>,
     pub float: Option<Format>,
@@ -44,7 +54,7 @@ impl Default for Thermo {
             every: 0,
             lost: Lost::Error,
             normalize: None,
-            multi: false,
+            line: Line::One,
             integer: None,
             float: None,
             single: Vec::new(),
@@ -68,8 +78,19 @@ impl Session<'_> {
 
     /// The line above the numbers.
     pub fn thermo_header(&mut self) {
-        if self.thermo.multi {
-            return;
+        match self.thermo.line {
+            Line::One => {}
+            Line::Multi => return,
+            Line::Yaml => {
+                let columns = self.thermo_columns();
+                let names: String = columns
+                    .iter()
+                    .map(|c| format!("'{}', ", c.heading()))
+                    .collect();
+                return self
+                    .console
+                    .print(&format!("---\nkeywords: [{names}]\ndata:"));
+            }
         }
         let line: Vec<String> = self
             .thermo_columns()
@@ -104,11 +125,22 @@ impl Session<'_> {
             .enumerate()
             .map(|(k, (c, v))| self.thermo_text(k, c, *v))
             .collect();
-        if self.thermo.multi {
-            return self.print_block(&columns, &texts);
+        match self.thermo.line {
+            Line::One => self.console.print(&texts.join(" ")),
+            Line::Multi => return self.print_block(&columns, &texts),
+            Line::Yaml => {
+                let values: String = texts.iter().map(|t| format!("{t}, ")).collect();
+                self.console.print(&format!("  - [{values}]"));
+            }
         }
-        self.console.print(&texts.join(" "));
         Ok(())
+    }
+
+    /// What stands under the lines of a run.
+    pub fn thermo_footer(&mut self) {
+        if self.thermo.line == Line::Yaml {
+            self.console.print("...");
+        }
     }
 
     fn thermo_text(&self, index: usize, column: &Column, value: f64) -> String {
@@ -130,11 +162,13 @@ impl Session<'_> {
         } else {
             Value::Float(value)
         };
-        let fallback = match (integer, self.thermo.multi) {
-            (true, false) => "%10d ",
-            (false, false) => "% -14.8g",
-            (true, true) => "%14d",
-            (false, true) => "%14.4f",
+        let fallback = match (integer, self.thermo.line) {
+            (true, Line::One) => "%10d ",
+            (false, Line::One) => "% -14.8g",
+            (true, Line::Multi) => "%14d",
+            (false, Line::Multi) => "%14.4f",
+            (true, Line::Yaml) => "%d",
+            (false, Line::Yaml) => "%.15g",
         };
         match user {
             Some(f) => f.print(value),
@@ -159,61 +193,6 @@ impl Session<'_> {
         let rows: Vec<String> = cells.chunks(3).map(|row| row.join(" ")).collect();
         self.console.print(&rows.join(" \n"));
         Ok(())
-    }
-
-    /// Atoms outside a fixed face. LAMMPS notices when it rebuilds neighbour lists: at the start of a run, and
-    /// when something has moved by half the skin.
-    fn check_lost(&mut self) -> Result<()> {
-        let domain = *self.domain()?;
-        let slack = if self.progress.step == self.progress.begin {
-            0.0
-        } else {
-            0.5 * self.skin
-        };
-        let mut lost = 0usize;
-        let mut example = None;
-        for a in 0..3 {
-            use super::domain::Face::Fixed;
-            let low = if domain.faces[a][0] == Fixed {
-                domain.low[a] - slack
-            } else {
-                f64::NEG_INFINITY
-            };
-            let high = if domain.faces[a][1] == Fixed {
-                domain.high[a] + slack
-            } else {
-                f64::INFINITY
-            };
-            if low.is_infinite() && high.is_infinite() {
-                continue;
-            }
-            self.scan(Field::Raw(Quantity::Position(a)), |first, block| {
-                for (k, x) in block
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, x)| **x < low || **x > high)
-                {
-                    lost += 1;
-                    example.get_or_insert((first + k, a, *x));
-                }
-            })?;
-        }
-        let Some((index, axis, x)) = example else {
-            return Ok(());
-        };
-        let axis = ["x", "y", "z"][axis];
-        let what = format!(
-            "{lost} atoms left the box through a fixed face by step {}, first the atom with id {}: {axis} = {x:.6e}",
-            self.progress.step,
-            self.ids.get(index)
-        );
-        let help = "use `boundary s` so that the box follows the atoms, or a larger box";
-        match self.thermo.lost {
-            Lost::Error => Err(Problem::new(what).help(help)),
-            Lost::Allow => Err(Problem::new(what).help(format!(
-                "lost atoms cannot be deleted here (`thermo_modify lost warn|ignore`): {help}"
-            ))),
-        }
     }
 
     /// Value of a thermo keyword.

@@ -105,7 +105,8 @@ pub const ATOM_VALUES: [&str; 12] = [
 pub enum Expr {
     Number(f64),
     Prefix(Prefix, Box<Expr>),
-    Binary(Op, Box<Expr>, Box<Expr>),
+    /// A first value, and what is done with it from left to right: as long as it likes, without nesting.
+    Chain(Box<Expr>, Vec<(Op, Expr)>),
     /// A function of [`super::functions::NAMES`].
     Call(&'static str, Vec<Expr>),
     /// `random(lo,hi,seed)`, `normal(mean,sigma,seed)`.

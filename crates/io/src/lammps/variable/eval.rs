@@ -139,9 +139,13 @@ impl Session<'_> {
         Ok(match expr {
             Expr::Number(x) => *x,
             Expr::Prefix(prefix, inner) => prefix.apply(self.scalar(inner)?),
-            Expr::Binary(op, left, right) => {
-                let (a, b) = (self.scalar(left)?, self.scalar(right)?);
-                op.apply(a, b).map_err(Problem::new)?
+            Expr::Chain(first, chain) => {
+                let mut value = self.scalar(first)?;
+                for (op, right) in chain {
+                    let right = self.scalar(right)?;
+                    value = op.apply(value, right).map_err(Problem::new)?;
+                }
+                value
             }
             Expr::Call(name, arguments) => {
                 let mut values = [0.0; functions::MOST_ARGUMENTS];
@@ -280,12 +284,22 @@ impl Session<'_> {
                 Tree::Number(x) => Tree::Number(prefix.apply(x)),
                 tree => Tree::Prefix(*prefix, Box::new(tree)),
             },
-            Expr::Binary(op, left, right) => match (self.tree(left)?, self.tree(right)?) {
-                (Tree::Number(a), Tree::Number(b)) => {
-                    Tree::Number(op.apply(a, b).map_err(Problem::new)?)
+            Expr::Chain(first, chain) => {
+                let mut left = self.tree(first)?;
+                for (op, right) in chain {
+                    left = match (left, self.tree(right)?) {
+                        (Tree::Number(a), Tree::Number(b)) => {
+                            Tree::Number(op.apply(a, b).map_err(Problem::new)?)
+                        }
+                        (Tree::Chain(first, mut chain), right) => {
+                            chain.push((*op, right));
+                            Tree::Chain(first, chain)
+                        }
+                        (left, right) => Tree::Chain(Box::new(left), vec![(*op, right)]),
+                    };
                 }
-                (a, b) => Tree::Binary(*op, Box::new(a), Box::new(b)),
-            },
+                left
+            }
             Expr::Call(name, arguments) => Tree::Call(
                 name,
                 arguments

@@ -51,7 +51,10 @@ pub const NAMES: [(&str, usize); 27] = [
 pub const MOST_ARGUMENTS: usize = 6;
 
 /// Functions of a group of atoms.
-pub const GROUP: [&str; 6] = ["count", "mass", "xcm", "vcm", "bound", "ke"];
+pub const GROUP: [&str; 12] = [
+    "count", "mass", "xcm", "vcm", "fcm", "bound", "ke", "gyration", "angmom", "torque", "omega",
+    "inertia",
+];
 
 /// What functions of time need to know.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -37,6 +37,10 @@ pub enum Kind {
     Atom(Rc<Formula>),
     /// `internal`: a number set once.
     Internal(f64),
+    /// `file`: the lines of a file that `next` steps through.
+    File { values: Rc<[String]>, at: usize },
+    /// `getenv`: a variable of the environment.
+    Environment(String),
     /// `format`: another variable, printed with this format.
     Format { of: String, format: Format },
 }
@@ -51,6 +55,8 @@ impl Kind {
             Kind::Equal(_) => "equal",
             Kind::Atom(_) => "atom",
             Kind::Internal(_) => "internal",
+            Kind::File { .. } => "file",
+            Kind::Environment(_) => "getenv",
             Kind::Format { .. } => "format",
         }
     }
@@ -59,6 +65,8 @@ impl Kind {
     pub fn text(&self) -> Option<String> {
         Some(match self {
             Kind::Index { values, at } => values.get(*at)?.clone(),
+            Kind::File { values, at } => values.get(*at)?.clone(),
+            Kind::Environment(name) => std::env::var(name).unwrap_or_default(),
             Kind::Loop { at, width, .. } => format!("{at:0>width$}"),
             Kind::Text(t) => t.clone(),
             Kind::Internal(x) => fifteen(*x),
@@ -71,6 +79,8 @@ impl Kind {
         let read = |text: &str| text.trim().parse().ok();
         match self {
             Kind::Index { values, at } => read(values.get(*at)?),
+            Kind::File { values, at } => read(values.get(*at)?),
+            Kind::Environment(_) => read(&self.text()?),
             Kind::Loop { at, .. } => Some(*at as f64),
             Kind::Text(text) => read(text),
             Kind::Internal(x) => Some(round_to_fifteen(*x)),
@@ -85,6 +95,10 @@ impl Kind {
                 *at += 1;
                 *at < values.len()
             }
+            Kind::File { values, at } => {
+                *at += 1;
+                *at < values.len()
+            }
             Kind::Loop { last, at, .. } => {
                 *at += 1;
                 *at <= *last
@@ -93,6 +107,7 @@ impl Kind {
             | Kind::Equal(_)
             | Kind::Atom(_)
             | Kind::Internal(_)
+            | Kind::Environment(_)
             | Kind::Format { .. } => true,
         }
     }

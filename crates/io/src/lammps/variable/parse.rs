@@ -89,17 +89,21 @@ impl<'a> Parser<'a> {
         if self.depth > DEEPEST {
             return Err(self.fail("the formula is nested too deeply"));
         }
-        let mut left = self.prefix()?;
+        let left = self.prefix()?;
+        let mut chain = Vec::new();
         while let Some((spelling, op)) = self.operator() {
             if op.precedence() < least {
                 break;
             }
             self.at += spelling.len();
-            let right = self.binary(op.precedence() + 1)?;
-            left = Expr::Binary(op, Box::new(left), Box::new(right));
+            chain.push((op, self.binary(op.precedence() + 1)?));
         }
         self.depth -= 1;
-        Ok(left)
+        Ok(if chain.is_empty() {
+            left
+        } else {
+            Expr::Chain(Box::new(left), chain)
+        })
     }
 
     fn prefix(&mut self) -> Parsed<Expr> {

@@ -16,10 +16,13 @@ use crate::lammps::random::Ranmar;
 pub enum Tree {
     Number(f64),
     Field(Field),
+    /// One for each atom.
+    Values(Rc<Vec<f64>>),
     /// 0 outside the group.
     Masked(Box<Tree>, Arc<Members>),
     Prefix(Prefix, Box<Tree>),
-    Binary(Op, Box<Tree>, Box<Tree>),
+    /// A first value, and what is done with it from left to right.
+    Chain(Box<Tree>, Vec<(Op, Tree)>),
     Call(&'static str, Vec<Tree>),
     Random {
         normal: bool,
@@ -44,6 +47,7 @@ impl Tree {
         match self {
             Tree::Number(x) => out.fill(*x),
             Tree::Field(field) => view.read(*field, first, out)?,
+            Tree::Values(values) => out.copy_from_slice(&values[first..first + n]),
             Tree::Masked(inner, members) => {
                 inner.fill(view, clock, first, out)?;
                 for (k, slot) in out.iter_mut().enumerate() {
@@ -56,15 +60,17 @@ impl Tree {
                 inner.fill(view, clock, first, out)?;
                 out.iter_mut().for_each(|x| *x = prefix.apply(*x));
             }
-            Tree::Binary(op, left, right) => {
+            Tree::Chain(left, chain) => {
                 left.fill(view, clock, first, out)?;
-                for ((k, a), b) in out.iter_mut().enumerate().zip(block(right)?) {
-                    *a = op.apply(*a, b).map_err(|e| {
-                        Problem::new(format!(
-                            "{e} in the formula, at the atom with id {}",
-                            view.id(first + k)
-                        ))
-                    })?;
+                for (op, right) in chain {
+                    for ((k, a), b) in out.iter_mut().enumerate().zip(block(right)?) {
+                        *a = op.apply(*a, b).map_err(|e| {
+                            Problem::new(format!(
+                                "{e} in the formula, at the atom with id {}",
+                                view.id(first + k)
+                            ))
+                        })?;
+                    }
                 }
             }
             Tree::Call(name, arguments) => {

@@ -1,0 +1,107 @@
+//! What happens to single points from outside, in the middle of a run: walls that throw them back, and points that are
+//! taken away.
+
+use super::Wall;
+use super::model::Model;
+use crate::body::FAR;
+use crate::spec::CrackKind;
+
+impl<const D: usize> Model<D> {
+    /// Mirrors points that are behind the wall, with their velocity across it.
+    pub(super) fn bounce(&mut self, wall: &Wall, ids: Option<&[u32]>) {
+        let a = wall.axis;
+        if a >= D {
+            return;
+        }
+        let all = self.body.slots.len() as u32;
+        let (u, v) = (&mut self.u[a], &mut self.v[a]);
+        let mut mirror = |id: u32| {
+            let i = self.body.slots[id as usize] as usize;
+            let reference = self.body.position(i)[a];
+            let behind = wall.position - (reference + u[i]);
+            if (behind < 0.0) == wall.above && behind != 0.0 {
+                u[i] = wall.position + behind - reference;
+                v[i] = -v[i];
+            }
+        };
+        match ids {
+            None => (0..all).for_each(&mut mirror),
+            Some(ids) => ids.iter().copied().for_each(&mut mirror),
+        }
+    }
+
+    /// Takes points away: like sites that were never there, they are far from everything, at rest and without bonds.
+    pub(super) fn take_away(&mut self, ids: &[u32]) {
+        if ids.is_empty() {
+            return;
+        }
+        self.finish();
+        let gone: std::collections::HashSet<u32> =
+            ids.iter().map(|id| self.body.slots[*id as usize]).collect();
+        let places: Vec<[f64; D]> = gone
+            .iter()
+            .map(|s| {
+                let x = self.body.position(*s as usize);
+                std::array::from_fn(|a| x[a])
+            })
+            .collect();
+        // bonds know their ends by where they are in the reference, up to round-off
+        let near = (1e-6 * self.body.spacing).powi(2);
+        let is_gone = |x: [f64; D]| {
+            places
+                .iter()
+                .any(|p| (0..D).map(|a| (x[a] - p[a]).powi(2)).sum::<f64>() < near)
+        };
+        self.broken += self
+            .interaction
+            .cut(&self.body, CrackKind::Broken, &|from, to| {
+                is_gone(from) || is_gone(to)
+            });
+        for s in &gone {
+            let i = *s as usize;
+            for a in 0..D {
+                self.u[a][i] = FAR * self.body.spacing;
+                self.v[a][i] = 0.0;
+                self.f[a][i] = 0.0;
+            }
+        }
+        let keep = |s: u32| !gone.contains(&s);
+        // ids of those that stay
+        let mut next = 0;
+        let moved: Vec<Option<u32>> = self
+            .body
+            .slots
+            .iter()
+            .map(|s| {
+                let id = keep(*s).then_some(next);
+                next += u32::from(id.is_some());
+                id
+            })
+            .collect();
+        for (_, members) in &mut self.sets {
+            *members = members
+                .iter()
+                .filter_map(|id| moved[*id as usize])
+                .collect();
+        }
+        if !self.body.mark.is_empty() {
+            let mut stays = moved.iter().map(Option::is_some);
+            self.body.mark.retain(|_| stays.next().unwrap_or(false));
+        }
+        self.body.slots.retain(|s| keep(*s));
+        self.info.points = self.body.slots.len() as u64;
+        self.still.retain(keep);
+        self.carried.retain(keep);
+        for d in &mut self.driven {
+            d.retain(keep);
+        }
+        self.watched = None;
+        self.virial = None;
+        self.virials = None;
+        self.refresh_images();
+        self.look_again();
+        // what they carried is no longer asked for
+        let now = self.energy_now();
+        self.initial_energy = Some(super::accounts::ledger_base(&now));
+    }
+}
