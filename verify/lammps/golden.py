@@ -27,20 +27,20 @@ def skin(text, factor):
 
 def sort_bin(text):
     """A bin of 1.3 lattice constants for sorting, 1 step apart: particles change their order in memory."""
-    return repr(1.3 * lattice(text))
+    return repr(1.3 * lattice_constant(text))
 
 
-def spacing(name):
-    """The lattice constant of a case: the number of its last `lattice` line, or of the variable named there."""
-    with open(os.path.join(CASES, "in." + name)) as file:
-        return lattice(file.read())
-
-
-def lattice(text):
+def lattice_constant(text):
+    """The number of a script's last `lattice` line, or of the variable named there."""
     word = re.findall(r"(?m)^lattice\s+\S+\s+(\S+)", text)[-1]
     if "$" in word:
         word = re.search(r"(?m)^variable\s+" + word.strip("${}") + r"\s+equal\s+(\S+)", text)[1]
     return float(word)
+
+
+def spacing(name):
+    with open(os.path.join(CASES, "in." + name)) as file:
+        return lattice_constant(file.read())
 
 
 def names():
