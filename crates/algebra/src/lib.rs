@@ -6,8 +6,8 @@ mod plan;
 
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::LltError;
 use faer::sparse::linalg::solvers::{Llt, Lu};
+use faer::sparse::linalg::{LltError, LuError};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 
@@ -60,13 +60,16 @@ impl Factors {
     /// LU of any matrix.
     ///
     /// # Errors
-    /// It is singular; no memory.
+    /// It is singular by where its entries are; no memory. One that is singular by their values gives solutions that are no numbers.
     pub fn general(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
         plan::fix();
         let factors = matrix(n, entries)?.sp_lu();
         factors
             .map(|f| Factors::General(Box::new(f)))
-            .map_err(|_| FactorError::Singular)
+            .map_err(|e| match e {
+                LuError::SymbolicSingular { .. } => FactorError::Singular,
+                LuError::Generic(_) => FactorError::TooLarge,
+            })
     }
 
     /// The solution takes the place of the right-hand side.

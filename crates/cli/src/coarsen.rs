@@ -454,8 +454,14 @@ fn told<const D: usize>(level: usize, made: &Level<D>, way: Way) -> String {
     )];
     for tried in report.convergence.iter().filter(|t| t.radius.is_finite()) {
         lines.push(format!(
-            "  radius {:.4e}: effective modulus {:.8e}, changed by {:.1e}",
-            tried.radius, tried.modulus, tried.change
+            "  radius {:.4e}: effective modulus {:.8e}{}",
+            tried.radius,
+            tried.modulus,
+            match tried.left.is_finite() || tried.change > 0.0 {
+                true => format!(", changed by {:.1e}", tried.change),
+                // the first of all has nothing to be compared with
+                false => String::new(),
+            }
         ));
     }
     let asymmetry = match report.soundness.asymmetry == report.asymmetry {

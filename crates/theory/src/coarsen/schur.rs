@@ -36,6 +36,13 @@ pub(super) fn schur<const D: usize>(task: &Task<D>) -> Result<Eliminated<D>, Coa
     let factors = match Direct::new(body, &support, 0.0) {
         Ok(factors) => Some(factors),
         Err(SolveError::NothingFree) => None,
+        Err(SolveError::TooLarge) => {
+            return Err(CoarsenError::TooLarge {
+                removed: n,
+                retained: m,
+                limit: SCHUR_LIMIT,
+            });
+        }
         Err(_) => return Err(CoarsenError::IndefiniteBody),
     };
     // one column of the coarse stiffness after the other: the forces on retained points when one is displaced

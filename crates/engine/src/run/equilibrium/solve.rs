@@ -16,6 +16,8 @@ use crate::statics::{
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
+/// Relative residual above which a direct solution is none: the matrix is singular to round-off.
+const SOLVED: f64 = 1e-6;
 /// Newton's iterations at most.
 const NEWTON: usize = 50;
 /// A Newton step of so many spacings is round-off: forces of a crystal in equilibrium are never exactly 0.
@@ -139,6 +141,10 @@ impl<const D: usize> Model<D> {
                 }
             };
             let solved = factors.solve_held(&body, support, b, x);
+            // LU of a singular matrix says nothing; what is not a number is no solution
+            if !(solved.residual <= SOLVED) {
+                return Err(SolveError::Singular);
+            }
             state.factors = Some((body, factors));
             return Ok(solved);
         }
