@@ -8,7 +8,7 @@ mod report;
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, note, say};
 use crate::run::{enough_disk, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
@@ -126,7 +126,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         let sim = deck::model(&deck, input)?;
         let remarks = deck::remarks(&deck, sim.info().time_step);
         if !remarks.is_empty() {
-            eprintln!("{}", remarks.trim_start());
+            note(remarks.trim_start());
         }
         let dir = deck.output.dir.clone();
         let dir = dir.unwrap_or_else(|| default_dir(&input.file));

@@ -2,7 +2,7 @@
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, say};
+use crate::failure::{Failure, note, say};
 use crate::progress::Terminal;
 use crate::script;
 use crate::signals;
@@ -59,7 +59,7 @@ pub fn with_threads(
         return Err(Failure::input("--threads 0: at least one thread must run"));
     }
     if let Some(text) = threads.and_then(too_many_threads) {
-        eprintln!("warning: {text}");
+        note(&format!("warning: {text}"));
     }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
