@@ -171,18 +171,18 @@ impl Session<'_> {
             .iter()
             .filter(|f| matches!(f.kind, FixKind::Nve | FixKind::Move { .. }))
             .collect();
-        let name = |f: &Fix| match f.kind {
-            FixKind::Move { .. } => format!("`fix move` `{}`", f.id),
-            _ => format!("`fix nve` `{}`", f.id),
-        };
         for (k, a) in all.iter().enumerate() {
             for b in &all[..k] {
                 let both = |i: &usize| a.members.contains(*i) && b.members.contains(*i);
                 if let Some(i) = (0..self.count()).find(both) {
+                    let styles = match (&a.kind, &b.kind) {
+                        (FixKind::Nve, FixKind::Nve) => "`fix nve`",
+                        _ => "`fix nve` and `fix move`",
+                    };
                     return Err(Problem::new(format!(
-                        "{} and {} both move the atom with id {}",
-                        name(b),
-                        name(a),
+                        "{styles} with the IDs `{}` and `{}` both move the atom with id {}",
+                        b.id,
+                        a.id,
                         self.ids.get(i)
                     ))
                     .help("LAMMPS would move such atoms twice in every step: `unfix` one, or give each a group of its own"));

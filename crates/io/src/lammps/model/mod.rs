@@ -302,7 +302,8 @@ impl Engine for ModelEngine {
         self.changed();
         let sim = self.sim.get_mut();
         sim.carry(carried);
-        sim.depart().map_err(|e| HostError::new(e.to_string()))
+        let departed = sim.depart();
+        departed.map_err(|e| self.explained(&e))
     }
 
     fn reflect(&mut self, wall: &Wall, members: &Members) {
