@@ -469,13 +469,17 @@ impl Recipe {
                 let constants = PointConstants::Solid(vec![unit; solids.len()]);
                 self.list_of_pairs(body, pairs, law, constants, toughness)
             }
-            _ => self.list_of_pairs(
+            Laws::Bond(_) => self.list_of_pairs(
                 body,
                 pairs,
                 BondBased { c: 1.0 },
                 PointConstants::None,
                 toughness,
             ),
+            Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => Err(BuildError::new(
+                "pairs",
+                "springs, potentials and micromoduli have no constants of pairs of materials",
+            )),
         }
     }
 

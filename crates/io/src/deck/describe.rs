@@ -47,6 +47,12 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             }
         });
     }
+    if !spec.pairs.is_empty() {
+        lines.push(
+            "pairs      of materials have stiffness, horizon and critical stretch of their own"
+                .into(),
+        );
+    }
     let horizon = match spec.horizon {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),
