@@ -208,7 +208,11 @@ mod tests {
             for e in [e, -e] {
                 let bits = |company: f64| {
                     let mut all = [0.0; 2];
-                    let (least, most) = (e.min(company), e.max(company));
+                    // what is not a number is not among the extremes
+                    let (least, most) = match company.is_nan() {
+                        true => (e, e),
+                        false => (f64::min(e, company), f64::max(e, company)),
+                    };
                     series.each(&[e, company], least, most, &mut all);
                     all[0].to_bits()
                 };
