@@ -324,3 +324,97 @@ fn a_notched_plate_breaks_increment_by_increment() {
         assert!(broken.last() > broken.first(), "{method:?}: {broken:?}");
     }
 }
+
+/// A cantilever of rubber in plane strain, bent by a load at its end.
+fn bent(load: f64, steps: u64) -> Spec {
+    let law = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.4999,
+    });
+    let mut spec = block([24.0, 6.0, 0.0], 2, law);
+    spec.plane = Plane::Strain;
+    hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+    spec.conditions.push(ConditionSpec {
+        set: "high".into(),
+        kind: ConditionKind::BodyForce([None, text(&format!("{load:e}*t")), None]),
+    });
+    spec.schedule.steps = steps;
+    spec.schedule.time_step = TimeStep::Fixed(1.0 / steps as f64);
+    spec
+}
+
+/// The energy is that of the linear body, ½ uᵀKu, not that of the nonlinear law at its displacements.
+#[test]
+fn the_energy_of_linear_statics_closes_near_incompressibility() {
+    let energies = |load: f64, method: Method, solver: Solver, steps: u64| {
+        let mut sim = solved(&with(&bent(load, steps), method, solver, 1e-9));
+        let l = sim.ledger().unwrap();
+        let (density, volume) = (sim.energy_density(), sim.volumes());
+        let sum: f64 = density.iter().zip(&volume).map(|(w, v)| w * v).sum();
+        assert!((sum / l.strain - 1.0).abs() < 1e-12, "{sum} is not {l:?}");
+        (l.strain, l.work_conditions)
+    };
+    for (solver, bound) in [(Solver::Direct, 1e-8), (Solver::ConjugateGradients, 1e-6)] {
+        for steps in [1, 3] {
+            let (strain, work) = energies(1e-3, Method::Linear, solver, steps);
+            let off = (strain / work - 1.0).abs();
+            println!("{solver:?}, {steps} increments: strain {strain:e} J, work {work:e} J");
+            assert!(off < bound, "{solver:?}, {steps}: {strain} {work}");
+        }
+    }
+    // linear: four times the energy of half the load
+    let (half, _) = energies(5e-4, Method::Linear, Solver::Direct, 1);
+    let (whole, _) = energies(1e-3, Method::Linear, Solver::Direct, 1);
+    assert!((whole / half - 4.0).abs() < 1e-9, "{whole} {half}");
+    // and the limit of Newton's
+    let (linear, _) = energies(1e-8, Method::Linear, Solver::Direct, 1);
+    let (newton, _) = energies(1e-8, Method::Newton, Solver::Direct, 1);
+    assert!((newton / linear - 1.0).abs() < 1e-3, "{newton} {linear}");
+}
+
+/// Factors, gradients, Newton's steps, relaxation, modes.
+#[test]
+fn statics_has_the_same_bits_on_any_number_of_threads() {
+    use Method::*;
+    let mut all = vec![];
+    for (method, solver) in [
+        (Linear, Solver::Direct),
+        (Linear, Solver::ConjugateGradients),
+        (Newton, Solver::Direct),
+        (Relaxation, Solver::Auto),
+    ] {
+        let law = LawSpec::Lps(Moduli {
+            young: 1.0,
+            poisson: 0.3,
+        });
+        let mut spec = with(&block([60.0, 40.0, 0.0], 2, law), method, solver, 1e-6);
+        hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+        hold(&mut spec, "high", [number(1e-3), number(2e-3), None]);
+        all.push(spec);
+    }
+    for (n, spec) in all.iter().enumerate() {
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| {
+                let mut sim = solved(spec);
+                let mut bits = vec![];
+                for field in [sim.displacements(), sim.force_densities()] {
+                    bits.extend(field.iter().flatten().map(|x| x.to_bits()));
+                }
+                let l = sim.ledger().unwrap();
+                bits.extend([l.strain, l.work_conditions].map(f64::to_bits));
+                if n == 0 {
+                    for mode in sim.modes(3).unwrap() {
+                        bits.push(mode.frequency.to_bits());
+                        bits.extend(mode.shape.iter().flatten().map(|x| x.to_bits()));
+                    }
+                }
+                bits
+            })
+        };
+        let one = run(1);
+        for threads in [2, 4] {
+            assert!(run(threads) == one, "case {n}, {threads} threads");
+        }
+    }
+}

@@ -11,7 +11,10 @@ impl<const D: usize> Model<D> {
     pub(super) fn energy_now(&mut self) -> Ledger {
         self.finish();
         self.refresh_images();
-        let [strain, mut contact] = self.interaction.energy(&self.body, &self.u);
+        let [strain, mut contact] = match self.is_linear() {
+            true => self.quadratic_energy(),
+            false => self.interaction.energy(&self.body, &self.u),
+        };
         if let Some(pairs) = &mut self.contact {
             let (body, interaction) = (&self.body, &self.interaction);
             pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));

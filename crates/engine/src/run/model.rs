@@ -277,8 +277,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn dilatation(&self) -> Vec<f64> {
-        let mut out = PointEnergies::default();
-        self.interaction.observe(&self.body, &self.u, &mut out);
+        let out = self.seen_now();
         self.by_id(|i| out.dilatation[i])
     }
 
@@ -395,8 +394,7 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn observed(&mut self) -> Observed {
         self.refresh_images();
-        let mut out = PointEnergies::default();
-        self.interaction.observe(&self.body, &self.u, &mut out);
+        let mut out = self.seen_now();
         if let Some(pairs) = &mut self.contact {
             let (body, interaction) = (&self.body, &self.interaction);
             pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));

@@ -71,7 +71,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Forces of contact, indenters and loads, on top of those of bonds.
-    fn other_forces(&mut self, dt: f64) {
+    pub(super) fn other_forces(&mut self, dt: f64) {
         let t = self.time();
         if let Some(contact) = &mut self.contact {
             let (body, interaction) = (&self.body, &self.interaction);

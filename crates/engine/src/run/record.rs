@@ -31,8 +31,7 @@ impl<const D: usize> Model<D> {
         };
         if options.energies {
             self.refresh_images();
-            let mut energies = PointEnergies::default();
-            self.interaction.observe(&self.body, &self.u, &mut energies);
+            let energies = self.seen_now();
             snapshot.energy_density = self.by_id(|i| energies.strain[i] + energies.repulsion[i]);
             snapshot.dilatation = self.by_id(|i| energies.dilatation[i]);
         }

@@ -86,7 +86,7 @@ impl<const D: usize> LinearOperator<D> for Assembled<'_, D> {
 }
 
 /// Displacements so small (in spacings) that the square of a strain is beyond round-off.
-const SMALL: f64 = 1e-60;
+pub const SMALL: f64 = 1e-60;
 
 /// The tangent at the reference of a law that has no forces there, without a matrix: force sweeps at displacements so small
 /// that the law is linear to the last digit, because stretches are computed without cancellation.

@@ -1,5 +1,6 @@
 //! Statics of a model: every step is an increment of load, and ends in equilibrium.
 
+mod linear;
 mod solve;
 
 use super::accounts::ledger_base;
@@ -175,9 +176,13 @@ impl<const D: usize> Model<D> {
     pub(super) fn unloaded(&mut self) {
         self.v.iter_mut().for_each(|c| c.fill(0.0));
         self.refresh_images();
-        let (body, u) = (&self.body, &self.u);
-        self.interaction
-            .forces(body, u, &mut self.f, Sweep::Hold, None);
+        if self.is_linear() {
+            self.linear_forces();
+        } else {
+            let (body, u) = (&self.body, &self.u);
+            self.interaction
+                .forces(body, u, &mut self.f, Sweep::Hold, None);
+        }
         // energy that came in from outside counts as initial
         let now = self.energy_now();
         self.initial_energy = Some(ledger_base(&now));
@@ -231,15 +236,22 @@ impl<const D: usize> Model<D> {
             for c in &self.constraints {
                 c.place(&mut self.u, t);
             }
+            let before = self.broken;
             let solved = match state.options.method {
-                Method::Linear => self.solve_linear(state, &support)?,
-                Method::Newton => self.solve_newton(state, &support)?,
-                Method::Relaxation => self.relax(state, &support)?,
+                Method::Linear => self.settle_linear(state, &support)?,
+                Method::Newton => {
+                    let solved = self.solve_newton(state, &support)?;
+                    self.forces(true, 0.0);
+                    solved
+                }
+                Method::Relaxation => {
+                    let solved = self.relax(state, &support)?;
+                    self.forces(true, 0.0);
+                    solved
+                }
             };
             total.iterations += solved.iterations;
             total.residual = solved.residual;
-            let before = self.broken;
-            self.forces(true, 0.0);
             if self.broken == before {
                 return Ok(total);
             }

@@ -82,7 +82,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
-    fn at_peace(&self) -> bool {
+    pub(super) fn at_peace(&self) -> bool {
         !matches!(self.recipes.first().laws, Laws::Atoms(_))
     }
 
