@@ -1,0 +1,99 @@
+//! Every good deck, shortened, writes the same bytes on any number of threads.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// Steps of a run; statics and relaxations are run whole.
+const STEPS: i64 = 12;
+/// What `run.json` says of the machine and the clock.
+const CLOCK: [&str; 4] = [
+    "seconds_stepping",
+    "ns_per_bond_step",
+    "peak_memory_bytes",
+    "threads",
+];
+
+/// A copy of the good decks and what they read, with short runs.
+fn decks(to: &Path) -> Vec<PathBuf> {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good");
+    let mut decks = vec![];
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        if !path.is_file() {
+            continue;
+        }
+        let copy = to.join(path.file_name().unwrap());
+        if path.extension().is_none_or(|e| e != "toml") {
+            std::fs::copy(&path, &copy).unwrap();
+            continue;
+        }
+        let mut deck: toml::Table = std::fs::read_to_string(&path).unwrap().parse().unwrap();
+        if let Some(toml::Value::Table(run)) = deck.get_mut("run") {
+            run.remove("duration");
+            run.insert("steps".into(), toml::Value::Integer(STEPS));
+        }
+        std::fs::write(&copy, toml::to_string(&deck).unwrap()).unwrap();
+        decks.push(copy);
+    }
+    decks.sort();
+    decks
+}
+
+/// All files of a folder by name, `run.json` without the clock.
+fn files(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut open = vec![dir.to_path_buf()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+                continue;
+            }
+            let mut bytes = std::fs::read(&path).unwrap();
+            if path.file_name().is_some_and(|n| n == "run.json") {
+                let mut report: Value = serde_json::from_slice(&bytes).unwrap();
+                for key in CLOCK {
+                    assert!(report.as_object_mut().unwrap().remove(key).is_some(), "{key}");
+                }
+                bytes = report.to_string().into_bytes();
+            }
+            all.insert(path.strip_prefix(dir).unwrap().to_path_buf(), bytes);
+        }
+    }
+    all
+}
+
+#[test]
+fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads() {
+    let dir = TempDir::new().unwrap();
+    let decks = decks(dir.path());
+    assert!(decks.len() >= 20);
+    for deck in decks {
+        let name = deck.file_stem().unwrap().to_str().unwrap();
+        let run = |threads: &str| {
+            let out = dir.path().join(format!("{name}-{threads}"));
+            let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+                .args(["run", deck.to_str().unwrap(), "--threads", threads, "--out"])
+                .arg(&out)
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&done.stderr).into_owned();
+            assert_eq!(done.status.code(), Some(0), "{name}: {said}");
+            files(&out)
+        };
+        let one = run("1");
+        assert!(one.len() >= 2, "{name}");
+        for threads in ["2", "4"] {
+            let many = run(threads);
+            assert!(one.keys().eq(many.keys()), "{name}: other files");
+            for (file, bytes) in &one {
+                let same = many[file] == *bytes;
+                assert!(same, "{name}: {} on {threads} threads", file.display());
+            }
+        }
+    }
+}
