@@ -333,6 +333,7 @@ fn bent(load: f64, steps: u64) -> Spec {
     });
     let mut spec = block([24.0, 6.0, 0.0], 2, law);
     spec.plane = Plane::Strain;
+    spec.horizon = Horizon::Ratio(3);
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     spec.conditions.push(ConditionSpec {
         set: "high".into(),
@@ -388,6 +389,7 @@ fn statics_has_the_same_bits_on_any_number_of_threads() {
             poisson: 0.3,
         });
         let mut spec = with(&block([60.0, 40.0, 0.0], 2, law), method, solver, 1e-6);
+        spec.horizon = Horizon::Ratio(3);
         hold(&mut spec, "low", [number(0.0), number(0.0), None]);
         hold(&mut spec, "high", [number(1e-3), number(2e-3), None]);
         all.push(spec);
