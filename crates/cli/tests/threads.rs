@@ -57,7 +57,10 @@ fn files(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             if path.file_name().is_some_and(|n| n == "run.json") {
                 let mut report: Value = serde_json::from_slice(&bytes).unwrap();
                 for key in CLOCK {
-                    assert!(report.as_object_mut().unwrap().remove(key).is_some(), "{key}");
+                    assert!(
+                        report.as_object_mut().unwrap().remove(key).is_some(),
+                        "{key}"
+                    );
                 }
                 bytes = report.to_string().into_bytes();
             }
