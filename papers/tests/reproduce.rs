@@ -143,7 +143,7 @@ fn a_run_that_is_cut_off_goes_on_and_others_are_run() {
     let folder = dir.path().join("author2001/figure-1");
     let page = std::fs::read_to_string(folder.join("page.md")).unwrap();
     assert!(
-        page.contains("| an answer | 42 | 42 | 1 % | digitised | yes |  |"),
+        page.contains("| an answer | 42 |  | 42 | 1 % | digitised | yes |  |"),
         "{page}"
     );
     assert!(

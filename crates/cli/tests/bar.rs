@@ -27,9 +27,9 @@ fn homogenized_bars_are_those_of_the_paper() {
     assert_eq!(full["alpha"], json!(["5/2", "3/2"]));
     assert_eq!(full["stiffness_scale"], 6);
     let corner = json!([
-        [-20.5, 15, 4.5, 1],
+        ["-41/2", 15, "9/2", 1],
         [15, -25, 6, 3],
-        [4.5, 6, -20.5, 6],
+        ["9/2", 6, "-41/2", 6],
         [1, 3, 6, -20]
     ]);
     assert_eq!(full["stiffness_corner"], corner);

@@ -56,7 +56,7 @@ fn at_rest(spec: &Spec, simd: Option<Simd>) -> Box<dyn Simulation> {
         trust_time_step: true,
     };
     let mut spec = spec.clone();
-    if let TimeStep::Fraction(_) = spec.schedule.time_step {
+    if !matches!(spec.schedule.time_step, TimeStep::Fixed(_)) {
         spec.schedule.time_step = TimeStep::Fixed(1e-3);
     }
     let mut sim = build(&spec, options).unwrap();

@@ -48,7 +48,15 @@ fn archive<const D: usize>(body: &LinearBody<D>) -> Result<Vec<u8>, Error> {
     let block = body.block.iter().flatten().flatten().copied().collect();
     let block = Array3::from_shape_vec((bonds, D, D), block).map_err(shape)?;
     file.add_array("block", &block).map_err(bad)?;
-    file.add_array("asymmetry", &column(&[body.soundness().asymmetry]))
+    // rows that do not fit together are the reader's to name
+    let fits = body.start.windows(2).all(|w| w[0] <= w[1])
+        && body.start.last() == Some(&bonds)
+        && body.partner.iter().all(|p| (*p as usize) < n);
+    let asymmetry = match fits {
+        true => body.soundness().asymmetry,
+        false => f64::NAN,
+    };
+    file.add_array("asymmetry", &column(&[asymmetry]))
         .map_err(bad)?;
     if let Some(carriers) = &body.carriers {
         let m = carriers.points();
