@@ -56,7 +56,7 @@ pub fn waves(arguments: &WavesArguments) -> Result<(), Failure> {
         ));
     }
     let order = arguments.order;
-    if order % 2 != 0 || !(2..=40).contains(&order) {
+    if !order.is_multiple_of(2) || !(2..=40).contains(&order) {
         return Err(Failure::input(format!(
             "--order {order}: gradient equations have derivatives of even order, from 2 to 40; write for example --order 8"
         )));

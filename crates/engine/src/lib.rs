@@ -4,11 +4,6 @@
 //! answers with [`observe::Snapshot`]s. Lengths, masses and times are in whatever consistent unit system the
 //! spec uses; the engine itself is free of units.
 
-// loops over axes index several arrays at once
-#![allow(clippy::needless_range_loop, clippy::manual_memcpy)]
-// `!(x < limit)` refuses what is not a number, too
-#![allow(clippy::neg_cmp_op_on_partial_ord)]
-
 pub mod body;
 pub mod condition;
 pub mod dynamics;

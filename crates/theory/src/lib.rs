@@ -14,9 +14,6 @@
 //! | which factors of bonds make a body as stiff at its ends as inside? | [`homogenize`] |
 //! | with which order do errors fall? | [`convergence`] of the levels of [`refine`] |
 
-// tensors are indexed by components
-#![allow(clippy::needless_range_loop)]
-
 pub mod asked;
 pub mod coarsen;
 pub mod convergence;

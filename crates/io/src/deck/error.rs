@@ -163,7 +163,7 @@ pub(super) fn from_toml(source: &Source, span: Option<Range<usize>>, message: &s
 /// `1e4` and `100.0` without exponent and point.
 fn whole_number(written: &str) -> Option<u64> {
     let value: f64 = written.trim().trim_matches('"').parse().ok()?;
-    (value >= 0.0 && value < 1e15).then(|| value.round() as u64)
+    (0.0..1e15).contains(&value).then(|| value.round() as u64)
 }
 
 fn suggest<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {

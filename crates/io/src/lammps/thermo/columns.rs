@@ -98,13 +98,11 @@ impl Session<'_> {
                 let index: Vec<f64> = index.iter().map(|i| *i as f64).collect();
                 self.check_built_in(id, &index)?;
             }
-            Column::Compute(_, id, _) => {
-                if self.compute(id)?.kind.columns().is_some() {
-                    return Err(
-                        Problem::new(format!("compute `{id}` has a value for each atom"))
-                            .help(format!("reduce it: compute NAME all reduce sum c_{id}")),
-                    );
-                }
+            Column::Compute(_, id, _) if self.compute(id)?.kind.columns().is_some() => {
+                return Err(
+                    Problem::new(format!("compute `{id}` has a value for each atom"))
+                        .help(format!("reduce it: compute NAME all reduce sum c_{id}")),
+                );
             }
             Column::Fix(_, id, i) => {
                 let index: Vec<f64> = i.iter().map(|i| *i as f64).collect();
@@ -114,7 +112,7 @@ impl Session<'_> {
                 return Err(Problem::new(format!("there is no variable `{name}`"))
                     .help(suggestion(name, self.variables.names())));
             }
-            _ => {}
+            Column::Compute(..) | Column::Variable(_) | Column::Keyword(_) => {}
         }
         Ok(())
     }
