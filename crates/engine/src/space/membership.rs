@@ -3,7 +3,7 @@
 //! A point that lies on the boundary of a region belongs to it; in floating point that is a lottery (the circle
 //! of radius 37 mm through `24² + 70² = 74²` half millimetres loses eight sites). So each number of the region is
 //! written in units of the lattice, coordinates in cell edges from the origin and squared radii in `spacing²`.
-//! One that lies within round-off ([`fraction::snap`]) of a fraction with a small denominator *is* that fraction, and the
+//! One that lies within round-off (`fraction::snap`) of a fraction with a small denominator *is* that fraction, and the
 //! comparison is exact in 128-bit integers. A shape with a number that is no such fraction is compared in floating
 //! point in the same units: no site can then be meant to lie exactly on its boundary.
 

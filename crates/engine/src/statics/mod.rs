@@ -2,7 +2,7 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | which linear body is a law about a state? | [`assemble`], [`linear_body`] |
+//! | which linear body is a law about a state? | [`assemble`], [`mod@linear_body`] |
 //! | what does it do to a displacement, with or without a matrix? | [`operator`] |
 //! | is it held? | [`support`] |
 //! | where do loads of a finer body act? | [`carriers`] |

@@ -47,7 +47,7 @@ pub trait Potential: Clone + Send + Sync + 'static {
     }
 }
 
-/// All forms of potentials; adding one adds a variant here and an arm in [`Form::apply`].
+/// All forms of potentials; adding one adds a variant here and an arm in [`PotentialSpec::apply`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Form {
     LennardJones(lennard_jones::LennardJones),

@@ -4,7 +4,7 @@
 //! under its own uniform traction: no residual at inner points, and at points of the surface the exact traction times
 //! their area. The surface runs through the outermost points, which hold the half, quarter, eighth of a cell that lies
 //! inside ([`sites`]); docs/decisions/0003-surface.md says why no such factors exist for a surface half a spacing
-//! outside. The equations ([`equations`]) are solved for the factors nearest to 1 that are not negative ([`solve`]), one
+//! outside. The equations (`equations`) are solved for the factors nearest to 1 that are not negative ([`solve`]), one
 //! unknown per kind of bond ([`neighbourhoods`]): the size of the body does not count, only how many different places
 //! its surface has. State-based solids have a second factor per directed bond, of what it adds to the dilatation; these
 //! may be negative, because the energy `½κθ²` is not. [`published`] has what users know already, for bond-based laws.
