@@ -58,10 +58,10 @@ impl Simd {
         match self {
             // SAFETY, both: just detected
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx2 if has_avx2() => unsafe { avx2(kernel, b) },
+            Simd::Avx2 if has_avx2() => unsafe { pairs::run(kernel, b) },
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx512 if has_avx512() => unsafe { avx512(kernel, b) },
-            _ => kernel.block::<Eight>(b),
+            Simd::Avx512 if has_avx512() => unsafe { wide::run(kernel, b) },
+            _ => portable::run(kernel, b),
         }
     }
 }
@@ -76,14 +76,32 @@ fn has_avx512() -> bool {
     has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn avx2<K: Kernel>(kernel: &K, b: usize) -> K::Out {
-    kernel.block::<Pair<F64x4>>(b)
+/// Kernels on eight single numbers. A module for each instruction set: the compiler makes the code of generic functions module by
+/// module, and these in parallel.
+mod portable {
+    use super::{Eight, Kernel};
+
+    pub fn run<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+        kernel.block::<Eight>(b)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
-unsafe fn avx512<K: Kernel>(kernel: &K, b: usize) -> K::Out {
-    kernel.block::<F64x8>(b)
+mod pairs {
+    use super::{F64x4, Kernel, Pair};
+
+    #[target_feature(enable = "avx2,fma")]
+    pub unsafe fn run<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+        kernel.block::<Pair<F64x4>>(b)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod wide {
+    use super::{F64x8, Kernel};
+
+    #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
+    pub unsafe fn run<K: Kernel>(kernel: &K, b: usize) -> K::Out {
+        kernel.block::<F64x8>(b)
+    }
 }
