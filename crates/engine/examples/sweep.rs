@@ -207,7 +207,7 @@ impl Case {
                 &mut f,
                 Sweep::Evolve {
                     v: &v,
-                    dt: 0.0,
+                    steps: [0.0; 2],
                     release: Release::AfterForce,
                 },
                 None,

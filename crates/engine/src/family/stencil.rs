@@ -1,6 +1,7 @@
 //! Stencils: on a lattice every point has the same bonds, given by integers.
 
 use crate::error::BuildError;
+use crate::space::ball_volume;
 use crate::space::lattice::LatticeKind;
 use crate::spec::Horizon;
 
@@ -42,12 +43,7 @@ impl Stencil {
             Horizon::Ratio(m) => f64::from(m),
             Horizon::Length(d) => d / spacing,
         };
-        let ball = match kind.dimension() {
-            1 => 2.0 * spacings,
-            2 => std::f64::consts::PI * spacings.powi(2),
-            _ => 4.0 / 3.0 * std::f64::consts::PI * spacings.powi(3),
-        };
-        let bonds = ball / kind.site_volume();
+        let bonds = ball_volume(kind.dimension(), spacings) / kind.site_volume();
         // the ball's surface blurs small counts
         if bonds <= 1.5 * MOST as f64 {
             return Ok(());

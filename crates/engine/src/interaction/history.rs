@@ -58,13 +58,14 @@ pub fn next_critical<L: Lane>(
     L::select(lonely, alone, critical(s0))
 }
 
-/// Energy density that points lose with bonds, from `Σ x` and `Σ k r0² s` over those bonds, the points' fields and
-/// their pressure factor `q`.
+/// Energy density that points lose with bonds, from `Σ x` and `Σ k r0² s` over those bonds, the points' fields, their
+/// pressure factor `q`, and by how much `Σ k r0² s` of the bonds that they keep grows in half a step: so long these still pull
+/// with the pressure of before.
 #[inline(always)]
-pub fn released<L: Lane, W: Law>(q: L, own: [L; 2], lost: [L; 2]) -> L {
+pub fn released<L: Lane, W: Law>(q: L, own: [L; 2], lost: [L; 2], growth: L) -> L {
     if W::SHARES {
         // ½ q (S² − (S − L)²) = L P − ½ q L², with P = q S
-        lost[0] + lost[1] * (own[0] - L::splat(0.5) * q * lost[1])
+        lost[0] + lost[1] * (own[0] + q * (growth - L::splat(0.5) * lost[1]))
     } else {
         lost[0]
     }

@@ -46,7 +46,7 @@ pub struct ListInteraction<const D: usize, W: Law> {
     repulsion: Option<Repulsion>,
     /// `[slots]`, where repulsion or the law depends on it; else empty.
     materials: Vec<u8>,
-    /// Of laws that read constants of pairs; else empty.
+    /// Constants of bonds of pairs of materials, if the law is that of unit constants; else empty.
     pairs: Arc<BondTable>,
     /// Critical `e` per slot, now and next.
     critical: Vec<f64>,
@@ -76,7 +76,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         Self::of_pairs(parts, Arc::default())
     }
 
-    /// With constants of pairs of materials, which the law reads.
+    /// With constants of pairs of materials; the law is that of unit constants, `c = 1`, or `n = 3, κ = β = 1`.
     pub fn of_pairs(parts: ListParts<D, W>, pairs: Arc<BondTable>) -> Self {
         let ListParts {
             body,
@@ -99,12 +99,13 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         } else {
             vec![]
         };
+        let paired = pairs.materials() > 0;
         let alike = |r: &Repulsion| r.stiffness.one().is_some();
-        let materials: Vec<u8> = match !W::PAIRS && repulsion.as_ref().is_none_or(alike) {
+        let materials: Vec<u8> = match !paired && repulsion.as_ref().is_none_or(alike) {
             true => vec![],
             false => (0..body.len).map(|s| body.material_of(s) as u8).collect(),
         };
-        if W::PAIRS {
+        if paired {
             let known = |m: &u8| (*m as usize) < pairs.materials();
             assert!(materials.iter().all(known), "constants of every material");
         }
@@ -160,6 +161,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             repulsion: self.repulsion.as_ref(),
             materials: &self.materials,
             periodic: self.is_periodic(),
+            paired: self.pairs.materials() > 0,
             pairs: &self.pairs,
         }
     }
@@ -340,7 +342,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                 let (xi, share) = view.constant(i, j);
                 let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
                 let mut fields = [i, j].map(|s| [field(0, s), field(1, s)]);
-                if W::PAIRS {
+                if view.paired {
                     let pair = self.pairs.get(body.material_of(i), body.material_of(j));
                     k *= pair.stiffness;
                     fields.iter_mut().for_each(|f| f[0] *= pair.ratio());
@@ -354,7 +356,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
                     std::array::from_fn(|a| u[a][j] - u[a][i]),
                     fields,
                 );
-                if W::PAIRS && W::SHARES {
+                if view.paired && W::SHARES {
                     // the scalar is that of unit constants
                     let pair = self.pairs.get(body.material_of(i), body.material_of(j));
                     tangent.share = tangent.share.map(|x| x / pair.stiffness);
@@ -373,9 +375,9 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         }
     }
 
-    /// Of laws that read constants of pairs: their directed bonds need not pull with opposite forces.
+    /// With constants of pairs: their directed bonds need not pull with opposite forces.
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        if !W::PAIRS {
+        if self.pairs.materials() == 0 {
             return None;
         }
         let mut moved = std::mem::take(&mut self.moved);

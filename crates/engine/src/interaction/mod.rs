@@ -80,11 +80,12 @@ pub struct Toughness {
 #[derive(Debug, Clone, Copy)]
 pub enum Sweep<'a, const D: usize> {
     /// Forces, test and break, then the new critical stretch. A bond that lets go at once missed the half step that
-    /// ends here, one that does after its force pulls over half the next step; `v` (velocity of the step's middle)
-    /// and `dt` say what that costs. The first evaluation of a run ends no step: `dt` is 0 there for the former.
+    /// ends here, one that does after its force pulls over half the next step, and the others pull over that half step
+    /// with pressures of before; `v` (velocity of the step's middle, images too) and `steps`, the time steps that end
+    /// and begin here, say what that costs. The first evaluation of a run ends no step: 0.
     Evolve {
         v: &'a Field<D>,
-        dt: f64,
+        steps: [f64; 2],
         release: Release,
     },
     /// Forces only; the memory stays as it is.
@@ -113,7 +114,7 @@ pub enum BondState {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Motion<'a, const D: usize> {
     v: &'a Field<D>,
-    dt: f64,
+    steps: [f64; 2],
     release: Release,
 }
 
@@ -122,9 +123,14 @@ impl<const D: usize> Motion<'_, D> {
     /// taken from what it releases where it missed that pull.
     fn farewell(&self) -> f64 {
         match self.release {
-            Release::AtOnce => -0.25 * self.dt,
-            Release::AfterForce => 0.25 * self.dt,
+            Release::AtOnce => -0.25 * self.steps[0],
+            Release::AfterForce => 0.25 * self.steps[1],
         }
+    }
+
+    /// Half the step that begins (time).
+    fn half_step(&self) -> f64 {
+        0.5 * self.steps[1]
     }
 }
 
@@ -132,7 +138,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
     /// `None`: nothing breaks.
     fn motion(self) -> Option<Motion<'a, D>> {
         match self {
-            Sweep::Evolve { v, dt, release } => Some(Motion { v, dt, release }),
+            Sweep::Evolve { v, steps, release } => Some(Motion { v, steps, release }),
             Sweep::Hold => None,
         }
     }

@@ -2,35 +2,6 @@
 
 use super::Toughness;
 use crate::execute::lane::Lane;
-use crate::law::Law;
-
-/// A law that reads its constants from a [`BondTable`] wherever it meets a bond. The law itself is that of unit
-/// constants: `c = 1`, or `n = 3, κ = β = 1`.
-#[derive(Debug, Clone, Copy)]
-pub struct Paired<W>(pub W);
-
-impl<W: Law> Law for Paired<W> {
-    const SHARES: bool = W::SHARES;
-    const FIELDS: usize = W::FIELDS;
-    const PAIRS: bool = true;
-
-    #[inline(always)]
-    fn constant<L: Lane>(self, r0: L, inv_r0: L, weight: L) -> L {
-        self.0.constant(r0, inv_r0, weight)
-    }
-    #[inline(always)]
-    fn pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2]) -> L {
-        self.0.pull(k, g, i, j)
-    }
-    #[inline(always)]
-    fn pair_energy<L: Lane>(self, x: L, i: [L; 2], j: [L; 2]) -> L {
-        self.0.pair_energy(x, i, j)
-    }
-    #[inline(always)]
-    fn pressure_factor<L: Lane>(self, own: L) -> L {
-        self.0.pressure_factor(own)
-    }
-}
 
 /// What points of one material have in their bonds with points of another.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -144,11 +144,11 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             };
             take(u, p, &mut own.u);
             let sweep = match sweep {
-                Sweep::Evolve { v, dt, release } => {
+                Sweep::Evolve { v, steps, release } => {
                     take(v, p, &mut own.v);
                     Sweep::Evolve {
                         v: &own.v,
-                        dt,
+                        steps,
                         release,
                     }
                 }

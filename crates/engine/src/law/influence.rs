@@ -1,6 +1,6 @@
 //! Influence functions ω of the bond length: written once, for plain numbers and for lanes.
 
-use crate::execute::lane::Lane;
+use crate::execute::lane::{Lane, Piece};
 use crate::spec::Influence;
 
 /// ω for one horizon δ. Multiplications only (and `1/r` as given), hence the same bits in every width.
@@ -27,8 +27,8 @@ impl InfluenceFunction {
             Influence::Constant => L::splat(1.0),
             Influence::Inverse => inv_r,
             Influence::Conical => L::splat(1.0) - q,
-            Influence::Gaussian => gaussian(q),
-            Influence::CubicSpline => spline(q),
+            Influence::Gaussian => L::apart(Gaussian(q)),
+            Influence::CubicSpline => L::apart(CubicSpline(q)),
         }
     }
 }
@@ -36,6 +36,26 @@ impl InfluenceFunction {
 /// ω(r) for a horizon δ.
 pub fn influence(kind: Influence, r: f64, horizon: f64) -> f64 {
     InfluenceFunction::new(kind, horizon).at(r, 1.0 / r)
+}
+
+struct Gaussian<L>(L);
+
+impl<L: Lane> Piece for Gaussian<L> {
+    type Out = L;
+    #[inline(always)]
+    fn run(self) -> L {
+        gaussian(self.0)
+    }
+}
+
+struct CubicSpline<L>(L);
+
+impl<L: Lane> Piece for CubicSpline<L> {
+    type Out = L;
+    #[inline(always)]
+    fn run(self) -> L {
+        spline(self.0)
+    }
 }
 
 /// `exp(−4 q²)` for 0 ≤ q ≤ 1 as `e⁻² T(½ − q²)⁴` with the Taylor polynomial T of exp, fifteen terms on

@@ -49,8 +49,6 @@ pub trait Law: Copy + Send + Sync + 'static {
     const SHARES: bool;
     /// How many point fields `pull` reads.
     const FIELDS: usize;
-    /// Do its constants come from a table of pairs of materials?
-    const PAIRS: bool = false;
 
     /// The bond constant `k` from reference length and `ω ν V_j`.
     fn constant<L: Lane>(self, r0: L, inv_r0: L, weight: L) -> L;

@@ -23,6 +23,7 @@ use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
+use crate::space::ball_volume;
 use crate::spec::{BodySpec, Cloud, CrackKind, Spec, TimeStep};
 use crate::statics::SYMMETRIC;
 
@@ -79,11 +80,7 @@ fn enough_memory<const D: usize>(
         Some(s) => (slots * s.bonds() as f64, 0.125),
         None => {
             // no point has more partners than the ball holds, or the body
-            let ball = match D {
-                1 => 2.0 * spacings,
-                2 => std::f64::consts::PI * spacings.powi(2),
-                _ => 4.0 / 3.0 * std::f64::consts::PI * spacings.powi(3),
-            };
+            let ball = ball_volume(D, spacings);
             // the estimate may be some times too high where bodies are thin: the list itself is counted before it is made
             let doubt = if atoms { 1.0 } else { 4.0 };
             (slots * ball.min(body.points() as f64) / doubt, 4.125)

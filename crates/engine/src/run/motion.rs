@@ -8,7 +8,6 @@ use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::error::RunError;
 use crate::interaction::Sweep;
-use crate::spec::Release;
 
 impl<const D: usize> Model<D> {
     /// All forces at the current displacements, no bond breaking.
@@ -34,17 +33,16 @@ impl<const D: usize> Model<D> {
             false => vec![[0.0; 6]; self.body.len],
         });
         if bonds {
+            for c in &mut self.v {
+                self.body.fill_images(c);
+            }
             let tally = self.interaction.forces(
                 &self.body,
                 &self.u,
                 &mut self.f,
                 Sweep::Evolve {
                     v: &self.v,
-                    // a bond that lets go at once in the first evaluation of a run missed no half step
-                    dt: match self.release {
-                        Release::AtOnce => dt,
-                        Release::AfterForce => self.dt,
-                    },
+                    steps: [dt, self.dt],
                     release: self.release,
                 },
                 watched.as_mut(),

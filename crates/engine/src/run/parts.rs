@@ -9,6 +9,7 @@ use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::interaction::Interaction;
 use crate::law::micromodulus::Moments;
+use crate::space::ball_volume;
 use crate::spec::{
     BodySpec, Calibration, ContactStiffness, Horizon, LawSpec, MaterialSpec, PieceSpec,
     PmbStiffness, Spec,
@@ -242,12 +243,6 @@ impl Part<'_> {
             );
             return near.bonds() as f64;
         }
-        let q = range / body.spacing;
-        let ball = match D {
-            1 => 2.0 * q,
-            2 => std::f64::consts::PI * q * q,
-            _ => 4.0 / 3.0 * std::f64::consts::PI * q.powi(3),
-        };
-        (ball - 1.0).max(0.0)
+        (ball_volume(D, range / body.spacing) - 1.0).max(0.0)
     }
 }

@@ -12,7 +12,7 @@ use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::interaction::linear::LinearInteraction;
 use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::micromoduli::MicromoduliInteraction;
-use crate::interaction::pairs::{BondConstants, BondTable, Paired};
+use crate::interaction::pairs::{BondConstants, BondTable};
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PairTable, PointConstants, Repulsion, Toughness};
@@ -499,7 +499,7 @@ impl Recipe {
         let parts = ListParts {
             body,
             list: HorizonList::within(body, self.horizon, horizon)?,
-            law: Paired(law),
+            law,
             weight: BondWeight::new(self.influence, self.horizon, scaling),
             point_constants,
             toughness,

@@ -142,7 +142,7 @@ fn textbook<const D: usize>() {
             &mut f,
             Sweep::Evolve {
                 v: &zeros(body.len),
-                dt: 0.0,
+                steps: [0.0; 2],
                 release: Release::AfterForce,
             },
             None,
@@ -224,7 +224,7 @@ fn a_body_at_rest_has_exactly_no_force() {
             &mut f,
             Sweep::Evolve {
                 v: &zeros(body.len),
-                dt: 0.0,
+                steps: [0.0; 2],
                 release: Release::AfterForce,
             },
             None,

@@ -46,7 +46,7 @@ fn trace_of_pairs<W: Law>(
                 &mut f,
                 Sweep::Evolve {
                     v: &displace(&body, case.amplitude, step + 7),
-                    dt: 0.3,
+                    steps: [0.3; 2],
                     release: [Release::AfterForce, Release::AtOnce][step as usize % 2],
                 },
                 None,
@@ -140,7 +140,7 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         let still = zeros(body.len);
         let evolve = Sweep::Evolve {
             v: &still,
-            dt: 0.0,
+            steps: [0.0; 2],
             release: Release::AfterForce,
         };
         it.forces(&body, &u, &mut f, evolve, None);
@@ -223,7 +223,7 @@ fn a_table_of_equal_pairs_is_the_law() {
             let v = displace(&body, case.amplitude, step + 7);
             let evolve = Sweep::Evolve {
                 v: &v,
-                dt: 0.3,
+                steps: [0.3; 2],
                 release: Release::AtOnce,
             };
             let mut f = (zeros(body.len), zeros(body.len));

@@ -112,7 +112,7 @@ fn same_as_stencil<const D: usize, W: Law>(
             &mut f.0,
             Sweep::Evolve {
                 v: &displace(&body, case.amplitude, step + 7),
-                dt: 0.3,
+                steps: [0.3; 2],
                 release,
             },
             None,
@@ -123,7 +123,7 @@ fn same_as_stencil<const D: usize, W: Law>(
             &mut f.1,
             Sweep::Evolve {
                 v: &displace(&cloud, case.amplitude, step + 7),
-                dt: 0.3,
+                steps: [0.3; 2],
                 release,
             },
             None,

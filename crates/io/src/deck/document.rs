@@ -33,8 +33,8 @@ pub struct Document {
     /// `[body]`, or `[[body]]` several times: bonds inside each, contact between them.
     #[schemars(with = "Or<Vec<Body>, Body>")]
     pub body: At<Body>,
-    /// Those after the first.
-    #[serde(default)]
+    /// Those after the first, under the name that [`locate`](super::locate) gives them.
+    #[serde(default, rename = "[[body]]")]
     #[schemars(skip)]
     pub more_bodies: Vec<At<Body>>,
     /// Named sets of points; "all" always exists.

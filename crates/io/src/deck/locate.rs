@@ -35,6 +35,9 @@ pub(super) fn name_material(tree: &mut DeTable) {
     }
 }
 
+/// Where the other bodies of `[[body]]` go: no key that anybody types.
+const MORE_BODIES: &str = "[[body]]";
+
 /// Puts the bodies of `[[body]]` after the first under a key of their own.
 pub(super) fn first_body<'a>(tree: &mut DeTable<'a>) {
     let Some(entry) = tree.get_mut("body") else {
@@ -60,7 +63,7 @@ pub(super) fn first_body<'a>(tree: &mut DeTable<'a>) {
         *entry = first;
     }
     tree.insert(
-        Spanned::new(span.clone(), "more_bodies".into()),
+        Spanned::new(span.clone(), MORE_BODIES.into()),
         Spanned::new(span, DeValue::Array(rest)),
     );
 }

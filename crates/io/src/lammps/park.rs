@@ -1,6 +1,8 @@
 //! The generator behind `velocity create`, `create_atoms random`, `displace_atoms random` and `set type/fraction`: the
 //! minimal standard generator of Park and Miller (Communications of the ACM 31, 1988), `s ← 16807 s mod (2³¹ − 1)`.
 
+use super::random::polar;
+
 #[derive(Debug, Clone)]
 pub struct Park {
     seed: u64,
@@ -56,21 +58,13 @@ impl Park {
         1.0 / MODULUS as f64 * self.seed as f64
     }
 
-    /// Standard normal (polar method; numbers come in pairs).
+    /// Standard normal.
     pub fn normal(&mut self) -> f64 {
-        if let Some(x) = self.spare.take() {
-            return x;
-        }
-        loop {
-            let a = 2.0 * self.uniform() - 1.0;
-            let b = 2.0 * self.uniform() - 1.0;
-            let r = a * a + b * b;
-            if r < 1.0 && r != 0.0 {
-                let f = (-2.0 * r.ln() / r).sqrt();
-                self.spare = Some(a * f);
-                return b * f;
-            }
-        }
+        self.spare.take().unwrap_or_else(|| {
+            let [now, later] = polar(|| self.uniform());
+            self.spare = Some(later);
+            now
+        })
     }
 }
 

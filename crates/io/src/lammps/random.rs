@@ -15,6 +15,19 @@ pub struct Ranmar {
 
 const UNIT: f64 = 16_777_216.0;
 
+/// Two standard normal numbers of uniform ones (polar method), in the order in which LAMMPS gives them.
+pub fn polar(mut uniform: impl FnMut() -> f64) -> [f64; 2] {
+    loop {
+        let a = 2.0 * uniform() - 1.0;
+        let b = 2.0 * uniform() - 1.0;
+        let r = a * a + b * b;
+        if r < 1.0 && r != 0.0 {
+            let f = (-2.0 * r.ln() / r).sqrt();
+            return [b * f, a * f];
+        }
+    }
+}
+
 impl Ranmar {
     /// `seed` from 1 to 900,000,000; anything else is `None`.
     pub fn new(seed: i64) -> Option<Ranmar> {
@@ -66,21 +79,13 @@ impl Ranmar {
         if x < 0.0 { x + 1.0 } else { x }
     }
 
-    /// Standard normal (polar method; numbers come in pairs).
+    /// Standard normal.
     pub fn normal(&mut self) -> f64 {
-        if let Some(x) = self.spare.take() {
-            return x;
-        }
-        loop {
-            let a = 2.0 * self.uniform() - 1.0;
-            let b = 2.0 * self.uniform() - 1.0;
-            let r = a * a + b * b;
-            if r < 1.0 && r != 0.0 {
-                let f = (-2.0 * r.ln() / r).sqrt();
-                self.spare = Some(a * f);
-                return b * f;
-            }
-        }
+        self.spare.take().unwrap_or_else(|| {
+            let [now, later] = polar(|| self.uniform());
+            self.spare = Some(later);
+            now
+        })
     }
 }
 

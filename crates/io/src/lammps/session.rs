@@ -78,6 +78,23 @@ pub struct Progress {
     pub steps_done: u64,
 }
 
+impl Default for Progress {
+    fn default() -> Self {
+        Progress {
+            step: 0,
+            begin: 0,
+            end: 0,
+            whole: None,
+            first: 0,
+            time_step: Units::Lj.time_step(),
+            time_base: (0, 0.0),
+            started: None,
+            stepping_seconds: 0.0,
+            steps_done: 0,
+        }
+    }
+}
+
 pub struct Session<'a> {
     pub host: &'a mut dyn Host,
     pub console: Output<'a>,
@@ -155,18 +172,7 @@ impl<'a> Session<'a> {
             variables: Variables::default(),
             random: [None, None],
             thermo: Thermo::default(),
-            progress: Progress {
-                step: 0,
-                begin: 0,
-                end: 0,
-                whole: None,
-                first: 0,
-                time_step: Units::Lj.time_step(),
-                time_base: (0, 0.0),
-                started: None,
-                stepping_seconds: 0.0,
-                steps_done: 0,
-            },
+            progress: Progress::default(),
             ended: false,
         }
     }
@@ -408,17 +414,10 @@ impl<'a> Session<'a> {
         self.random = [None, None];
         self.thermo = Thermo::default();
         self.progress = Progress {
-            step: 0,
-            begin: 0,
-            end: 0,
-            whole: None,
-            first: 0,
-            time_step: Units::Lj.time_step(),
-            time_base: (0, 0.0),
-            started: None,
             // what was done stays done
             stepping_seconds: self.progress.stepping_seconds,
             steps_done: self.progress.steps_done,
+            ..Progress::default()
         };
     }
 }

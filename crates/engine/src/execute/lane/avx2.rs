@@ -1,6 +1,6 @@
 //! Four numbers in an AVX2 register.
 
-use super::Lane;
+use super::{Lane, Piece};
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Sub};
 
@@ -35,7 +35,18 @@ impl Mul for F64x4 {
     }
 }
 
+#[target_feature(enable = "avx2,fma")]
+#[inline(never)]
+fn apart<P: Piece>(piece: P) -> P::Out {
+    piece.run()
+}
+
 impl Lane for F64x4 {
+    #[inline(always)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        unsafe { apart(piece) }
+    }
+
     const N: usize = 4;
     type Mask = __m256d;
 

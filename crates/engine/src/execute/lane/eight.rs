@@ -3,7 +3,7 @@
 //! Where vector paths exist beside it, this one serves old machines and as a reference, and its operations are calls: inlined
 //! into every loop, eight times each, they would be the larger part of the program and of the time to compile it.
 
-use super::{Lane, TILE};
+use super::{Lane, Piece, TILE};
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
@@ -73,6 +73,11 @@ impl Mul for Eight {
 impl Lane for Eight {
     const N: usize = TILE;
     type Mask = Mask;
+
+    #[inline(never)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        piece.run()
+    }
 
     #[inline(always)]
     fn splat(x: f64) -> Self {

@@ -17,6 +17,13 @@ pub mod series;
 /// Number of points that one byte of bond bits covers.
 pub const TILE: usize = 8;
 
+/// Work on lanes that many loops have in common, or that they seldom do: compiled once and called ([`Lane::apart`]), not
+/// copied into each of them. Implement `run` with `#[inline(always)]`.
+pub trait Piece {
+    type Out;
+    fn run(self) -> Self::Out;
+}
+
 /// `N` numbers advancing together.
 ///
 /// # Safety of implementations
@@ -70,6 +77,9 @@ pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn zero_if(self, m: Self::Mask) -> Self;
     /// `a` where `m`, else `b`.
     fn select(m: Self::Mask, a: Self, b: Self) -> Self;
+
+    /// Do a piece of work out of line, in code of this lane's instruction set.
+    fn apart<P: Piece>(piece: P) -> P::Out;
 
     /// Lanes whose bit in `bits` is 0.
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Two registers advancing together: what they share (constants of a bond, loop control) is paid for once.
 
-use super::Lane;
+use super::{Lane, Piece};
 use std::ops::{Add, Mul, Sub};
 
 #[derive(Clone, Copy)]
@@ -32,6 +32,11 @@ impl<L: Lane> Mul for Pair<L> {
 impl<L: Lane> Lane for Pair<L> {
     const N: usize = 2 * L::N;
     type Mask = (L::Mask, L::Mask);
+
+    #[inline(always)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        L::apart(piece)
+    }
 
     #[inline(always)]
     fn splat(x: f64) -> Self {

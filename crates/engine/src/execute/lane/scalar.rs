@@ -1,10 +1,15 @@
 //! One number: the portable reference.
 
-use super::Lane;
+use super::{Lane, Piece};
 
 impl Lane for f64 {
     const N: usize = 1;
     type Mask = bool;
+
+    #[inline(never)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        piece.run()
+    }
 
     #[inline(always)]
     fn splat(x: f64) -> f64 {

@@ -6,7 +6,7 @@
 //! are evaluated together take as many parts as the largest `e` of them asks for, and the answer of each depends on its own
 //! `e` alone (docs/decisions/0004-own-answers.md).
 
-use super::{Lane, TILE};
+use super::{Lane, Piece, TILE};
 use std::hint::black_box;
 use std::marker::PhantomData;
 
@@ -118,44 +118,66 @@ impl<F: Function> Series<F> {
         Series(black_box(F::TABLE.0.as_ptr().cast()), PhantomData)
     }
 
-    /// `f(e)` of each `e`, none of which lies outside `least..most`, to `sink` in order; not a number where `e` is not.
-    /// The bits of one do not depend on what it is evaluated with.
+    /// `f(e)` of each `e`, none of which is larger than `largest`, to `sink` in order; not a number where `e` is not. False, and nothing
+    /// is done: some are too large for the short sums, take [`Series::far`]. The bits of one do not depend on what it is
+    /// evaluated with.
     #[inline(always)]
-    pub fn each<L: Lane>(self, e: &[L], least: L, most: L, sink: &mut impl Sink<L>) {
-        let largest = (L::splat(0.0) - least).max(most);
+    pub fn near<L: Lane>(self, e: &[L], largest: L, sink: &mut impl Sink<L>) -> bool {
         if !L::any(L::splat(NEAR).lt(largest)) {
-            self.sum::<L, 1, false>(e, sink);
+            self.short::<L, 1>(e, sink);
         } else if !L::any(L::splat(MIDDLE).lt(largest)) {
-            self.sum::<L, 2, false>(e, sink);
-        } else if !L::any(L::splat(WIDE).lt(largest)) {
-            self.sum::<L, 3, false>(e, sink);
+            self.short::<L, 2>(e, sink);
         } else {
-            self.sum::<L, 3, true>(e, sink);
+            return false;
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn short<L: Lane, const COUNT: usize>(self, e: &[L], sink: &mut impl Sink<L>) {
+        for (n, x) in e.iter().enumerate() {
+            sink.put(n, self.sum::<L, COUNT, false>(*x));
+        }
+    }
+
+    /// The same in the place of `e`, whatever they are.
+    #[inline(always)]
+    pub fn far<L: Lane>(self, e: &mut [L], largest: L) {
+        let series = self;
+        L::apart(Far { series, e, largest });
+    }
+
+    /// `f(e)` of one.
+    #[inline(always)]
+    pub fn at<L: Lane>(self, e: L) -> L {
+        let (mut near, mut far) = ([e], [e]);
+        if self.near(&[e], e.abs(), &mut near) {
+            near[0]
+        } else {
+            self.far(&mut far, e.abs());
+            far[0]
         }
     }
 
     /// So many parts of the series, and with `ROOT` the root where `e` asks for it.
     #[inline(always)]
-    fn sum<L: Lane, const COUNT: usize, const ROOT: bool>(self, e: &[L], sink: &mut impl Sink<L>) {
-        for (n, x) in e.iter().enumerate() {
-            let x = *x;
-            let mut p = self.part(x, 0);
-            if COUNT > 1 {
-                let x2 = x * x;
-                let x4 = x2 * x2;
-                p = x4.fma(self.part(x, 1), p);
-                if COUNT > 2 {
-                    p = (x4 * x2).fma(self.part(x, 2), p);
-                }
+    fn sum<L: Lane, const COUNT: usize, const ROOT: bool>(self, e: L) -> L {
+        let mut p = self.part(e, 0);
+        if COUNT > 1 {
+            let e2 = e * e;
+            let e4 = e2 * e2;
+            p = e4.fma(self.part(e, 1), p);
+            if COUNT > 2 {
+                p = (e4 * e2).fma(self.part(e, 2), p);
             }
-            let mut f = p * x;
-            if ROOT {
-                // both for all: to ask bond by bond costs more than it saves
-                let far = L::splat(WIDE).lt(x.abs());
-                f = L::select(far, F::exact(x), f);
-            }
-            sink.put(n, f);
         }
+        let mut f = p * e;
+        if ROOT {
+            // both for all: to ask bond by bond costs more than it saves
+            let far = L::splat(WIDE).lt(e.abs());
+            f = L::select(far, F::exact(e), f);
+        }
+        f
     }
 
     /// Horner's scheme: the sweeps are bound by the number of operations, not by their depth.
@@ -175,9 +197,50 @@ impl<F: Function> Series<F> {
     }
 }
 
+/// The longer sums, of bonds far from rest: a call is small beside them.
+struct Far<'a, L: Lane, F> {
+    series: Series<F>,
+    e: &'a mut [L],
+    largest: L,
+}
+
+impl<L: Lane, F: Function> Far<'_, L, F> {
+    #[inline(always)]
+    fn long<const ROOT: bool>(self) {
+        for e in self.e {
+            *e = self.series.sum::<L, 3, ROOT>(*e);
+        }
+    }
+}
+
+impl<L: Lane, F: Function> Piece for Far<'_, L, F> {
+    type Out = ();
+    #[inline(always)]
+    fn run(self) {
+        if L::any(L::splat(WIDE).lt(self.largest)) {
+            self.long::<true>();
+        } else {
+            self.long::<false>();
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn each<F: Function, const N: usize>(
+        series: Series<F>,
+        mut e: [f64; N],
+        largest: f64,
+    ) -> [f64; N] {
+        let mut all = e;
+        if series.near(&e, largest, &mut all) {
+            return all;
+        }
+        series.far(&mut e, largest);
+        e
+    }
 
     fn check<F: Function>() {
         let series = Series::<F>::new();
@@ -187,15 +250,14 @@ mod tests {
                 if e <= -1.0 {
                     continue;
                 }
-                let mut all = [0.0];
-                series.each(&[e], e.min(0.0), e.max(0.0), &mut all);
+                let [found] = each(series, [e], e.abs());
                 let exact = F::exact(e);
-                assert!((all[0] - exact).abs() <= 5e-16 * exact.abs(), "at {e}");
+                assert!((found - exact).abs() <= 5e-16 * exact.abs(), "at {e}");
+                assert_eq!(series.at(e).to_bits(), found.to_bits(), "at {e}");
             }
             e *= 1.037;
         }
-        let mut none = [1.0; 2];
-        series.each(&[0.0, f64::NAN], 0.0, 0.0, &mut none);
+        let none = each(series, [0.0, f64::NAN], 0.0);
         assert_eq!(none[0], 0.0);
         assert!(none[1].is_nan());
     }
@@ -207,14 +269,9 @@ mod tests {
         while e < 0.9 {
             for e in [e, -e] {
                 let bits = |company: f64| {
-                    let mut all = [0.0; 2];
-                    // what is not a number is not among the extremes
-                    let (least, most) = match company.is_nan() {
-                        true => (e, e),
-                        false => (f64::min(e, company), f64::max(e, company)),
-                    };
-                    series.each(&[e, company], least, most, &mut all);
-                    all[0].to_bits()
+                    // what is not a number is not the largest
+                    let largest = e.abs().max(company.abs());
+                    each(series, [e, company], largest)[0].to_bits()
                 };
                 let alone = bits(e);
                 for company in [1e-30, 5e-5, 1e-3, 0.02, 0.5, -0.5, f64::NAN] {

@@ -86,14 +86,16 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     }
 
     /// Energy, the virial where asked for (of [ready](Self::ready) positions), and energies per slot where asked for.
-    fn sums<const VIRIAL: bool>(
+    fn sums(
         &self,
+        virial: bool,
         list: &NearList<D>,
         position: &[[f64; 4]],
         out: Shared,
         volume: &Values,
     ) -> [f64; 7] {
-        let kernel = Energies::<D, P, VIRIAL> {
+        let kernel = Energies {
+            virial,
             view: self.view(list, position.as_ptr()),
             out,
             volume,
@@ -111,7 +113,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     ) {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
-        self.sums::<false>(list, position, strain, &body.volume);
+        self.sums(false, list, position, strain, &body.volume);
     }
 }
 
@@ -253,14 +255,15 @@ impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
     }
 }
 
-struct Energies<'a, const D: usize, P, const VIRIAL: bool> {
+struct Energies<'a, const D: usize, P> {
     view: View<'a, D, P>,
+    virial: bool,
     /// Energy density per slot, if asked for.
     out: Shared,
     volume: &'a Values,
 }
 
-impl<const D: usize, P: Potential, const VIRIAL: bool> Kernel for Energies<'_, D, P, VIRIAL> {
+impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
     /// Energy and, where asked for, virial.
     type Out = [f64; 7];
     #[inline(always)]
@@ -275,7 +278,7 @@ impl<const D: usize, P: Potential, const VIRIAL: bool> Kernel for Energies<'_, D
                 let (y, q, other) = view.vector(line, &i);
                 let pair = view.potential.pair(Dual::variable(q)).value;
                 energy = energy + pair.zero_if(q.ge(L::splat(view.limit)));
-                if !VIRIAL {
+                if !self.virial {
                     continue;
                 }
                 let pull = view.pull(q, i[3] + other);
@@ -336,7 +339,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         self.list.update(body, u, self.simd);
         let list = &self.list;
-        let sums = self.sums::<false>(list, list.positions(), Shared::NULL, &body.volume);
+        let sums = self.sums(false, list, list.positions(), Shared::NULL, &body.volume);
         [sums[0], 0.0]
     }
 
@@ -430,7 +433,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
         self.ready(body, u);
         let list = &self.list;
-        let sums = self.sums::<true>(list, list.positions(), Shared::NULL, &body.volume);
+        let sums = self.sums(true, list, list.positions(), Shared::NULL, &body.volume);
         Some(std::array::from_fn(|n| sums[n + 1]))
     }
 

@@ -1,6 +1,7 @@
 //! The sweeps over a horizon list: lanes run over the points of a slice, bonds in a fixed order. No closure touches a
 //! lane (see the stencil's kernel).
 
+use crate::body::Field;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
@@ -38,7 +39,8 @@ pub struct View<'a, const D: usize, W> {
     /// `[slots]`, where repulsion or the law depends on it.
     pub materials: &'a [u8],
     pub periodic: bool,
-    /// Constants of bonds of pairs of materials, of laws that read them.
+    /// Is the law that of unit constants, and those of a bond are in `pairs`?
+    pub paired: bool,
     pub pairs: &'a BondTable,
 }
 
@@ -63,7 +65,7 @@ struct Bond<L, const D: usize> {
     inv_r0: L,
     /// The law's constant.
     k: L,
-    /// Number of the pair of materials, of laws that need it.
+    /// Number of the pair of materials, where they matter.
     pair: [u32; TILE],
 }
 
@@ -145,7 +147,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
         let inv_r0 = lane::inv_sqrt(r0_squared);
         let r0 = r0_squared * inv_r0;
         let mut pair = [0; TILE];
-        let weight = if W::PAIRS {
+        let weight = if self.paired {
             // SAFETY: rows and partners are slots
             let cut = unsafe {
                 pair = self.pairs.numbers::<L>(self.materials, rows, partners);
@@ -178,7 +180,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     /// A bond's constant and its ends' fields as they pull: times those of the pair.
     #[inline(always)]
     unsafe fn acting<L: Lane>(&self, b: &Bond<L, D>, i: [L; 2], j: [L; 2]) -> (L, [L; 2], [L; 2]) {
-        if !W::PAIRS {
+        if !self.paired {
             return (b.k, i, j);
         }
         // SAFETY: of this table
@@ -191,7 +193,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     /// κ by which the scalar of eight rows stores energy, where the law is that of unit constants.
     #[inline(always)]
     unsafe fn volume<L: Lane>(&self, rows: *const u32) -> L {
-        if W::PAIRS {
+        if self.paired {
             // SAFETY: rows are slots
             unsafe {
                 let own = self.pairs.numbers::<L>(self.materials, rows, rows);
@@ -298,14 +300,6 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     }
 }
 
-/// A function of `e`, one bond per lane.
-#[inline(always)]
-fn at<L: Lane, F: Function>(series: Series<F>, e: L) -> L {
-    let mut one = [e];
-    series.each(&[e], e, e, &mut one);
-    one[0]
-}
-
 /// Write one number of each of eight rows, `step` apart.
 #[inline(always)]
 unsafe fn scatter<L: Lane>(value: L, out: Shared, rows: *const u32, step: usize) {
@@ -400,12 +394,12 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let (k, own, other) = v.acting(&b, i.field, j.field);
                 let dead = L::dead(*v.alive.at(line));
                 let e = b.e.nan_if(dead);
-                let g = at(series, e);
+                let g = series.at(e);
                 let mut pull = v.law.pull(k, g, own, other).zero_if(dead);
                 if FULL {
                     let breaks = j.critical.min(i.critical).lt(e);
                     lowest = e.min(lowest);
-                    if W::PAIRS {
+                    if v.paired {
                         let [s00, alpha] = v.pairs.memory::<L>(&b.pair);
                         greatest = (s00 - alpha * history::stretch(e)).max(greatest);
                     }
@@ -445,24 +439,51 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     self.material.get(slot).map_or(0, |m| *m as usize)
                 };
                 let alone = history::alone::<L, W>(i.critical);
-                let next = if W::PAIRS {
+                let next = if v.paired {
                     let lonely = lowest.ge(L::splat(f64::INFINITY));
                     L::select(lonely, alone, history::critical(greatest))
                 } else {
                     history::next_critical(self.toughness, material, lowest, alone)
                 };
                 scatter(next, self.next, rows, 1);
-                if let Some(lost) = lost {
+                if let (Some(lost), Some(motion)) = (lost, self.motion) {
+                    let growth = if W::SHARES {
+                        self.growth::<L>(slice, &i, &motion)
+                    } else {
+                        zero
+                    };
                     let kappa = v.volume::<L>(rows);
                     let q = v.pressure_factor(rows, i.field[1]) * kappa;
                     let own = [i.field[0] * kappa, i.field[1]];
-                    let energy = history::released::<L, W>(q, own, lost) * i.volume;
+                    let energy = history::released::<L, W>(q, own, lost, growth) * i.volume;
                     for x in &energy.to_array() {
                         tally.released += x;
                     }
                 }
             }
         }
+    }
+}
+
+impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
+    /// Growth of `Σ k r0² s` of whole bonds in half a step: `½Δt Σ k (ξ+η)·(v_j − v_i)/(1 + s)`.
+    #[inline(always)]
+    unsafe fn growth<L: Lane>(&self, slice: usize, i: &End<L, D>, motion: &Motion<D>) -> L {
+        let v = &self.view;
+        let mut sum = L::splat(0.0);
+        // SAFETY: as in the force pass
+        unsafe {
+            let rows = v.rows(slice);
+            for line in v.list.start[slice]..v.list.start[slice + 1] {
+                let partners = v.partners(line);
+                let b = v.bond::<L>(i, &v.end::<L, false>(partners), rows, partners);
+                let dead = L::dead(*v.alive.at(line));
+                let current = L::splat(1.0) + Stretch::exact(b.e);
+                let rate = parting(motion.v, b.y, rows, partners).div(current);
+                sum = sum + (b.k * rate).zero_if(dead);
+            }
+        }
+        L::splat(motion.half_step()) * sum
     }
 }
 
@@ -490,7 +511,7 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                     let b = v.bond::<L>(&i, &j, rows, partners);
                     let dead = L::dead(*v.alive.at(line));
                     let e = b.e.nan_if(dead);
-                    let s = at(series, e);
+                    let s = series.at(e);
                     let kr = (b.k * b.r0_squared).zero_if(dead);
                     sum = kr.fma(s.zero_if(dead), sum);
                 }
@@ -499,6 +520,27 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
             }
         }
     }
+}
+
+/// `(ξ+η)·(v_j − v_i)`; `y` points from i to j.
+#[inline(always)]
+unsafe fn parting<L: Lane, const D: usize>(
+    v: &Field<D>,
+    y: [L; D],
+    rows: *const u32,
+    partners: *const u32,
+) -> L {
+    let mut rate = L::splat(0.0);
+    for a in 0..D {
+        let mut relative = [0.0; TILE];
+        for (l, r) in relative.iter_mut().enumerate() {
+            // SAFETY: rows and partners are slots
+            unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
+        }
+        // SAFETY: a number per lane
+        rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
+    }
+    rate
 }
 
 /// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by
@@ -511,17 +553,8 @@ unsafe fn farewell<L: Lane, const D: usize>(
     rows: *const u32,
     partners: *const u32,
 ) -> L {
-    let v = motion.v;
-    let mut rate = L::splat(0.0);
-    for a in 0..D {
-        let mut relative = [0.0; TILE];
-        for (l, r) in relative.iter_mut().enumerate() {
-            // SAFETY: rows and partners are slots
-            unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
-        }
-        // SAFETY: a number per lane
-        rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
-    }
+    // SAFETY: rows and partners are slots
+    let rate = unsafe { parting(motion.v, y, rows, partners) };
     L::splat(motion.farewell()) * pull * rate
 }
 
@@ -554,7 +587,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
                     let b = v.bond::<L>(&i, &j, rows, partners);
                     let (k, own, other) = v.acting(&b, i.field, j.field);
                     let dead = L::dead(*v.alive.at(line));
-                    let s = at(series, b.e.nan_if(dead)).zero_if(dead);
+                    let s = series.at(b.e.nan_if(dead)).zero_if(dead);
                     let kr = (b.k * b.r0_squared).zero_if(dead);
                     let kr_pair = (k * b.r0_squared).zero_if(dead);
                     let x = v.law.pair_energy(kr_pair * s * s, own, other);

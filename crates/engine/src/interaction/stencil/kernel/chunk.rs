@@ -24,6 +24,14 @@ pub struct Extremes<L: Lane> {
     pub close: L::Mask,
 }
 
+impl<L: Lane> Extremes<L> {
+    /// No `e` is larger in size.
+    #[inline(always)]
+    fn largest(&self) -> L {
+        (L::splat(0.0) - self.low).max(self.high)
+    }
+}
+
 impl<L: Lane> Sink<L> for Chunk<L> {
     #[inline(always)]
     fn put(&mut self, k: usize, value: L) {
@@ -77,21 +85,57 @@ impl<L: Lane> Chunk<L> {
         Extremes { low, high, close }
     }
 
-    /// A function of the first `n` into `to`.
+    /// A function of the first `n`, in the chunk that is returned: near rest in `near`, which no call ever sees, so that the
+    /// compiler knows what writing to it can change; else in this one.
     ///
     /// # Safety
     /// They were written, and none lies outside the extremes.
     #[inline(always)]
-    pub unsafe fn each<F: Function>(
-        &self,
+    pub unsafe fn each<'a, F: Function>(
+        &'a mut self,
         n: usize,
         series: Series<F>,
-        x: &Extremes<L>,
-        to: &mut impl Sink<L>,
+        of: &Extremes<L>,
+        near: &'a mut Chunk<L>,
+    ) -> &'a Chunk<L> {
+        // SAFETY: the caller's promise
+        let e = unsafe { self.first(n) };
+        if series.near(e, of.largest(), near) {
+            return near;
+        }
+        series.far(e, of.largest());
+        self
+    }
+
+    /// The same to `sink`, in order.
+    ///
+    /// # Safety
+    /// As of [`Chunk::each`].
+    #[inline(always)]
+    pub unsafe fn each_to<F: Function>(
+        &mut self,
+        n: usize,
+        series: Series<F>,
+        of: &Extremes<L>,
+        sink: &mut impl Sink<L>,
     ) {
         // SAFETY: the caller's promise
-        let all = unsafe { std::slice::from_raw_parts(self.0.as_ptr().cast(), n) };
-        series.each(all, x.low, x.high, to);
+        let e = unsafe { self.first(n) };
+        if !series.near(e, of.largest(), sink) {
+            series.far(e, of.largest());
+            for (k, value) in e.iter().enumerate() {
+                sink.put(k, *value);
+            }
+        }
+    }
+
+    /// # Safety
+    /// They were written.
+    #[inline(always)]
+    unsafe fn first(&mut self, n: usize) -> &mut [L] {
+        debug_assert!(n <= CHUNK);
+        // SAFETY: the caller's promise
+        unsafe { std::slice::from_raw_parts_mut(self.0.as_mut_ptr().cast(), n) }
     }
 
     /// # Safety

@@ -40,10 +40,10 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
             let i = v.slot(n);
             // SAFETY: as in the force pass
             unsafe {
-                let mut tile = match (v.is_intact(n), v.is_scaled(n)) {
-                    (true, false) => self.tile::<L, false, false>(n, i, &mut offsets),
-                    (false, false) => self.tile::<L, true, false>(n, i, &mut offsets),
-                    (_, true) => self.tile::<L, true, true>(n, i, &mut offsets),
+                let mut tile = if v.is_scaled(n) {
+                    self.tile::<L, true>(n, i, &mut offsets)
+                } else {
+                    self.tile::<L, false>(n, i, &mut offsets)
                 };
                 if W::SHARES {
                     let q = v.pressure_factor::<L>(i);
@@ -68,7 +68,7 @@ impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
 
 impl<const D: usize, W: Law> Energies<'_, D, W> {
     #[inline(always)]
-    unsafe fn tile<L: Lane, const MASKED: bool, const SCALED: bool>(
+    unsafe fn tile<L: Lane, const SCALED: bool>(
         &self,
         n: usize,
         i: usize,
@@ -78,7 +78,7 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
         let series = Series::<Stretch>::new();
         let zero = L::splat(0.0);
         let (mut strain, mut repulsion, mut share, mut weight) = (zero, zero, zero, zero);
-        let (mut chunk, mut stretch) = (Chunk::<L>::new(), Chunk::<L>::new());
+        let (mut chunk, mut near_rest) = (Chunk::<L>::new(), Chunk::<L>::new());
         // SAFETY: as in the force pass
         unsafe {
             let ui = v.displacement::<L>(i);
@@ -93,9 +93,9 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                 let (bonds, next) = offsets.stretch(v.stencil(n), v.reach(n), word);
                 word = next;
                 for bonds in bonds.chunks(CHUNK) {
-                    let x = chunk.deform::<D, W, MASKED, true>(v, bonds, v.row(n), i, &ui);
+                    let x = chunk.deform::<D, W, true, true>(v, bonds, v.row(n), i, &ui);
                     let near = L::or(x.close, x.low.lt(L::splat(v.most_contact)));
-                    chunk.each(bonds.len(), series, &x, &mut stretch);
+                    let stretch = chunk.each(bonds.len(), series, &x, &mut near_rest);
                     for (c, b) in bonds.iter().enumerate() {
                         let mut s = stretch.get(c);
                         let gone = s.is_nan();
@@ -107,16 +107,11 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                                 false => kr,
                             };
                         }
-                        if MASKED {
-                            s = s.zero_if(gone);
-                        }
+                        s = s.zero_if(gone);
                         let other = v.fields::<L>(b.to(i));
-                        let mut x = v.law.pair_energy(kr * s * s, own, other);
-                        if MASKED {
-                            // fields mean nothing where there is no point
-                            x = x.zero_if(gone);
-                        }
-                        strain = strain + x;
+                        let x = v.law.pair_energy(kr * s * s, own, other);
+                        // fields mean nothing where there is no point
+                        strain = strain + x.zero_if(gone);
                         share = kr_share.fma(s, share);
                     }
                     if v.repulsion.is_some() && L::any(near) {
@@ -135,10 +130,8 @@ impl<const D: usize, W: Law> Energies<'_, D, W> {
                             if SCALED && !W::SHARES {
                                 kr = kr * scale.pair(b.number as usize);
                             }
-                            if MASKED {
-                                kr = kr.zero_if(L::dead(*v.row(n).add(b.number as usize)));
-                            }
-                            weight = weight + kr;
+                            let dead = L::dead(*v.row(n).add(b.number as usize));
+                            weight = weight + kr.zero_if(dead);
                         }
                     }
                 }

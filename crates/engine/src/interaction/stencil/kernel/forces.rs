@@ -3,9 +3,10 @@
 use super::chunk::{CHUNK, Chunk};
 use super::offsets::Offsets;
 use super::{Bond, MOST, View};
+use crate::body::Field;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Extension, Function, Series, Stretch};
-use crate::execute::lane::{Lane, TILE};
+use crate::execute::lane::{Lane, Piece, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::scale::TileFactors;
 use crate::interaction::{Motion, Tally, Toughness, history};
@@ -73,6 +74,31 @@ struct Points<L, const D: usize> {
     critical: L,
 }
 
+/// The bonds of a tile that waited.
+struct Rare<'a, 'b, L, const D: usize, W, const FULL: bool, const SCALED: bool> {
+    pass: &'a Forces<'b, D, W, FULL>,
+    at: &'a Points<L, D>,
+    bonds: &'a [MaybeUninit<u16>],
+    scale: TileFactors<'a>,
+    acc: &'a mut [L; D],
+    tally: &'a mut Tally,
+}
+
+impl<L: Lane, const D: usize, W: Law, const FULL: bool, const SCALED: bool> Piece
+    for Rare<'_, '_, L, D, W, FULL, SCALED>
+{
+    type Out = ();
+    #[inline(always)]
+    fn run(self) {
+        let (at, bonds, scale) = (self.at, self.bonds, self.scale);
+        // SAFETY: the hot loop of this tile left them
+        unsafe {
+            self.pass
+                .rare::<L, SCALED>(at, bonds, scale, self.acc, self.tally)
+        }
+    }
+}
+
 impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     /// All bonds of a tile. With `ALIKE` all ends of its bonds have the same constant field, with `SCALED` bonds have
     /// factors.
@@ -114,12 +140,13 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
             let mut lowest = L::splat(f64::INFINITY);
             let (mut acc, mut total) = ([zero; D], zero);
             let mut waiting = 0;
-            let (mut chunk, mut answer) = (Chunk::<L>::new(), Chunk::<L>::new());
+            let (mut chunk, mut near) = (Chunk::<L>::new(), Chunk::<L>::new());
             let mut word = 0;
             while word < v.reach(tile).len() {
                 let (bonds, next) = offsets.stretch(v.stencil(tile), v.reach(tile), word);
                 word = next;
                 for bonds in bonds.chunks(CHUNK) {
+                    let mut left_out = MASKED;
                     let x = chunk.deform::<D, W, MASKED, FULL>(v, bonds, v.row(tile), i, &at.u);
                     if FULL {
                         lowest = x.low.min(lowest);
@@ -134,26 +161,35 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                                     chunk.leave_out(c, aside);
                                     rare.get_unchecked_mut(waiting).write(b.number as u16);
                                     waiting += 1;
+                                    left_out = true;
                                 }
                             }
-                            chunk.each(bonds.len(), series, &x, &mut answer);
-                            self.gather::<L, true, ALIKE, SCALED>(
-                                &at, bonds, scale, &answer, &mut acc, &mut total,
-                            );
-                            continue;
                         }
                     }
-                    chunk.each(bonds.len(), series, &x, &mut answer);
-                    self.gather::<L, MASKED, ALIKE, SCALED>(
-                        &at, bonds, scale, &answer, &mut acc, &mut total,
-                    );
+                    let answer = chunk.each(bonds.len(), series, &x, &mut near);
+                    if left_out {
+                        self.gather::<L, true, ALIKE, SCALED>(
+                            &at, bonds, scale, answer, &mut acc, &mut total,
+                        );
+                    } else {
+                        self.gather::<L, false, ALIKE, SCALED>(
+                            &at, bonds, scale, answer, &mut acc, &mut total,
+                        );
+                    }
                 }
             }
             for a in 0..D {
                 acc[a] = total.fma(at.u[a], acc[a]);
             }
             if FULL && waiting > 0 {
-                self.rare::<L, SCALED>(&at, &rare[..waiting], scale, &mut acc, tally);
+                L::apart(Rare::<L, D, W, FULL, SCALED> {
+                    pass: self,
+                    at: &at,
+                    bonds: &rare[..waiting],
+                    scale,
+                    acc: &mut acc,
+                    tally,
+                });
             }
             for a in 0..D {
                 // what was summed points from j to i
@@ -239,6 +275,35 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
         L::or(breaks, raw.lt(L::splat(b.contact_e)))
     }
 
+    /// Growth of `Σ k r0² s` of whole bonds in half a step: `½Δt Σ k (ξ+η)·(v_j − v_i)/(1 + s)`.
+    #[inline(always)]
+    unsafe fn growth<L: Lane, const SCALED: bool>(
+        &self,
+        at: &Points<L, D>,
+        motion: &Motion<D>,
+        scale: TileFactors,
+    ) -> L {
+        let v = &self.view;
+        let one = L::splat(1.0);
+        let mut sum = L::splat(0.0);
+        // SAFETY: as in the hot loop
+        unsafe {
+            for b in v.stencil(at.tile) {
+                let dead = L::dead(*v.row(at.tile).add(b.number as usize));
+                let j = b.to(at.i);
+                let s = Stretch::exact(v.deform(b, at.i, &at.u));
+                let mut k = L::splat(b.k);
+                if SCALED {
+                    k = k * scale.own(b.number as usize);
+                }
+                let y = v.direction(b, at.i, &at.u);
+                let rate = k * parting(motion.v, y, at.i, j).div(one + s);
+                sum = sum + rate.zero_if(dead);
+            }
+        }
+        L::splat(motion.half_step()) * sum
+    }
+
     /// The lanes that waited: repulsion, breaking.
     #[inline(always)]
     unsafe fn rare<L: Lane, const SCALED: bool>(
@@ -311,14 +376,31 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     acc[a] = pull.fma(y[a], acc[a]);
                 }
             }
-            if let Some(lost) = lost {
-                let energy = history::released::<L, W>(v.pressure_factor(i), own, lost);
+            if let (Some(lost), Some(motion)) = (lost, self.motion) {
+                let growth = if W::SHARES {
+                    self.growth::<L, SCALED>(at, &motion, scale)
+                } else {
+                    zero
+                };
+                let energy = history::released::<L, W>(v.pressure_factor(i), own, lost, growth);
                 for (l, x) in energy.to_array().iter().enumerate() {
                     tally.released += x * v.body.volume.at(i + l);
                 }
             }
         }
     }
+}
+
+/// `(ξ+η)·(v_j − v_i)`; `y` points from j to i.
+#[inline(always)]
+unsafe fn parting<L: Lane, const D: usize>(v: &Field<D>, y: [L; D], i: usize, j: usize) -> L {
+    let mut rate = L::splat(0.0);
+    for a in 0..D {
+        // SAFETY: slots lie inside the arrays
+        let relative = unsafe { L::load(v[a].as_ptr().add(i)) - L::load(v[a].as_ptr().add(j)) };
+        rate = y[a].fma(relative, rate);
+    }
+    rate
 }
 
 /// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by
@@ -331,13 +413,8 @@ unsafe fn farewell<L: Lane, const D: usize>(
     i: usize,
     j: usize,
 ) -> L {
-    let v = motion.v;
-    let mut rate = L::splat(0.0);
-    for a in 0..D {
-        // SAFETY: slots lie inside the arrays
-        let relative = unsafe { L::load(v[a].as_ptr().add(i)) - L::load(v[a].as_ptr().add(j)) };
-        rate = y[a].fma(relative, rate);
-    }
+    // SAFETY: slots lie inside the arrays
+    let rate = unsafe { parting(motion.v, y, i, j) };
     L::splat(motion.farewell()) * pull * rate
 }
 

@@ -92,7 +92,7 @@ impl<const D: usize, W: Law> Share<'_, D, W> {
                 for bonds in bonds.chunks(CHUNK) {
                     let x = chunk.deform::<D, W, MASKED, false>(v, bonds, v.row(tile), i, &ui);
                     let mut weighted = Weighted::<L, D, MASKED, SCALED> { bonds, scale, sum };
-                    chunk.each(bonds.len(), series, &x, &mut weighted);
+                    chunk.each_to(bonds.len(), series, &x, &mut weighted);
                     sum = weighted.sum;
                 }
             }
