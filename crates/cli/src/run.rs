@@ -86,6 +86,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         plan.dir.display()
     ));
     let mut progress = Terminal::new(steps, sim.info().directed_bonds);
+    sim.stop_when(|| signals::asked().is_some());
     let result = drive(sim.as_mut(), &plan, &mut progress);
     progress.end();
     match result {

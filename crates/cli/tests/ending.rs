@@ -330,3 +330,46 @@ fn check_writes_nothing() {
         assert_eq!(std::fs::read_dir(case.dir.path()).unwrap().count(), 1);
     }
 }
+
+/// A search for an equilibrium that never comes near enough ends, too, with the increment before.
+#[test]
+fn a_long_increment_of_statics_ends_when_asked() {
+    let text = BLOCK
+        .split("[[initial]]")
+        .next()
+        .map(|body| {
+            format!(
+                r#"{body}
+[sets]
+left.where = "x < 0.002"
+[[condition]]
+set = "left"
+displacement = {{ x = 0, y = 0, z = 0 }}
+[[condition]]
+body_force = {{ x = "1e6*t" }}
+[statics]
+method = "relaxation"
+tolerance = 1e-300
+iterations = 1000000000
+"#
+            )
+        })
+        .unwrap();
+    let case = Case::new("block.toml", &text);
+    let mut child = case.command(&[]).stderr(Stdio::piped()).spawn().unwrap();
+    let until = Instant::now() + Duration::from_secs(60);
+    while !case.out.join("history.csv").exists() {
+        assert!(Instant::now() < until, "it never began");
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    // the first increment is under way some time after its file
+    std::thread::sleep(Duration::from_millis(500));
+    signal(&child, "INT");
+    let (code, errors) = code(child);
+    assert_eq!(code, Some(130), "{errors}");
+    let report = report(&case.out);
+    assert_eq!(report["status"], "ended");
+    assert_eq!(report["steps"], 0);
+    assert!(case.out.join("damage.png").exists());
+}

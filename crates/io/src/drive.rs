@@ -185,6 +185,7 @@ pub trait Progress {
     /// Something that the user should know now.
     fn warning(&mut self, message: &str);
     /// Asked after each step: shall the run end here, and who says so? What it has done is then written as at its end.
+    /// ([`Simulation::stop_when`] asks within a long increment of statics.)
     fn ended(&mut self) -> Option<String> {
         None
     }
@@ -245,22 +246,31 @@ pub fn drive(
     let mut balance = BalanceWatch::default();
     let mut warnings = sim.info().warnings.clone();
     let mut ended = None;
+    // what the history and the trajectories tell of already
+    let mut told = None;
     for n in 0..=plan.steps {
         if n > 0 {
             let begin = Instant::now();
             let result = sim.step();
             stepping += begin.elapsed();
-            if let Err(error) = result {
-                stopped = Some(error);
-                break;
+            match result {
+                Ok(()) => progress.step(n, plan.steps, stepping),
+                // within an increment, which is undone
+                Err(RunError::Equilibrium {
+                    error: SolveError::Stopped,
+                    ..
+                }) => ended = Some(progress.ended().unwrap_or_default()),
+                Err(error) => {
+                    stopped = Some(error);
+                    break;
+                }
             }
-            progress.step(n, plan.steps, stepping);
         }
-        if n < plan.steps {
+        if n < plan.steps && ended.is_none() {
             ended = progress.ended();
         }
         let last = n == plan.steps || ended.is_some();
-        if n % plan.history == 0 || last {
+        if (n % plan.history == 0 || last) && told != Some(sim.step_number()) {
             match sim.ledger() {
                 Ok(l) => ledger = l,
                 Err(error) => {
@@ -279,6 +289,7 @@ pub fn drive(
                 row.extend(atoms.thermo(sim, ledger.kinetic));
             }
             history.push(sim.step_number(), &row)?;
+            told = Some(sim.step_number());
             progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());
             if let Some(jump) = balance.row(sim.step_number(), &ledger) {
                 progress.warning(&jump);
@@ -287,6 +298,7 @@ pub fn drive(
         }
         if let Some(atoms) = plan.atoms.as_ref().filter(|_| !trajectories.is_empty())
             && (n == 0 || last || plan.every.is_some_and(|e| n % e == 0))
+            && framed != Some(sim.step_number())
         {
             let frame = atoms.frame(sim);
             trajectories.iter_mut().try_for_each(|t| t.push(&frame))?;

@@ -327,6 +327,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             r.contact(&parts, &body, pairs.map_or(horizon, |p| p.shortest()))
         }),
         release: spec.release,
+        stop: || false,
         recipes,
         interaction,
         body,

@@ -177,6 +177,9 @@ pub trait Simulation: Send {
 
     /// One step. On an error the state is that of the step before (up to round-off).
     fn step(&mut self) -> Result<(), RunError>;
+    /// A question that a long search for an equilibrium asks in every iteration: has somebody had enough? It then ends with
+    /// [`SolveError::Stopped`], and the state is that of the increment before.
+    fn stop_when(&mut self, asked: fn() -> bool);
 
     /// The first half of a step of a model in time: displacements of its end. Until [`Simulation::arrive`] the
     /// velocities are those of the step's middle, forces those of its start; values of driven conditions may be set.

@@ -65,6 +65,8 @@ pub struct Model<const D: usize> {
     pub(super) pending: bool,
     /// When a bond past its critical stretch lets go.
     pub(super) release: Release,
+    /// Has somebody had enough of a search for an equilibrium?
+    pub(super) stop: fn() -> bool,
     pub(super) broken: u64,
     pub(super) released: f64,
     /// Work of conditions that were replaced since.
@@ -158,6 +160,10 @@ impl<const D: usize> Simulation for Model<D> {
             return self.increment();
         }
         self.advance()
+    }
+
+    fn stop_when(&mut self, asked: fn() -> bool) {
+        self.stop = asked;
     }
 
     fn depart(&mut self) -> Result<f64, RunError> {

@@ -6,11 +6,25 @@ use super::vectors::{add, add_to_multiple, dot, norm};
 use super::{SolveError, Solved};
 
 /// When to stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Goal {
     /// Residual over the residual of the start.
     pub tolerance: f64,
     pub most_iterations: usize,
+    /// Asked in every iteration: has somebody had enough?
+    pub stop: fn() -> bool,
+}
+
+impl Goal {
+    /// # Errors
+    /// Somebody has had enough.
+    pub fn go_on(&self) -> Result<(), SolveError> {
+        if (self.stop)() {
+            Err(SolveError::Stopped)
+        } else {
+            Ok(())
+        }
+    }
 }
 
 /// Solves `A x = b` (force) on the free components; held ones keep their `x`.
@@ -45,6 +59,7 @@ pub fn solve<const D: usize>(
     let mut q = vec![[0.0; D]; n];
     let mut rz = dot(&r, &z);
     for iteration in 1..=goal.most_iterations {
+        goal.go_on()?;
         operator.apply(&p, &mut q);
         support.mask(&mut q);
         let curvature = dot(&p, &q);

@@ -70,6 +70,8 @@ pub enum SolveError {
     Contact,
     #[error("a force or displacement is not a number")]
     NotFinite,
+    #[error("it was asked to end before it was found")]
+    Stopped,
 }
 
 impl SolveError {

@@ -11,7 +11,7 @@ use super::{SolveError, Solved};
 /// for at the end of each pass.
 ///
 /// # Errors
-/// The goal is not reached; something is not a number.
+/// The goal is not reached, or somebody has had enough; something is not a number.
 pub fn relax<const D: usize>(
     x: &mut [[f64; D]],
     mass: &[f64],
@@ -26,6 +26,7 @@ pub fn relax<const D: usize>(
     let mut moved = f.clone();
     let mut residual = f64::INFINITY;
     for iteration in 0..=goal.most_iterations {
+        goal.go_on()?;
         let scale = force(x, &mut f);
         support.mask(&mut f);
         let size = norm(&f);

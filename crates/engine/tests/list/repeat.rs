@@ -5,7 +5,7 @@ use crate::case::*;
 use peridyne::body::zeros;
 use peridyne::execute::simd::Simd;
 use peridyne::family::horizon::HorizonList;
-use peridyne::interaction::pairs::{BondConstants, BondTable, Paired};
+use peridyne::interaction::pairs::{BondConstants, BondTable};
 use peridyne::interaction::{Interaction, PointConstants, PointEnergies, Sweep, Toughness};
 use peridyne::law::Law;
 use peridyne::law::solid::bond_based::{BondBased, BondBasedMixed};
@@ -97,11 +97,11 @@ fn every_width_and_number_of_threads_gives_the_same_bits() {
             beta: 1.0,
         };
         let units = PointConstants::Solid(vec![unit; 2]);
-        let law = Paired(EamLike {
+        let law = EamLike {
             ratio: unit.ratio(),
-        });
+        };
         let volumes = table([0.3, 0.3, 0.7, 0.7]);
-        let bond = Paired(BondBased { c: 1.0 });
+        let bond = BondBased { c: 1.0 };
         [
             trace(mixed, per, simd, threads),
             trace(solid, eam, simd, threads),
@@ -198,23 +198,11 @@ fn a_table_of_equal_pairs_is_the_law() {
     let mut pairs: [[Box<dyn Interaction<3>>; 2]; 2] = [
         [
             Box::new(case.list(&body, bond, none.clone(), simd)),
-            Box::new(case.list_of_pairs(
-                &body,
-                Paired(BondBased { c: 1.0 }),
-                none,
-                simd,
-                table(7.0, 0.0),
-            )),
+            Box::new(case.list_of_pairs(&body, BondBased { c: 1.0 }, none, simd, table(7.0, 0.0))),
         ],
         [
             Box::new(case.list(&body, law, one, simd)),
-            Box::new(case.list_of_pairs(
-                &body,
-                Paired(units),
-                all,
-                simd,
-                table(solid.beta, solid.kappa),
-            )),
+            Box::new(case.list_of_pairs(&body, units, all, simd, table(solid.beta, solid.kappa))),
         ],
     ];
     for [plain, paired] in &mut pairs {

@@ -63,6 +63,7 @@ fn equilibrium(sim: &mut dyn Simulation, b: &[Point]) -> Vec<Point> {
     let b: Vec<[f64; 2]> = b.iter().map(|b| [b[0], b[1]]).collect();
     let mut u = vec![[0.0; 2]; b.len()];
     let goal = Goal {
+        stop: || false,
         tolerance: 1e-12,
         most_iterations: 20_000,
     };

@@ -74,10 +74,11 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    fn goal(options: Statics) -> Goal {
+    fn goal(&self, options: Statics) -> Goal {
         Goal {
             tolerance: options.tolerance,
             most_iterations: options.most_iterations,
+            stop: self.stop,
         }
     }
 
@@ -148,7 +149,7 @@ impl<const D: usize> Model<D> {
             state.factors = Some((body, factors));
             return Ok(solved);
         }
-        let goal = Self::goal(state.options);
+        let goal = self.goal(state.options);
         if self.at_peace() {
             let mut operator = Swept::new(&self.body, self.interaction.as_mut());
             let asymmetry = *state
@@ -170,13 +171,14 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         support: &Support<D>,
     ) -> Result<Solved, SolveError> {
-        let goal = Self::goal(state.options);
+        let goal = self.goal(state.options);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
         let rest = self.rest(support);
         let mut scale = self.imbalance(&x, &mut r, support).hypot(rest);
         let mut iterations = 0;
         for _ in 0..NEWTON {
+            goal.go_on()?;
             let size = norm(&r);
             if !size.is_finite() {
                 return Err(SolveError::NotFinite);
@@ -282,7 +284,7 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         support: &Support<D>,
     ) -> Result<Solved, SolveError> {
-        let goal = Self::goal(state.options);
+        let goal = self.goal(state.options);
         // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
         let mut sum = vec![0.0; self.body.len];
         let rest = self.body.at_rest();
