@@ -6,6 +6,9 @@ mod plan;
 
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky,
+};
 use faer::sparse::linalg::solvers::{Llt, Lu};
 use faer::sparse::linalg::{LltError, LuError};
 use faer::sparse::{SparseColMat, Triplet};
@@ -39,14 +42,32 @@ fn matrix(
     SparseColMat::try_new_from_triplets(n, n, &triplets).map_err(|_| FactorError::TooLarge)
 }
 
+/// Bytes of the numbers of a factor, by the places of the matrix's entries alone.
+fn filled(lower: &SparseColMat<usize, f64>) -> Result<f64, FactorError> {
+    let (order, how) = (SymmetricOrdering::Amd, CholeskySymbolicParams::default());
+    factorize_symbolic_cholesky(lower.symbolic(), Side::Lower, order, how)
+        .map(|symbolic| 8.0 * symbolic.len_val() as f64)
+        .map_err(|_| FactorError::TooLarge)
+}
+
 impl Factors {
     /// LLᵀ of a symmetric matrix of n rows; `entries` are (row, column, value) of the lower triangle, equal places add up.
+    /// `room` is asked before: is there memory for so many bytes?
     ///
     /// # Errors
     /// A pivot that is not positive, by its row (in an order that may be the solver's own); no memory.
-    pub fn symmetric(n: usize, entries: &[(usize, usize, f64)]) -> Result<Factors, FactorError> {
+    pub fn symmetric(
+        n: usize,
+        entries: &[(usize, usize, f64)],
+        room: impl Fn(f64) -> bool,
+    ) -> Result<Factors, FactorError> {
         plan::fix();
-        let factors = matrix(n, entries)?.sp_cholesky(Side::Lower);
+        let matrix = matrix(n, entries)?;
+        // where a full triangle would fit nothing needs to be counted
+        if !room(4.0 * n as f64 * n as f64) && !room(filled(&matrix)?) {
+            return Err(FactorError::TooLarge);
+        }
+        let factors = matrix.sp_cholesky(Side::Lower);
         factors
             .map(|f| Factors::Symmetric(Box::new(f)))
             .map_err(|e| match e {
@@ -124,7 +145,7 @@ mod tests {
         let upper = LOWER.iter().filter(|e| e.0 != e.1).map(|e| (e.1, e.0, e.2));
         let all: Vec<_> = LOWER.iter().copied().chain(upper).collect();
         for factors in [
-            Factors::symmetric(3, &LOWER).unwrap(),
+            Factors::symmetric(3, &LOWER, |_| true).unwrap(),
             Factors::general(3, &all).unwrap(),
         ] {
             // of (1, 2, 3)
@@ -134,7 +155,7 @@ mod tests {
                 assert!((x - exact).abs() < 1e-14);
             }
         }
-        let refused = Factors::symmetric(2, &[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)]);
+        let refused = Factors::symmetric(2, &[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)], |_| true);
         assert!(matches!(refused, Err(FactorError::NotPositive { .. })));
     }
 
@@ -165,7 +186,8 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             pool.build().unwrap().install(|| {
                 let (mut x, mut y) = (rhs.clone(), rhs.clone());
-                Factors::symmetric(n * n, &lower).unwrap().solve(&mut x);
+                let symmetric = Factors::symmetric(n * n, &lower, |_| true);
+                symmetric.unwrap().solve(&mut x);
                 Factors::general(n * n, &all).unwrap().solve(&mut y);
                 let (values, vectors) = symmetric_eigen(300, entry).unwrap();
                 let numbers = x.iter().chain(&y).chain(&values);
@@ -176,6 +198,32 @@ mod tests {
         let one = bits(1);
         for threads in [2, 3, 4, 7] {
             assert!(bits(threads) == one, "{threads} threads");
+        }
+    }
+
+    /// A bordered diagonal fills nothing in, a full matrix everything.
+    #[test]
+    fn factors_are_counted_before_they_are_made() {
+        let n = 200;
+        let arrow: Vec<_> = (0..n)
+            .map(|i| (i, i, 4.0))
+            .chain((1..n).map(|i| (i, 0, 0.1)))
+            .collect();
+        let full: Vec<_> = (0..n)
+            .flat_map(|i| (0..=i).map(move |j| (i, j, if i == j { 400.0 } else { 1.0 })))
+            .collect();
+        for (entries, least, most) in [(arrow, 2 * n - 1, 16 * n), (full, n * (n + 1) / 2, n * n)] {
+            let asked = std::cell::RefCell::new(vec![]);
+            let none = Factors::symmetric(n, &entries, |bytes| {
+                asked.borrow_mut().push(bytes);
+                false
+            });
+            assert!(matches!(none, Err(FactorError::TooLarge)));
+            let asked = asked.into_inner();
+            assert_eq!(asked.len(), 2);
+            let numbers = asked[1] / 8.0;
+            assert!((least as f64..=most as f64).contains(&numbers), "{numbers}");
+            assert!(Factors::symmetric(n, &entries, |bytes| bytes <= asked[1]).is_ok());
         }
     }
 

@@ -5,6 +5,7 @@ use super::operator::{Assembled, LinearOperator};
 use super::support::Support;
 use super::vectors::{add, norm};
 use super::{SolveError, Solved};
+use crate::execute::memory;
 use peridyne_algebra::banded::{Banded, Factored};
 use peridyne_algebra::{FactorError, Factors as Sparse};
 
@@ -81,7 +82,9 @@ impl<const D: usize> Direct<D> {
                 }
             });
             let made = match symmetric {
-                true => Sparse::symmetric(unknowns, &entries),
+                true => Sparse::symmetric(unknowns, &entries, |bytes| {
+                    memory::available().is_none_or(|left| bytes <= left)
+                }),
                 false => Sparse::general(unknowns, &entries),
             };
             Factors::Sparse(made.map_err(|e| match e {

@@ -20,6 +20,7 @@ pub mod relaxation;
 pub mod support;
 mod vectors;
 
+use crate::execute::memory::size;
 pub use assemble::linear_body;
 pub use carriers::Carriers;
 pub use direct::{Direct, SYMMETRIC};
@@ -50,8 +51,12 @@ pub enum SolveError {
     Indefinite { point: usize },
     #[error("the equations are singular")]
     Singular,
-    #[error("the matrix does not fit: take conjugate gradients")]
+    #[error(
+        "the matrix or its factors do not fit into memory: write solver = \"cg\", take fewer points, or a shorter horizon"
+    )]
     TooLarge,
+    #[error("{count} modes would take about {}, {} are left: ask for fewer", size(*.bytes), size(*.left))]
+    TooManyModes { count: usize, bytes: f64, left: f64 },
     #[error(
         "action is not reaction in this body (asymmetry {asymmetry:.1e}): conjugate gradients and modes of vibration need a symmetric one; write solver = \"direct\", and leave modes out"
     )]

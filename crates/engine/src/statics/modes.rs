@@ -5,6 +5,7 @@ use super::direct::{Direct, SYMMETRIC};
 use super::linear_body::LinearBody;
 use super::support::Support;
 use super::vectors::{add, dot};
+use crate::execute::memory;
 use peridyne_algebra::symmetric_eigen;
 
 /// A mode of vibration.
@@ -50,10 +51,15 @@ pub fn lowest<const D: usize>(
         })
         .fold(0.0, f64::max);
     let shift = 1e-8 * stiffest;
-    let factors = Direct::new(body, support, shift)?;
     let most = support.unknowns();
     let count = count.min(most);
     let steps = (4 * count + 40).min(most);
+    // the basis and its products with the masses
+    let bytes = 16.0 * (steps * D) as f64 * body.points() as f64;
+    if let Some(left) = memory::available().filter(|left| bytes > *left) {
+        return Err(SolveError::TooManyModes { count, bytes, left });
+    }
+    let factors = Direct::new(body, support, shift)?;
     let times_mass = |x: &[[f64; D]]| -> Vec<[f64; D]> {
         x.iter().zip(&mass).map(|(x, m)| x.map(|c| c * m)).collect()
     };

@@ -131,7 +131,7 @@ fn least_shift(n: usize, lower: &[(usize, usize, f64)], norm: f64, slack: f64) -
     let holds = |shift: f64| {
         let diagonal = (0..n).map(|k| (k, k, shift * norm));
         let all: Vec<_> = lower.iter().copied().chain(diagonal).collect();
-        Factors::symmetric(n, &all).is_ok()
+        Factors::symmetric(n, &all, |_| true).is_ok()
     };
     let mut low = slack;
     while norm > 0.0 && !holds(low) {
