@@ -6,11 +6,16 @@ use peridyne::observe::Ledger;
 const JUMP: f64 = 16.0;
 /// Residuals below this part of the energy are the error of the time step.
 const SMALL: f64 = 1e-4;
+/// Growth, from one row to the next, of the energy that a body was given: while it is more, loading only begins, and the error
+/// of the time step is large beside so little energy. A step that is too long grows without being given anything.
+const BEGINS: f64 = 2.0;
 
 /// What the last row of the history had.
 #[derive(Debug, Default)]
 pub struct BalanceWatch {
     last: Option<(u64, f64, f64)>,
+    /// Energy that the body was given.
+    given: f64,
     /// The most energy so far.
     scale: f64,
 }
@@ -20,13 +25,15 @@ impl BalanceWatch {
     pub fn row(&mut self, step: u64, ledger: &Ledger) -> Option<String> {
         let residual = ledger.residual();
         let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let given = work + ledger.initial.abs();
+        let begins = given > BEGINS * std::mem::replace(&mut self.given, given);
         let held = ledger.kinetic + ledger.strain + ledger.contact + ledger.released;
-        self.scale = self
-            .scale
-            .max(work + ledger.initial.abs())
-            .max(held.min(10.0 * self.scale));
+        self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
         let before = self.last.replace((step, residual, ledger.contact));
         let (then, was, contact) = before?;
+        if begins {
+            return None;
+        }
         let least = was.abs().max(SMALL * self.scale);
         if !(residual.abs() > JUMP * least) {
             return None;
@@ -81,5 +88,27 @@ mod tests {
             "{told}"
         );
         assert_eq!(watch.row(60, &ledger(0.9, 0.35)), None);
+    }
+
+    #[test]
+    fn the_beginning_of_a_load_is_no_jump_and_a_step_too_long_under_load_is() {
+        let under = |work: f64, off: f64| Ledger {
+            kinetic: work + off,
+            work_conditions: work,
+            ..Ledger::default()
+        };
+        let mut watch = BalanceWatch::default();
+        for (step, work, off) in [
+            (0, 0.0, 0.0),
+            (10, 1e-9, 1e-11),
+            (20, 1e-6, 1e-9),
+            (30, 1.0, 0.01),
+            (40, 3.0, 0.015),
+            (50, 5.0, 0.016),
+        ] {
+            assert_eq!(watch.row(step, &under(work, off)), None, "{step}");
+        }
+        let told = watch.row(60, &under(6.0, 0.5)).unwrap();
+        assert!(told.contains("the step may be too long"), "{told}");
     }
 }
