@@ -13,6 +13,8 @@ const BEGINS: f64 = 2.0;
 /// What the last row of the history had.
 #[derive(Debug, Default)]
 pub struct BalanceWatch {
+    /// The first row misses nothing by definition: what the first steps miss is no jump.
+    begun: bool,
     last: Option<(u64, f64, f64)>,
     /// Energy that the body was given.
     given: f64,
@@ -29,6 +31,9 @@ impl BalanceWatch {
         let begins = given > BEGINS * std::mem::replace(&mut self.given, given);
         let held = ledger.kinetic + ledger.strain + ledger.contact + ledger.released;
         self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
+        if !std::mem::replace(&mut self.begun, true) {
+            return None;
+        }
         let before = self.last.replace((step, residual, ledger.contact));
         let (then, was, contact) = before?;
         if begins {
