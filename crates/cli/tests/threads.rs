@@ -86,6 +86,7 @@ fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads() {
                 .unwrap();
             let said = String::from_utf8_lossy(&done.stderr).into_owned();
             assert_eq!(done.status.code(), Some(0), "{name}: {said}");
+            assert!(!said.contains("energy balance"), "{name}: {said}");
             files(&out)
         };
         let one = run("1");
