@@ -199,12 +199,12 @@ pub fn upscale_keeping(
                     most: (d / (fine * kind.nearest())) as u32,
                 })
             }
-            length => Ok(length),
+            length @ Horizon::Length(_) => Ok(length),
         }
     };
     let grown = |horizon: Horizon| match horizon {
         Horizon::Length(d) => Horizon::Length(n * d),
-        ratio => ratio,
+        ratio @ Horizon::Ratio(_) => ratio,
     };
     let shells = keep == Some(Keep::Shells);
     let rule = match (&spec.potential, spec.materials[0].law) {

@@ -49,7 +49,7 @@ pub fn members(condition: &Condition, n: usize) -> Option<Vec<u32>> {
 pub fn ids(members: &Members, n: usize) -> Option<Vec<u32>> {
     match members {
         Members::All => None,
-        some => Some(
+        some @ Members::Some(_) => Some(
             (0..n as u32)
                 .filter(|i| some.contains(*i as usize))
                 .collect(),
