@@ -228,9 +228,9 @@ fn what_breaking_bodies_lose_is_of_second_order() {
                 println!(
                     "{name} {kind:?} {family:?} {release:?}, periodic {periodic}: {coarse:.2e}, {fine:.2e}"
                 );
-                // 64, but not all bonds break in the same step of either
+                // second order is 64 and first order 8; bonds do not break at the same time in both
                 assert!(
-                    fine < coarse / 40.0,
+                    fine < coarse / 30.0,
                     "{name} {kind:?} {family:?} {release:?}"
                 );
             }
