@@ -36,7 +36,7 @@ impl BalanceWatch {
         }
         let before = self.last.replace((step, residual, ledger.contact));
         let (then, was, contact) = before?;
-        if begins {
+        if begins || self.scale == 0.0 {
             return None;
         }
         let least = was.abs().max(SMALL * self.scale);
@@ -105,6 +105,8 @@ mod tests {
         let mut watch = BalanceWatch::default();
         for (step, work, off) in [
             (0, 0.0, 0.0),
+            (4, 0.0, 0.0),
+            (5, 0.0, 1e-15),
             (10, 1e-9, 1e-11),
             (20, 1e-6, 1e-9),
             (30, 1.0, 0.01),
