@@ -220,7 +220,6 @@ pub fn drive(
     let mut series = Series::new(&plan.dir, plan.series.clone())?;
     let mut columns = vec![Column::new("time", &plan.time_unit)];
     columns.extend(ledger_columns(&plan.energy_unit));
-    columns.push(Column::new("residual", &plan.energy_unit));
     columns.push(Column::new("broken_directed_bonds", ""));
     if sim.solved().is_some() {
         columns.push(Column::new("iterations", ""));
@@ -280,7 +279,6 @@ pub fn drive(
             }
             let mut row = vec![sim.time()];
             row.extend(ledger_values(&ledger));
-            row.push(ledger.residual());
             row.push(sim.broken() as f64);
             if let Some(solved) = sim.solved() {
                 row.extend([solved.iterations as f64, solved.residual]);
