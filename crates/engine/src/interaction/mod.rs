@@ -19,6 +19,7 @@ pub mod weight;
 use crate::body::{Body, Field};
 use crate::error::BuildError;
 use crate::execute::blocks::Shared;
+use crate::execute::lane::Lane;
 use crate::law::BondFactors;
 use crate::law::Law;
 use crate::law::solid::eam_like::Solid;
@@ -119,13 +120,16 @@ pub(crate) struct Motion<'a, const D: usize> {
 }
 
 impl<const D: usize> Motion<'_, D> {
-    /// Time over which the pull of a bond that breaks counts as work on the motion, per end: half of half a step,
-    /// taken from what it releases where it missed that pull.
-    fn farewell(&self) -> f64 {
-        match self.release {
+    /// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by not
+    /// doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's. `rate` is
+    /// `(ξ+η)·(v_j − v_i)`.
+    #[inline(always)]
+    fn farewell<L: Lane>(&self, pull: L, rate: L) -> L {
+        let time = match self.release {
             Release::AtOnce => -0.25 * self.steps[0],
             Release::AfterForce => 0.25 * self.steps[1],
-        }
+        };
+        L::splat(time) * pull * rate
     }
 
     /// Half the step that begins (time).

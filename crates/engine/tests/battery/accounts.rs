@@ -139,17 +139,20 @@ fn the_ledger_of_intact_bodies_closes_to_second_order() {
     }
 }
 
+/// Families, and when their bonds let go.
+const WAYS: [(FamilyChoice, Release); 4] = [
+    (FamilyChoice::Stencil, Release::AtOnce),
+    (FamilyChoice::Stencil, Release::AfterForce),
+    (FamilyChoice::List, Release::AtOnce),
+    (FamilyChoice::List, Release::AfterForce),
+];
+
 /// Bonds that break give up what they held, whenever they let go.
 #[test]
 fn the_ledger_of_breaking_bodies_closes() {
     for kind in [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic] {
         for name in ["pmb", "lps", "lps mixed"] {
-            for (family, release) in [
-                (FamilyChoice::Stencil, Release::AtOnce),
-                (FamilyChoice::Stencil, Release::AfterForce),
-                (FamilyChoice::List, Release::AtOnce),
-                (FamilyChoice::List, Release::AfterForce),
-            ] {
+            for (family, release) in WAYS {
                 let place = block(kind);
                 let case = Case::of(name, place);
                 let mut spec = case.spec();
@@ -196,12 +199,7 @@ fn what_breaking_bodies_lose_is_of_second_order() {
         (LatticeKind::Cubic, false),
     ] {
         for name in ["pmb", "lps", "lps mixed"] {
-            for (family, release) in [
-                (FamilyChoice::Stencil, Release::AtOnce),
-                (FamilyChoice::Stencil, Release::AfterForce),
-                (FamilyChoice::List, Release::AtOnce),
-                (FamilyChoice::List, Release::AfterForce),
-            ] {
+            for (family, release) in WAYS {
                 let place = block(kind);
                 let case = Case::of(name, place);
                 let residual = |n: usize| {

@@ -413,7 +413,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                             let s = Stretch::exact(e);
                             let share = b.k * b.r0_squared * s;
                             let x = v.law.pair_energy(k * b.r0_squared * s * s, own, other)
-                                + farewell(&motion, pull, b.y, rows, partners);
+                                + motion.farewell(pull, parting(motion.v, b.y, rows, partners));
                             let sum = lost.unwrap_or([zero; 2]);
                             lost = Some([
                                 sum[0] + L::select(breaks, x, zero),
@@ -541,21 +541,6 @@ unsafe fn parting<L: Lane, const D: usize>(
         rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
     }
     rate
-}
-
-/// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by
-/// not doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's.
-#[inline(always)]
-unsafe fn farewell<L: Lane, const D: usize>(
-    motion: &Motion<D>,
-    pull: L,
-    y: [L; D],
-    rows: *const u32,
-    partners: *const u32,
-) -> L {
-    // SAFETY: rows and partners are slots
-    let rate = unsafe { parting(motion.v, y, rows, partners) };
-    L::splat(motion.farewell()) * pull * rate
 }
 
 /// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds.

@@ -357,7 +357,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                             }
                         }
                         let held = v.law.pair_energy(pair, own, other)
-                            + farewell(&motion, own_pull, y, i, j);
+                            + motion.farewell(own_pull, parting(motion.v, y, i, j));
                         let sum = lost.unwrap_or([zero; 2]);
                         lost = Some([
                             sum[0] + L::select(breaks, held, zero),
@@ -401,21 +401,6 @@ unsafe fn parting<L: Lane, const D: usize>(v: &Field<D>, y: [L; D], i: usize, j:
         rate = y[a].fma(relative, rate);
     }
     rate
-}
-
-/// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by
-/// not doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's. `y` points from j to i.
-#[inline(always)]
-unsafe fn farewell<L: Lane, const D: usize>(
-    motion: &Motion<D>,
-    pull: L,
-    y: [L; D],
-    i: usize,
-    j: usize,
-) -> L {
-    // SAFETY: slots lie inside the arrays
-    let rate = unsafe { parting(motion.v, y, i, j) };
-    L::splat(motion.farewell()) * pull * rate
 }
 
 /// After a force pass: the next critical stretches take the place of the old.
