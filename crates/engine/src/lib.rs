@@ -5,6 +5,7 @@
 //! spec uses; the engine itself is free of units.
 
 pub mod body;
+pub mod columns;
 pub mod condition;
 pub mod dynamics;
 pub mod error;
