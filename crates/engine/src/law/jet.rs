@@ -114,8 +114,27 @@ impl<const N: usize> Number for Jet<N> {
     fn of_twin(self, twin: &Twin, n: usize) -> Self {
         self.twin(twin)[n]
     }
-    fn below(self, limit: f64, a: Self, b: Self) -> Self {
-        if self.0[0] < limit { a } else { b }
+    fn ln_1p(self) -> Self {
+        let mut r = self.plus(1.0).ln();
+        r.0[0] = self.0[0].ln_1p();
+        r
+    }
+    fn exp_m1(self) -> Self {
+        let mut r = self.exp();
+        r.0[0] = self.0[0].exp_m1();
+        r
+    }
+    fn fma(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    fn div(self, a: Self) -> Self {
+        self * a.recip()
+    }
+    fn any_below(self, limit: f64) -> bool {
+        self.0[0] < limit
+    }
+    fn choose(self, limit: Self, a: Self, b: Self) -> Self {
+        if self.0[0] < limit.0[0] { a } else { b }
     }
 }
 

@@ -6,6 +6,7 @@
 
 pub mod influence;
 pub mod jet;
+pub mod material;
 pub mod micromodulus;
 pub mod number;
 pub mod potential;

@@ -1,11 +1,12 @@
-//! Numbers that potentials are written over: a plain number, a number with its slope (forces), or a Taylor series
-//! (elastic constants, gradient coefficients). So every potential is written once, and its derivatives are exact.
+//! Numbers that laws are written over: plain numbers, one or several side by side, a number with its slope (forces, tangents),
+//! or a Taylor series (elastic constants, gradient coefficients). So every law is written once, and its derivatives are exact.
 
 use super::spline::{Spline, Twin};
 use crate::execute::lane::Lane;
 use std::ops::{Add, Mul, Sub};
 
-/// What a potential may do with its argument.
+/// What a law may do with its arguments. Implemented by every lane, by [`Dual`] and by [`Jet`](super::jet::Jet); a law asks for
+/// no more than this, so it needs no unsafe code and no instruction set.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     fn constant(x: f64) -> Self;
     /// Times a constant.
@@ -28,8 +29,32 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     fn twin(self, twin: &Twin) -> [Self; 2];
     /// The value of one of them.
     fn of_twin(self, twin: &Twin, n: usize) -> Self;
+    /// `ln(1 + x)` without cancellation.
+    fn ln_1p(self) -> Self;
+    /// `eˣ − 1` without cancellation.
+    fn exp_m1(self) -> Self;
+    /// `self · a + b`, rounded once where that is one operation.
+    fn fma(self, a: Self, b: Self) -> Self;
+    fn div(self, a: Self) -> Self;
+    /// `below` where this is below `limit`, else `otherwise`.
+    fn choose(self, limit: Self, below: Self, otherwise: Self) -> Self;
     /// `a` where this is below `limit`, else `b`.
-    fn below(self, limit: f64, a: Self, b: Self) -> Self;
+    #[inline(always)]
+    fn below(self, limit: f64, a: Self, b: Self) -> Self {
+        self.choose(Self::constant(limit), a, b)
+    }
+    /// The smaller one; this where either is not a number.
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        other.choose(self, other, self)
+    }
+    /// The larger one; this where either is not a number.
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.choose(other, other, self)
+    }
+    /// Is any of these numbers below the limit?
+    fn any_below(self, limit: f64) -> bool;
 
     /// Whole powers, by squaring.
     #[inline(always)]
@@ -54,42 +79,63 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     }
 }
 
-impl Number for f64 {
+impl<L: Lane> Number for L {
     #[inline(always)]
-    fn constant(x: f64) -> f64 {
-        x
+    fn constant(x: f64) -> L {
+        L::splat(x)
     }
     #[inline(always)]
-    fn recip(self) -> f64 {
-        1.0 / self
+    fn recip(self) -> L {
+        L::splat(1.0).div(self)
     }
     #[inline(always)]
-    fn sqrt(self) -> f64 {
-        f64::sqrt(self)
+    fn sqrt(self) -> L {
+        Lane::sqrt(self)
     }
     #[inline(always)]
-    fn exp(self) -> f64 {
-        f64::exp(self)
+    fn exp(self) -> L {
+        each(self, f64::exp)
     }
     #[inline(always)]
-    fn ln(self) -> f64 {
-        f64::ln(self)
+    fn ln(self) -> L {
+        each(self, f64::ln)
     }
     #[inline(always)]
-    fn table(self, table: &Spline) -> f64 {
-        table.at(self)[0]
+    fn ln_1p(self) -> L {
+        each(self, f64::ln_1p)
     }
     #[inline(always)]
-    fn twin(self, twin: &Twin) -> [f64; 2] {
-        twin.lanes(self).map(|[value, _]| value)
+    fn exp_m1(self) -> L {
+        each(self, f64::exp_m1)
     }
     #[inline(always)]
-    fn of_twin(self, twin: &Twin, n: usize) -> f64 {
+    fn fma(self, a: L, b: L) -> L {
+        Lane::fma(self, a, b)
+    }
+    #[inline(always)]
+    fn div(self, a: L) -> L {
+        Lane::div(self, a)
+    }
+    #[inline(always)]
+    fn choose(self, limit: L, below: L, otherwise: L) -> L {
+        L::select(self.lt(limit), below, otherwise)
+    }
+    #[inline(always)]
+    fn any_below(self, limit: f64) -> bool {
+        L::any(self.lt(L::splat(limit)))
+    }
+    #[inline(always)]
+    fn table(self, table: &Spline) -> L {
+        table.lanes(self)[0]
+    }
+    #[inline(always)]
+    fn twin(self, twin: &Twin) -> [L; 2] {
+        let [[a, _], [b, _]] = twin.lanes(self);
+        [a, b]
+    }
+    #[inline(always)]
+    fn of_twin(self, twin: &Twin, n: usize) -> L {
         twin.lanes_of(n, self)[0]
-    }
-    #[inline(always)]
-    fn below(self, limit: f64, a: f64, b: f64) -> f64 {
-        if self < limit { a } else { b }
     }
 }
 
@@ -219,8 +265,38 @@ impl<L: Lane> Number for Dual<L> {
         self.chain(value, derivative)
     }
     #[inline(always)]
-    fn below(self, limit: f64, a: Self, b: Self) -> Self {
-        let m = self.value.lt(L::splat(limit));
+    fn ln_1p(self) -> Self {
+        let slope = L::splat(1.0).div(L::splat(1.0) + self.value);
+        self.chain(each(self.value, f64::ln_1p), slope)
+    }
+    #[inline(always)]
+    fn exp_m1(self) -> Self {
+        let e = each(self.value, f64::exp_m1);
+        self.chain(e, e + L::splat(1.0))
+    }
+    #[inline(always)]
+    fn fma(self, a: Self, b: Self) -> Self {
+        Dual {
+            value: self.value.fma(a.value, b.value),
+            slope: self.value.fma(a.slope, self.slope.fma(a.value, b.slope)),
+        }
+    }
+    #[inline(always)]
+    fn div(self, a: Self) -> Self {
+        let r = L::splat(1.0).div(a.value);
+        let value = self.value * r;
+        Dual {
+            value,
+            slope: (self.slope - value * a.slope) * r,
+        }
+    }
+    #[inline(always)]
+    fn any_below(self, limit: f64) -> bool {
+        self.value.any_below(limit)
+    }
+    #[inline(always)]
+    fn choose(self, limit: Self, a: Self, b: Self) -> Self {
+        let m = self.value.lt(limit.value);
         Dual {
             value: L::select(m, a.value, b.value),
             slope: L::select(m, a.slope, b.slope),

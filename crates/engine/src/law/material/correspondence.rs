@@ -1,0 +1,250 @@
+//! Correspondence (Silling et al. 2007): any classical stress P(F), with control of zero-energy modes (Silling 2017).
+//!
+//! `H = (Σ ω ν V η⊗ξ) K⁻¹`, `F = 1 + H`, `T⟨ξ⟩ = ω (P K⁻¹ ξ + g z)` with the part of the deformation that F does not see,
+//! `z = η − Hξ`, and `g = G_z β/m`, `β = D(D+2) μ`: a control of G_z = 1 resists it as the linear peridynamic solid of the same shear
+//! modulus would. `Σ ω ν V z⊗ξ = 0`, so it does no work on F: `W = ψ(F) + (g/2) Σ ω ν V z²`.
+//! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
+
+use super::tensor::{self, Matrix};
+use super::{Bond, Columns, End, Free, Material, Site};
+use crate::columns::{Declaration, Dimension, Shape};
+use crate::law::number::Number;
+
+/// Classical stored energy of one material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stress {
+    /// Linear in Green's strain: `S = λ tr(E) 1 + 2μE`, `P = F S` (Saint Venant–Kirchhoff).
+    Linear,
+    /// `ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J` (Bonet & Wood 1997, (5.28)).
+    NeoHookean,
+}
+
+/// Constants of one material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CorrespondenceConstants {
+    pub stress: Stress,
+    /// Lamé's λ of the solid and shear modulus μ.
+    pub lame: f64,
+    pub shear: f64,
+    /// In the plane: does the thickness give way until the stress across is 0?
+    pub plane_stress: bool,
+    /// G_z (–).
+    pub control: f64,
+}
+
+/// See the module. All materials have the same kind of stress.
+#[derive(Debug, Clone)]
+pub struct Correspondence {
+    pub stress: Stress,
+    pub plane_stress: bool,
+    /// Per material.
+    pub materials: Vec<CorrespondenceConstants>,
+}
+
+const LAME: usize = 0;
+const SHEAR: usize = 1;
+const CONTROL: usize = 2; // G_z β
+
+/// `K⁻¹`, 1/m, and 1 where K can be inverted.
+type Form<N, const D: usize> = (Matrix<N, D>, [N; 2]);
+/// `P K⁻¹ − g H`, g.
+type Point<N, const D: usize> = (Matrix<N, D>, N);
+type Ends<'a, N, const D: usize> = End<'a, [N; 3], Point<N, D>, [N; 0]>;
+
+/// Steps of Newton's method for the thickness: from the linear estimate six reach round-off for stretches of 0.3 to 3.
+const THICKNESS_STEPS: usize = 6;
+
+impl Correspondence {
+    /// P and ψ at `F = 1 + H`, without cancellation.
+    #[inline(always)]
+    pub fn stress<N: Number, const D: usize>(
+        &self,
+        c: &[N; 3],
+        h: &Matrix<N, D>,
+    ) -> (Matrix<N, D>, N) {
+        let (half, two) = (N::constant(0.5), N::constant(2.0));
+        let mut f = *h;
+        for a in 0..D {
+            f[a][a] = f[a][a] + N::constant(1.0);
+        }
+        // 2E = H + Hᵀ + HᵀH
+        let square = tensor::transposed_product(h, h);
+        let mut twice = square;
+        for r in 0..D {
+            for s in 0..D {
+                twice[r][s] = square[r][s] + h[r][s] + h[s][r];
+            }
+        }
+        let strain = tensor::trace(&twice);
+        match self.stress {
+            Stress::Linear => {
+                let lame = if self.plane_stress {
+                    (two * c[LAME] * c[SHEAR]).div(two.fma(c[SHEAR], c[LAME]))
+                } else {
+                    c[LAME]
+                };
+                let mut s = twice;
+                let pressure = half * lame * strain;
+                for r in 0..D {
+                    for k in 0..D {
+                        s[r][k] = c[SHEAR] * twice[r][k];
+                    }
+                    s[r][r] = s[r][r] + pressure;
+                }
+                let energy = half * half * (half * lame * strain * strain)
+                    + half * half * c[SHEAR] * tensor::contraction(&twice, &twice);
+                (tensor::product(&f, &s), energy)
+            }
+            Stress::NeoHookean => {
+                let beyond = tensor::dilation(h);
+                let plane = beyond.ln_1p();
+                // ln of the square of the stretch across
+                let across = if self.plane_stress && D == 2 {
+                    thickness(c, plane)
+                } else {
+                    N::constant(0.0)
+                };
+                let volume = half.fma(across, plane);
+                let cofactors = tensor::cofactor_beyond(h);
+                let inverse = (N::constant(1.0) + beyond).recip();
+                let pull = c[LAME] * volume;
+                let mut p = *h;
+                for r in 0..D {
+                    for k in 0..D {
+                        // F − F⁻ᵀ = ((J − 1) F + H − (cof F − 1))/J
+                        let shear = beyond.fma(f[r][k], h[r][k] - cofactors[r][k]);
+                        let mut cofactor = cofactors[r][k];
+                        if r == k {
+                            cofactor = cofactor + N::constant(1.0);
+                        }
+                        p[r][k] = c[SHEAR].fma(shear, pull * cofactor) * inverse;
+                    }
+                }
+                let wide = across.exp_m1();
+                let energy = half * c[SHEAR] * (strain + wide - two * volume)
+                    + half * pull * volume;
+                (p, energy)
+            }
+        }
+    }
+}
+
+/// x = ln λ₃² with no stress across: `μ (e^x − 1) + λ (ln J₂ + x/2) = 0`.
+#[inline(always)]
+fn thickness<N: Number>(c: &[N; 3], plane: N) -> N {
+    let (half, two) = (N::constant(0.5), N::constant(2.0));
+    let mut x = (N::constant(0.0) - two * c[LAME] * plane).div(two.fma(c[SHEAR], c[LAME]));
+    for _ in 0..THICKNESS_STEPS {
+        let wide = x.exp_m1();
+        let rest = c[SHEAR].fma(wide, c[LAME] * half.fma(x, plane));
+        let slope = c[SHEAR].fma(wide, c[SHEAR]) + half * c[LAME];
+        x = x - rest.div(slope);
+    }
+    x
+}
+
+impl<const D: usize> Material<D> for Correspondence {
+    type Constants<N: Number> = [N; 3];
+    type Form<N: Number> = Form<N, D>;
+    /// `Σ ω ν V η⊗ξ`
+    type Sum<N: Number> = Matrix<N, D>;
+    type Point<N: Number> = Point<N, D>;
+    type Past<N: Number> = [N; 0];
+    type Memory<N: Number> = [N; 0];
+    type State<N: Number> = Free<N, D>;
+    const PASSES: usize = 1;
+    const FORM_OF_WHOLE: bool = true;
+
+    fn columns(&self) -> Columns {
+        let point = Declaration::of_points(
+            "force_state_gradient",
+            Shape::Tensor,
+            Dimension([-6, 1, -2, 0]),
+            "P K⁻¹ − g H: what the force state of a bond is linear in ξ with (Silling et al. 2007).",
+        );
+        Columns {
+            point: vec![point.derived()],
+            ..Columns::default()
+        }
+    }
+
+    fn constants(&self, material: usize, _: f64) -> [f64; 3] {
+        let m = &self.materials[material];
+        let d = D as f64;
+        [m.lame, m.shear, m.control * d * (d + 2.0) * m.shear]
+    }
+
+    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
+        let (inverse, whole) = tensor::inverse(shape);
+        let sound = if whole { 1.0 } else { 0.0 };
+        (inverse, [super::inverse_weight(&shape), sound])
+    }
+
+    #[inline(always)]
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
+        let mut sum = tensor::zero();
+        for r in 0..D {
+            let eta = bond.omega * bond.eta[r];
+            for c in 0..D {
+                sum[r][c] = eta * bond.xi[c];
+            }
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn settle<N: Number>(
+        &self,
+        _: usize,
+        site: &Site<[N; 3], Form<N, D>, [N; 0]>,
+        sum: Matrix<N, D>,
+        point: &mut Point<N, D>,
+    ) {
+        let (inverse, [per_m, sound]) = site.form;
+        let h = tensor::product(&sum, inverse);
+        let (p, _) = self.stress(site.constants, &h);
+        let along = tensor::product(&p, inverse);
+        let g = site.constants[CONTROL] * *per_m;
+        for r in 0..D {
+            for c in 0..D {
+                point.0[r][c] = *sound * along[r][c] - g * h[r][c];
+            }
+        }
+        point.1 = g;
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
+        let (along, g) = end.point;
+        let mut t = tensor::times(along, &bond.xi);
+        for a in 0..D {
+            t[a] = bond.omega * g.fma(bond.eta[a], t[a]);
+        }
+        Free(t)
+    }
+
+    /// `(g/2) ω η²`, of which the point takes back what F sees.
+    #[inline(always)]
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
+        let mut square = bond.eta[0] * bond.eta[0];
+        for a in 1..D {
+            square = bond.eta[a].fma(bond.eta[a], square);
+        }
+        N::constant(0.5) * end.point.1 * bond.omega * square
+    }
+
+    #[inline(always)]
+    fn point_energy<N: Number>(
+        &self,
+        site: &Site<[N; 3], Form<N, D>, [N; 0]>,
+        sum: Matrix<N, D>,
+        point: &Point<N, D>,
+    ) -> N {
+        let (inverse, [_, sound]) = site.form;
+        let h = tensor::product(&sum, inverse);
+        let (_, energy) = self.stress(site.constants, &h);
+        // H K Hᵀ = S Hᵀ
+        let seen = N::constant(0.5) * point.1 * tensor::contraction(&sum, &h);
+        sound.fma(energy, N::constant(0.0)) - seen
+    }
+}

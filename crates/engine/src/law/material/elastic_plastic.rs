@@ -1,0 +1,219 @@
+//! The ordinary elastic–plastic solid (Mitchell 2011, "A nonlocal, ordinary, state-based plasticity model for peridynamics",
+//! SAND2011-3166), in D dimensions and with linear isotropic hardening.
+//!
+//! The linear peridynamic solid of [`Solid`], whose bonds keep a plastic extension e^p:
+//! `W = ½κθ² + (α/2) Σ ω (e − e^p)²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`. The deviatoric force state of a bond is
+//! `t = α ω (e^d − e^p)` with `e^d = e − θ|ξ|/n`; it yields where `½ Σ t²/ω = ψ0`, and flows along it, `ė^p = λ t/ω`.
+//! With the stress that this norm stands for in shear, `σ = ‖t‖ √(3m/(n(n+2)))`, the return is the classical one:
+//! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`.
+//! Perfect plasticity is H = 0. Step by step the energy is the incremental potential, whose derivative is the force.
+
+use super::{Along, Bond, Columns, End, Material, Site};
+use crate::columns::{Declaration, Dimension, Shape};
+use crate::law::number::Number;
+use crate::law::solid::eam_like::Solid;
+
+/// Constants of one material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElasticPlasticConstants {
+    pub solid: Solid,
+    /// Shear modulus G.
+    pub shear: f64,
+    /// Yield stress σ_y in tension.
+    pub yield_stress: f64,
+    /// Hardening modulus `H = dσ_y/dε̄`, 0 or positive.
+    pub hardening: f64,
+}
+
+/// See the module.
+#[derive(Debug, Clone)]
+pub struct ElasticPlastic {
+    /// Per material.
+    pub materials: Vec<ElasticPlasticConstants>,
+}
+
+/// Numbers of a material.
+const BULK: usize = 0; // n²κ
+const BETA: usize = 1;
+const RADIUS: usize = 2; // n(n+2)/3
+const YIELD: usize = 3;
+const HARDENING: usize = 4;
+const SHEAR: usize = 5; // 3G
+
+/// Numbers of a point.
+const P: usize = 0; // nκθ/m = n²κ (θ/n)/m
+const ALPHA: usize = 1; // β/m
+const MEAN: usize = 2; // θ/n
+const REST: usize = 3; // part of the trial deviator that flows
+const FLOW: usize = 4; // Δε̄
+
+impl ElasticPlastic {
+    /// `e^d − e^p` before the step's flow.
+    #[inline(always)]
+    fn trial<N: Number, const D: usize>(
+        bond: &Bond<N, D>,
+        end: &End<[N; 6], [N; 5], [N; 1]>,
+    ) -> N {
+        bond.extension() - end.point[MEAN] * bond.length - end.memory[0]
+    }
+
+    /// `e − e^p` after it.
+    #[inline(always)]
+    fn elastic<N: Number, const D: usize>(
+        bond: &Bond<N, D>,
+        end: &End<[N; 6], [N; 5], [N; 1]>,
+    ) -> N {
+        let flow = end.point[REST] * Self::trial(bond, end);
+        bond.extension() - end.memory[0] - flow
+    }
+}
+
+impl<const D: usize> Material<D> for ElasticPlastic {
+    type Constants<N: Number> = [N; 6];
+    /// 1/m
+    type Form<N: Number> = N;
+    type Sum<N: Number> = N;
+    type Point<N: Number> = [N; 5];
+    /// ε̄
+    type Past<N: Number> = [N; 1];
+    /// e^p
+    type Memory<N: Number> = [N; 1];
+    type State<N: Number> = Along<N>;
+    const PASSES: usize = 2;
+
+    fn columns(&self) -> Columns {
+        Columns {
+            memory: vec![Declaration::of_bonds(
+                "plastic_extension",
+                Dimension::LENGTH,
+                "Plastic part e^p of the extension of a bond (Mitchell 2011).",
+            )],
+            past: vec![Declaration::of_points(
+                "plastic_strain",
+                Shape::Scalar,
+                Dimension::NUMBER,
+                "Equivalent plastic strain ε̄, work-conjugate to the yield stress.",
+            )],
+            point: vec![],
+        }
+    }
+
+    fn constants(&self, material: usize, _: f64) -> [f64; 6] {
+        let m = &self.materials[material];
+        let n = m.solid.n;
+        [
+            n * n * m.solid.kappa,
+            m.solid.beta,
+            n * (n + 2.0) / 3.0,
+            m.yield_stress,
+            m.hardening,
+            3.0 * m.shear,
+        ]
+    }
+
+    fn form(&self, _: usize, shape: [[f64; D]; D]) -> f64 {
+        super::inverse_weight(&shape)
+    }
+
+    #[inline(always)]
+    fn share<N: Number>(
+        &self,
+        pass: usize,
+        bond: &Bond<N, D>,
+        end: &End<[N; 6], [N; 5], [N; 1]>,
+    ) -> N {
+        if pass == 0 {
+            return bond.omega * bond.length * bond.extension();
+        }
+        let trial = Self::trial(bond, end);
+        bond.omega * trial * trial
+    }
+
+    #[inline(always)]
+    fn settle<N: Number>(
+        &self,
+        pass: usize,
+        site: &Site<[N; 6], N, [N; 1]>,
+        sum: N,
+        point: &mut [N; 5],
+    ) {
+        let (c, per_m) = (site.constants, *site.form);
+        if pass == 0 {
+            point[MEAN] = per_m * sum;
+            point[P] = c[BULK] * per_m * point[MEAN];
+            point[ALPHA] = c[BETA] * per_m;
+            return;
+        }
+        let zero = N::constant(0.0);
+        let norm = point[ALPHA] * sum.sqrt();
+        // ‖t‖ per stress
+        let scale = (c[RADIUS] * per_m).sqrt();
+        let limit = scale * c[HARDENING].fma(site.past[0], c[YIELD]);
+        let beyond = norm - limit;
+        let rest = (beyond * c[SHEAR]).div((c[SHEAR] + c[HARDENING]) * norm);
+        let flow = beyond.div((c[SHEAR] + c[HARDENING]) * scale);
+        point[REST] = limit.choose(norm, rest, zero);
+        point[FLOW] = limit.choose(norm, flow, zero);
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> Along<N> {
+        let t = end.point[ALPHA].fma(
+            Self::elastic(bond, end),
+            end.point[P] * bond.length,
+        );
+        Along(bond.omega * t * bond.inv_current())
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> N {
+        let e = Self::elastic(bond, end);
+        N::constant(0.5) * end.point[ALPHA] * bond.omega * e * e
+    }
+
+    #[inline(always)]
+    fn point_energy<N: Number>(
+        &self,
+        site: &Site<[N; 6], N, [N; 1]>,
+        _: N,
+        point: &[N; 5],
+    ) -> N {
+        let mean = point[MEAN];
+        (N::constant(0.5) * site.constants[BULK] * mean).fma(mean, work(site, point))
+    }
+
+    #[inline(always)]
+    fn moves<N: Number>(&self, point: &[N; 5]) -> bool {
+        (N::constant(0.0) - point[FLOW]).any_below(0.0)
+    }
+
+    #[inline(always)]
+    fn advance<N: Number>(
+        &self,
+        bond: &Bond<N, D>,
+        end: &End<[N; 6], [N; 5], [N; 1]>,
+        memory: &mut [N; 1],
+    ) -> N {
+        memory[0] = end.memory[0] + end.point[REST] * Self::trial(bond, end);
+        N::constant(0.0)
+    }
+
+    #[inline(always)]
+    fn remember<N: Number>(
+        &self,
+        site: &Site<[N; 6], N, [N; 1]>,
+        point: &[N; 5],
+        past: &mut [N; 1],
+    ) -> N {
+        past[0] = site.past[0] + point[FLOW];
+        work(site, point)
+    }
+}
+
+/// `∫σ_y dε̄` of the step's flow: what it dissipates, by the trapezoidal rule, which is exact for linear hardening.
+#[inline(always)]
+fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 5]) -> N {
+    let c = site.constants;
+    let middle = N::constant(0.5).fma(point[FLOW], site.past[0]);
+    c[HARDENING].fma(middle, c[YIELD]) * point[FLOW]
+}

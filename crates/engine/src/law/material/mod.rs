@@ -1,0 +1,255 @@
+//! Laws of any kind: with memory, with tensors, along the bond or not. A law is a few small functions over [`Number`]s; families drive
+//! them ([`crate::interaction::material`]), so one text serves lattices and clouds, every instruction set, and tangents.
+//!
+//! The force density on a point is `f_i = Σ_j ν V_j (T_i⟨ξ⟩ − T_j⟨−ξ⟩)` (Silling et al. 2007, (18)): each end answers for itself,
+//! so action is reaction whatever the law says.
+
+pub mod correspondence;
+pub mod elastic_plastic;
+pub mod numbers;
+pub mod softening;
+pub mod tensor;
+pub mod viscoelastic;
+
+use crate::columns::Declaration;
+use crate::law::number::Number;
+pub use numbers::Numbers;
+
+/// A bond as a law sees it from one of its ends.
+#[derive(Debug, Clone, Copy)]
+pub struct Bond<N, const D: usize> {
+    /// From this end to the other in the reference (length).
+    pub xi: [N; D],
+    /// What the displacement of the other end is beyond that of this (length).
+    pub eta: [N; D],
+    /// |ξ| and its inverse.
+    pub length: N,
+    pub inv_length: N,
+    /// Influence function ω(|ξ|).
+    pub omega: N,
+    /// `(|ξ+η| − |ξ|)/|ξ|`, without cancellation.
+    pub stretch: N,
+    /// `(|ξ+η| − |ξ|)/|ξ+η|`, without cancellation.
+    pub contraction: N,
+}
+
+impl<N: Number, const D: usize> Bond<N, D> {
+    /// A bond from ξ and η; slow and plain.
+    pub fn new(xi: [N; D], eta: [N; D], omega: N) -> Self {
+        let half = N::constant(0.5);
+        let mut square = xi[0] * xi[0];
+        let mut change = eta[0] * half.fma(eta[0], xi[0]);
+        for a in 1..D {
+            square = square + xi[a] * xi[a];
+            change = change + eta[a] * half.fma(eta[a], xi[a]);
+        }
+        let length = square.sqrt();
+        let e = (change + change).div(square);
+        // the closed forms of `execute::lane::series`, over any number
+        let one = N::constant(1.0);
+        let root = (one + e).sqrt();
+        Bond {
+            xi,
+            eta,
+            length,
+            inv_length: length.recip(),
+            omega,
+            stretch: e.div(one + root),
+            contraction: e.div(root * (one + root)),
+        }
+    }
+
+    /// `|ξ+η| − |ξ|` (length).
+    #[inline(always)]
+    pub fn extension(&self) -> N {
+        self.stretch * self.length
+    }
+
+    /// `1/|ξ+η|`
+    #[inline(always)]
+    pub fn inv_current(&self) -> N {
+        (N::constant(1.0) - self.contraction) * self.inv_length
+    }
+}
+
+/// What the bonds of a point have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct End<'a, C, P, M> {
+    /// Constants of the material of this end.
+    pub constants: &'a C,
+    /// What [`Material::settle`] made.
+    pub point: &'a P,
+    /// What this end's bond remembers.
+    pub memory: &'a M,
+}
+
+/// What a point has beside its bonds.
+#[derive(Debug, Clone, Copy)]
+pub struct Site<'a, C, F, H> {
+    /// Constants of its material.
+    pub constants: &'a C,
+    /// What [`Material::form`] made of its family.
+    pub form: &'a F,
+    /// What the point remembers.
+    pub past: &'a H,
+}
+
+/// The force state T⟨ξ⟩ of one end (force / volume²).
+pub trait ForceState<N, const D: usize>: Copy {
+    /// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` at i, where `other` is what j answers to the bond as it sees it.
+    fn pull(self, other: Self, bond: &Bond<N, D>) -> [N; D];
+}
+
+/// `T⟨ξ⟩ = t (ξ+η)`: along the bond, `t` over the current length.
+#[derive(Debug, Clone, Copy)]
+pub struct Along<N>(pub N);
+
+impl<N: Number, const D: usize> ForceState<N, D> for Along<N> {
+    #[inline(always)]
+    fn pull(self, other: Self, bond: &Bond<N, D>) -> [N; D] {
+        let both = self.0 + other.0;
+        let mut pull = bond.xi;
+        for a in 0..D {
+            pull[a] = both * (bond.xi[a] + bond.eta[a]);
+        }
+        pull
+    }
+}
+
+/// `T⟨ξ⟩` in any direction.
+#[derive(Debug, Clone, Copy)]
+pub struct Free<N, const D: usize>(pub [N; D]);
+
+impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
+    #[inline(always)]
+    fn pull(self, other: Self, _: &Bond<N, D>) -> [N; D] {
+        let mut pull = self.0;
+        for a in 0..D {
+            pull[a] = self.0[a] - other.0[a];
+        }
+        pull
+    }
+}
+
+/// 1/m of a family from its shape tensor; 0 without bonds.
+pub(crate) fn inverse_weight<const D: usize>(shape: &[[f64; D]; D]) -> f64 {
+    let m = tensor::trace(shape);
+    if m > 0.0 { 1.0 / m } else { 0.0 }
+}
+
+/// The columns that a law adds to the state, in the order of its numbers.
+#[derive(Debug, Clone, Default)]
+pub struct Columns {
+    /// Of [`Material::Memory`].
+    pub memory: Vec<Declaration>,
+    /// Of [`Material::Past`].
+    pub past: Vec<Declaration>,
+    /// Of the first numbers of [`Material::Point`]; others are nobody's business.
+    pub point: Vec<Declaration>,
+}
+
+/// A law.
+///
+/// # Contract
+/// - All functions are pure. Sums are over the whole bonds of a point, each times `ν V_j`.
+/// - For every pass p below [`Material::PASSES`]: `S = Σ ν V_j share(p, bond, …)`, then `settle(p, …, S, point)`. Passes begin with a
+///   `point` of zeros; `share` sees the own point as the pass before left it. Then every bond answers from both ends.
+/// - [`Material::energy`] and [`Material::point_energy`] add up to a strain energy density `W_i`; with the memory held, the force state is
+///   its derivative, `T_i⟨ξ⟩ = ∂W_i/∂(ξ+η) / (ν V_j)`. Energies of broken bonds and tests of force against energy rely on it.
+/// - A rigid motion leaves `T` at rest and energies at 0, and turns `T` with the body.
+/// - A step ends with [`Material::advance`] for every whole bond and [`Material::remember`] for every point, at its end's displacements. The
+///   answers of before must be those of after with a step of no length: they see the memory of before, and the constants know the step.
+/// - Tangents are derivatives of these functions by dual numbers: nothing else about a law is assumed.
+pub trait Material<const D: usize>: Send + Sync + 'static {
+    /// Numbers of a material that its functions read.
+    type Constants<N: Number>: Numbers<N>;
+    /// What a point knows of its reference family.
+    type Form<N: Number>: Numbers<N>;
+    /// What bonds give to their point.
+    type Sum<N: Number>: Numbers<N>;
+    /// What the point makes of it; the bonds of both ends read it.
+    type Point<N: Number>: Numbers<N>;
+    /// What a point remembers.
+    type Past<N: Number>: Numbers<N>;
+    /// What a directed bond remembers.
+    type Memory<N: Number>: Numbers<N>;
+    /// [`Along`] or [`Free`].
+    type State<N: Number>: ForceState<N, D>;
+    /// Sums before bonds answer.
+    const PASSES: usize;
+    /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?
+    const FORM_OF_WHOLE: bool = false;
+
+    /// Names of what the law remembers and makes.
+    fn columns(&self) -> Columns;
+
+    /// Constants of a material for a step of length `dt`; 0: time stands still.
+    fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
+
+    /// From the shape tensor `K = Σ ω ν V_j ξ⊗ξ` of its family (length² volume); its trace is the weighted volume m.
+    fn form(&self, material: usize, shape: [[f64; D]; D]) -> Self::Form<f64>;
+
+    fn share<N: Number>(
+        &self,
+        pass: usize,
+        bond: &Bond<N, D>,
+        end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
+    ) -> Self::Sum<N>;
+
+    fn settle<N: Number>(
+        &self,
+        pass: usize,
+        site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        sum: Self::Sum<N>,
+        point: &mut Self::Point<N>,
+    );
+
+    /// The force state of this end.
+    fn answer<N: Number>(
+        &self,
+        bond: &Bond<N, D>,
+        end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
+    ) -> Self::State<N>;
+
+    /// What this end's half of the bond stores (energy / volume²).
+    fn energy<N: Number>(
+        &self,
+        bond: &Bond<N, D>,
+        end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
+    ) -> N;
+
+    /// What the point stores beside that (energy / volume), with the sum of the last pass.
+    fn point_energy<N: Number>(
+        &self,
+        _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        _sum: Self::Sum<N>,
+        _point: &Self::Point<N>,
+    ) -> N {
+        N::constant(0.0)
+    }
+
+    /// Can the memory of these points' bonds, or of the points, have moved in this step? False saves time.
+    fn moves<N: Number>(&self, _point: &Self::Point<N>) -> bool {
+        true
+    }
+
+    /// The bond's memory at the end of a step; returns what that dissipated (energy / volume²), to second order in the step.
+    fn advance<N: Number>(
+        &self,
+        _bond: &Bond<N, D>,
+        _end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
+        _memory: &mut Self::Memory<N>,
+    ) -> N {
+        N::constant(0.0)
+    }
+
+    /// The point's memory at the end of a step; returns what that dissipated (energy / volume), to second order in the step.
+    fn remember<N: Number>(
+        &self,
+        _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        _point: &Self::Point<N>,
+        _past: &mut Self::Past<N>,
+    ) -> N {
+        N::constant(0.0)
+    }
+}

@@ -1,0 +1,89 @@
+//! Small sets of numbers: arrays, arrays of arrays, pairs, or none. Sizes of 0 cost nothing.
+
+use crate::law::number::Number;
+
+/// A fixed count of numbers, in one order.
+pub trait Numbers<N>: Copy {
+    const COUNT: usize;
+
+    fn constant(x: f64) -> Self;
+    /// Number `n`, below the count.
+    fn get(&self, n: usize) -> N;
+    fn set(&mut self, n: usize, x: N);
+    /// `self + factor · x`
+    fn plus(self, factor: N, x: Self) -> Self;
+}
+
+impl<N: Number> Numbers<N> for N {
+    const COUNT: usize = 1;
+
+    #[inline(always)]
+    fn constant(x: f64) -> N {
+        <N as Number>::constant(x)
+    }
+    #[inline(always)]
+    fn get(&self, _: usize) -> N {
+        *self
+    }
+    #[inline(always)]
+    fn set(&mut self, _: usize, x: N) {
+        *self = x;
+    }
+    #[inline(always)]
+    fn plus(self, factor: N, x: N) -> N {
+        factor.fma(x, self)
+    }
+}
+
+impl<N: Copy, A: Numbers<N>, const C: usize> Numbers<N> for [A; C] {
+    const COUNT: usize = C * A::COUNT;
+
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        [A::constant(x); C]
+    }
+    #[inline(always)]
+    fn get(&self, n: usize) -> N {
+        self[n / A::COUNT].get(n % A::COUNT)
+    }
+    #[inline(always)]
+    fn set(&mut self, n: usize, x: N) {
+        self[n / A::COUNT].set(n % A::COUNT, x);
+    }
+    #[inline(always)]
+    fn plus(mut self, factor: N, x: Self) -> Self {
+        for c in 0..C {
+            self[c] = self[c].plus(factor, x[c]);
+        }
+        self
+    }
+}
+
+impl<N: Copy, A: Numbers<N>, B: Numbers<N>> Numbers<N> for (A, B) {
+    const COUNT: usize = A::COUNT + B::COUNT;
+
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        (A::constant(x), B::constant(x))
+    }
+    #[inline(always)]
+    fn get(&self, n: usize) -> N {
+        if n < A::COUNT {
+            self.0.get(n)
+        } else {
+            self.1.get(n - A::COUNT)
+        }
+    }
+    #[inline(always)]
+    fn set(&mut self, n: usize, x: N) {
+        if n < A::COUNT {
+            self.0.set(n, x);
+        } else {
+            self.1.set(n - A::COUNT, x);
+        }
+    }
+    #[inline(always)]
+    fn plus(self, factor: N, x: Self) -> Self {
+        (self.0.plus(factor, x.0), self.1.plus(factor, x.1))
+    }
+}

@@ -1,0 +1,266 @@
+//! Small matrices of numbers. Loops, not closures: these are compiled into sweeps.
+
+use crate::law::number::Number;
+
+pub type Matrix<N, const D: usize> = [[N; D]; D];
+
+#[inline(always)]
+pub fn zero<N: Number, const D: usize>() -> Matrix<N, D> {
+    [[N::constant(0.0); D]; D]
+}
+
+/// `A B`
+#[inline(always)]
+pub fn product<N: Number, const D: usize>(a: &Matrix<N, D>, b: &Matrix<N, D>) -> Matrix<N, D> {
+    let mut out = *a;
+    for r in 0..D {
+        for c in 0..D {
+            let mut sum = a[r][0] * b[0][c];
+            for k in 1..D {
+                sum = a[r][k].fma(b[k][c], sum);
+            }
+            out[r][c] = sum;
+        }
+    }
+    out
+}
+
+/// `Aᵀ B`
+#[inline(always)]
+pub fn transposed_product<N: Number, const D: usize>(
+    a: &Matrix<N, D>,
+    b: &Matrix<N, D>,
+) -> Matrix<N, D> {
+    let mut out = *a;
+    for r in 0..D {
+        for c in 0..D {
+            let mut sum = a[0][r] * b[0][c];
+            for k in 1..D {
+                sum = a[k][r].fma(b[k][c], sum);
+            }
+            out[r][c] = sum;
+        }
+    }
+    out
+}
+
+/// `A x`
+#[inline(always)]
+pub fn times<N: Number, const D: usize>(a: &Matrix<N, D>, x: &[N; D]) -> [N; D] {
+    let mut out = *x;
+    for r in 0..D {
+        let mut sum = a[r][0] * x[0];
+        for k in 1..D {
+            sum = a[r][k].fma(x[k], sum);
+        }
+        out[r] = sum;
+    }
+    out
+}
+
+#[inline(always)]
+pub fn trace<N: Number, const D: usize>(a: &Matrix<N, D>) -> N {
+    let mut sum = a[0][0];
+    for r in 1..D {
+        sum = sum + a[r][r];
+    }
+    sum
+}
+
+/// `A : B`
+#[inline(always)]
+pub fn contraction<N: Number, const D: usize>(a: &Matrix<N, D>, b: &Matrix<N, D>) -> N {
+    let mut sum = a[0][0] * b[0][0];
+    for r in 0..D {
+        for c in 0..D {
+            if r + c > 0 {
+                sum = a[r][c].fma(b[r][c], sum);
+            }
+        }
+    }
+    sum
+}
+
+/// Cofactors `∂ det A / ∂ A`.
+#[inline(always)]
+pub fn cofactor<N: Number, const D: usize>(a: &Matrix<N, D>) -> Matrix<N, D> {
+    let mut out = *a;
+    match D {
+        1 => out[0][0] = N::constant(1.0),
+        2 => {
+            let zero = N::constant(0.0);
+            out[0][0] = a[1][1];
+            out[0][1] = zero - a[1][0];
+            out[1][0] = zero - a[0][1];
+            out[1][1] = a[0][0];
+        }
+        _ => {
+            for r in 0..D {
+                for c in 0..D {
+                    let ([r1, r2], [c1, c2]) = (others(r), others(c));
+                    out[r][c] = a[r1][c1] * a[r2][c2] - a[r1][c2] * a[r2][c1];
+                }
+            }
+        }
+    }
+    out
+}
+
+#[inline(always)]
+fn others(axis: usize) -> [usize; 2] {
+    [(axis + 1) % 3, (axis + 2) % 3]
+}
+
+/// `det A`
+#[inline(always)]
+pub fn determinant<N: Number, const D: usize>(a: &Matrix<N, D>) -> N {
+    let cofactors = cofactor(a);
+    let mut sum = a[0][0] * cofactors[0][0];
+    for c in 1..D {
+        sum = a[0][c].fma(cofactors[0][c], sum);
+    }
+    sum
+}
+
+/// `det(1 + H) − 1`, without cancellation.
+#[inline(always)]
+pub fn dilation<N: Number, const D: usize>(h: &Matrix<N, D>) -> N {
+    let first = trace(h);
+    match D {
+        1 => first,
+        2 => first + determinant(h),
+        _ => first + trace(&cofactor(h)) + determinant(h),
+    }
+}
+
+/// `cof(1 + H) − 1`, without cancellation.
+#[inline(always)]
+pub fn cofactor_beyond<N: Number, const D: usize>(h: &Matrix<N, D>) -> Matrix<N, D> {
+    let mut out = zero::<N, D>();
+    if D == 1 {
+        return out;
+    }
+    // linear in H in the plane; in space 1 tr H − Hᵀ + cof H
+    let t = trace(h);
+    let cofactors = cofactor(h);
+    for r in 0..D {
+        for c in 0..D {
+            let mut x = N::constant(0.0) - h[c][r];
+            if r == c {
+                x = x + t;
+            }
+            if D == 3 {
+                x = x + cofactors[r][c];
+            }
+            out[r][c] = x;
+        }
+    }
+    out
+}
+
+/// Inverse of a symmetric matrix that is not negative, by its eigenvalues: of those below 1e-6 of the largest the inverse is 0. False: there
+/// are such, or all are 0.
+pub fn inverse<const D: usize>(a: Matrix<f64, D>) -> (Matrix<f64, D>, bool) {
+    let (values, vectors) = eigen(a);
+    let most = values.iter().fold(0.0f64, |m, x| m.max(*x));
+    let counts = |x: f64| most > 0.0 && x > 1e-6 * most;
+    let mut out = [[0.0; D]; D];
+    for (k, value) in values.iter().enumerate() {
+        if counts(*value) {
+            for r in 0..D {
+                for c in 0..D {
+                    out[r][c] += vectors[r][k] * vectors[c][k] / value;
+                }
+            }
+        }
+    }
+    (out, values.iter().all(|x| counts(*x)))
+}
+
+/// Eigenvalues of a symmetric matrix and its eigenvectors in columns, by Jacobi's rotations.
+pub fn eigen<const D: usize>(mut a: Matrix<f64, D>) -> ([f64; D], Matrix<f64, D>) {
+    let mut v = [[0.0; D]; D];
+    for r in 0..D {
+        v[r][r] = 1.0;
+    }
+    // convergence is quadratic: a dozen sweeps are more than any matrix needs
+    for _ in 0..12 {
+        for p in 0..D {
+            for q in p + 1..D {
+                if a[p][q] == 0.0 {
+                    continue;
+                }
+                let theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+                let c = 1.0 / t.hypot(1.0);
+                let s = t * c;
+                for k in 0..D {
+                    let (x, y) = (a[k][p], a[k][q]);
+                    (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+                }
+                for k in 0..D {
+                    let (x, y) = (a[p][k], a[q][k]);
+                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
+                    let (x, y) = (v[k][p], v[k][q]);
+                    (v[k][p], v[k][q]) = (c * x - s * y, s * x + c * y);
+                }
+            }
+        }
+    }
+    (std::array::from_fn(|k| a[k][k]), v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariants_are_those_of_the_matrix() {
+        let h = [[0.1, -0.3, 0.2], [0.05, 0.4, -0.1], [0.3, 0.2, -0.25]];
+        let mut f = h;
+        for a in 0..3 {
+            f[a][a] += 1.0;
+        }
+        assert!((dilation(&h) - (determinant(&f) - 1.0)).abs() < 1e-15);
+        let (beyond, cofactors) = (cofactor_beyond(&h), cofactor(&f));
+        for r in 0..3 {
+            for c in 0..3 {
+                let exact = cofactors[r][c] - if r == c { 1.0 } else { 0.0 };
+                assert!((beyond[r][c] - exact).abs() < 1e-15);
+            }
+        }
+        // A cof(A)ᵀ = det A
+        let p = product(&f, &{
+            let mut t = cofactors;
+            for r in 0..3 {
+                for c in 0..3 {
+                    t[r][c] = cofactors[c][r];
+                }
+            }
+            t
+        });
+        assert!((p[0][0] - determinant(&f)).abs() < 1e-15 && p[0][1].abs() < 1e-15);
+        let plane = [[0.2, -0.1], [0.3, 0.15]];
+        assert!((dilation(&plane) - (1.2 * 1.15 + 0.03 - 1.0)).abs() < 1e-15);
+        assert_eq!(cofactor_beyond(&plane), [[0.15, -0.3], [0.1, 0.2]]);
+    }
+
+    #[test]
+    fn symmetric_matrices_are_inverted_as_far_as_they_go() {
+        let a = [[2.0, 0.3, -0.5], [0.3, 1.0, 0.2], [-0.5, 0.2, 3.0]];
+        let (inverse_of, whole) = inverse(a);
+        let one = product(&a, &inverse_of);
+        assert!(whole);
+        for r in 0..3 {
+            for c in 0..3 {
+                assert!((one[r][c] - if r == c { 1.0 } else { 0.0 }).abs() < 1e-14);
+            }
+        }
+        // one direction only
+        let n = [0.6, 0.8];
+        let line = [[n[0] * n[0], n[0] * n[1]], [n[0] * n[1], n[1] * n[1]]];
+        let (back, whole) = inverse(line);
+        assert!(!whole && (back[0][1] - 0.48).abs() < 1e-15);
+        assert_eq!(inverse([[0.0]]), ([[0.0]], false));
+    }
+}

@@ -1,0 +1,231 @@
+//! The ordinary viscoelastic solid (Mitchell 2011, "A non-local, ordinary-state-based viscoelasticity model for peridynamics",
+//! SAND2011-8064), in D dimensions and with B branches.
+//!
+//! The linear peridynamic solid of [`Solid`], whose shear relaxes: `G(t) = G (1 − Σ λ_b + Σ λ_b e^(−t/τ_b))`. A bond keeps the
+//! deviatoric extension e^d = e − θ|ξ|/n of the last step and a back extension of each branch,
+//! `q̇_b = (e^d − q_b)/τ_b`, integrated exactly for an e^d that is linear over the step.
+//! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`.
+
+use super::{Along, Bond, Columns, End, Material, Site};
+use crate::columns::{Declaration, Dimension};
+use crate::law::number::Number;
+use crate::law::solid::eam_like::Solid;
+use std::borrow::Cow;
+
+/// Constants of one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViscoelasticConstants {
+    pub solid: Solid,
+    /// `(λ_b, τ_b)`: part of the shear modulus that relaxes, and its time.
+    pub branches: Vec<(f64, f64)>,
+}
+
+/// See the module; materials have up to B branches.
+#[derive(Debug, Clone)]
+pub struct Viscoelastic<const B: usize> {
+    /// Per material.
+    pub materials: Vec<ViscoelasticConstants>,
+}
+
+/// n²κ, β.
+const BULK: usize = 0;
+const BETA: usize = 1;
+
+/// Numbers of a point: nκθ/m, β/m, θ/n.
+const P: usize = 0;
+const ALPHA: usize = 1;
+const MEAN: usize = 2;
+
+/// A branch: part λ; what a back extension keeps over the step, `d = e^(−Δt/τ)`; and its growth per growth of e^d,
+/// `1 − (1 − d) τ/Δt`.
+type Branch<N> = [N; 3];
+type Constants<N, const B: usize> = ([N; 2], [Branch<N>; B]);
+/// e^d at the end of the last step, back extensions.
+type Memory<N, const B: usize> = (N, [N; B]);
+
+impl<const B: usize> Viscoelastic<B> {
+    /// e^d now, and the back extensions at the end of the step.
+    #[inline(always)]
+    fn next<N: Number, const D: usize>(
+        bond: &Bond<N, D>,
+        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
+    ) -> Memory<N, B> {
+        let (before, mut back) = *end.memory;
+        let now = bond.extension() - end.point[MEAN] * bond.length;
+        for b in 0..B {
+            let [_, keeps, grows] = end.constants.1[b];
+            // before + d (q − before) + growth
+            back[b] = grows.fma(now - before, keeps.fma(back[b] - before, before));
+        }
+        (now, back)
+    }
+}
+
+/// Of `1 − (1 − e^(−x))/x`, without cancellation where x is small.
+fn growth(x: f64) -> f64 {
+    if x > 1e-3 {
+        1.0 + (-x).exp_m1() / x
+    } else {
+        x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x / 120.0)))
+    }
+}
+
+impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
+    type Constants<N: Number> = Constants<N, B>;
+    /// 1/m
+    type Form<N: Number> = N;
+    type Sum<N: Number> = N;
+    type Point<N: Number> = [N; 3];
+    type Past<N: Number> = [N; 0];
+    type Memory<N: Number> = Memory<N, B>;
+    type State<N: Number> = Along<N>;
+    const PASSES: usize = 1;
+
+    fn columns(&self) -> Columns {
+        let mut memory = vec![Declaration::of_bonds(
+            "deviatoric_extension",
+            Dimension::LENGTH,
+            "Deviatoric part e^d of the extension of a bond at the end of the last step.",
+        )];
+        memory.extend((1..=B).map(|b| Declaration {
+            name: Cow::Owned(format!("back_extension_{b}")),
+            ..Declaration::of_bonds(
+                "",
+                Dimension::LENGTH,
+                "Back extension q of a branch, which follows e^d (Mitchell 2011).",
+            )
+        }));
+        Columns {
+            memory,
+            ..Columns::default()
+        }
+    }
+
+    fn constants(&self, material: usize, dt: f64) -> Constants<f64, B> {
+        let m = &self.materials[material];
+        let n = m.solid.n;
+        let branch = |(part, time): &(f64, f64)| {
+            let x = dt / time;
+            [*part, (-x).exp(), growth(x)]
+        };
+        let none = [0.0, 1.0, 0.0];
+        (
+            [n * n * m.solid.kappa, m.solid.beta],
+            std::array::from_fn(|b| m.branches.get(b).map_or(none, branch)),
+        )
+    }
+
+    fn form(&self, _: usize, shape: [[f64; D]; D]) -> f64 {
+        super::inverse_weight(&shape)
+    }
+
+    #[inline(always)]
+    fn share<N: Number>(
+        &self,
+        _: usize,
+        bond: &Bond<N, D>,
+        _: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
+    ) -> N {
+        bond.omega * bond.length * bond.extension()
+    }
+
+    #[inline(always)]
+    fn settle<N: Number>(
+        &self,
+        _: usize,
+        site: &Site<Constants<N, B>, N, [N; 0]>,
+        sum: N,
+        point: &mut [N; 3],
+    ) {
+        let (c, per_m) = (site.constants.0, *site.form);
+        point[MEAN] = per_m * sum;
+        point[P] = c[BULK] * per_m * point[MEAN];
+        point[ALPHA] = c[BETA] * per_m;
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(
+        &self,
+        bond: &Bond<N, D>,
+        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
+    ) -> Along<N> {
+        let (_, back) = Self::next(bond, end);
+        let mut e = bond.extension();
+        for b in 0..B {
+            e = e - end.constants.1[b][0] * back[b];
+        }
+        let t = end.point[ALPHA].fma(e, end.point[P] * bond.length);
+        Along(bond.omega * t * bond.inv_current())
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(
+        &self,
+        bond: &Bond<N, D>,
+        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
+    ) -> N {
+        let (_, back) = Self::next(bond, end);
+        let e = bond.extension();
+        let (mut lasting, mut sum) = (N::constant(1.0), N::constant(0.0));
+        for b in 0..B {
+            let part = end.constants.1[b][0];
+            lasting = lasting - part;
+            let branch = e - back[b];
+            sum = (part * branch).fma(branch, sum);
+        }
+        sum = (lasting * e).fma(e, sum);
+        N::constant(0.5) * end.point[ALPHA] * bond.omega * sum
+    }
+
+    #[inline(always)]
+    fn point_energy<N: Number>(
+        &self,
+        site: &Site<Constants<N, B>, N, [N; 0]>,
+        _: N,
+        point: &[N; 3],
+    ) -> N {
+        N::constant(0.5) * site.constants.0[BULK] * point[MEAN] * point[MEAN]
+    }
+
+    #[inline(always)]
+    fn advance<N: Number>(
+        &self,
+        bond: &Bond<N, D>,
+        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
+        memory: &mut Memory<N, B>,
+    ) -> N {
+        let (before, old) = *end.memory;
+        let (now, back) = Self::next(bond, end);
+        *memory = (now, back);
+        let mut sum = N::constant(0.0);
+        for b in 0..B {
+            let force = (before - old[b]) + (now - back[b]);
+            sum = (end.constants.1[b][0] * force).fma(back[b] - old[b], sum);
+        }
+        N::constant(0.5) * end.point[ALPHA] * bond.omega * sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::growth;
+
+    #[test]
+    fn growth_is_one_function_on_both_sides_of_its_border() {
+        for x in [1e-6f64, 1e-4, 0.9e-3, 1.1e-3, 0.1, 3.0, 50.0] {
+            // Σ (−x)^(k+1) / (k+2)! as far as it matters, or the closed form
+            let exact = if x < 0.5 {
+                let (mut term, mut sum) = (-1.0, 0.0);
+                for k in 1..20 {
+                    term *= -x / (k + 1) as f64;
+                    sum += term;
+                }
+                sum
+            } else {
+                1.0 - (1.0 - (-x).exp()) / x
+            };
+            assert!((growth(x) - exact).abs() <= 1e-13 * exact, "{x}");
+        }
+        assert_eq!(growth(0.0), 0.0);
+    }
+}
