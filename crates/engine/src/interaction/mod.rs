@@ -17,6 +17,7 @@ pub mod tangent;
 pub mod weight;
 
 use crate::body::{Body, Field};
+use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::Lane;
@@ -222,6 +223,18 @@ fn along<const D: usize>(gradient: &[[f64; D]; D], x: &[f64]) -> [f64; D] {
     gradient.map(|row| row.iter().zip(x).map(|(g, x)| g * x).sum())
 }
 
+/// A directed bond, and what it does to the point that it belongs to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondForce<const D: usize> {
+    /// Slots of points, images resolved.
+    pub i: usize,
+    pub j: usize,
+    /// From i to j now; of linear laws in the reference (length).
+    pub y: [f64; D],
+    /// What i gets from the bond: that of its own force state and that of its partner's (force / volume).
+    pub force: [f64; D],
+}
+
 /// A law on a family.
 pub trait Interaction<const D: usize>: Send + Sync {
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
@@ -354,6 +367,39 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
     fn in_family(&self, _body: &Body<D>, _i: usize, _j: usize) -> bool {
+        false
+    }
+
+    /// Columns that the law has of points and of bonds: what it remembers ([`Life::Persistent`](crate::columns::Life)) and what it
+    /// answers at the displacements of now ([`Life::Derived`](crate::columns::Life)). Names are those of the field, none twice.
+    fn columns(&self) -> Vec<Declaration> {
+        vec![]
+    }
+
+    /// Writes the values of one of its [columns](Interaction::columns) into `out`: [`stored`](crate::columns::Shape::stored)
+    /// numbers, of points for each slot of the body (0 where there is no point), of bonds for each directed bond of the reference
+    /// family in order of slots, broken ones too. Images of `u` must be fresh. False: there is no such column, and `out` is empty.
+    fn read_column(&self, _body: &Body<D>, _u: &Field<D>, _name: &str, out: &mut Vec<f64>) -> bool {
+        out.clear();
+        false
+    }
+
+    /// Sets a persistent column to values in the order in which [`read_column`](Interaction::read_column) gives them, after
+    /// [`prepare`](Interaction::prepare). False: there is no such column, it follows from others, or the number of values is
+    /// another; then nothing is changed.
+    fn write_column(&mut self, _body: &Body<D>, _name: &str, _values: &[f64]) -> bool {
+        false
+    }
+
+    /// Every directed bond that pulls or pushes at `u`, in order of slots, with the force density that its point gets from it: their
+    /// sum is that of [`forces`](Interaction::forces) without breaking. Repulsion inside the family counts. Images of `u` must be
+    /// fresh. False: the law has no forces of single bonds, and nothing is visited.
+    fn each_force(
+        &mut self,
+        _body: &Body<D>,
+        _u: &Field<D>,
+        _visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
         false
     }
 
