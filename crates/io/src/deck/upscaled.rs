@@ -176,13 +176,13 @@ fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec, factor: u32) {
         }
         Form::Morse(p) => {
             set("depth", plain(p.depth, energy));
-            set("alpha", plain(p.alpha, Dim([-1, 0, 0])));
+            set("alpha", plain(p.alpha, Dim::INVERSE_LENGTH));
             set("distance", plain(p.distance, length));
         }
         Form::Buckingham(p) => {
             set("strength", plain(p.strength, energy));
             set("range", plain(p.range, length));
-            set("dispersion", plain(p.dispersion, Dim([8, 1, -2])));
+            set("dispersion", plain(p.dispersion, Dim([8, 1, -2, 0])));
         }
         Form::Mei(p) => {
             let s = p.spec();

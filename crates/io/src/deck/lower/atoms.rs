@@ -49,7 +49,7 @@ pub(super) fn potential(
             Law::Morse(p) => (
                 Form::Morse(Morse {
                     depth: context.positive(&p.depth, Dim::ENERGY, "the depth")?,
-                    alpha: context.positive(&p.alpha, Dim([-1, 0, 0]), "α")?,
+                    alpha: context.positive(&p.alpha, Dim::INVERSE_LENGTH, "α")?,
                     distance: context.positive(&p.distance, Dim::LENGTH, "the distance")?,
                 }),
                 (&p.cutoff, p.end, &p.smooth_from),
@@ -58,7 +58,7 @@ pub(super) fn potential(
                 Form::Buckingham(Buckingham {
                     strength: context.positive(&p.strength, Dim::ENERGY, "the strength")?,
                     range: context.positive(&p.range, Dim::LENGTH, "the range")?,
-                    dispersion: context.finite(&p.dispersion, Dim([8, 1, -2]))?,
+                    dispersion: context.finite(&p.dispersion, Dim([8, 1, -2, 0]))?,
                 }),
                 (&p.cutoff, p.end, &p.smooth_from),
             ),
@@ -351,14 +351,8 @@ pub fn boltzmann(units: UnitSystem) -> f64 {
 }
 
 pub(super) fn thermal(context: &Context, thermal: &Thermal) -> Result<ThermalSpec> {
-    let mut number = thermal.temperature.clone();
-    if let Written::Text(text) = &number.value
-        && let Some(kelvin) = text.strip_suffix('K')
-        && context.units.has_units()
-    {
-        number.value = Written::Text(kelvin.trim().to_string());
-    }
-    let temperature = context.positive(&number, Dim::NUMBER, "the temperature")?;
+    let temperature =
+        context.positive(&thermal.temperature, Dim::TEMPERATURE, "the temperature")?;
     Ok(ThermalSpec {
         energy: boltzmann(context.units) * temperature,
         seed: thermal.seed,

@@ -128,7 +128,7 @@ impl<'a> Context<'a> {
         let found = kind.dim();
         let mut help = match units::factor_help(found, dim) {
             Some(help) if expression.as_constant().is_none() => help,
-            _ => dim.example().map_or("write it in other units".into(), |e| {
+            _ => units::example(dim).map_or("write it in other units".into(), |e| {
                 format!("write for example \"{e}\"")
             }),
         };

@@ -6,7 +6,7 @@
 //! Expressions without any unit are plain numbers, and not checked.
 
 use super::parse::prefix;
-use super::{Dim, UnitSystem};
+use super::{Dim, UnitSystem, example, place};
 use peridyne::expression::{Measure, Misfit, Rule};
 use std::ops::Range;
 
@@ -74,7 +74,7 @@ impl Kind {
     fn dims(self) -> [Option<Dim>; 2] {
         let without = self
             .loose
-            .then(|| self.dim.plus(self.natural, -1))
+            .then(|| self.dim.times(self.natural, -1))
             .flatten();
         [Some(self.dim), without]
     }
@@ -95,7 +95,7 @@ impl Kind {
 
     fn power(self, exponent: f64) -> Option<Kind> {
         let power = |dim: Dim| {
-            let mut out = [0; 3];
+            let mut out = [0; 4];
             for (o, d) in out.iter_mut().zip(dim.0) {
                 let e = f64::from(d) * exponent;
                 if e.fract() != 0.0 || e.abs() > 100.0 {
@@ -152,7 +152,7 @@ impl Dimensions<'_> {
             if self.strict && !any.zero && self.units.plain_factor(other.dim) != 1.0 {
                 return Err(misfit(
                     format!("`{name}` has {} and a number without unit", other.dim),
-                    format!("write its unit, too: {}", other.dim.example().unwrap_or("")),
+                    format!("write its unit, too: {}", example(other.dim).unwrap_or("")),
                 ));
             }
             return Ok(Kind { unit, ..other });
@@ -202,19 +202,19 @@ fn pure(of: &[Kind]) -> Kind {
 
 /// What to do with `found` to get `wanted`, if it is simple.
 pub fn factor_help(found: Dim, wanted: Dim) -> Option<String> {
-    let below = found.plus(wanted, -1)?;
-    let factor = wanted.plus(found, -1)?;
+    let below = found.times(wanted, -1)?;
+    let factor = wanted.times(found, -1)?;
     if below == Dim::NUMBER {
         return None;
     }
     // the more usual of both: a length rather than an inverse length
-    match (below.place(), factor.place()) {
+    match (place(below), place(factor)) {
         (Some(b), f) if f.is_none_or(|f| b < f) => {
-            let example = below.example()?;
+            let example = example(below)?;
             Some(format!("divide by {below}, for example `/ ({example})`"))
         }
         (_, Some(_)) => {
-            let example = factor.example()?;
+            let example = example(factor)?;
             Some(format!("multiply by {factor}, for example `* {example}`"))
         }
         _ => None,
@@ -298,8 +298,8 @@ impl Measure for Dimensions<'_> {
                 let divides =
                     rule == Rule::Quotient && b.bare && !b.unit && b.natural == Dim::NUMBER;
                 Ok(Kind {
-                    dim: a.dim.plus(b.dim, sign).ok_or_else(too_large)?,
-                    natural: a.natural.plus(b.natural, sign).ok_or_else(too_large)?,
+                    dim: a.dim.times(b.dim, sign).ok_or_else(too_large)?,
+                    natural: a.natural.times(b.natural, sign).ok_or_else(too_large)?,
                     unit: a.unit || b.unit,
                     bare: a.bare || b.bare,
                     loose: a.loose

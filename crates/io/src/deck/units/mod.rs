@@ -11,121 +11,44 @@ pub(in crate::deck) use write::short;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use std::fmt;
 
-/// Exponents of length, mass and time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dim(pub [i8; 3]);
+/// What a number measures: the engine's word for it.
+pub use peridyne::columns::Dimension as Dim;
 
-impl Dim {
-    pub const NUMBER: Dim = Dim([0, 0, 0]);
-    pub const LENGTH: Dim = Dim([1, 0, 0]);
-    pub const AREA: Dim = Dim([2, 0, 0]);
-    pub const VOLUME: Dim = Dim([3, 0, 0]);
-    pub const MASS: Dim = Dim([0, 1, 0]);
-    pub const TIME: Dim = Dim([0, 0, 1]);
-    pub const VELOCITY: Dim = Dim([1, 0, -1]);
-    pub const DENSITY: Dim = Dim([-3, 1, 0]);
-    pub const FORCE: Dim = Dim([1, 1, -2]);
-    pub const ENERGY: Dim = Dim([2, 1, -2]);
-    pub const PRESSURE: Dim = Dim([-1, 1, -2]);
-    pub const FRACTURE_ENERGY: Dim = Dim([0, 1, -2]);
-    pub const FORCE_DENSITY: Dim = Dim([-2, 1, -2]);
-    pub const MICROMODULUS: Dim = Dim([-5, 1, -2]);
-    pub const CONTACT_STIFFNESS: Dim = Dim([-6, 1, -2]);
-    pub const INDENTER_STIFFNESS: Dim = Dim([-4, 1, -2]);
-    pub const DAMPING: Dim = Dim([-3, 1, -1]);
+/// How one would write a quantity of a kind.
+const EXAMPLES: &[(Dim, &str)] = &[
+    (Dim::NUMBER, "0.25"),
+    (Dim::LENGTH, "0.5 mm"),
+    (Dim::AREA, "2 mm^2"),
+    (Dim::VOLUME, "1 mm^3"),
+    (Dim::MASS, "2 kg"),
+    (Dim::TIME, "20 us"),
+    (Dim::TEMPERATURE, "300 K"),
+    (Dim::VELOCITY, "100 m/s"),
+    (Dim::ACCELERATION, "9.81 m/s^2"),
+    (Dim::INVERSE_LENGTH, "1.4/mm"),
+    (Dim::FREQUENCY, "1 kHz"),
+    (Dim::DENSITY, "2200 kg/m^3"),
+    (Dim::FORCE, "10 N"),
+    (Dim::ENERGY, "1 J"),
+    (Dim::POWER, "1 W"),
+    (Dim::PRESSURE, "14.9 GPa"),
+    (Dim::FRACTURE_ENERGY, "10 J/m^2"),
+    (Dim::FORCE_DENSITY, "1e6 N/m^3"),
+    (Dim::MICROMODULUS, "1.6e22 N/m^6"),
+    (Dim::CONTACT_STIFFNESS, "1e26 N/m^7"),
+    (Dim::INDENTER_STIFFNESS, "1e17 N/m^5"),
+    (Dim::DAMPING, "1e6 kg/m^3/s"),
+];
 
-    /// What it is called and how one would write it.
-    const NAMES: &[(Dim, &str, &str)] = &[
-        (Dim::NUMBER, "a plain number", "0.25"),
-        (Dim::LENGTH, "a length", "0.5 mm"),
-        (Dim::AREA, "an area", "2 mm^2"),
-        (Dim::VOLUME, "a volume", "1 mm^3"),
-        (Dim::MASS, "a mass", "2 kg"),
-        (Dim::TIME, "a time", "20 us"),
-        (Dim::VELOCITY, "a velocity", "100 m/s"),
-        (Dim([1, 0, -2]), "an acceleration", "9.81 m/s^2"),
-        (Dim([-1, 0, 0]), "an inverse length", "1.4/mm"),
-        (Dim([0, 0, -1]), "a frequency", "1 kHz"),
-        (Dim::DENSITY, "a density", "2200 kg/m^3"),
-        (Dim::FORCE, "a force", "10 N"),
-        (Dim::ENERGY, "an energy", "1 J"),
-        (Dim([2, 1, -3]), "a power", "1 W"),
-        (Dim::PRESSURE, "a pressure", "14.9 GPa"),
-        (Dim::FRACTURE_ENERGY, "an energy per area", "10 J/m^2"),
-        (Dim::FORCE_DENSITY, "a force per volume", "1e6 N/m^3"),
-        (
-            Dim::MICROMODULUS,
-            "a micromodulus (force per volume squared)",
-            "1.6e22 N/m^6",
-        ),
-        (
-            Dim::CONTACT_STIFFNESS,
-            "a contact stiffness (force per volume squared and length)",
-            "1e26 N/m^7",
-        ),
-        (
-            Dim::INDENTER_STIFFNESS,
-            "an indenter stiffness (force per volume and area)",
-            "1e17 N/m^5",
-        ),
-        (
-            Dim::DAMPING,
-            "a damping (mass per volume and time)",
-            "1e6 kg/m^3/s",
-        ),
-    ];
-
-    /// How usual it is: its place among those with names.
-    fn place(self) -> Option<usize> {
-        Dim::NAMES.iter().position(|n| n.0 == self)
-    }
-
-    pub fn example(self) -> Option<&'static str> {
-        Dim::NAMES.iter().find(|n| n.0 == self).map(|n| n.2)
-    }
-
-    fn plus(self, other: Dim, times: i8) -> Option<Dim> {
-        let mut sum = self.0;
-        for (s, o) in sum.iter_mut().zip(other.0) {
-            *s = s.checked_add(o.checked_mul(times)?)?;
-        }
-        Some(Dim(sum))
-    }
+/// How one would write a quantity of this dimension, if it is a usual one.
+pub fn example(dim: Dim) -> Option<&'static str> {
+    EXAMPLES.iter().find(|n| n.0 == dim).map(|n| n.1)
 }
 
-impl fmt::Display for Dim {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match Dim::NAMES.iter().find(|n| n.0 == *self) {
-            Some((_, name, _)) => f.write_str(name),
-            None => {
-                let near = [
-                    (Dim::TIME, 1),
-                    (Dim::TIME, -1),
-                    (Dim::LENGTH, 1),
-                    (Dim::LENGTH, -1),
-                ];
-                // a pressure times a time, a mass per length
-                let named = near.into_iter().find_map(|(part, power)| {
-                    let rest = self.plus(part, -power)?;
-                    let name = Dim::NAMES
-                        .iter()
-                        .find(|n| n.0 == rest && rest != Dim::NUMBER)?
-                        .1;
-                    Some((name, if power > 0 { "times" } else { "over" }, part))
-                });
-                match named {
-                    Some((name, how, part)) => write!(f, "{name} {how} {part}"),
-                    None => write!(
-                        f,
-                        "a quantity in m^{} kg^{} s^{}",
-                        self.0[0], self.0[1], self.0[2]
-                    ),
-                }
-            }
-        }
-    }
+/// How usual a dimension is: its place among those with examples.
+fn place(dim: Dim) -> Option<usize> {
+    EXAMPLES.iter().position(|n| n.0 == dim)
 }
 
 /// What plain numbers of a deck mean.
@@ -208,7 +131,7 @@ impl UnitSystem {
         match self {
             // powers of one number each, so that an energy is one eV to the last digit
             UnitSystem::Metal(_) => {
-                let [length, mass, time] = dim.0.map(i32::from);
+                let [length, mass, time, _] = dim.0.map(i32::from);
                 EV.powi(mass) * 1e-10f64.powi(length - 2 * mass) * 1e-12f64.powi(time + 2 * mass)
             }
             UnitSystem::Si | UnitSystem::Lj | UnitSystem::None => 1.0,
@@ -296,6 +219,8 @@ mod tests {
         is("5 %", 0.05, Dim::NUMBER);
         is("1e17 N/m^5", 1e17, Dim::INDENTER_STIFFNESS);
         is("1e6 kg/m^3/s", 1e6, Dim::DAMPING);
+        is("300 K", 300.0, Dim::TEMPERATURE);
+        is("12e-6 K^-1", 12e-6, Dim([0, 0, 0, -1]));
     }
 
     #[test]

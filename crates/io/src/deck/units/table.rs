@@ -28,7 +28,7 @@ impl Unit {
     }
 
     pub(super) fn power(self, power: i8) -> Option<Unit> {
-        let dim = Dim::NUMBER.plus(self.dim, power)?;
+        let dim = Dim::NUMBER.times(self.dim, power)?;
         Some(Unit {
             scale: self.scale.powi(i32::from(power)),
             ten: self.ten * i32::from(power),
@@ -40,7 +40,7 @@ impl Unit {
         Some(Unit {
             scale: self.scale * other.scale,
             ten: self.ten.checked_add(other.ten)?,
-            dim: self.dim.plus(other.dim, 1)?,
+            dim: self.dim.times(other.dim, 1)?,
         })
     }
 }
@@ -53,9 +53,10 @@ const PREFIXED: &[(&str, Unit)] = &[
     ("N", Unit::new(1.0, 0, Dim::FORCE)),
     ("Pa", Unit::new(1.0, 0, Dim::PRESSURE)),
     ("J", Unit::new(1.0, 0, Dim::ENERGY)),
-    ("W", Unit::new(1.0, 0, Dim([2, 1, -3]))),
-    ("Hz", Unit::new(1.0, 0, Dim([0, 0, -1]))),
+    ("W", Unit::new(1.0, 0, Dim::POWER)),
+    ("Hz", Unit::new(1.0, 0, Dim::FREQUENCY)),
     ("eV", Unit::new(1.602176634, -19, Dim::ENERGY)),
+    ("K", Unit::new(1.0, 0, Dim::TEMPERATURE)),
     ("bar", Unit::new(1.0, 5, Dim::PRESSURE)),
 ];
 
@@ -122,7 +123,7 @@ pub(super) fn unknown(name: &str) -> String {
     match near {
         Some(near) => format!("unknown unit `{name}`, did you mean `{near}`?"),
         None => format!(
-            "unknown unit `{name}`; known are m, g, s, N, Pa, J, W, Hz, eV, bar with prefixes f to T, and Å, inch, min, h, t, u, mol, l, atm, psi, %"
+            "unknown unit `{name}`; known are m, g, s, N, Pa, J, W, Hz, eV, K, bar with prefixes f to T, and Å, inch, min, h, t, u, mol, l, atm, psi, %"
         ),
     }
 }
