@@ -1,6 +1,6 @@
 //! The bar of the examples: length 1, v = 0.005, and its coarse levels.
 
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use peridyne_theory::coarsen::lattice::LatticeBlock;
 use peridyne_theory::coarsen::{Options, Radius, Scheme, Selection, Volume, coarsen, schur};
 

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use peridyne::statics::{Direct, LinearBody, Support};
+use peridyne::spec::LinearBody;
+use peridyne::statics::{Direct, Support};
 use peridyne_theory::coarsen::{Options, Report, Selection, coarsen};
 
 use crate::Failure;

@@ -3,8 +3,7 @@
 use peridyne::law::potential::{Potential, Visitor};
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::BodySpec;
-use peridyne::statics::LinearBody;
+use peridyne::spec::{BodySpec, LinearBody};
 use peridyne_io::deck::Deck;
 use peridyne_theory::coarsen::Selection;
 use peridyne_theory::crystal::Reach;
@@ -108,8 +107,7 @@ pub fn spacing_without_pressure<const D: usize>(deck: &Deck) -> Result<(f64, f64
     };
     let found = deck
         .spec
-        .potential
-        .as_ref()
+        .potential()
         .and_then(|p| p.apply(Spacing::<D>(*kind, *spacing)));
     let found = found.ok_or_else(|| Failure::new("no spacing without pressure"))?;
     Ok((*spacing, found))

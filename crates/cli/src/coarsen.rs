@@ -7,8 +7,8 @@ use crate::run::with_threads;
 use crate::side_by_side::{compare, run, save};
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
-use peridyne::spec::{ConditionKind, Method, TimeStep};
-use peridyne::statics::{AnyLinearBody, Carriers, LinearBody, SYMMETRIC};
+use peridyne::spec::{AnyLinearBody, Carriers, ConditionKind, LinearBody, Method, TimeStep};
+use peridyne::statics::SYMMETRIC;
 use peridyne_io::deck::Deck;
 use peridyne_io::deck::coarsened::coarsened;
 use peridyne_io::deck::upscaled::{Rewritten, copied};
@@ -122,7 +122,7 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         let name = name.map_or("deck".into(), |n| n.to_string_lossy());
         Path::new("out").join(format!("{name}-coarsened"))
     });
-    let relaxed = match spec.potential {
+    let relaxed = match spec.potential() {
         None => None,
         Some(_) => Some(relaxed(sim.as_mut(), deck)?),
     };

@@ -6,8 +6,7 @@ use crate::failure::{Failure, note, say};
 use crate::progress::Terminal;
 use crate::script;
 use crate::signals;
-use peridyne::error::BuildError;
-use peridyne::execute::memory::size;
+use peridyne::error::{BuildError, size};
 use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne_io::deck::{Deck, Dim, FieldName, UnitSystem};
 use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
@@ -213,7 +212,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
         },
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),
-        atoms: deck.spec.potential.as_ref().map(|_| {
+        atoms: deck.spec.potential().map(|_| {
             let (temperature_unit, pressure_unit) = match deck.units {
                 UnitSystem::Si => ("K", "Pa"),
                 UnitSystem::Metal(_) => ("K", "bar"),

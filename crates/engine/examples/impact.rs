@@ -20,8 +20,6 @@ fn main() {
     }
     let e = |s: &str| Expression::parse(s, &[]).unwrap();
     let spec = Spec {
-        potential: None,
-        micromoduli: None,
         thermal: None,
         title: "impact".into(),
         dimension: 3,

@@ -55,12 +55,15 @@ const CONTACT: ContactSpec = ContactSpec {
     stiffness: ContactStiffness::Laws,
 };
 
+/// Until the materials are given.
+const SPRINGS: LawSpec = LawSpec::Springs(PmbStiffness::Young(1.0));
+
 /// A small square that flies into a larger, coarser one of another material.
 fn collision(fraction: f64) -> Spec {
     let ball = block(LatticeKind::Square, 0.8, [3.1, 9.3, 0.0], [7.2, 12.6, 0.0]);
     let plate = block(LatticeKind::Square, 1.0, [0.0; 3], [11.0, 7.0, 0.0]);
     let pieces = vec![piece("ball", ball, true), piece("plate", plate, true)];
-    let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, LawSpec::Atoms);
+    let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, SPRINGS);
     spec.sets = vec![within("ball"), within("plate")];
     spec.materials = vec![material("ball", 2.0, 300.0), material("plate", 1.0, 100.0)];
     spec.horizon = Horizon::Length(2.5);
@@ -438,7 +441,7 @@ fn steel_on_epoxy() -> Spec {
     );
     let plate = block(LatticeKind::Cubic, h, [0.0; 3], [9e-3, 9e-3, 3e-3]);
     let pieces = vec![piece("steel", ball, true), piece("epoxy", plate, true)];
-    let mut spec = Spec::new(3, BodySpec::Several(pieces), 1.0, LawSpec::Atoms);
+    let mut spec = Spec::new(3, BodySpec::Several(pieces), 1.0, SPRINGS);
     spec.sets = vec![within("steel"), within("epoxy")];
     spec.materials = vec![
         material("steel", 7800.0, 200e9),

@@ -138,8 +138,8 @@ fn methods_agree_where_strains_are_small() {
         poisson: 0.2,
     });
     for d in [2, 3] {
-        for law in [LawSpec::Pmb(PmbStiffness::Young(2.0)), lps] {
-            let spec = clamped(d, law, 1e-9);
+        for law in [LawSpec::Pmb(PmbStiffness::Young(2.0)), lps.clone()] {
+            let spec = clamped(d, law.clone(), 1e-9);
             let reference =
                 solved(&with(&spec, Method::Linear, Solver::Direct, 1e-12)).displacements();
             for (method, solver, tolerance, apart) in [

@@ -4,10 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use peridyne::error::RunError;
+use peridyne::error::{RunError, SolveError};
 use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::{Simulation, SnapshotOptions};
-use peridyne::statics::{AnyLinearBody, SolveError};
+use peridyne::spec::AnyLinearBody;
 
 use crate::balance::BalanceWatch;
 use crate::read::{Atoms, Species};

@@ -22,14 +22,18 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
         poisson: f64::NAN,
     };
     // springs are the bond-based solid at small strains
-    let law = match *law {
-        LawSpec::Springs(s) => LawSpec::Pmb(s),
+    let springs;
+    let law = match law {
+        LawSpec::Springs(s) => {
+            springs = LawSpec::Pmb(*s);
+            &springs
+        }
         other => other,
     };
     match (law, dimension, plane) {
-        (LawSpec::Pmb(PmbStiffness::Young(e)), ..) => Some(bond_based(e)),
-        (LawSpec::Pmb(PmbStiffness::Bulk(k)), 1, _) => Some(bar(k)),
-        (LawSpec::Pmb(PmbStiffness::Bulk(k)), 2, Plane::Stress) => Some(bond_based(k)),
+        (LawSpec::Pmb(PmbStiffness::Young(e)), ..) => Some(bond_based(*e)),
+        (LawSpec::Pmb(PmbStiffness::Bulk(k)), 1, _) => Some(bar(*k)),
+        (LawSpec::Pmb(PmbStiffness::Bulk(k)), 2, Plane::Stress) => Some(bond_based(*k)),
         (LawSpec::Pmb(PmbStiffness::Bulk(k)), ..) => Some(bond_based(1.5 * k)),
         (LawSpec::Pmb(PmbStiffness::Micromodulus(c)), ..) => {
             let shear = c * moments.first / (2.0 * d * (d + 2.0));
@@ -40,8 +44,8 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
             }))
         }
         (LawSpec::Lps(m), 1, _) => Some(bar(m.young)),
-        (LawSpec::Lps(m), ..) => Some(m),
-        (LawSpec::LpsAsTyped { bulk, shear }, 3, _) => Some(Moduli::from_bulk_shear(bulk, shear)),
+        (LawSpec::Lps(m), ..) => Some(*m),
+        (LawSpec::LpsAsTyped { bulk, shear }, 3, _) => Some(Moduli::from_bulk_shear(*bulk, *shear)),
         (LawSpec::EamLike { pair, volume }, 3, _) => {
             let shear = pair / 30.0;
             let bulk = volume / 3.0 + 5.0 / 3.0 * shear;
@@ -51,8 +55,8 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
             LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Springs(_)
-            | LawSpec::Atoms
-            | LawSpec::Micromoduli,
+            | LawSpec::Atoms(_)
+            | LawSpec::Micromoduli(_),
             ..,
         ) => None,
     }

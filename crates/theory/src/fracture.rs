@@ -53,8 +53,8 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
         LawSpec::LpsAsTyped { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
-        | LawSpec::Atoms
-        | LawSpec::Micromoduli => None,
+        | LawSpec::Atoms(_)
+        | LawSpec::Micromoduli(_) => None,
     }
 }
 

@@ -11,7 +11,7 @@
 use crate::convergence::Kind;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
-use peridyne::spec::{BodySpec, Horizon, LawSpec, Spec};
+use peridyne::spec::{BodySpec, Horizon, Spec};
 
 /// Why a body has no finer levels.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -51,7 +51,7 @@ pub fn refine(spec: &Spec, kind: Kind, level: u32) -> Result<Spec, RefineError> 
     if spec.thermal.is_some() {
         return Err(RefineError::Thermal);
     }
-    if spec.potential.is_some() || spec.materials.iter().any(|m| m.law == LawSpec::Atoms) {
+    if spec.potential().is_some() {
         return Err(RefineError::Atoms);
     }
     let BodySpec::Lattice {
@@ -181,7 +181,7 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::spec::PmbStiffness;
+    use peridyne::spec::{End, Form, LawSpec, LennardJones, PmbStiffness, PotentialSpec};
 
     fn bar(low: f64, high: f64, periodic: bool) -> Spec {
         let mut spec = Spec::new(
@@ -283,7 +283,14 @@ mod tests {
         told(&cloud, Kind::M, 1, "only an unperturbed lattice body");
         told(&spec, Kind::M, 40, "fewer levels");
         let mut atoms = spec.clone();
-        atoms.materials[0].law = LawSpec::Atoms;
+        atoms.materials[0].law = LawSpec::Atoms(PotentialSpec {
+            form: Form::LennardJones(LennardJones {
+                epsilon: 1.0,
+                sigma: 1.0,
+            }),
+            cutoff: 2.5,
+            end: End::Shifted,
+        });
         told(&atoms, Kind::M, 1, "peridyne upscale");
         told(&bar(0.0, f64::INFINITY, true), Kind::M, 1, "whole cells");
     }

@@ -15,7 +15,7 @@ use crate::stiffness::Stiffness;
 use crate::upscale::{UpscaleError, crystal, lattice};
 use peridyne::law::micromodulus::Moments;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{LawSpec, Moduli, Spec};
+use peridyne::spec::{Moduli, Spec};
 use std::f64::consts::PI;
 
 /// One wave of one branch.
@@ -163,11 +163,7 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64, terms: usize) -> Result<Surve
         solid.section = section;
         Moments::continuum(D, solid.delta(), section, spec.influence)
     };
-    let law = match spec.materials[0].law {
-        LawSpec::Springs(s) => LawSpec::Pmb(s),
-        law => law,
-    };
-    let asked = asked(&law, D, spec.plane, moments);
+    let asked = asked(&spec.materials[0].law, D, spec.plane, moments);
     let instability = crystal.instability(per_axis);
     let mut growing: Vec<Growing> = vec![];
     if let Some(worst) = &instability {
@@ -414,7 +410,7 @@ fn directions<const D: usize>(
 mod tests {
     use super::*;
     use peridyne::space::region::Region;
-    use peridyne::spec::{BodySpec, Horizon, PmbStiffness};
+    use peridyne::spec::{BodySpec, Horizon, LawSpec, PmbStiffness};
 
     fn spec(kind: LatticeKind, law: LawSpec, m: u32) -> Spec {
         let mut spec = Spec::new(
@@ -437,7 +433,7 @@ mod tests {
     #[test]
     fn springs_of_one_neighbour_are_the_textbook_chain() {
         let law = LawSpec::Springs(PmbStiffness::Young(8.0));
-        let found = survey(&spec(LatticeKind::Chain, law, 1), 0.2, TERMS).unwrap();
+        let found = survey(&spec(LatticeKind::Chain, law.clone(), 1), 0.2, TERMS).unwrap();
         // c = 2, ω_max = 2c/a = 8; at the edge sin(ω Δt/2) = ω Δt/2 of the wave
         assert!((found.sharp - 0.25).abs() < 1e-14);
         let edge = found.path.last().unwrap();

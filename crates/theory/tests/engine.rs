@@ -62,8 +62,6 @@ fn case(
         periodic[a] = Some(H * kind.edges()[a] * cells[a] as f64);
     }
     let spec = Spec {
-        potential: None,
-        micromoduli: None,
         thermal: None,
         title: String::new(),
         dimension: d,
@@ -124,10 +122,10 @@ fn site(kind: LatticeKind, x: [f64; 3]) -> usize {
 fn compare<const D: usize>(kind: LatticeKind, ratio: u32, cells: [usize; 3], wave: [f64; D]) {
     for (law, influence) in laws() {
         let name = format!("{kind:?} {law:?}");
-        let case = case(kind, ratio, cells, law, influence);
+        let case = case(kind, ratio, cells, law.clone(), influence);
         let crystal: Crystal<D> = case
             .solid
-            .of_law(law, Plane::Stress, Calibration::Discrete)
+            .of_law(&law, Plane::Stress, Calibration::Discrete)
             .unwrap();
         let mut sim = build(&case.spec, Options::default()).unwrap();
         forces(sim.as_mut(), &crystal, kind, &case, wave, &name);

@@ -9,8 +9,8 @@ use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
+use peridyne::spec::AnyLinearBody;
 use peridyne::spec::*;
-use peridyne::statics::AnyLinearBody;
 use peridyne_theory::homogenize::surface::{correct, renew};
 
 const H: f64 = 0.5;
@@ -104,7 +104,7 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
         bonds.push((r, o.map(|x| x / r), weight));
     }
     let tension: Box<dyn Fn(f64, f64) -> f64> =
-        match Solid::of_law(d, spec.plane, spec.materials[0].law) {
+        match Solid::of_law(d, spec.plane, &spec.materials[0].law) {
             Some(solid) => {
                 let m: f64 = bonds.iter().map(|(r, _, w)| w * r * r).sum();
                 let theta: f64 = (0..3).map(|a| strain[a][a]).sum();
@@ -299,35 +299,40 @@ fn total(l: &Ledger) -> f64 {
 fn worn() -> Vec<(Spec, Vec<Point>)> {
     let pmb = LawSpec::Pmb(PmbStiffness::Young(3.0));
     let (plate, block) = ((2, [21, 13, 1]), (3, [11, 8, 9]));
-    [(plate, pmb), (block, pmb), (plate, LPS), (block, LPS)]
-        .into_iter()
-        .map(|((d, n), law)| {
-            let mut spec = body(d, &points(n), 2);
-            spec.materials[0].law = law;
-            let mut spec = with(spec, SurfaceMethod::Exact);
-            spec.materials[0].fracture = Some(FractureSpec {
-                criterion: Criterion::Stretch(0.06),
-                alpha: 0.25,
-            });
-            spec.contact = Some(ContactSpec {
-                bonded: 0.9,
-                free: 1.35,
-                stiffness: ContactStiffness::Laws,
-            });
-            let mut seed = 7u64;
-            let mut random = move || {
-                seed = seed
-                    .wrapping_mul(6364136223846793005)
-                    .wrapping_add(1442695040888963407);
-                (seed >> 33) as f64 / (1u64 << 31) as f64 - 0.5
-            };
-            let count = n.iter().product::<i32>() as usize;
-            let u = (0..count)
-                .map(|_| std::array::from_fn(|a| if a < d { 0.2 * H * random() } else { 0.0 }))
-                .collect();
-            (spec, u)
-        })
-        .collect()
+    [
+        (plate, pmb.clone()),
+        (block, pmb),
+        (plate, LPS),
+        (block, LPS),
+    ]
+    .into_iter()
+    .map(|((d, n), law)| {
+        let mut spec = body(d, &points(n), 2);
+        spec.materials[0].law = law;
+        let mut spec = with(spec, SurfaceMethod::Exact);
+        spec.materials[0].fracture = Some(FractureSpec {
+            criterion: Criterion::Stretch(0.06),
+            alpha: 0.25,
+        });
+        spec.contact = Some(ContactSpec {
+            bonded: 0.9,
+            free: 1.35,
+            stiffness: ContactStiffness::Laws,
+        });
+        let mut seed = 7u64;
+        let mut random = move || {
+            seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (seed >> 33) as f64 / (1u64 << 31) as f64 - 0.5
+        };
+        let count = n.iter().product::<i32>() as usize;
+        let u = (0..count)
+            .map(|_| std::array::from_fn(|a| if a < d { 0.2 * H * random() } else { 0.0 }))
+            .collect();
+        (spec, u)
+    })
+    .collect()
 }
 
 #[test]

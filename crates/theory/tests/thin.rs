@@ -3,8 +3,9 @@
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
+use peridyne::spec::LinearBody;
 use peridyne::spec::*;
-use peridyne::statics::{Direct, LinearBody, Support};
+use peridyne::statics::{Direct, Support};
 use peridyne_theory::elastic::patch_test;
 
 const YOUNG: f64 = 70.0;

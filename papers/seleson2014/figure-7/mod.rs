@@ -3,12 +3,11 @@
 mod states;
 mod structureless;
 
-use peridyne::law::potential::Form;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, FamilyChoice, Horizon, Influence, LawSpec, Moduli, PmbStiffness, Spec,
+    BodySpec, FamilyChoice, Form, Horizon, Influence, LawSpec, Moduli, PmbStiffness, Spec,
 };
 use peridyne_io::write::table::Table;
 
@@ -122,7 +121,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         ] {
             let solid = Solid::new(&bonds, omega, BULK, SHEAR);
             let lps = solid.lps(&u);
-            let typed = engine(&bonds, as_typed, influence, &u)?;
+            let typed = engine(&bonds, as_typed.clone(), influence, &u)?;
             worst[0] = largest([worst[0], relative(&solid.eam_like(&u), &lps)]);
             worst[1] = largest([worst[1], relative(&typed, &lps)]);
         }
@@ -195,12 +194,12 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         spec.sets.clear();
         spec.initial.clear();
         spec.conditions.clear();
-        let Some(Form::Mei(mei)) = spec.potential.as_ref().map(|p| &p.form) else {
+        let Some(Form::Mei(mei)) = spec.potential().map(|p| &p.form) else {
             return Err(Failure::new("the deck has another potential"));
         };
         let mut noise = Noise(3);
         let u: Vec<f64> = (0..points).map(|_| 0.08 * h * noise.next()).collect();
-        let by_hand = structureless::forces(mei.spec(), h, &u);
+        let by_hand = structureless::forces(mei, h, &u);
         let mut sim = build(&spec, Options::default()).map_err(|e| Failure::new(e.to_string()))?;
         let u: Vec<[f64; 3]> = u.iter().map(|u| [*u, 0.0, 0.0]).collect();
         worst = largest([worst, relative(&sim.forces_under(&u), &by_hand)]);

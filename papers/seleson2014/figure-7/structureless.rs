@@ -1,6 +1,6 @@
 //! The upscaled structureless EAM (3.4), (3.5) on a ring, with F′, f′ and φ′ differentiated by hand.
 
-use peridyne::law::potential::mei::MeiSpec;
+use peridyne::spec::MeiSpec;
 
 /// g and g′ of (3.9).
 fn cut(x: f64) -> [f64; 2] {

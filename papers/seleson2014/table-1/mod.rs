@@ -1,8 +1,9 @@
 //! Table 1: the constants of the embedded-atom chain, and what they imply.
 
+use peridyne::law::potential::Potential;
 use peridyne::law::potential::mei::Mei;
-use peridyne::law::potential::{Form, Potential, PotentialSpec};
 use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::{Form, PotentialSpec};
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 use peridyne_theory::crystal::Crystal;
@@ -20,9 +21,9 @@ experiment!(
     ["../chain.rs", "../figure-1/chain.toml"]
 );
 
-fn mei(potential: Option<&PotentialSpec>) -> Result<&Mei, Failure> {
+fn mei(potential: Option<&PotentialSpec>) -> Result<Mei, Failure> {
     match potential.map(|p| &p.form) {
-        Some(Form::Mei(mei)) => Ok(mei),
+        Some(Form::Mei(mei)) => Ok(Mei::new((**mei).clone())),
         _ => Err(Failure::new("the deck has another potential")),
     }
 }
@@ -37,10 +38,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let mut models = vec![];
     for h in [1.0, 2.0, 4.0] {
-        models.push((
-            h,
-            mei(parsed(h, Family::Chain)?.spec.potential.as_ref())?.clone(),
-        ));
+        models.push((h, mei(parsed(h, Family::Chain)?.spec.potential())?));
     }
     let (_, md) = &models[0];
     let s = md.spec();
@@ -121,7 +119,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     // σ = 2 in f, too: the first stretch below 1 at which there is no density
     let set = [("material.law.eam_form.density_length", "2".to_string())];
     let literal = deck(DECK, "chain.toml", &set)?;
-    let literal = mei(literal.spec.potential.as_ref())?.clone();
+    let literal = mei(literal.spec.potential())?;
     let density = |x: f64| -> f64 {
         (1..=5)
             .map(|m| 2.0 * literal.density((x * f64::from(m)).powi(2)))

@@ -69,7 +69,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         pair: k,
         volume: c / 3.0,
     };
-    let solid = Solid::of_law(2, Plane::Stress, law).ok_or_else(|| wrong(&"no solid"))?;
+    let solid = Solid::of_law(2, Plane::Stress, &law).ok_or_else(|| wrong(&"no solid"))?;
     let crystal = lattice.state_based::<2>(solid).map_err(|e| wrong(&e))?;
     // ½κ(3/2 tr ε)² + (β/2)(tr²ε + 2ε:ε)/8 = ½λ tr²ε + μ ε:ε with κ = c/9, β = k/2
     let (lambda, shear) = (c / 4.0 + k / 16.0, k / 16.0);

@@ -1,6 +1,6 @@
 //! A block of a fibre composite in three dimensions, coarsened 3 and 9 times.
 
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use peridyne_io::write::table::Table;
 use peridyne_theory::coarsen::lattice::LatticeBlock;
 use peridyne_theory::coarsen::{Options, Radius, Scheme};

@@ -1,6 +1,6 @@
 //! Plates: a fibre composite across its fibres, a random medium, a hole, a crack; coarsened 3 and 9 times.
 
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use peridyne_io::write::plot::{ColorMap, Map};
 use peridyne_io::write::table::Table;
 use peridyne_theory::coarsen::lattice::LatticeBlock;

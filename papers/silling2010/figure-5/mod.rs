@@ -1,6 +1,6 @@
 //! Fig. 5 (example 2): a bar of hard and soft stripes under end load, at three levels.
 
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 use peridyne_theory::coarsen::lattice::LatticeBlock;

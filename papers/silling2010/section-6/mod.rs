@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 use peridyne_theory::coarsen::lattice::LatticeBlock;

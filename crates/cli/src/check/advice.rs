@@ -23,7 +23,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     for warning in &info.warnings {
         say(warning.clone(), "");
     }
-    if let Some(potential) = &spec.potential {
+    if let Some(potential) = spec.potential() {
         atoms::advice(found, potential, &mut say);
         trial(found, &mut say);
         return all;
@@ -183,7 +183,7 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
                     }),
             };
             if off.abs() > 0.05 {
-                let fix = match (spec.calibration, spec.materials[n].law) {
+                let fix = match (spec.calibration, &spec.materials[n].law) {
                     (_, LawSpec::Pmb(peridyne::spec::PmbStiffness::Micromodulus(_))) => {
                         "give bulk or young instead of micromodulus: the constant is then calibrated to this body"
                     }

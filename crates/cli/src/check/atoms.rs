@@ -1,8 +1,7 @@
 //! What looks wrong with atoms: cut-off, stability, time step, temperature.
 
 use super::Findings;
-use peridyne::law::potential::PotentialSpec;
-use peridyne::spec::BodySpec;
+use peridyne::spec::{BodySpec, PotentialSpec};
 use peridyne_io::deck::Dim;
 use peridyne_theory::stiffness::components;
 

@@ -70,7 +70,7 @@ fn points(found: &Findings) -> String {
             units.write(info.mass, Dim::MASS)
         ),
     );
-    let atoms = found.spec.potential.is_some();
+    let atoms = found.spec.potential().is_some();
     row(
         &mut out,
         if atoms { "cut-off" } else { "horizon" },
@@ -178,7 +178,7 @@ fn stiffness(found: &Findings) -> String {
             "Stiffness\n  not measured: a patch test of this body would take minutes; check a smaller body of the same lattice and horizon\n",
         );
     };
-    let mut out = String::from(match found.spec.potential {
+    let mut out = String::from(match found.spec.potential() {
         None => "Stiffness that this body really has, by place (patch test)\n",
         Some(_) => {
             "Stiffness of the state that the run starts from, stress against strain, all atoms carried along, by place\n"

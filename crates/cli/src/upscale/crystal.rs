@@ -267,8 +267,7 @@ pub fn deck(
                 law.name(),
                 match deck
                     .spec
-                    .potential
-                    .as_ref()
+                    .potential()
                     .is_some_and(|p| p.cut_off().is_infinite())
                     && deck.spec.family != FamilyChoice::Stencil
                 {
@@ -327,7 +326,7 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         .iter()
         .fold(1u32, |l, f| (l / gcd(l, *f)).saturating_mul(*f))
         .max(1);
-    let reach = match (&spec.potential, spec.family, spec.horizon) {
+    let reach = match (spec.potential(), spec.family, spec.horizon) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours, _) => REACH * p.cut_off(),
         (_, _, Horizon::Ratio(m)) => f64::from(m) * spacing,
         (_, _, Horizon::Length(d)) => d,

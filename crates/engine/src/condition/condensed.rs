@@ -2,7 +2,7 @@
 
 use super::Program;
 use crate::space::Point;
-use crate::statics::Carriers;
+use crate::spec::Carriers;
 
 /// The points that carry a load, and what of their forces reaches each slot.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! How much memory is left, judged before it is asked for: an allocation that fails ends the program without a word, and
 //! one that succeeds on paper ends it later.
 
-use crate::error::BuildError;
+use crate::error::{BuildError, size};
 use std::fs::read_to_string;
 
 /// Bytes that this process may still take: of the machine, of its control group, of its address space. `None` where the
@@ -27,15 +27,6 @@ pub fn afford(path: &str, what: &str, bytes: f64, help: &str) -> Result<(), Buil
         )
         .help(help)),
         _ => Ok(()),
-    }
-}
-
-/// Bytes for readers.
-pub fn size(bytes: f64) -> String {
-    match bytes {
-        b if b >= 1e12 => format!("{:.3} TB", b / 1e12),
-        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
-        b => format!("{:.0} MB", b / 1e6),
     }
 }
 

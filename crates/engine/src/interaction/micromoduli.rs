@@ -5,7 +5,7 @@ use crate::body::{Body, Field};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
-use crate::statics::LinearBody;
+use crate::spec::LinearBody;
 
 /// Rows per block of work.
 const BLOCK: usize = 256;

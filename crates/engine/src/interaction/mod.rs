@@ -338,7 +338,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Compute what depends on the family (weighted volumes); after all `Absent` cuts, before the first sweep.
     fn prepare(&mut self, _body: &Body<D>) {}
 
-    /// How far action is from reaction, as [`Soundness::asymmetry`](crate::statics::Soundness); given micromoduli need not be
+    /// How far action is from reaction, as `Soundness::asymmetry` of a linear body; given micromoduli need not be
     /// symmetric, and then there is no energy whose slope the forces are.
     fn asymmetry(&self) -> f64 {
         0.0

@@ -8,6 +8,7 @@ pub mod influence;
 pub mod jet;
 pub mod material;
 pub mod micromodulus;
+mod moduli;
 pub mod number;
 pub mod potential;
 pub mod solid;

@@ -1,7 +1,7 @@
 //! The accounts of a model: energies now, and whether they still add up.
 
+use super::constitutive::Laws;
 use super::model::Model;
-use super::recipe::Laws;
 use crate::condition::driven::Driven;
 use crate::error::RunError;
 use crate::interaction::{BondState, Fault, PointEnergies};
@@ -183,7 +183,12 @@ impl<const D: usize> Model<D> {
 
     fn crossed_chain(&self) -> Option<(u64, u64)> {
         // linear springs may go through each other, atoms are looked at in every step
-        if D != 1 || !matches!(self.recipes.first().laws, Laws::Bond(_) | Laws::Solid(_)) {
+        if D != 1
+            || !matches!(
+                self.constitutive.first().laws,
+                Laws::Bond(_) | Laws::Solid(_)
+            )
+        {
             return None;
         }
         let mut crossed = None;

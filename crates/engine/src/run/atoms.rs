@@ -4,10 +4,10 @@ use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
 use crate::family::stencil::Stencil;
-use crate::law::potential::{Potential, PotentialSpec, Visitor, bulk::bulk};
+use crate::law::potential::{Potential, Visitor, bulk::bulk};
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{Horizon, Spec, ThermalSpec};
+use crate::spec::{Horizon, PotentialSpec, Spec, ThermalSpec};
 
 /// A potential on current neighbours needs a cut-off, and periods of at least two of them.
 pub(super) fn check_box(

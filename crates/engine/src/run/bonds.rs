@@ -17,7 +17,7 @@ pub(super) fn scale<const D: usize>(
     interaction: &mut dyn Interaction<D>,
 ) -> Result<Vec<String>, BuildError> {
     let mut warnings = vec![];
-    let solid = |m: &MaterialSpec| Solid::of_law(D, spec.plane, m.law).is_some();
+    let solid = |m: &MaterialSpec| Solid::of_law(D, spec.plane, &m.law).is_some();
     if !spec.bonds.is_empty() && spec.materials.iter().any(solid) {
         return Err(BuildError::new(
             "bonds[0]",

@@ -1,11 +1,11 @@
 //! From a specification to a model: the only place that matches on dimension, law and family.
 
 use super::atoms;
+use super::constitutive::ConstitutiveModels;
 use super::equilibrium::StaticState;
 use super::model::Model;
 use super::parts::{Part, parts};
 use super::probe;
-use super::recipe::Recipes;
 use super::reference::current_neighbours;
 use super::sets::{assign_materials, initial, sets};
 use super::{Info, Simulation};
@@ -111,7 +111,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = vec![];
     let (mut parts, mut body) = parts::<D>(spec)?;
-    if let Some(potential) = &spec.potential
+    if let Some(potential) = spec.potential()
         && current_neighbours(spec)
     {
         atoms::check_box(potential, &body.period)?;
@@ -123,7 +123,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         let atoms = current_neighbours(spec);
         enough_memory(own, part.stencil.as_ref(), part.horizon, atoms)?;
     }
-    let carriers = match &spec.micromoduli {
+    let carriers = match spec.micromoduli() {
         Some(linear) => (**linear).clone().of::<D>().and_then(|l| l.carriers),
         None => None,
     };
@@ -133,11 +133,12 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let ends = parts.iter().flat_map(|p| &p.stencil);
     let ends: u64 = ends.map(|s| s.near_horizon as u64).sum();
     if let (Some(potential), BodySpec::Lattice { kind, spacing, .. }) =
-        (&spec.potential, &spec.body)
+        (spec.potential(), &spec.body)
     {
         warnings.extend(atoms::crystal(spec, potential, *kind, *spacing)?);
     }
-    let (mut recipes, mut interaction) = bind(spec, &mut parts, &mut body, simd, &mut warnings)?;
+    let (mut constitutive, mut interaction) =
+        bind(spec, &mut parts, &mut body, simd, &mut warnings)?;
     let cell_volume = body.volume.uniform();
     if let Some(factors) = &spec.surface {
         surface::scale(factors, &mut body, interaction.as_mut())?;
@@ -145,7 +146,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     }
     warnings.extend(bonds::scale(spec, &body, interaction.as_mut())?);
     // a ratio is meant inclusively; only a length leaves the decision to round-off
-    let near_horizon = if recipes.first().ratio {
+    let near_horizon = if constitutive.first().ratio {
         0
     } else {
         ends.max(interaction.near_horizon())
@@ -160,7 +161,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             "{near_horizon} {what} end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances"
         ));
     }
-    if spec.potential.is_none() && spec.micromoduli.is_none() {
+    if spec.potential().is_none() && spec.micromoduli().is_none() {
         warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
     }
     let mut cut = 0;
@@ -206,7 +207,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             body.spacing
         )));
     }
-    let repulsion = contact::repulsion(spec, &parts, &recipes, &body)?;
+    let repulsion = contact::repulsion(spec, &parts, &constitutive, &body)?;
     let range = |a: usize, b: usize| repulsion.as_ref().map_or(0.0, |r| r.range(a, b));
     let reach = (0..parts.len())
         .map(|n| range(n, n))
@@ -217,7 +218,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let (mut bond_step, mut contact_step) = (f64::INFINITY, f64::INFINITY);
     let mut touching = None;
     if !options.trust_time_step && spec.schedule.statics.is_none() {
-        let first = recipes.first();
+        let first = constitutive.first();
         let lambda = probe::bonds(first, &body, interaction.as_mut(), spec, cell_volume)?;
         bond_step = probe::step(lambda);
         if let Some(r) = &repulsion {
@@ -229,7 +230,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
     let fraction = match spec.schedule.time_step {
         TimeStep::Fixed(_) => None,
         TimeStep::Fraction(x) => Some(x),
-        TimeStep::Auto if spec.potential.is_some() => Some(atoms::FRACTION),
+        TimeStep::Auto if spec.potential().is_some() => Some(atoms::FRACTION),
         TimeStep::Auto => Some(SOLID_FRACTION),
     };
     let dt = match (spec.schedule.time_step, fraction) {
@@ -288,7 +289,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         .map(|s| interaction.family_size(&body, *s as usize));
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     let u = body.at_rest();
-    recipes.forget_stencils(); // the interaction has them
+    constitutive.forget_stencils(); // the interaction has them
     let mut model = Model {
         info: Info {
             dimension: D,
@@ -306,8 +307,8 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
             section: spec.section,
             mass: body.mass(),
             volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
-            micromodulus: recipes.micromoduli(spec.materials.len()),
-            critical_stretch: recipes.critical_stretches(spec.materials.len()),
+            micromodulus: constitutive.micromoduli(spec.materials.len()),
+            critical_stretch: constitutive.critical_stretches(spec.materials.len()),
             time_step: dt,
             stable_step,
             contact_step,
@@ -323,12 +324,12 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         u,
         verlet: Verlet::new(simd, &body),
         contact: repulsion.map(|r| {
-            let pairs = recipes.first().pairs.as_ref();
+            let pairs = constitutive.first().pairs.as_ref();
             r.contact(&parts, &body, pairs.map_or(horizon, |p| p.shortest()))
         }),
         release: spec.release,
         stop: || false,
-        recipes,
+        constitutive,
         interaction,
         body,
         loads: vec![],
@@ -366,7 +367,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         model.set_velocities(&velocity);
     }
     initial(spec, &mut model)?;
-    if let (TimeStep::Auto, Some(potential)) = (spec.schedule.time_step, &spec.potential) {
+    if let (TimeStep::Auto, Some(potential)) = (spec.schedule.time_step, spec.potential()) {
         model.dt = model.dt.min(model.step_of_speeds(potential));
         model.info.time_step = model.dt;
     }
@@ -396,22 +397,22 @@ fn bind<const D: usize>(
     body: &mut Body<D>,
     simd: Simd,
     warnings: &mut Vec<String>,
-) -> Result<(Recipes, Box<dyn Interaction<D>>), BuildError> {
+) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
     let BodySpec::Several(named) = &spec.body else {
-        let recipe = parts[0].recipe(body, simd, warnings)?;
-        let interaction = recipe.interaction(body, None)?;
-        return Ok((Recipes::one(recipe), interaction));
+        let model = parts[0].constitutive(body, simd, warnings)?;
+        let interaction = model.interaction(body, None)?;
+        return Ok((ConstitutiveModels::one(model), interaction));
     };
-    let (mut recipes, mut bonds) = (vec![], vec![]);
+    let (mut constitutive, mut bonds) = (vec![], vec![]);
     for (n, part) in parts.iter_mut().enumerate() {
         let mut own = body.pieces()[n].body.clone();
         part.choose(body, n, &mut own);
         let mut told = vec![];
-        let made = part.recipe(&own, simd, &mut told).and_then(|recipe| {
-            let bonds = part.bonds(&recipe, &own)?;
-            Ok((recipe, bonds))
+        let made = part.constitutive(&own, simd, &mut told).and_then(|model| {
+            let bonds = part.bonds(&model, &own)?;
+            Ok((model, bonds))
         });
-        let (recipe, bond) = made.map_err(|e| BuildError {
+        let (model, bond) = made.map_err(|e| BuildError {
             message: format!("body `{}`: {}", named[n].name, e.message),
             ..e
         })?;
@@ -419,14 +420,17 @@ fn bind<const D: usize>(
             told.iter()
                 .map(|w| format!("body `{}`: {w}", named[n].name)),
         );
-        recipes.push((body.pieces()[n].first, part.materials.clone(), recipe));
+        constitutive.push((body.pieces()[n].first, part.materials.clone(), model));
         bonds.push(bond);
         if let Layout::Several(pieces) = &mut body.layout {
             pieces[n].body = own;
         }
     }
     let interaction = SeveralInteraction::new(body, bonds);
-    Ok((Recipes::several(recipes), Box::new(interaction)))
+    Ok((
+        ConstitutiveModels::several(constitutive),
+        Box::new(interaction),
+    ))
 }
 
 /// Names and sizes of several bodies.

@@ -7,8 +7,7 @@ use crate::condition::constraint::{Constraint, Prescribed};
 use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
 use crate::expression::Expression;
-use crate::spec::{ConditionKind, ConditionSpec};
-use crate::statics::Carriers;
+use crate::spec::{Carriers, ConditionKind, ConditionSpec};
 use std::collections::HashMap;
 
 /// The value of a load that adds force densities, and the area of a traction; `None`: another condition.

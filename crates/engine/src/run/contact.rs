@@ -1,7 +1,7 @@
 //! Contact of a model: how points of every body and material repel, and what step that allows.
 
+use super::constitutive::{ConstitutiveModels, contact_stiffness};
 use super::parts::Part;
-use super::recipe::{Recipes, contact_stiffness};
 use super::reference::cell;
 use crate::body::Body;
 use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
@@ -32,17 +32,17 @@ pub(super) struct Rules {
 pub(super) fn repulsion<const D: usize>(
     spec: &Spec,
     parts: &[Part],
-    recipes: &Recipes,
+    constitutive: &ConstitutiveModels,
     body: &Body<D>,
 ) -> Result<Option<Rules>, BuildError> {
     let Some(contact) = &spec.contact else {
         return Ok(None);
     };
     let mut kinds = vec![];
-    for (n, (part, recipe)) in parts.iter().zip(recipes.all()).enumerate() {
+    for (n, (part, model)) in parts.iter().zip(constitutive.all()).enumerate() {
         let own = body.pieces().get(n).map_or(body, |p| &p.body);
         let spacing = cell(&part.spec, own);
-        for (material, stiffness) in part.materials.iter().zip(&recipe.contact) {
+        for (material, stiffness) in part.materials.iter().zip(&model.contact) {
             kinds.push(Kind {
                 body: n,
                 material: *material,

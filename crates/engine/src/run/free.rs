@@ -2,10 +2,10 @@
 
 use super::equilibrium::StaticState;
 use super::model::Model;
-use crate::error::RunError;
+use crate::error::{RunError, SolveError};
 use crate::fracture::fragments::Fragments;
 use crate::spec::{Method, Statics};
-use crate::statics::{SolveError, Solved, Support};
+use crate::statics::{Solved, Support};
 
 impl<const D: usize> Model<D> {
     /// Newton's method from the displacements of now, without loads and constraints. Every part is held where that needs no force.

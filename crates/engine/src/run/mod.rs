@@ -7,6 +7,7 @@ mod build;
 mod calibration;
 mod changes;
 mod conditions;
+mod constitutive;
 mod contact;
 mod equilibrium;
 mod free;
@@ -15,7 +16,6 @@ mod model;
 mod motion;
 mod parts;
 mod probe;
-mod recipe;
 mod record;
 mod reference;
 mod sets;
@@ -27,10 +27,11 @@ pub use model::Model;
 
 use crate::condition::carried::Motion;
 use crate::condition::driven::{Drive, Reaction};
-use crate::error::{BuildError, RunError};
+use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
-use crate::statics::{AnyLinearBody, SolveError, Solved};
+use crate::spec::AnyLinearBody;
+use crate::statics::Solved;
 
 /// What a model is, for headers and reports.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! The running model: its state, and what may be asked of it.
 
+use super::constitutive::ConstitutiveModels;
 use super::equilibrium::StaticState;
-use super::recipe::Recipes;
 use super::{
     AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions, Wall,
 };
@@ -13,14 +13,14 @@ use crate::condition::indenter::Indenter;
 use crate::condition::load::Load;
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
-use crate::error::{BuildError, RunError};
+use crate::error::{BuildError, RunError, SolveError};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
 use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
-use crate::spec::{ConditionSpec, IndenterSpec, Release};
-use crate::statics::{AnyLinearBody, Carriers, SolveError, Solved};
+use crate::spec::{AnyLinearBody, Carriers, ConditionSpec, IndenterSpec, Release};
+use crate::statics::Solved;
 
 /// A model in D dimensions.
 pub struct Model<const D: usize> {
@@ -51,7 +51,7 @@ pub struct Model<const D: usize> {
     pub(super) watch_virials: bool,
     pub(super) virials: Option<Vec<[f64; 6]>>,
     /// Laws and constants, for what is computed pair by pair.
-    pub(super) recipes: Recipes,
+    pub(super) constitutive: ConstitutiveModels,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
     /// Of a condensed body: where its loads act, and the named sets there.
@@ -478,7 +478,7 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn linear_body(&mut self) -> AnyLinearBody {
-        let body = crate::statics::LinearBody {
+        let body = crate::spec::LinearBody {
             carriers: self.carriers.clone(),
             ..self.linear_now()
         };

@@ -2,8 +2,8 @@
 
 use super::Simulation;
 use super::accounts::ledger_base;
+use super::constitutive::Laws;
 use super::model::Model;
-use super::recipe::Laws;
 use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::error::RunError;
@@ -147,7 +147,7 @@ impl<const D: usize> Model<D> {
         self.still.begin(&mut self.v, &mut self.f, !self.pending);
         self.carried.begin(&self.u, &mut self.v, &mut self.f, dt);
         // linear springs may go through each other: they know no distance that is too far for a step
-        let limit = match self.recipes.first().laws {
+        let limit = match self.constitutive.first().laws {
             Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
             Laws::Bond(_) | Laws::Solid(_) | Laws::Atoms(_) => self.body.spacing,
         };

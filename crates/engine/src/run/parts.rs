@@ -1,7 +1,7 @@
 //! The bodies of a spec on their way into a model: where their points are, their laws, their bonds.
 
 use super::calibration::cloud_moments;
-use super::recipe::Recipe;
+use super::constitutive::ConstitutiveModel;
 use super::reference::{Reference, cell, reference};
 use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
@@ -183,12 +183,12 @@ impl Part<'_> {
     }
 
     /// Its laws with their constants.
-    pub fn recipe<const D: usize>(
+    pub fn constitutive<const D: usize>(
         &mut self,
         body: &Body<D>,
         simd: Simd,
         warnings: &mut Vec<String>,
-    ) -> Result<Recipe, BuildError> {
+    ) -> Result<ConstitutiveModel, BuildError> {
         let spec: &Spec = &self.spec;
         let cell = cell(spec, body);
         let from_modulus = |m: &MaterialSpec| {
@@ -210,7 +210,7 @@ impl Part<'_> {
         }
         let continuum = || Moments::continuum(D, self.horizon, spec.section, spec.influence);
         let discrete = bulk.unwrap_or_else(continuum);
-        Recipe::new::<D>(
+        ConstitutiveModel::new::<D>(
             spec,
             self.stencil.take(),
             self.horizon,
@@ -223,11 +223,11 @@ impl Part<'_> {
     /// Its bonds; `None`: loose points.
     pub fn bonds<const D: usize>(
         &self,
-        recipe: &Recipe,
+        model: &ConstitutiveModel,
         body: &Body<D>,
     ) -> Result<Option<Box<dyn Interaction<D>>>, BuildError> {
         match self.bonded {
-            true => recipe.interaction(body, None).map(Some),
+            true => model.interaction(body, None).map(Some),
             false => Ok(None),
         }
     }

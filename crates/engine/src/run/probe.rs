@@ -1,6 +1,6 @@
 //! The stability limit of a body, measured on the body itself, or on a block of its lattice where that is smaller.
 
-use super::recipe::Recipe;
+use super::constitutive::ConstitutiveModel;
 use super::surface;
 use crate::body::{Body, Layout, Values};
 use crate::dynamics::stable_step::{largest_eigenvalue, row_bound};
@@ -21,7 +21,7 @@ const PER_REACH: usize = 8;
 /// A large lattice body is probed on a block with the same lattice, periodic axes and thickness, once per material:
 /// it has the bulk and every kind of flat surface, edge and corner.
 pub(super) fn bonds<const D: usize>(
-    recipe: &Recipe,
+    model: &ConstitutiveModel,
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
     spec: &Spec,
@@ -30,7 +30,7 @@ pub(super) fn bonds<const D: usize>(
     let lambda = match &body.layout {
         // no block has all the factors of a body
         Layout::Grid(grid) if body.points() > LARGE && spec.bonds.is_empty() => {
-            let reach = recipe.stencil.as_ref().map_or(1, |s| s.reach);
+            let reach = model.stencil.as_ref().map_or(1, |s| s.reach);
             // in the plane and in space a block of many large families would cost more than the run
             let block = match D {
                 1 => BLOCK.max(PER_REACH * reach),
@@ -72,7 +72,7 @@ pub(super) fn bonds<const D: usize>(
             for (n, m) in spec.materials.iter().enumerate() {
                 block.density = Values::Uniform(m.density);
                 block.volume = whole.clone();
-                let mut it = recipe.interaction(&block, Some(n))?;
+                let mut it = model.interaction(&block, Some(n))?;
                 if let Some(factors) = &factors {
                     surface::scale(factors, &mut block, it.as_mut())?;
                 }

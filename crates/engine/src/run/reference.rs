@@ -42,7 +42,8 @@ pub(super) fn cell<const D: usize>(spec: &Spec, body: &Body<D>) -> f64 {
 
 /// Do the points talk to those that are near now?
 pub(super) fn current_neighbours(spec: &Spec) -> bool {
-    spec.potential.is_some() && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
+    spec.potential().is_some()
+        && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
 }
 
 fn horizon_length(spec: &Spec, spacing: f64) -> f64 {

@@ -4,8 +4,7 @@ use super::model::Model;
 use crate::body::{Body, Values};
 use crate::error::BuildError;
 use crate::space::Point;
-use crate::spec::{BodySpec, Members, Spec};
-use crate::statics::Carriers;
+use crate::spec::{BodySpec, Carriers, Members, Spec};
 
 /// Does a point (index, reference position) belong?
 type Member<'a> = Box<dyn Fn(usize, &Point) -> bool + 'a>;

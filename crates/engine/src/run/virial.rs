@@ -1,7 +1,7 @@
 //! The virial, pair by pair: what a pressure is made of. Slow and plain; no sweep knows of it.
 
+use super::constitutive::Laws;
 use super::model::Model;
-use super::recipe::Laws;
 use crate::interaction::{BondState, PointEnergies};
 use crate::law::BondFactors;
 use crate::law::Law;
@@ -34,9 +34,9 @@ impl<const D: usize> Model<D> {
     /// Every bond whose ends pull or push each other: slots, the way between them now, and `pull`, which times the
     /// partner's volume and that way is the force density on an end; images of `u` must be fresh.
     fn each_pull(&self, visit: &mut dyn FnMut([usize; 2], &[f64; D], f64, [f64; 2])) {
-        let recipes = &self.recipes;
+        let constitutive = &self.constitutive;
         let mut dilatation = vec![];
-        if recipes.all().any(|r| matches!(r.laws, Laws::Solid(_))) {
+        if constitutive.all().any(|r| matches!(r.laws, Laws::Solid(_))) {
             let mut seen = PointEnergies::default();
             self.interaction.observe(&self.body, &self.u, &mut seen);
             dilatation = seen.dilatation;
@@ -49,9 +49,9 @@ impl<const D: usize> Model<D> {
                 .material_of(slot - first),
         };
         let fields = |i: usize| -> [f64; 2] {
-            let (recipe, first) = recipes.at(i);
+            let (model, first) = constitutive.at(i);
             let material = material(i, first);
-            match &recipe.laws {
+            match &model.laws {
                 Laws::Bond(c) => [c[material], 0.0],
                 Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => [0.0; 2],
                 Laws::Solid(s) => {
@@ -62,9 +62,9 @@ impl<const D: usize> Model<D> {
             }
         };
         // a state-based bond pulls at rest, too
-        let at_rest_free = recipes.all().all(|recipe| {
-            matches!(recipe.laws, Laws::Bond(_))
-                && recipe.repulsion.as_ref().is_none_or(|c| c.bonded <= 1.0)
+        let at_rest_free = constitutive.all().all(|model| {
+            matches!(model.laws, Laws::Bond(_))
+                && model.repulsion.as_ref().is_none_or(|c| c.bonded <= 1.0)
         });
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
@@ -73,7 +73,7 @@ impl<const D: usize> Model<D> {
                 if at_rest_free && eta == [0.0; D] {
                     return;
                 }
-                let (recipe, first) = recipes.at(i);
+                let (model, first) = constitutive.at(i);
                 let squared: f64 = xi.iter().map(|x| x * x).sum();
                 let r0 = squared.sqrt();
                 let change: f64 = (0..D).map(|a| eta[a] * (xi[a] + 0.5 * eta[a])).sum();
@@ -83,13 +83,13 @@ impl<const D: usize> Model<D> {
                 let volumes = [i, j].map(|s| self.body.volume.at(s));
                 let mut pull = 0.0;
                 if state == BondState::Whole {
-                    let (g, weight) = (e / (w * (1.0 + w)), recipe.weight(r0));
+                    let (g, weight) = (e / (w * (1.0 + w)), model.weight(r0));
                     let (fi, fj) = (fields(i), fields(j));
                     let reached = self.interaction.reached(&self.body, i, xi);
                     let (volume, factors) = reached.unwrap_or((volumes[1], BondFactors::ONE));
-                    pull = match &recipe.laws {
+                    pull = match &model.laws {
                         Laws::Bond(_) => {
-                            let law = BondBasedMixed { rule: recipe.rule };
+                            let law = BondBasedMixed { rule: model.rule };
                             let k = law.constant(r0, r0.recip(), weight);
                             law.scaled_pull(k, g, fi, fj, factors)
                         }
@@ -100,7 +100,7 @@ impl<const D: usize> Model<D> {
                     };
                     pull *= volume / volumes[1];
                 }
-                if let Some(repulsion) = &recipe.repulsion {
+                if let Some(repulsion) = &model.repulsion {
                     let materials = [i, j].map(|s| material(s, first));
                     let (r, d) = (r0 * w, repulsion.distance(r0, materials));
                     if r < d {

@@ -1,8 +1,8 @@
 //! The linear body of any law about any state: tangents of bonds, gathered row by row.
 
-use super::linear_body::LinearBody;
 use crate::body::{Body, Field};
 use crate::interaction::{BondTangent, Interaction};
+use crate::spec::LinearBody;
 use rayon::prelude::*;
 
 /// Points per piece of work.

@@ -1,9 +1,10 @@
 //! Conjugate gradients with blocks of the diagonal as preconditioner; every sum has a fixed order.
 
+use super::Solved;
 use super::operator::LinearOperator;
 use super::support::Support;
 use super::vectors::{add, add_to_multiple, dot, norm};
-use super::{SolveError, Solved};
+use crate::error::SolveError;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]

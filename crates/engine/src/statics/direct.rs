@@ -1,11 +1,12 @@
 //! Direct solution of the equations of a linear body: banded in one dimension, sparse (faer) otherwise.
 
-use super::linear_body::LinearBody;
+use super::Solved;
 use super::operator::{Assembled, LinearOperator};
 use super::support::Support;
 use super::vectors::{add, norm};
-use super::{SolveError, Solved};
+use crate::error::SolveError;
 use crate::execute::memory;
+use crate::spec::LinearBody;
 use peridyne_algebra::banded::{Banded, Factored};
 use peridyne_algebra::{FactorError, Factors as Sparse};
 

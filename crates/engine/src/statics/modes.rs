@@ -1,11 +1,11 @@
 //! Lowest modes of vibration: `K φ = ω² M φ`, by Lanczos on the inverse.
 
-use super::SolveError;
 use super::direct::{Direct, SYMMETRIC};
-use super::linear_body::LinearBody;
 use super::support::Support;
 use super::vectors::{add, dot};
+use crate::error::SolveError;
 use crate::execute::memory;
+use crate::spec::LinearBody;
 use peridyne_algebra::symmetric_eigen;
 
 /// A mode of vibration.

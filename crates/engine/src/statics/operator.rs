@@ -1,10 +1,10 @@
 //! Operators on displacements: `A u`, the forces that hold a body at u (force per point).
 
-use super::linear_body::LinearBody;
 use super::support::Support;
 use super::vectors::{dot, norm};
 use crate::body::{Body, Field, zeros};
 use crate::interaction::{Interaction, Sweep};
+use crate::spec::LinearBody;
 use rayon::prelude::*;
 
 /// Points per piece of work.

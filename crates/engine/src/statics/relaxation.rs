@@ -1,10 +1,11 @@
 //! Adaptive dynamic relaxation: a damped motion with made-up masses that ends in equilibrium, whatever the law (Underwood 1983;
 //! for peridynamics Kilic & Madenci 2010).
 
+use super::Solved;
 use super::cg::Goal;
 use super::support::Support;
 use super::vectors::{add, dot, norm};
-use super::{SolveError, Solved};
+use crate::error::SolveError;
 
 /// Moves `x` until `force(x)` (force on every component) vanishes on the free ones. `mass` per point makes a step of 1 stable:
 /// at least a quarter of the largest eigenvalue of stiffness over mass. `scale` is the force that residuals are compared with, asked

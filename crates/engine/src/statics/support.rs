@@ -1,21 +1,12 @@
 //! Where a body is held, and whether that holds it.
 
+use crate::error::Loose;
 use peridyne_algebra::symmetric_eigen;
 
 /// Which components of which points are free to move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support<const D: usize> {
     pub free: Vec<[bool; D]>,
-}
-
-/// A motion of a connected part that nothing resists.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Loose {
-    /// Points of the part, and one of them.
-    pub points: usize,
-    pub point: usize,
-    /// `translation along x`, `rotation about z`
-    pub motion: &'static str,
 }
 
 const TRANSLATIONS: [&str; 3] = [

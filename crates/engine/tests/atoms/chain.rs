@@ -3,12 +3,10 @@
 use crate::sample::*;
 use peridyne::error::RunError;
 use peridyne::expression::Expression;
-use peridyne::law::potential::cut::End;
-use peridyne::law::potential::lennard_jones::LennardJones;
-use peridyne::law::potential::{Form, PotentialSpec};
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
+use peridyne::spec::{End, Form, LennardJones, PotentialSpec};
 
 fn springs(points: usize, neighbours: u32) -> Spec {
     let mut spec = Spec::new(
@@ -210,16 +208,15 @@ fn lj_chain(points: usize, spacing: f64, m: u32) -> Spec {
         1,
         block(LatticeKind::Chain, spacing, points),
         1.0,
-        LawSpec::Atoms,
+        LawSpec::Atoms(lennard_jones(
+            spacing,
+            m,
+            0.5f64.powf(1.0 / 6.0),
+            1.0 / 72.0,
+        )),
     );
     spec.horizon = Horizon::Ratio(m);
     spec.family = FamilyChoice::Stencil;
-    spec.potential = Some(lennard_jones(
-        spacing,
-        m,
-        0.5f64.powf(1.0 / 6.0),
-        1.0 / 72.0,
-    ));
     spec.schedule.time_step = TimeStep::Fixed(0.1);
     spec
 }
@@ -232,7 +229,7 @@ fn forces_of_a_chain_are_those_of_the_paper() {
     let Some(PotentialSpec {
         form: Form::LennardJones(lj),
         ..
-    }) = &spec.potential
+    }) = spec.potential()
     else {
         panic!()
     };
@@ -343,7 +340,7 @@ fn a_crossed_beginning_is_named() {
 
 fn eam_chain(h: f64, points: usize, density_length: f64) -> Spec {
     let shells = (1..=8).map(|m| (2.0, f64::from(m))).collect();
-    let mut constants = mei(h, shells).spec().clone();
+    let mut constants = mei(h, shells);
     (constants.near, constants.cutoff) = (3.5 * h, 3.9 * h);
     (constants.pair_length, constants.density_length) = (2.0 * h, density_length * h);
     // energies are densities times the length of an atom
@@ -352,15 +349,14 @@ fn eam_chain(h: f64, points: usize, density_length: f64) -> Spec {
         1,
         block(LatticeKind::Chain, h, points),
         63.546,
-        LawSpec::Atoms,
+        LawSpec::Atoms(PotentialSpec {
+            form: Form::Mei(Box::new(constants)),
+            cutoff: f64::INFINITY,
+            end: End::Truncated,
+        }),
     );
     spec.horizon = Horizon::Ratio(5);
     spec.family = FamilyChoice::Stencil;
-    spec.potential = Some(PotentialSpec {
-        form: Form::Mei(Box::new(peridyne::law::potential::mei::Mei::new(constants))),
-        cutoff: f64::INFINITY,
-        end: End::Truncated,
-    });
     spec.schedule.time_step = TimeStep::Fixed(0.2 * h);
     spec
 }

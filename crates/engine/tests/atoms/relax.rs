@@ -3,8 +3,7 @@
 use super::sample::{atoms, potentials};
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind::{Fcc, Triangular};
-use peridyne::spec::{BodySpec, FamilyChoice, Spec};
-use peridyne::statics::LinearBody;
+use peridyne::spec::{BodySpec, FamilyChoice, LinearBody, Spec};
 
 /// A crystal without the site nearest to its middle.
 fn with_vacancy(mut spec: Spec) -> Spec {

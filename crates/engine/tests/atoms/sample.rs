@@ -1,19 +1,14 @@
 //! Potentials and bodies that the tests share.
 
-use peridyne::law::potential::buckingham::Buckingham;
-use peridyne::law::potential::cut::End;
-use peridyne::law::potential::lennard_jones::LennardJones;
-use peridyne::law::potential::mei::{Mei, MeiSpec};
-use peridyne::law::potential::morse::Morse;
-use peridyne::law::potential::tabulated::Tabulated;
-use peridyne::law::potential::{Form, Potential, PotentialSpec};
+use peridyne::law::potential::Potential;
+use peridyne::law::potential::mei::Mei;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 use std::sync::Arc;
 
 /// The copper-like constants of seleson2014 Table 1, with lengths in nearest distances `h` and shells of `kind`.
-pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> Mei {
-    Mei::new(MeiSpec {
+pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> MeiSpec {
+    MeiSpec {
         cohesive: 3.54,
         pair: 0.1217,
         alpha: 5.082,
@@ -29,7 +24,7 @@ pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> Mei {
         shells,
         nearest: h,
         shell_scale: 1.0,
-    })
+    }
 }
 
 pub const FCC_SHELLS: [(f64, f64); 4] = [
@@ -86,21 +81,22 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
             ));
         }
     }
-    let closed = mei(1.0, FCC_SHELLS.to_vec());
+    let constants = mei(1.0, FCC_SHELLS.to_vec());
+    let closed = Mei::new(constants.clone());
     let (n, dr, drho) = (800, 1.95 / 799.0, 3.0 / 799.0);
     let sample = |f: &dyn Fn(f64) -> f64, step: f64| -> Vec<f64> {
         (0..n).map(|m| f(step * (m as f64).max(40.0))).collect()
     };
-    let table = Tabulated::new(
-        drho,
-        &sample(&|rho| closed.embedding(rho), drho),
-        dr,
-        &sample(&|r| closed.density(r * r), dr),
-        &sample(&|r| r * closed.pair(r * r), dr),
-        1.95,
-    );
+    let table = TableSpec {
+        density_step: drho,
+        embedding: sample(&|rho| closed.embedding(rho), drho),
+        step: dr,
+        density: sample(&|r| closed.density(r * r), dr),
+        pair: sample(&|r| r * closed.pair(r * r), dr),
+        cutoff: 1.95,
+    };
     for (name, form) in [
-        ("closed form", Form::Mei(Box::new(closed))),
+        ("closed form", Form::Mei(Box::new(constants))),
         ("table", Form::Tabulated(Arc::new(table))),
     ] {
         all.push((
@@ -149,9 +145,13 @@ pub fn atoms(
     periodic: bool,
 ) -> Spec {
     let d = kind.dimension();
-    let mut spec = Spec::new(d, block(kind, 1.02, cells), 1.3, LawSpec::Atoms);
+    let mut spec = Spec::new(
+        d,
+        block(kind, 1.02, cells),
+        1.3,
+        LawSpec::Atoms(potential.clone()),
+    );
     let a = 1.02 / kind.nearest();
-    spec.potential = Some(potential.clone());
     spec.family = family;
     // neighbours of the lattice that the cut-off leaves, and some more
     spec.horizon = Horizon::Length(2.3);

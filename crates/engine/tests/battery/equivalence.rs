@@ -152,8 +152,8 @@ fn two_equal_materials_are_one() {
         for (mixed, name) in [("pmb mixed", "pmb"), ("lps mixed", "lps")] {
             let case = Case::of(mixed, place);
             let mut spec = case.spec();
-            let law = Case::of(name, place).material.laws[0];
-            spec.materials.iter_mut().for_each(|m| m.law = law);
+            let law = Case::of(name, place).material.laws[0].clone();
+            spec.materials.iter_mut().for_each(|m| m.law = law.clone());
             let mut one = Case::of(name, place).spec();
             one.influence = spec.influence;
             let (mut a, mut b) = (at_rest(&spec), at_rest(&one));

@@ -165,8 +165,6 @@ impl Case {
             vec![]
         };
         Spec {
-            potential: None,
-            micromoduli: None,
             thermal: None,
             title: self.name(),
             dimension: d,
@@ -195,7 +193,7 @@ impl Case {
                     name: set.into(),
                     set: if two { set } else { "all" }.into(),
                     density: if set == "left" { RHO } else { 1.5 * RHO },
-                    law: *law,
+                    law: law.clone(),
                     fracture: None,
                 })
                 .collect(),

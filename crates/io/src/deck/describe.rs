@@ -57,7 +57,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),
     };
-    lines.push(match &spec.potential {
+    lines.push(match spec.potential() {
         Some(potential) => {
             let cutoff = potential.cut_off();
             let current = matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours);
@@ -164,7 +164,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     }
     let step = match spec.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
-        TimeStep::Auto if spec.potential.is_some() => {
+        TimeStep::Auto if spec.potential().is_some() => {
             "a tenth of the stability limit, less for fast atoms".into()
         }
         TimeStep::Auto => "0.8 of the stability limit".into(),
@@ -241,18 +241,18 @@ fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
 
 fn material(m: &MaterialSpec, units: UnitSystem) -> String {
     let pressure = |p: f64| units.write(p, Dim::PRESSURE);
-    let law = match m.law {
-        LawSpec::Springs(PmbStiffness::Young(e)) => format!("linear springs, E = {}", pressure(e)),
-        LawSpec::Springs(PmbStiffness::Bulk(k)) => format!("linear springs, K = {}", pressure(k)),
+    let law = match &m.law {
+        LawSpec::Springs(PmbStiffness::Young(e)) => format!("linear springs, E = {}", pressure(*e)),
+        LawSpec::Springs(PmbStiffness::Bulk(k)) => format!("linear springs, K = {}", pressure(*k)),
         LawSpec::Springs(PmbStiffness::Micromodulus(c)) => {
-            format!("linear springs, c = {}", units.write(c, Dim::MICROMODULUS))
+            format!("linear springs, c = {}", units.write(*c, Dim::MICROMODULUS))
         }
-        LawSpec::Atoms => "atoms".to_string(),
-        LawSpec::Micromoduli => "given micromoduli".to_string(),
-        LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(e)),
-        LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(k)),
+        LawSpec::Atoms(_) => "atoms".to_string(),
+        LawSpec::Micromoduli(_) => "given micromoduli".to_string(),
+        LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(*e)),
+        LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(*k)),
         LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => {
-            format!("pmb, c = {}", units.write(c, Dim::MICROMODULUS))
+            format!("pmb, c = {}", units.write(*c, Dim::MICROMODULUS))
         }
         LawSpec::Lps(moduli) => format!(
             "lps, E = {}, ν = {}",
@@ -261,11 +261,15 @@ fn material(m: &MaterialSpec, units: UnitSystem) -> String {
         ),
         LawSpec::LpsAsTyped { bulk, shear } => format!(
             "lps as typed, K = {}, G = {}",
-            pressure(bulk),
-            pressure(shear)
+            pressure(*bulk),
+            pressure(*shear)
         ),
         LawSpec::EamLike { pair, volume } => {
-            format!("eam-like, k = {}, p = {}", pressure(pair), pressure(volume))
+            format!(
+                "eam-like, k = {}, p = {}",
+                pressure(*pair),
+                pressure(*volume)
+            )
         }
     };
     let fracture = match m.fracture {

@@ -1,8 +1,7 @@
 //! The deck of an upscaled model: the old deck with the numbers of the new specification.
 
 use super::{Deck, Dim};
-use peridyne::law::potential::Form;
-use peridyne::spec::{BodySpec, Horizon, LawSpec, Spec, TimeStep};
+use peridyne::spec::{BodySpec, Form, Horizon, Spec, TimeStep};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -126,7 +125,7 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
             "Temperature was left out: the coarse model has no thermal motion of its own.".into(),
         );
     }
-    if coarse.materials[0].law == LawSpec::Atoms {
+    if coarse.potential().is_some() {
         table.insert("family".into(), "stencil".into());
         let density = plain(coarse.materials[0].density, Dim::DENSITY);
         let material = material(&mut table).ok_or("the deck has no material")?;
@@ -158,7 +157,7 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
 
 /// The numbers of the coarse potential into the law's table.
 fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec, factor: u32) {
-    let Some(potential) = &coarse.potential else {
+    let Some(potential) = coarse.potential() else {
         return;
     };
     let plain = |value: f64, dim: Dim| Value::Float(value / deck.units.plain_factor(dim));
@@ -185,10 +184,9 @@ fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec, factor: u32) {
             set("dispersion", plain(p.dispersion, Dim([8, 1, -2, 0])));
         }
         Form::Mei(p) => {
-            let s = p.spec();
-            set("cohesive", plain(s.cohesive, energy));
-            set("pair", plain(s.pair, energy));
-            set("nearest", plain(s.nearest, length));
+            set("cohesive", plain(p.cohesive, energy));
+            set("pair", plain(p.pair, energy));
+            set("nearest", plain(p.nearest, length));
         }
         Form::Tabulated(_) => {
             // beyond what the deck had already
@@ -208,7 +206,7 @@ fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec, factor: u32) {
     }
     if potential.cutoff.is_finite() {
         set("cutoff", plain(potential.cutoff, length));
-        if let peridyne::law::potential::cut::End::Smooth(near) = potential.end {
+        if let peridyne::spec::End::Smooth(near) = potential.end {
             set("smooth_from", plain(near, length));
         }
     }

@@ -3,8 +3,7 @@
 use super::{Points, ReadError};
 use ndarray::{Array1, Array2, Array3, OwnedRepr};
 use ndarray_npy::{NpzReader, ReadableElement};
-use peridyne::spec::Cloud;
-use peridyne::statics::{AnyLinearBody, Carriers, LinearBody};
+use peridyne::spec::{AnyLinearBody, Carriers, Cloud, LinearBody};
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;

@@ -21,8 +21,7 @@ mod text;
 
 pub use atoms::{Atoms, Frame, Species};
 
-use peridyne::spec::Cloud;
-use peridyne::statics::AnyLinearBody;
+use peridyne::spec::{AnyLinearBody, Cloud};
 use std::collections::HashMap;
 use std::io::{BufRead, Read};
 use std::path::Path;

@@ -11,7 +11,7 @@
 use super::atomic::{WriteError, write_file};
 use ndarray::{Array1, Array2, Array3};
 use ndarray_npy::NpzWriter;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use std::io::{Cursor, Error, Write as _};
 use std::path::Path;
 

@@ -55,17 +55,18 @@ fn main() {
             .filter(|(name, _)| law == PMB || ["none", "exact"].contains(name));
         for &(name, method) in known {
             let mut cells = vec![name.to_string()];
-            let mut plate = Plate::new([31, 21], m, law, None, method);
+            let mut plate = Plate::new([31, 21], m, law.clone(), None, method);
             for load in [Load::Uniaxial, Load::Biaxial, Load::Shear, Load::Bending] {
                 cells.push(percent(plate.error(load)));
             }
             for scale in [1, 2] {
                 let n = 40 * scale + 1;
-                let mut holed = Plate::new([n, n], m, law, Some(6.2 * f64::from(scale)), method);
+                let mut holed =
+                    Plate::new([n, n], m, law.clone(), Some(6.2 * f64::from(scale)), method);
                 let radius = holed.hole();
                 cells.push(percent(holed.error(Load::Hole(radius))));
             }
-            cells.push(percent(plate::frequency_error(60, m, law, method)));
+            cells.push(percent(plate::frequency_error(60, m, law.clone(), method)));
             let step = plate.stable_step();
             let of = *first.get_or_insert(step);
             cells.push(format!("{:.3}", step / of));

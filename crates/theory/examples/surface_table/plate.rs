@@ -5,9 +5,10 @@ use peridyne::law::solid::eam_like::Solid;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::LinearBody;
 use peridyne::spec::*;
 use peridyne::statics::cg::{self, Goal};
-use peridyne::statics::{Assembled, LinearBody, Support};
+use peridyne::statics::{Assembled, Support};
 use peridyne_theory::homogenize::surface::correct;
 
 pub struct Plate {
@@ -89,7 +90,7 @@ impl Plate {
                 hole.is_none_or(|r| x[0].hypot(x[1]) >= r)
             })
             .collect();
-        let spec = spec(&points, m, [None; 3], law, method);
+        let spec = spec(&points, m, [None; 3], law.clone(), method);
         let factors = match &spec.surface {
             None => (1.0, 1.0),
             Some(s) => s
@@ -101,7 +102,7 @@ impl Plate {
                 }),
         };
         let sim = build(&spec, Options::default()).expect("the plate is sound");
-        let moduli = moduli(sim.as_ref(), law, m);
+        let moduli = moduli(sim.as_ref(), &law, m);
         let whole_cells = method != Some(SurfaceMethod::Exact);
         let box_area: f64 = size
             .iter()
@@ -196,7 +197,7 @@ impl Plate {
 }
 
 /// Stiffness of a full family.
-fn moduli(sim: &dyn Simulation, law: LawSpec, m: u32) -> Moduli {
+fn moduli(sim: &dyn Simulation, law: &LawSpec, m: u32) -> Moduli {
     let m = m as i32;
     let family = (-m..=m).flat_map(|y| (-m..=m).map(move |x| (f64::from(x), f64::from(y))));
     let within = |(x, y): &(f64, f64)| *x * x + y * y > 0.0 && *x * x + y * y <= f64::from(m * m);
@@ -250,7 +251,7 @@ fn without_rigid_motion(place: &[[f64; 2]], u: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// `ω = π √(c11/ρ) / L`. With exact factors the strip ends at its outermost points, else half a spacing outside.
 pub fn frequency_error(n: i32, m: u32, law: LawSpec, method: Option<SurfaceMethod>) -> f64 {
     let points: Vec<[i32; 2]> = (0..8).flat_map(|y| (0..n).map(move |x| [x, y])).collect();
-    let spec = spec(&points, m, [None, Some(8.0), None], law, method);
+    let spec = spec(&points, m, [None, Some(8.0), None], law.clone(), method);
     let mut sim = build(&spec, Options::default()).expect("the strip is sound");
     let (volumes, densities) = (sim.volumes(), sim.densities());
     let mass: Vec<f64> = volumes.iter().zip(&densities).map(|(v, d)| v * d).collect();
@@ -290,7 +291,7 @@ pub fn frequency_error(n: i32, m: u32, law: LawSpec, method: Option<SurfaceMetho
         let size = u.iter().fold(0.0f64, |s, u| s.max(u[0].abs()));
         u.iter_mut().for_each(|u| u[0] /= size);
     }
-    let c11 = moduli(sim.as_ref(), law, m).c11;
+    let c11 = moduli(sim.as_ref(), &law, m).c11;
     let classical = std::f64::consts::PI * c11.sqrt() / length;
     (square.sqrt() / classical - 1.0).abs()
 }

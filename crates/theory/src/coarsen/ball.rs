@@ -7,7 +7,7 @@ use super::block::{Block, add, add_product, largest, scaled, zero};
 use super::error::CoarsenError;
 use super::near::inside;
 use super::solve;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 
 const NONE: u32 = u32::MAX;
 /// Asymmetry of a ball's matrix up to which conjugate gradients solve it: round-off.

@@ -6,7 +6,7 @@ use super::coupling::Coupling;
 use super::error::CoarsenError;
 use super::signature::{Looks, Signature, grain};
 use super::solve::Effort;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use rayon::prelude::*;
 use std::collections::HashMap;
 

@@ -2,7 +2,7 @@
 
 use super::coupling::Coupling;
 use super::error::CoarsenError;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use peridyne_algebra::{Factors, eigenvalues};
 
 /// Parts of a body that no bond connects: the number of each point's part.

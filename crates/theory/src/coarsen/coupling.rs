@@ -1,7 +1,7 @@
 //! Forces between the points of a coarse body per relative displacement, `K_ij = V_i C_ij`.
 
 use super::block::{Block, add, scaled, transposed, zero};
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 
 /// Rows of partners, ascending, by number in the coarse body.
 #[derive(Debug, Clone, PartialEq)]

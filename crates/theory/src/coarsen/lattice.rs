@@ -1,6 +1,6 @@
 //! Bodies of central bonds on a chain, square or cubic lattice, any stiffness per bond: composites, defects, chains.
 
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 
 /// The points of a block of a lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::near::Near;
 use super::small::solve_semidefinite;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 
 /// How the volume of removed points is counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

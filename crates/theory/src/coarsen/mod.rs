@@ -11,7 +11,7 @@
 //! - [`Scheme::Energy`]: the shapes S are cut off by balls, and the coarse energy is that of the shapes. Symmetric, positive
 //!   semidefinite and free of force under rigid motions for any law; errors of shapes enter squared.
 //!
-//! Loads on removed points are condensed with them where the body says who carries loads ([`peridyne::statics::Carriers`]):
+//! Loads on removed points are condensed with them where the body says who carries loads ([`peridyne::spec::Carriers`]):
 //! `b_q + Σ_e K_qe K_ee⁻¹ b_e`. Without, a load acts on the retained points alone, as in the paper, which has none on removed ones
 //! (5); with [`Volume::Kept`] the same force density is then the same force at every level.
 //!
@@ -48,7 +48,8 @@ pub use select::Selection;
 
 use balls::{Eliminated, Task};
 use coupling::Coupling;
-use peridyne::statics::{LinearBody, Soundness};
+use peridyne::spec::LinearBody;
+use peridyne::statics::Soundness;
 
 /// Asymmetry of a body that still has an energy: the round-off of levels below.
 const ENERGY: f64 = 1e-9;

@@ -5,7 +5,8 @@ use super::balls::{Eliminated, Task, Work};
 use super::block::{Block, add_product, scaled, transposed, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
-use peridyne::statics::{Direct, SolveError, Support};
+use peridyne::error::SolveError;
+use peridyne::statics::{Direct, Support};
 use rayon::prelude::*;
 
 /// Numbers that the exact elimination may hold: the coarse stiffness is full.

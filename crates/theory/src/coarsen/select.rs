@@ -3,7 +3,7 @@
 use super::error::CoarsenError;
 use super::near::Near;
 use super::sublattice::Sublattice;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 
 /// A choice of points.
 #[derive(Debug, Clone, PartialEq)]

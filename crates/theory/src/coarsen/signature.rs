@@ -6,7 +6,7 @@
 use super::ball::Walk;
 use super::block::largest;
 use super::select::mixed;
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 use rayon::prelude::*;
 
 /// 128 bits that stand for a sequence of whole numbers.

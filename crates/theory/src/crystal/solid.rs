@@ -144,7 +144,7 @@ impl LatticeSolid {
     /// Any law of the engine's specification.
     pub fn of_law<const D: usize>(
         &self,
-        law: LawSpec,
+        law: &LawSpec,
         plane: Plane,
         calibration: Calibration,
     ) -> Result<Crystal<D>, CrystalError> {
@@ -160,13 +160,13 @@ impl LatticeSolid {
                         Moments::continuum(D, self.delta(), self.section, self.influence)
                     }
                 };
-                self.bond_based(micromodulus(D, plane, stiffness, moments))
+                self.bond_based(micromodulus(D, plane, *stiffness, moments))
             }
             LawSpec::Lps(_)
             | LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
-            | LawSpec::Atoms
-            | LawSpec::Micromoduli => Err(CrystalError::NotASolid),
+            | LawSpec::Atoms(_)
+            | LawSpec::Micromoduli(_) => Err(CrystalError::NotASolid),
         }
     }
 }

@@ -24,7 +24,7 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
         return None;
     };
     let m = i64::from(m);
-    let weight = |j: i64| match (material.law, spec.influence) {
+    let weight = |j: i64| match (&material.law, spec.influence) {
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Constant) => Some(Q::ratio(1, 1)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Inverse) => Some(Q::ratio(1, j)),
         (LawSpec::Pmb(_) | LawSpec::Springs(_), Influence::Conical) => Some(Q::ratio(m - j, m)),
@@ -33,8 +33,8 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
             LawSpec::Lps(_)
             | LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
-            | LawSpec::Atoms
-            | LawSpec::Micromoduli,
+            | LawSpec::Atoms(_)
+            | LawSpec::Micromoduli(_),
             _,
         ) => None,
     };

@@ -321,7 +321,7 @@ pub fn of_spec(
         }
     }
     let (kind, spacing) = upscale::lattice(spec)?;
-    match (&spec.potential, kind) {
+    match (spec.potential(), kind) {
         (Some(potential), LatticeKind::Chain) => potential.apply(OfPotential {
             spec,
             spacing,

@@ -6,7 +6,7 @@ use crate::exact::polynomial::Monomial;
 use crate::gradient::nonlinear;
 use crate::survey::{NONLINEAR_TERMS, STRETCHES};
 use peridyne::run::{Options, build};
-use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec, Spec, TimeStep};
+use peridyne::spec::{BodySpec, FamilyChoice, Horizon, Spec, TimeStep};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
@@ -318,7 +318,7 @@ fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRo
 fn block(spec: &Spec) -> Option<Spec> {
     let (kind, spacing) = lattice(spec).ok()?;
     let d = kind.dimension();
-    let horizon = match (&spec.potential, spec.family) {
+    let horizon = match (spec.potential(), spec.family) {
         (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => {
             Horizon::Length(super::REACH * p.cut_off())
         }
@@ -346,7 +346,7 @@ fn block(spec: &Spec) -> Option<Spec> {
             quarters.push(std::array::from_fn(|a| 4 * cell[a] as i32 + b[a]));
         }
     }
-    let law: LawSpec = spec.materials[0].law;
+    let law = spec.materials[0].law.clone();
     let body = BodySpec::Sites {
         kind,
         spacing,
@@ -357,7 +357,6 @@ fn block(spec: &Spec) -> Option<Spec> {
     let mut block = Spec::new(d, body, spec.materials[0].density, law);
     block.plane = spec.plane;
     block.section = spec.section;
-    block.potential = spec.potential.clone();
     block.horizon = horizon;
     block.influence = spec.influence;
     block.volume_scaling = spec.volume_scaling;

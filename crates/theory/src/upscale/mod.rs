@@ -15,12 +15,11 @@ pub use rest::rest_spacing;
 
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
 use peridyne::family::stencil::Stencil;
-use peridyne::law::potential::cut::End;
-use peridyne::law::potential::mei::Mei;
-use peridyne::law::potential::{Form, Potential, PotentialSpec, Visitor};
+use peridyne::law::potential::{Potential, Visitor};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
-    BodySpec, FamilyChoice, Horizon, LawSpec, PmbStiffness, Schedule, Spec, TimeStep,
+    BodySpec, End, FamilyChoice, Form, Horizon, LawSpec, PmbStiffness, PotentialSpec, Schedule,
+    Spec, TimeStep,
 };
 use std::sync::Arc;
 
@@ -120,7 +119,8 @@ pub fn lattice(spec: &Spec) -> Result<(LatticeKind, f64), UpscaleError> {
 }
 
 fn current(spec: &Spec) -> bool {
-    spec.potential.is_some() && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
+    spec.potential().is_some()
+        && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
 }
 
 /// Which neighbours of a perfect crystal count.
@@ -207,8 +207,8 @@ pub fn upscale_keeping(
         ratio @ Horizon::Ratio(_) => ratio,
     };
     let shells = keep == Some(Keep::Shells);
-    let rule = match (&spec.potential, spec.materials[0].law) {
-        (Some(potential), LawSpec::Atoms) => {
+    let rule = match &spec.materials[0].law {
+        LawSpec::Atoms(potential) => {
             let fixed = !current(spec) && potential.cutoff.is_infinite();
             match &potential.form {
                 Form::LennardJones(lj) if fixed && !shells => {
@@ -223,7 +223,7 @@ pub fn upscale_keeping(
                     lj.sigma *= n * ((b6 / b12) / (a6 / a12)).powf(1.0 / 6.0);
                     lj.epsilon *=
                         n.powi(kind.dimension() as i32) * (b12 / (b6 * b6)) / (a12 / (a6 * a6));
-                    coarse.potential = Some(PotentialSpec {
+                    coarse.materials[0].law = LawSpec::Atoms(PotentialSpec {
                         form: Form::LennardJones(lj),
                         ..potential.clone()
                     });
@@ -231,7 +231,8 @@ pub fn upscale_keeping(
                 }
                 _ if keep == Some(Keep::Reach) => return Err(UpscaleError::NoReach),
                 _ => {
-                    coarse.potential = Some(scaled(potential, n, n.powi(kind.dimension() as i32)));
+                    let energy = n.powi(kind.dimension() as i32);
+                    coarse.materials[0].law = LawSpec::Atoms(scaled(potential, n, energy));
                     coarse.horizon = match current(spec) {
                         true => Horizon::Length(REACH * n * potential.cut_off()),
                         false => grown(spec.horizon),
@@ -240,7 +241,7 @@ pub fn upscale_keeping(
                 }
             }
         }
-        (_, LawSpec::Pmb(c) | LawSpec::Springs(c))
+        LawSpec::Pmb(c) | LawSpec::Springs(c)
             if shells && matches!(c, PmbStiffness::Micromodulus(_)) =>
         {
             return Err(UpscaleError::Micromodulus);
@@ -291,7 +292,7 @@ pub fn scaled(potential: &PotentialSpec, length: f64, energy: f64) -> PotentialS
             Form::Buckingham(p)
         }
         Form::Mei(p) => {
-            let mut s = p.spec().clone();
+            let mut s = (**p).clone();
             s.cohesive *= energy;
             s.pair *= energy;
             for l in [
@@ -303,7 +304,7 @@ pub fn scaled(potential: &PotentialSpec, length: f64, energy: f64) -> PotentialS
             ] {
                 *l *= length;
             }
-            Form::Mei(Box::new(Mei::new(s)))
+            Form::Mei(Box::new(s))
         }
         Form::Tabulated(p) => Form::Tabulated(Arc::new(p.scaled(length, energy))),
     };
@@ -337,7 +338,7 @@ pub fn crystal<const D: usize>(
 ) -> Result<(Crystal<D>, Option<Reference>), UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
     let density = spec.materials[0].density;
-    match &spec.potential {
+    match spec.potential() {
         Some(potential) => {
             let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
             let (crystal, reference) = potential.apply(OfPotential::<D> {
@@ -354,7 +355,7 @@ pub fn crystal<const D: usize>(
             solid.density = density;
             solid.influence = spec.influence;
             solid.volume_scaling = spec.volume_scaling;
-            let crystal = solid.of_law(spec.materials[0].law, spec.plane, spec.calibration)?;
+            let crystal = solid.of_law(&spec.materials[0].law, spec.plane, spec.calibration)?;
             Ok((crystal, None))
         }
     }

@@ -2,9 +2,9 @@
 
 use super::{lattice, reach};
 use crate::crystal::{Crystal, Reach, potential::equilibrium};
-use peridyne::law::potential::{Form, Potential, PotentialSpec, Visitor};
+use peridyne::law::potential::{Potential, Visitor};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::Spec;
+use peridyne::spec::{Form, PotentialSpec, Spec};
 
 /// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
 /// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
@@ -33,14 +33,14 @@ pub fn rest_spacing(spec: &Spec) -> Option<f64> {
         }
     }
     let (kind, _) = lattice(spec).ok()?;
-    let potential = spec.potential.as_ref()?;
+    let potential = spec.potential()?;
     potential.apply(At {
         kind,
         reach: reach(spec),
         length: length(potential),
         // its embedding energy says nothing far from there
         made_for: match &potential.form {
-            Form::Mei(p) => Some(p.spec().nearest / kind.nearest()),
+            Form::Mei(p) => Some(p.nearest / kind.nearest()),
             Form::LennardJones(_) | Form::Morse(_) | Form::Buckingham(_) | Form::Tabulated(_) => {
                 None
             }
@@ -55,7 +55,7 @@ fn length(potential: &PotentialSpec) -> f64 {
         Form::Morse(p) => p.distance,
         // repulsion over attraction balances at several ranges
         Form::Buckingham(p) => 8.0 * p.range,
-        Form::Mei(p) => p.spec().nearest,
+        Form::Mei(p) => p.nearest,
         Form::Tabulated(_) => 0.5 * potential.cut_off(),
     }
 }
@@ -104,10 +104,7 @@ fn best<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::law::potential::buckingham::Buckingham;
-    use peridyne::law::potential::cut::End;
-    use peridyne::law::potential::lennard_jones::LennardJones;
-    use peridyne::spec::{BodySpec, FamilyChoice, Horizon, LawSpec};
+    use peridyne::spec::{BodySpec, Buckingham, End, FamilyChoice, Horizon, LawSpec, LennardJones};
 
     fn spec(kind: LatticeKind, form: Form, cutoff: f64) -> Spec {
         let body = BodySpec::Sites {
@@ -117,13 +114,12 @@ mod tests {
             quarters: vec![[0; 3]],
             volume: None,
         };
-        let mut spec = Spec::new(kind.dimension(), body, 1.0, LawSpec::Atoms);
-        spec.potential = Some(PotentialSpec {
+        let law = LawSpec::Atoms(PotentialSpec {
             form,
             cutoff,
             end: End::Truncated,
         });
-        spec
+        Spec::new(kind.dimension(), body, 1.0, law)
     }
 
     #[test]

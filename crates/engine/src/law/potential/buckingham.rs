@@ -2,16 +2,7 @@
 
 use super::Potential;
 use crate::law::number::Number;
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Buckingham {
-    /// Strength A of the repulsion (energy).
-    pub strength: f64,
-    /// Its range ρ (length).
-    pub range: f64,
-    /// Dispersion constant C (energy · length⁶).
-    pub dispersion: f64,
-}
+use crate::spec::Buckingham;
 
 impl Potential for Buckingham {
     fn cutoff(&self) -> f64 {

@@ -1,8 +1,9 @@
 //! What a potential says of a perfect crystal: energy, density and pressure per atom.
 
-use super::{Potential, PotentialSpec, Visitor};
+use super::{Potential, Visitor};
 use crate::family::stencil::Stencil;
 use crate::law::number::Dual;
+use crate::spec::PotentialSpec;
 
 /// One atom of a perfect crystal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,11 +74,8 @@ pub fn bulk(potential: &PotentialSpec, stencil: &Stencil, spacing: f64, volume: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::potential::Form;
-    use crate::law::potential::cut::End;
-    use crate::law::potential::lennard_jones::LennardJones;
     use crate::space::lattice::LatticeKind;
-    use crate::spec::Horizon;
+    use crate::spec::{End, Form, Horizon, LennardJones};
 
     #[test]
     fn a_chain_at_its_sigma_is_in_equilibrium_and_pressure_is_the_slope_of_energy() {

@@ -2,20 +2,7 @@
 
 use super::Potential;
 use crate::law::number::{Dual, Number};
-
-/// How a potential ends at its cut-off.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum End {
-    /// Energy and force jump to 0.
-    Truncated,
-    /// The energy goes to 0, the force jumps: `φ(r) − φ(rc)`.
-    Shifted,
-    /// Energy and force go to 0: `φ(r) − φ(rc) − (r − rc) φ′(rc)` (shifted force).
-    ShiftedForce,
-    /// Times `g((r − rn)/(rc − rn))`, `g = (1 − x)³ (1 + 3x + 6x²)`, from the distance rn (length) on: two derivatives are
-    /// smooth (seleson2014 (3.9)).
-    Smooth(f64),
-}
+use crate::spec::End;
 
 /// `g` of seleson2014 (3.9): 1 below x = 0, 0 above x = 1, `g′ = −30 x² (1 − x)²` in between.
 #[inline(always)]

@@ -2,14 +2,7 @@
 
 use super::Potential;
 use crate::law::number::Number;
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LennardJones {
-    /// Depth ε (energy).
-    pub epsilon: f64,
-    /// Distance σ of zero energy (length).
-    pub sigma: f64,
-}
+use crate::spec::LennardJones;
 
 impl Potential for LennardJones {
     fn cutoff(&self) -> f64 {

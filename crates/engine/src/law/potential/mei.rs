@@ -14,37 +14,9 @@
 use super::Potential;
 use super::cut::switch;
 use crate::law::number::Number;
+use crate::spec::MeiSpec;
 
-/// Constants of [`Mei`]; distances in any unit of length, energies in any unit of energy.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeiSpec {
-    /// Cohesive energy Ec (energy).
-    pub cohesive: f64,
-    /// Energy φe of the pair term (energy).
-    pub pair: f64,
-    pub alpha: f64,
-    pub beta: f64,
-    pub gamma: f64,
-    pub lambda: f64,
-    /// c_0 … c_5.
-    pub density: [f64; 6],
-    /// fe/ρe: densities are in units of ρe.
-    pub density_scale: f64,
-    /// μ of the pair term (length).
-    pub pair_length: f64,
-    /// μf of the density (length).
-    pub density_length: f64,
-    /// r_n and r_c (length): where g begins to fall, and is 0.
-    pub near: f64,
-    pub cutoff: f64,
-    /// Shells of the crystal that F is made for: number of atoms s_m and distance p_m in units of `nearest`.
-    pub shells: Vec<(f64, f64)>,
-    /// Nearest distance of the crystal at equilibrium (length).
-    pub nearest: f64,
-    /// p_m is multiplied by this where it is not a distance.
-    pub shell_scale: f64,
-}
-
+/// The model, ready to be evaluated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mei {
     spec: MeiSpec,

@@ -12,6 +12,7 @@ pub mod morse;
 pub mod tabulated;
 
 use super::number::Number;
+use crate::spec::{Form, PotentialSpec};
 use std::sync::Arc;
 
 /// An interatomic potential of one kind of atom.
@@ -47,31 +48,10 @@ pub trait Potential: Clone + Send + Sync + 'static {
     }
 }
 
-/// All forms of potentials; adding one adds a variant here and an arm in [`PotentialSpec::apply`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum Form {
-    LennardJones(lennard_jones::LennardJones),
-    Morse(morse::Morse),
-    Buckingham(buckingham::Buckingham),
-    /// Embedded-atom model in closed form.
-    Mei(Box<mei::Mei>),
-    /// Embedded-atom model from tables.
-    Tabulated(Arc<tabulated::Tabulated>),
-}
-
 /// What is done with a potential of a known kind.
 pub trait Visitor {
     type Out;
     fn visit<P: Potential>(self, potential: P) -> Self::Out;
-}
-
-/// A potential as a spec has it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PotentialSpec {
-    pub form: Form,
-    /// Cut-off of pair potentials (length), and how they end there; ∞: none.
-    pub cutoff: f64,
-    pub end: cut::End,
 }
 
 impl PotentialSpec {
@@ -105,8 +85,8 @@ impl PotentialSpec {
             Form::LennardJones(p) => visitor.visit(Cut::new(*p, cutoff, end)),
             Form::Morse(p) => visitor.visit(Cut::new(*p, cutoff, end)),
             Form::Buckingham(p) => visitor.visit(Cut::new(*p, cutoff, end)),
-            Form::Mei(p) => visitor.visit((**p).clone()),
-            Form::Tabulated(p) => visitor.visit(p.clone()),
+            Form::Mei(p) => visitor.visit(mei::Mei::new((**p).clone())),
+            Form::Tabulated(p) => visitor.visit(Arc::new(tabulated::Tabulated::new(p))),
         }
     }
 }

@@ -2,16 +2,7 @@
 
 use super::Potential;
 use crate::law::number::Number;
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Morse {
-    /// Depth D (energy).
-    pub depth: f64,
-    /// Stiffness α of the well (1 / length).
-    pub alpha: f64,
-    /// Distance r0 of least energy (length).
-    pub distance: f64,
-}
+use crate::spec::Morse;
 
 impl Potential for Morse {
     fn cutoff(&self) -> f64 {

@@ -3,6 +3,7 @@
 use super::Potential;
 use crate::law::number::Number;
 use crate::law::spline::{Spline, Twin};
+use crate::spec::TableSpec;
 
 /// F(ρ), f(r) and r φ(r) as piecewise cubics.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,35 +15,18 @@ pub struct Tabulated {
 }
 
 impl Tabulated {
-    /// From values at `m Δρ` (F) and `m Δr` (f and r φ), m = 0, 1, …, at least five each, and the cut-off (length). Beyond
-    /// the last density F goes on as a straight line.
-    pub fn new(
-        density_step: f64,
-        embedding: &[f64],
-        step: f64,
-        density: &[f64],
-        pair: &[f64],
-        cutoff: f64,
-    ) -> Tabulated {
+    /// Splines through the values. Beyond the last density F goes on as a straight line.
+    ///
+    /// # Panics
+    /// If a table has fewer than five values, or f and r φ differ in number.
+    pub fn new(table: &TableSpec) -> Tabulated {
         Tabulated {
-            embedding: Spline::new(0.0, density_step, embedding, true),
+            embedding: Spline::new(0.0, table.density_step, &table.embedding, true),
             bonds: Twin::new(
-                &Spline::new(0.0, step, density, false),
-                &Spline::new(0.0, step, pair, false),
+                &Spline::new(0.0, table.step, &table.density, false),
+                &Spline::new(0.0, table.step, &table.pair, false),
             ),
-            cutoff,
-        }
-    }
-
-    /// The same model with lengths times `length` and energies times `energy`.
-    pub fn scaled(&self, length: f64, energy: f64) -> Tabulated {
-        Tabulated {
-            embedding: self.embedding.scaled(1.0, energy),
-            bonds: Twin::new(
-                &self.bonds.part(0).scaled(length, 1.0),
-                &self.bonds.part(1).scaled(length, energy * length),
-            ),
-            cutoff: self.cutoff * length,
+            cutoff: table.cutoff,
         }
     }
 }

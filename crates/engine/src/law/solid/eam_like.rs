@@ -74,7 +74,7 @@ impl Solid {
     }
 
     /// Of a state-based law of a spec; `None`: it is none.
-    pub fn of_law(d: usize, plane: Plane, law: LawSpec) -> Option<Solid> {
+    pub fn of_law(d: usize, plane: Plane, law: &LawSpec) -> Option<Solid> {
         match law {
             LawSpec::Lps(moduli) => {
                 let (g, l) = (moduli.shear(), moduli.lame());
@@ -95,7 +95,9 @@ impl Solid {
                 kappa: volume / 3.0,
                 beta: 0.5 * pair,
             }),
-            LawSpec::Pmb(_) | LawSpec::Springs(_) | LawSpec::Atoms | LawSpec::Micromoduli => None,
+            LawSpec::Pmb(_) | LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
+                None
+            }
         }
     }
 

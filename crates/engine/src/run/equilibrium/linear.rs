@@ -3,11 +3,12 @@
 //! small rotations of a linear solution change volumes in second order.
 
 use crate::body::Field;
+use crate::error::SolveError;
 use crate::interaction::{PointEnergies, Sweep};
 use crate::run::model::Model;
 use crate::spec::Method;
 use crate::statics::operator::SMALL;
-use crate::statics::{SolveError, Solved, Support};
+use crate::statics::{Solved, Support};
 
 use super::StaticState;
 

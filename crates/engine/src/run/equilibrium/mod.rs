@@ -7,16 +7,16 @@ use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
 use crate::condition::load::LoadKind;
-use crate::error::{BuildError, RunError};
+use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::run::Simulation;
-use crate::run::recipe::{Laws, Recipe};
+use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
-use crate::spec::{Method, Solver, Statics};
+use crate::spec::{LinearBody, Method, Solver, Statics};
 use crate::statics::modes::{self, Mode};
-use crate::statics::{self, Direct, LinearBody, SolveError, Solved, Support};
+use crate::statics::{self, Direct, Solved, Support};
 
 /// Rounds of breaking and new equilibrium within one increment.
 const ROUNDS: usize = 10_000;
@@ -113,9 +113,9 @@ impl<const D: usize> Model<D> {
             return Err(BuildError::new("conditions", wrong)
                 .help("prescribe a displacement, as a function of t from 0 to 1"));
         }
-        let atoms = |r: &Recipe| matches!(r.laws, Laws::Atoms(_));
+        let atoms = |r: &ConstitutiveModel| matches!(r.laws, Laws::Atoms(_));
         if options.method != Method::Relaxation
-            && (self.factored(options, &support) || self.recipes.all().any(atoms))
+            && (self.factored(options, &support) || self.constitutive.all().any(atoms))
         {
             self.enough_memory_for_rows()?;
         }
@@ -158,7 +158,7 @@ impl<const D: usize> Model<D> {
     /// comes on top.
     fn enough_memory_for_rows(&self) -> Result<(), BuildError> {
         let points = self.body.points() as f64;
-        let families = self.recipes.all().map(|r| match &r.laws {
+        let families = self.constitutive.all().map(|r| match &r.laws {
             Laws::Solid(_) | Laws::Atoms(_) => 2f64.powi(D as i32),
             Laws::Bond(_) | Laws::Springs(_) | Laws::Micromoduli(_) => 1.0,
         });

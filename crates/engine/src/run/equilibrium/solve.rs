@@ -3,16 +3,15 @@
 use super::StaticState;
 use crate::body::{Field, zeros};
 use crate::dynamics::stable_step::largest_ratio;
+use crate::error::SolveError;
 use crate::interaction::Sweep;
 use crate::run::Simulation;
+use crate::run::constitutive::Laws;
 use crate::run::model::Model;
-use crate::run::recipe::Laws;
-use crate::spec::{Solver, Statics};
+use crate::spec::{LinearBody, Solver, Statics};
 use crate::statics::cg::{self, Goal};
 use crate::statics::relaxation::relax;
-use crate::statics::{
-    self, Assembled, Direct, LinearBody, LinearOperator, SolveError, Solved, Support, Swept, norm,
-};
+use crate::statics::{self, Assembled, Direct, LinearOperator, Solved, Support, Swept, norm};
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
@@ -84,7 +83,7 @@ impl<const D: usize> Model<D> {
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
     pub(super) fn at_peace(&self) -> bool {
-        !matches!(self.recipes.first().laws, Laws::Atoms(_))
+        !matches!(self.constitutive.first().laws, Laws::Atoms(_))
     }
 
     /// `A u = F` about the reference, with A's factors or by conjugate gradients.

@@ -6,15 +6,11 @@ use crate::deck::document::{Body, Document, EamForm, EndName, Law, Material, The
 use crate::deck::units::{BOLTZMANN, Dim, UnitSystem, short};
 use crate::deck::value::{At, Number, Written};
 use peridyne::family::stencil::Stencil;
-use peridyne::law::potential::buckingham::Buckingham;
-use peridyne::law::potential::cut::End;
-use peridyne::law::potential::lennard_jones::LennardJones;
-use peridyne::law::potential::mei::{Mei, MeiSpec};
-use peridyne::law::potential::morse::Morse;
-use peridyne::law::potential::tabulated::Tabulated;
-use peridyne::law::potential::{Form, PotentialSpec};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{BodySpec, Horizon, ThermalSpec};
+use peridyne::spec::{
+    BodySpec, Buckingham, End, Form, Horizon, LennardJones, MeiSpec, Morse, PotentialSpec,
+    TableSpec, ThermalSpec,
+};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -96,14 +92,14 @@ pub(super) fn potential(
                     UnitSystem::Lj | UnitSystem::None => (1.0, 1.0, None),
                 };
                 let pair = &file.pair[crate::read::eam::EamFile::pair_index(element, element)];
-                let table = Tabulated::new(
-                    file.drho,
-                    &file.embedding[element],
-                    file.dr,
-                    &file.density[element],
-                    pair,
-                    file.cutoff,
-                );
+                let table = TableSpec {
+                    density_step: file.drho,
+                    embedding: file.embedding[element].clone(),
+                    step: file.dr,
+                    density: file.density[element].clone(),
+                    pair: pair.clone(),
+                    cutoff: file.cutoff,
+                };
                 return Ok(Some(AtomsPotential {
                     spec: PotentialSpec {
                         form: Form::Tabulated(Arc::new(
@@ -258,7 +254,7 @@ fn closed_form(
     form: &EamForm,
     body: &BodySpec,
     span: &std::ops::Range<usize>,
-) -> Result<Mei> {
+) -> Result<MeiSpec> {
     let number = |n: &Number| context.finite(n, Dim::NUMBER);
     let positive = |n: &Number, what: &str| context.positive(n, Dim::NUMBER, what);
     let (kind, spacing) = match body {
@@ -307,7 +303,7 @@ fn closed_form(
         ));
     }
     let pair_length = scale(&form.pair_length, "the length of the pair term")?;
-    Ok(Mei::new(MeiSpec {
+    Ok(MeiSpec {
         cohesive: context.positive(&form.cohesive, Dim::ENERGY, "the cohesive energy")?,
         pair: context.finite(&form.pair, Dim::ENERGY)?,
         alpha: number(&form.alpha)?,
@@ -326,7 +322,7 @@ fn closed_form(
             Some(n) => positive(n, "the scale of the shells")?,
             None => 1.0 / pair_length,
         },
-    }))
+    })
 }
 
 /// Shells of a lattice around a site: number of atoms and distance in nearest distances, up to `limit` of those.

@@ -6,7 +6,7 @@ use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem};
 use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
 use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
-use peridyne::statics::AnyLinearBody;
+use peridyne::spec::AnyLinearBody;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;

@@ -57,7 +57,7 @@ pub(super) fn materials(
             }
             None => "all".to_string(),
         };
-        let law = law(context, &given.law)?;
+        let law = law(context, &given.law, potential)?;
         if let Some(first) = materials.first()
             && std::mem::discriminant(&first.law) != std::mem::discriminant(&law)
         {
@@ -172,7 +172,7 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
     }
 }
 
-fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
+fn law(context: &Context, law: &At<Law>, potential: Option<&AtomsPotential>) -> Result<LawSpec> {
     let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
     match &law.value {
         Law::Pmb(e) => pmb(context, &law.span, e, "pmb").map(LawSpec::Pmb),
@@ -198,13 +198,18 @@ fn law(context: &Context, law: &At<Law>) -> Result<LawSpec> {
         | Law::Morse(_)
         | Law::Buckingham(_)
         | Law::Eam(_)
-        | Law::EamForm(_) => Ok(LawSpec::Atoms),
-        Law::Micromoduli if context.micromoduli.is_some() => Ok(LawSpec::Micromoduli),
-        Law::Micromoduli => Err(context.error_with(
-            &law.span,
-            "there are no micromoduli: the body is no linear body from a file",
-            "write body = { file = \"coarse.npz\" }, as `peridyne coarsen` makes it",
-        )),
+        | Law::EamForm(_) => match potential {
+            Some(potential) => Ok(LawSpec::Atoms(potential.spec.clone())),
+            None => Err(context.error(&law.span, "the potential of the deck was not read")),
+        },
+        Law::Micromoduli => match &context.micromoduli {
+            Some(body) => Ok(LawSpec::Micromoduli(body.clone())),
+            None => Err(context.error_with(
+                &law.span,
+                "there are no micromoduli: the body is no linear body from a file",
+                "write body = { file = \"coarse.npz\" }, as `peridyne coarsen` makes it",
+            )),
+        },
         Law::EamLike(e) => Ok(LawSpec::EamLike {
             pair: pressure(&e.pair, "the stiffness of the pairs")?,
             volume: context.finite(&e.volume, Dim::PRESSURE)?,

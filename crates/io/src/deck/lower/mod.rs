@@ -155,8 +155,6 @@ pub(super) fn lower(
                 ));
             }
         },
-        potential: potential.as_ref().map(|p| p.spec.clone()),
-        micromoduli: context.micromoduli.clone(),
         thermal: document
             .thermal
             .as_ref()
@@ -210,7 +208,7 @@ pub(super) fn lower(
         spec.surface = surface_factors(&context, surface, &spec)?;
     }
     let species = potential.and_then(|p| p.element);
-    let output = schedule::output(&context, &document.output, spec.potential.is_some())?;
+    let output = schedule::output(&context, &document.output, spec.potential().is_some())?;
     let of_body = context
         .atoms
         .as_ref()
@@ -340,14 +338,14 @@ fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
         Some(InfluenceName::Conical) => Influence::Conical,
         Some(InfluenceName::Gaussian) => Influence::Gaussian,
         Some(InfluenceName::CubicSpline) => Influence::CubicSpline,
-        None => match materials.first().map(|m| m.law) {
+        None => match materials.first().map(|m| &m.law) {
             Some(LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. }) => Influence::Inverse,
             Some(
                 LawSpec::Pmb(_)
                 | LawSpec::EamLike { .. }
                 | LawSpec::Springs(_)
-                | LawSpec::Atoms
-                | LawSpec::Micromoduli,
+                | LawSpec::Atoms(_)
+                | LawSpec::Micromoduli(_),
             )
             | None => Influence::Constant,
         },

@@ -54,8 +54,6 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         members: Members::Mark(*kind as i32),
     };
     Ok(Spec {
-        potential: None,
-        micromoduli: None,
         thermal: None,
         title: setup.title.clone(),
         dimension: setup.dimension,

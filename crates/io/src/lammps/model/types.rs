@@ -11,7 +11,7 @@ use crate::lammps::atoms::{Atoms, Column};
 use crate::lammps::host::{HostError, LpsCoefficients, Pair, PmbCoefficients};
 
 /// What a pair of types has.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Coefficients {
     pub law: LawSpec,
     pub horizon: f64,
@@ -149,9 +149,9 @@ impl<'a> Types<'a> {
         if c.horizon == 0.0 {
             return f64::INFINITY;
         }
-        let micromodulus = match (self.pair, c.law) {
-            (Pair::Pmb(table), _) => table.get(i, j).micromodulus,
-            (Pair::Lps(table), _) => {
+        let micromodulus = match self.pair {
+            Pair::Pmb(table) => table.get(i, j).micromodulus,
+            Pair::Lps(table) => {
                 let bulk = 0.5 * (table.get(i, i).bulk + table.get(j, j).bulk);
                 18.0 * bulk / (std::f64::consts::PI * c.horizon.powi(4))
             }

@@ -2,7 +2,8 @@
 
 use super::super::block::{add, largest};
 use super::super::lattice::LatticeBlock;
-use peridyne::statics::{Direct, LinearBody, Support};
+use peridyne::spec::LinearBody;
+use peridyne::statics::{Direct, Support};
 
 /// Points of a lattice of unit spacing, bonds up to `reach` (closed) of stiffness `k(i, j)/|ξ|`, volumes 1.
 pub fn lattice<const D: usize>(

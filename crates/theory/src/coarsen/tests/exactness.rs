@@ -2,7 +2,7 @@ use super::super::exact::{Network, modulus};
 use super::super::{Options, Radius, Scheme, Selection, Volume, coarsen, schur};
 use super::bodies::{apart, chain, equilibrium, lattice, random, tent, unlike};
 use crate::exact::{Field, Q, q};
-use peridyne::statics::LinearBody;
+use peridyne::spec::LinearBody;
 
 fn with(scheme: Scheme, radius: f64) -> Options {
     Options {

@@ -2,7 +2,7 @@
 
 use super::super::{LinearBody, Options, Radius, Scheme, Selection, Stability, coarsen};
 use super::bodies::{apart, equilibrium, random, state_based};
-use peridyne::statics::Carriers;
+use peridyne::spec::Carriers;
 
 fn with(scheme: Scheme, radius: f64) -> Options {
     Options {

@@ -2,11 +2,10 @@ use super::*;
 use crate::crystal::Crystal;
 use crate::exact::{Q, q};
 use crate::upscaling::compare;
-use peridyne::law::potential::buckingham::Buckingham;
-use peridyne::law::potential::cut::{Cut, End};
-use peridyne::law::potential::mei::{Mei, MeiSpec};
-use peridyne::law::potential::morse::Morse;
+use peridyne::law::potential::cut::Cut;
+use peridyne::law::potential::mei::Mei;
 use peridyne::law::potential::tabulated::Tabulated;
+use peridyne::spec::{Buckingham, End, MeiSpec, Morse, TableSpec};
 
 /// A chain at a stretch whose law is a sum of powers: the polynomials in y″, y‴, … with the power of y′ put in.
 fn at_stretch(e: &Expansion<Q>, stretch: &Q) -> Expansion<Q> {
@@ -181,14 +180,14 @@ fn equations_meet_the_points_to_the_next_order() {
     let table = |step: f64, f: &dyn Fn(f64) -> f64| -> Vec<f64> {
         (0..12).map(|m| f(step * f64::from(m))).collect()
     };
-    let eam = Tabulated::new(
-        0.25,
-        &table(0.25, &|rho| -1.3 * rho.sqrt()),
-        0.25,
-        &table(0.25, &|r| (-1.2 * r).exp()),
-        &table(0.25, &|r| 3.0 * r * (-4.0 * r).exp()),
-        2.3,
-    );
+    let eam = Tabulated::new(&TableSpec {
+        density_step: 0.25,
+        embedding: table(0.25, &|rho| -1.3 * rho.sqrt()),
+        step: 0.25,
+        density: table(0.25, &|r| (-1.2 * r).exp()),
+        pair: table(0.25, &|r| 3.0 * r * (-4.0 * r).exp()),
+        cutoff: 2.3,
+    });
     let chain = PotentialChain::new(eam, 1.0, Reach::Cutoff).unwrap();
     meets_the_points("a table", &chain, 1.05, &[30.0, 20.0, 12.0]);
 }

@@ -116,7 +116,7 @@ struct LatticeBody {
 
 impl LatticeBody {
     fn new(spec: &Spec) -> Result<LatticeBody, SurfaceError> {
-        let solid = |m: &MaterialSpec| Solid::of_law(spec.dimension, spec.plane, m.law).is_some();
+        let solid = |m: &MaterialSpec| Solid::of_law(spec.dimension, spec.plane, &m.law).is_some();
         let bond_based = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_) | LawSpec::Springs(_));
         let state_based = spec.materials.iter().all(solid);
         if !state_based && !spec.materials.iter().all(bond_based) {

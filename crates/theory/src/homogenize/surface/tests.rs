@@ -1,6 +1,6 @@
 use super::*;
 use peridyne::space::region::Region;
-use peridyne::spec::PmbStiffness;
+use peridyne::spec::{End, Form, LennardJones, PmbStiffness, PotentialSpec};
 
 fn block(d: usize, n: [i32; 3], m: u32) -> Spec {
     let kind = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][d - 1];
@@ -117,7 +117,14 @@ fn state_based_plates_and_blocks_are_exact_with_factors_of_any_sign() {
 #[test]
 fn refused_with_a_reason() {
     let mut spec = block(2, [10, 10, 1], 2);
-    spec.materials[0].law = LawSpec::Atoms;
+    spec.materials[0].law = LawSpec::Atoms(PotentialSpec {
+        form: Form::LennardJones(LennardJones {
+            epsilon: 1.0,
+            sigma: 1.0,
+        }),
+        cutoff: 2.5,
+        end: End::Shifted,
+    });
     let refused = |spec: &Spec| correct(spec, SurfaceMethod::Exact).unwrap_err();
     assert_eq!(refused(&spec), SurfaceError::Law);
     spec.materials[0].law = LPS;

@@ -1,30 +1,6 @@
-//! What can go wrong, with data; the front end adds file, line and span.
+//! What a run dies of.
 
-/// A specification that cannot be built.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{message}")]
-pub struct BuildError {
-    /// Dotted path of the offending entry in the spec (`"body.region"`), empty when it is not one entry.
-    pub path: String,
-    /// What is wrong and what was expected.
-    pub message: String,
-    /// What to write instead, if there is something useful to say.
-    pub help: Option<String>,
-}
-
-impl BuildError {
-    pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
-        BuildError {
-            path: path.into(),
-            message: message.into(),
-            help: None,
-        }
-    }
-    pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
-    }
-}
+use super::SolveError;
 
 /// A run that went bad. The simulation keeps its last good state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -63,7 +39,7 @@ pub enum RunError {
         step: u64,
         /// Where, if it is one place.
         position: Option<[f64; 3]>,
-        error: crate::statics::SolveError,
+        error: SolveError,
     },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },

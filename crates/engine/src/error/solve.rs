@@ -1,0 +1,55 @@
+//! Why no equilibrium or mode was found.
+
+use super::size;
+
+/// A motion of a connected part that nothing resists.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loose {
+    /// Points of the part, and one of them.
+    pub points: usize,
+    pub point: usize,
+    /// `translation along x`, `rotation about z`
+    pub motion: &'static str,
+}
+
+/// Why there is no solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    #[error("every component of every point is prescribed: nothing is left to solve for")]
+    NothingFree,
+    #[error("nothing holds the body: {} of the part of {} points around point {} is free", .0.motion, .0.points, .0.point)]
+    Loose(Loose),
+    /// A motion around this point that gives energy back.
+    #[error(
+        "the operator is not positive definite: some motion around point {point} meets no resistance"
+    )]
+    Indefinite { point: usize },
+    #[error("the equations are singular")]
+    Singular,
+    #[error(
+        "the matrix or its factors do not fit into memory: write solver = \"cg\", take fewer points, or a shorter horizon"
+    )]
+    TooLarge,
+    #[error("{count} modes would take about {}, {} are left: ask for fewer", size(*.bytes), size(*.left))]
+    TooManyModes { count: usize, bytes: f64, left: f64 },
+    #[error(
+        "action is not reaction in this body (asymmetry {asymmetry:.1e}): conjugate gradients and modes of vibration need a symmetric one; write solver = \"direct\", and leave modes out"
+    )]
+    NotSymmetric { asymmetry: f64 },
+    #[error(
+        "after {iterations} iterations the residual is {residual:.1e} of that of the start, not {tolerance:.1e}"
+    )]
+    NotConverged {
+        iterations: usize,
+        residual: f64,
+        tolerance: f64,
+    },
+    #[error("bonds still break after {rounds} rounds of one increment: the body falls apart")]
+    StillBreaking { rounds: usize },
+    #[error("contact has no tangent here: leave it out of a body that relaxes by itself")]
+    Contact,
+    #[error("a force or displacement is not a number")]
+    NotFinite,
+    #[error("it was asked to end before it was found")]
+    Stopped,
+}

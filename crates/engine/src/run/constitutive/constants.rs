@@ -1,0 +1,154 @@
+//! Constants of all materials of a body, from the spec.
+
+use crate::error::BuildError;
+use crate::law::micromodulus::{Moments, micromodulus};
+use crate::law::solid::eam_like::Solid;
+use crate::spec::{AnyLinearBody, LawSpec, PmbStiffness, PotentialSpec, Spec};
+use std::sync::Arc;
+
+/// Constants of all materials.
+#[derive(Debug, Clone)]
+pub(in crate::run) enum Laws {
+    Bond(Vec<f64>),
+    Solid(Vec<Solid>),
+    /// Micromodulus of linear springs.
+    Springs(f64),
+    Atoms(PotentialSpec),
+    /// Of the points in order of their ids.
+    Micromoduli(Arc<AnyLinearBody>),
+}
+
+pub(super) struct Constants {
+    pub laws: Laws,
+    /// Stiffness of contact between points of a material, from its law (force / volume² / length).
+    pub contact: Vec<f64>,
+}
+
+/// `moments` are those that stiffnesses are calibrated to, `continuum` those of the full ball of radius `horizon`.
+pub(super) fn constants<const D: usize>(
+    spec: &Spec,
+    horizon: f64,
+    moments: Moments,
+    continuum: Moments,
+) -> Result<Constants, BuildError> {
+    let at = |n: usize, key: &str| format!("materials[{n}].{key}");
+    let mut bond = vec![];
+    let mut solid = vec![];
+    let mut springs = vec![];
+    let mut atoms = vec![];
+    let mut given = vec![];
+    let mut repulsive = vec![];
+    for (n, m) in spec.materials.iter().enumerate() {
+        solid.extend(Solid::of_law(D, spec.plane, &m.law));
+        if !(m.density > 0.0 && m.density.is_finite()) {
+            return Err(BuildError::new(
+                at(n, "density"),
+                format!("density is {}, expected a positive number", m.density),
+            ));
+        }
+        let c = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
+        let plain = matches!(
+            m.law,
+            LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_)
+        );
+        if plain && (m.fracture.is_some() || spec.contact.is_some() || !spec.precracks.is_empty()) {
+            return Err(BuildError::new(
+                at(n, "law"),
+                "springs, micromoduli and potentials have no bonds that break and no contact of their own",
+            )
+            .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
+        }
+        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, continuum);
+        let (value, contact) = match &m.law {
+            LawSpec::Pmb(stiffness) => {
+                let stiffness = *stiffness;
+                bond.push(c(stiffness));
+                (c(stiffness), c(stiffness))
+            }
+            LawSpec::Lps(moduli) => {
+                let k = if D == 1 { moduli.young } else { moduli.bulk() };
+                (moduli.shear().min(k), hard(PmbStiffness::Bulk(k)))
+            }
+            LawSpec::LpsAsTyped { bulk, shear } => (
+                shear.min(*bulk),
+                18.0 * bulk / (std::f64::consts::PI * horizon.powi(4)),
+            ),
+            LawSpec::EamLike { pair, volume } => (
+                *pair,
+                hard(PmbStiffness::Bulk((3.0 * volume + 0.5 * pair) / 9.0)),
+            ),
+            LawSpec::Springs(stiffness) => {
+                let stiffness = *stiffness;
+                springs.push(c(stiffness));
+                (c(stiffness), 0.0)
+            }
+            LawSpec::Atoms(potential) => {
+                atoms.push(potential);
+                (1.0, 0.0)
+            }
+            LawSpec::Micromoduli(body) => {
+                given.push(body);
+                (1.0, 0.0)
+            }
+        };
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(
+                BuildError::new(at(n, "law"), "stiffness must be positive and finite")
+                    .help("check the moduli: K > 0, G > 0, −1 < ν < ½"),
+            );
+        }
+        repulsive.push(15.0 * contact / horizon);
+    }
+    let kinds = [
+        &bond.is_empty(),
+        &solid.is_empty(),
+        &springs.is_empty(),
+        &atoms.is_empty(),
+        &given.is_empty(),
+    ];
+    match kinds.iter().filter(|none| !**none).count() {
+        0 => return Err(BuildError::new("materials", "the body has no material")),
+        1 => {}
+        _ => {
+            return Err(BuildError::new(
+                "materials",
+                "different kinds of law in one body, such as bond-based and state-based",
+            )
+            .help("give all materials the same kind of law: bonds across need one"));
+        }
+    }
+    if springs.iter().any(|c| *c != springs[0]) {
+        return Err(
+            BuildError::new("materials", "springs of unlike stiffness in one body")
+                .help("give all materials the same springs"),
+        );
+    }
+    if atoms.iter().any(|p| *p != atoms[0]) {
+        return Err(
+            BuildError::new("materials", "atoms of unlike potentials in one body")
+                .help("give all materials the same potential: a potential knows one kind of atom"),
+        );
+    }
+    if given.iter().any(|b| !Arc::ptr_eq(b, given[0])) {
+        return Err(BuildError::new(
+            "materials",
+            "micromoduli of more than one linear body in one body",
+        )
+        .help("give all materials the micromoduli of the same body"));
+    }
+    let laws = if let Some(potential) = atoms.pop() {
+        Laws::Atoms(potential.clone())
+    } else if let Some(body) = given.pop() {
+        Laws::Micromoduli(body.clone())
+    } else if let Some(c) = springs.pop() {
+        Laws::Springs(c)
+    } else if solid.is_empty() {
+        Laws::Bond(bond)
+    } else {
+        Laws::Solid(solid)
+    };
+    Ok(Constants {
+        laws,
+        contact: repulsive,
+    })
+}

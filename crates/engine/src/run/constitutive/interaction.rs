@@ -1,0 +1,273 @@
+//! Law and family become an interaction on a body.
+
+use super::{ConstitutiveModel, Laws};
+use crate::body::{Body, Layout};
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::family::horizon::HorizonList;
+use crate::family::links::Links;
+use crate::interaction::atoms::current::CurrentAtoms;
+use crate::interaction::atoms::fixed::FixedAtoms;
+use crate::interaction::linear::LinearInteraction;
+use crate::interaction::list::{ListInteraction, ListParts};
+use crate::interaction::micromoduli::MicromoduliInteraction;
+use crate::interaction::pairs::BondTable;
+use crate::interaction::stencil::{StencilInteraction, StencilParts};
+use crate::interaction::weight::BondWeight;
+use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
+use crate::law::potential::{Potential, Visitor};
+use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
+use crate::law::solid::eam_like::{EamLike, Solid};
+use std::sync::Arc;
+
+impl ConstitutiveModel {
+    /// The interaction on `body`; `only` makes everything of one material.
+    pub fn interaction<const D: usize>(
+        &self,
+        body: &Body<D>,
+        only: Option<usize>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let pick = |n: usize| only.is_none_or(|o| o == n);
+        let toughness: Vec<Toughness> = self
+            .toughness
+            .iter()
+            .enumerate()
+            .filter(|(n, _)| pick(*n))
+            .map(|(_, t)| *t)
+            .collect();
+        if let (Some(pairs), None) = (&self.pairs, only) {
+            return self.interaction_of_pairs(body, pairs, toughness);
+        }
+        let repulsion = match (&self.repulsion, only) {
+            (Some(all), Some(n)) => Some(all.only(n)),
+            (all, _) => all.clone(),
+        };
+        match &self.laws {
+            Laws::Springs(c) => {
+                let links = self.links(body)?;
+                let volume = body.volume.uniform().unwrap_or(1.0);
+                let modulus = |xi: [f64; D]| {
+                    let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    let k = c * self.weight(r0) * volume / (r0 * r0 * r0);
+                    std::array::from_fn(|a| std::array::from_fn(|b| k * xi[a] * xi[b]))
+                };
+                Ok(Box::new(LinearInteraction::new(links, self.simd, modulus)))
+            }
+            Laws::Micromoduli(linear) => {
+                let Some(linear) = (**linear).clone().of::<D>() else {
+                    let found = linear.dimension();
+                    return Err(BuildError::new(
+                        "micromoduli",
+                        format!("the micromoduli are those of a {found}-D body, this one has {D}"),
+                    ));
+                };
+                if linear.points() != body.points() {
+                    return Err(BuildError::new(
+                        "micromoduli",
+                        format!(
+                            "there are micromoduli of {} points, the body has {}",
+                            linear.points(),
+                            body.points()
+                        ),
+                    ));
+                }
+                Ok(Box::new(MicromoduliInteraction::new(
+                    body, &linear, self.simd,
+                )))
+            }
+            Laws::Atoms(potential) => match (&body.layout, &self.stencil) {
+                (Layout::Grid(_), Some(_)) => {
+                    let links = self.links(body)?;
+                    Ok(potential.apply(Fixed {
+                        body,
+                        links,
+                        simd: self.simd,
+                    }))
+                }
+                _ => Ok(potential.apply(Current {
+                    body,
+                    simd: self.simd,
+                })),
+            },
+            Laws::Bond(c) => {
+                let c: Vec<f64> = c
+                    .iter()
+                    .enumerate()
+                    .filter(|(n, _)| pick(*n))
+                    .map(|(_, c)| *c)
+                    .collect();
+                if c.iter().all(|x| *x == c[0]) {
+                    let law = BondBased { c: c[0] };
+                    self.bind(body, law, PointConstants::None, toughness, repulsion)
+                } else {
+                    self.bind(
+                        body,
+                        BondBasedMixed { rule: self.rule },
+                        PointConstants::PerMaterial(c),
+                        toughness,
+                        repulsion,
+                    )
+                }
+            }
+            Laws::Solid(s) => {
+                let s: Vec<Solid> = s
+                    .iter()
+                    .enumerate()
+                    .filter(|(n, _)| pick(*n))
+                    .map(|(_, s)| *s)
+                    .collect();
+                self.bind(
+                    body,
+                    EamLike {
+                        ratio: s[0].ratio(),
+                    },
+                    PointConstants::Solid(s),
+                    toughness,
+                    repulsion,
+                )
+            }
+        }
+    }
+
+    fn links<const D: usize>(&self, body: &Body<D>) -> Result<Links<D>, BuildError> {
+        match (&body.layout, &self.stencil) {
+            (Layout::Grid(grid), Some(stencil)) => Ok(Links::new(body, grid, stencil)),
+            _ => Err(BuildError::new(
+                "family",
+                "springs live on a lattice, this is a cloud of points",
+            )
+            .help("take a lattice body, or the law pmb")),
+        }
+    }
+
+    fn bind<const D: usize, W: crate::law::Law>(
+        &self,
+        body: &Body<D>,
+        law: W,
+        point_constants: PointConstants,
+        toughness: Vec<Toughness>,
+        repulsion: Option<Repulsion>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        match (&body.layout, &self.stencil) {
+            (Layout::Grid(grid), Some(stencil)) => {
+                Ok(Box::new(StencilInteraction::new(StencilParts {
+                    body,
+                    grid,
+                    stencil,
+                    law,
+                    weight: &|r0| self.weight(r0),
+                    point_constants,
+                    toughness,
+                    repulsion,
+                    simd: self.simd,
+                })))
+            }
+            _ => {
+                let scaling = self.scaling.then_some(self.spacing);
+                // whole multiples of the spacing are meant inclusively
+                let reach = if self.ratio {
+                    self.horizon * (1.0 + 1e-9)
+                } else {
+                    self.horizon
+                };
+                Ok(Box::new(ListInteraction::new(ListParts {
+                    body,
+                    list: HorizonList::new(body, reach)?,
+                    law,
+                    weight: BondWeight::new(self.influence, self.horizon, scaling),
+                    point_constants,
+                    toughness,
+                    repulsion,
+                    simd: self.simd,
+                })))
+            }
+        }
+    }
+
+    /// Laws of unit constants, with what pairs of materials have.
+    fn interaction_of_pairs<const D: usize>(
+        &self,
+        body: &Body<D>,
+        pairs: &Arc<BondTable>,
+        toughness: Vec<Toughness>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        match &self.laws {
+            Laws::Solid(solids) => {
+                let unit = Solid {
+                    kappa: 1.0,
+                    beta: 1.0,
+                    ..solids[0]
+                };
+                let law = EamLike {
+                    ratio: unit.ratio(),
+                };
+                let constants = PointConstants::Solid(vec![unit; solids.len()]);
+                self.list_of_pairs(body, pairs, law, constants, toughness)
+            }
+            Laws::Bond(_) => self.list_of_pairs(
+                body,
+                pairs,
+                BondBased { c: 1.0 },
+                PointConstants::None,
+                toughness,
+            ),
+            Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => Err(BuildError::new(
+                "pairs",
+                "springs, potentials and micromoduli have no constants of pairs of materials",
+            )),
+        }
+    }
+
+    fn list_of_pairs<const D: usize, W: crate::law::Law>(
+        &self,
+        body: &Body<D>,
+        pairs: &Arc<BondTable>,
+        law: W,
+        point_constants: PointConstants,
+        toughness: Vec<Toughness>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let horizon = |i: usize, j: usize| {
+            let pair = pairs.get(body.material_of(i), body.material_of(j));
+            pair.horizon
+        };
+        let scaling = self.scaling.then_some(self.spacing);
+        let parts = ListParts {
+            body,
+            list: HorizonList::within(body, self.horizon, horizon)?,
+            law,
+            weight: BondWeight::new(self.influence, self.horizon, scaling),
+            point_constants,
+            toughness,
+            repulsion: self.repulsion.clone(),
+            simd: self.simd,
+        };
+        Ok(Box::new(ListInteraction::of_pairs(parts, pairs.clone())))
+    }
+}
+
+/// Makes a potential an interaction on fixed lattice neighbours.
+struct Fixed<'a, const D: usize> {
+    body: &'a Body<D>,
+    links: Links<D>,
+    simd: Simd,
+}
+
+impl<const D: usize> Visitor for Fixed<'_, D> {
+    type Out = Box<dyn Interaction<D>>;
+    fn visit<P: Potential>(self, potential: P) -> Self::Out {
+        Box::new(FixedAtoms::new(self.body, self.links, potential, self.simd))
+    }
+}
+
+/// Makes a potential an interaction on current neighbours.
+struct Current<'a, const D: usize> {
+    body: &'a Body<D>,
+    simd: Simd,
+}
+
+impl<const D: usize> Visitor for Current<'_, D> {
+    type Out = Box<dyn Interaction<D>>;
+    fn visit<P: Potential>(self, potential: P) -> Self::Out {
+        Box::new(CurrentAtoms::new(self.body, potential, self.simd))
+    }
+}

@@ -1,0 +1,162 @@
+//! The constitutive model of a body, apart from its points: laws with their constants, weights of bonds, toughness.
+
+mod constants;
+mod interaction;
+mod pairs;
+mod toughness;
+
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::family::stencil::Stencil;
+use crate::family::volume_fraction;
+use crate::interaction::pairs::BondTable;
+use crate::interaction::{PairTable, Repulsion, Toughness};
+use crate::law::influence::influence;
+use crate::law::micromodulus::Moments;
+use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
+pub(super) use constants::Laws;
+use constants::{Constants, constants};
+pub(super) use pairs::contact_stiffness;
+use std::sync::Arc;
+use toughness::toughness;
+
+/// Of one body.
+pub(super) struct ConstitutiveModel {
+    pub laws: Laws,
+    pub toughness: Vec<Toughness>,
+    pub repulsion: Option<Repulsion>,
+    /// Stiffness of contact between points of a material, from its law (force / volume² / length).
+    pub contact: Vec<f64>,
+    pub stencil: Option<Stencil>,
+    pub horizon: f64,
+    /// Distance over which the horizon cuts cells.
+    pub spacing: f64,
+    pub influence: Influence,
+    pub scaling: bool,
+    /// Was the horizon given in spacings?
+    pub ratio: bool,
+    pub rule: InterfaceRule,
+    /// Constants of pairs of materials, where they do not follow from the two.
+    pub pairs: Option<Arc<BondTable>>,
+    pub simd: Simd,
+}
+
+/// The constitutive models of all bodies.
+pub(super) struct ConstitutiveModels {
+    /// First slot, places of the materials in the spec, model.
+    of: Vec<(usize, Vec<usize>, ConstitutiveModel)>,
+}
+
+impl ConstitutiveModels {
+    /// Of a single body.
+    pub fn one(model: ConstitutiveModel) -> ConstitutiveModels {
+        ConstitutiveModels {
+            of: vec![(0, (0..model.contact.len()).collect(), model)],
+        }
+    }
+
+    /// `(first slot, places of its materials in the spec, model)` of each body, in order.
+    pub fn several(of: Vec<(usize, Vec<usize>, ConstitutiveModel)>) -> ConstitutiveModels {
+        ConstitutiveModels { of }
+    }
+
+    pub fn first(&self) -> &ConstitutiveModel {
+        &self.of[0].2
+    }
+
+    pub fn all(&self) -> impl Iterator<Item = &ConstitutiveModel> {
+        self.of.iter().map(|(_, _, m)| m)
+    }
+
+    /// The model of the body that a slot belongs to, and the first slot of that.
+    pub fn at(&self, slot: usize) -> (&ConstitutiveModel, usize) {
+        let n = self.of.partition_point(|(first, _, _)| *first <= slot) - 1;
+        (&self.of[n].2, self.of[n].0)
+    }
+
+    pub fn forget_stencils(&mut self) {
+        self.of.iter_mut().for_each(|(_, _, m)| m.stencil = None);
+    }
+
+    /// A number per material of the spec, from the first body that is made of it.
+    fn per_material(&self, count: usize, of: impl Fn(&ConstitutiveModel) -> Vec<f64>) -> Vec<f64> {
+        let mut all = vec![None; count];
+        for (_, materials, model) in &self.of {
+            for (m, x) in materials.iter().zip(of(model)) {
+                all[*m].get_or_insert(x);
+            }
+        }
+        all.into_iter().flatten().collect()
+    }
+
+    /// Micromoduli of bond-based materials.
+    pub fn micromoduli(&self, count: usize) -> Vec<f64> {
+        self.per_material(count, |r| match &r.laws {
+            Laws::Bond(c) => c.clone(),
+            Laws::Solid(_) | Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => vec![],
+        })
+    }
+
+    pub fn critical_stretches(&self, count: usize) -> Vec<f64> {
+        self.per_material(count, |r| r.toughness.iter().map(|t| t.s00).collect())
+    }
+}
+
+impl ConstitutiveModel {
+    /// Constants from a spec; `discrete` are the sums over a bulk family of this body.
+    pub fn new<const D: usize>(
+        spec: &Spec,
+        stencil: Option<Stencil>,
+        horizon: f64,
+        spacing: f64,
+        discrete: Moments,
+        simd: Simd,
+    ) -> Result<ConstitutiveModel, BuildError> {
+        let continuum = Moments::continuum(D, horizon, spec.section, spec.influence);
+        let moments = match spec.calibration {
+            Calibration::Continuum => continuum,
+            Calibration::Discrete => discrete,
+        };
+        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, continuum)?;
+        let toughness = spec
+            .materials
+            .iter()
+            .enumerate()
+            .map(|(n, m)| toughness::<D>(spec, m, moments, &format!("materials[{n}].fracture")))
+            .collect::<Result<Vec<_>, _>>()?;
+        let repulsion = match &spec.contact {
+            Some(contact_spec) => Some(Repulsion {
+                stiffness: contact_stiffness(&contact_spec.stiffness, &contact)?,
+                bonded: contact_spec.bonded,
+                range: PairTable::uniform(contact_spec.free * spacing),
+            }),
+            None => None,
+        };
+        let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
+        Ok(ConstitutiveModel {
+            laws,
+            toughness,
+            repulsion,
+            contact,
+            stencil,
+            horizon,
+            spacing,
+            influence: spec.influence,
+            scaling: spec.volume_scaling,
+            ratio: matches!(spec.horizon, Horizon::Ratio(_)),
+            rule: spec.interface,
+            pairs,
+            simd,
+        })
+    }
+
+    /// `ω ν` of a bond of length r0.
+    pub fn weight(&self, r0: f64) -> f64 {
+        let nu = if self.scaling {
+            volume_fraction(r0, self.horizon, self.spacing)
+        } else {
+            1.0
+        };
+        nu * influence(self.influence, r0, self.horizon)
+    }
+}

@@ -1,0 +1,110 @@
+//! Constants of pairs of materials, where they do not follow from the two.
+
+use super::Laws;
+use crate::error::BuildError;
+use crate::interaction::pairs::{BondConstants, BondTable};
+use crate::interaction::{PairTable, Toughness};
+use crate::law::solid::eam_like::Solid;
+use crate::spec::{ContactStiffness, Influence, LawSpec, PmbStiffness, Spec};
+
+/// What pairs of materials have, checked.
+pub(super) fn bond_table(
+    spec: &Spec,
+    laws: &Laws,
+    horizon: f64,
+    spacing: f64,
+) -> Result<Option<BondTable>, BuildError> {
+    let materials = spec.materials.len();
+    if spec.pairs.is_empty() {
+        return Ok(None);
+    }
+    let error = |message: String| Err(BuildError::new("pairs", message));
+    if spec.pairs.len() != materials * materials {
+        return error(format!(
+            "{} pairs of {materials} materials, expected {}",
+            spec.pairs.len(),
+            materials * materials
+        ));
+    }
+    if !matches!(spec.influence, Influence::Constant | Influence::Inverse) {
+        return error(
+            "an influence function that ends at the horizon, with horizons of pairs".into(),
+        );
+    }
+    let mut pairs = vec![];
+    for (n, p) in spec.pairs.iter().enumerate() {
+        let (of, with) = (n / materials, n % materials);
+        let (stiffness, volume) = match (laws, &p.law) {
+            (Laws::Bond(_), LawSpec::Pmb(PmbStiffness::Micromodulus(c))) => (*c, 0.0),
+            (Laws::Solid(_), law @ LawSpec::LpsAsTyped { .. }) => {
+                let Some(solid) = Solid::of_law(spec.dimension, spec.plane, law) else {
+                    return error("a law that is no solid".into());
+                };
+                (solid.beta, solid.kappa)
+            }
+            _ => {
+                return error(
+                    "pairs have a micromodulus (pmb) or moduli as typed (lps), of the law of the materials"
+                        .into(),
+                );
+            }
+        };
+        let mirrored = &spec.pairs[with * materials + of];
+        let fine = |x: f64| x >= 0.0 && x.is_finite();
+        if !fine(stiffness) || !fine(p.horizon) || p.horizon > horizon * (1.0 + 1e-9) {
+            return error(format!(
+                "materials {of} and {with} have the stiffness {stiffness:e} and the horizon {:e}; that of the body is {horizon:e}",
+                p.horizon
+            ));
+        }
+        if p.horizon != mirrored.horizon {
+            return error(format!(
+                "materials {of} and {with} must have the same horizon both ways round"
+            ));
+        }
+        pairs.push(BondConstants {
+            horizon: p.horizon,
+            stiffness,
+            volume,
+            toughness: Toughness {
+                s00: p.critical_stretch,
+                alpha: p.alpha,
+            },
+        });
+    }
+    let scaling = spec.volume_scaling.then_some(spacing);
+    Ok(Some(BondTable::new(materials, pairs, scaling)))
+}
+
+/// The table of all pairs of materials, whose own stiffnesses are `own`.
+pub(in crate::run) fn contact_stiffness(
+    asked: &ContactStiffness,
+    own: &[f64],
+) -> Result<PairTable, BuildError> {
+    let table = match asked {
+        ContactStiffness::Same(stiffness) => PairTable::uniform(*stiffness),
+        ContactStiffness::Laws => PairTable::new(own.len(), |a, b| {
+            // two in series; alike ones exactly their own
+            if own[a] == own[b] {
+                own[a]
+            } else {
+                2.0 * own[a] * own[b] / (own[a] + own[b])
+            }
+        }),
+        ContactStiffness::Pairs(rows) => {
+            let fits = rows.len() == own.len() && rows.iter().all(|r| r.len() == own.len());
+            let symmetric = || (0..rows.len()).all(|a| (0..a).all(|b| rows[a][b] == rows[b][a]));
+            if !fits || !symmetric() {
+                return Err(BuildError::new(
+                    "contact.stiffness",
+                    format!(
+                        "expected a symmetric table of {0} by {0} numbers, one for every pair of materials",
+                        own.len()
+                    ),
+                ));
+            }
+            PairTable::new(own.len(), |a, b| rows[a][b])
+        }
+    };
+    Ok(table)
+}

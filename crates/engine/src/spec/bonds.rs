@@ -1,0 +1,67 @@
+//! What is done to bonds before the run: factors of their stiffness, pre-cracks; and contact between points without one.
+
+use crate::expression::Expression;
+
+/// A factor of the stiffness of bonds: heterogeneous bodies, weak planes.
+#[derive(Debug, Clone)]
+pub enum BondFactorSpec {
+    /// Every bond gets the mean, by [`Spec::interface`], of the factors at its ends' reference positions.
+    Field(Expression),
+    /// Bonds that cross this shape.
+    Crossing { shape: CrackShape, factor: f64 },
+}
+
+/// Bonds that a pre-crack cuts.
+#[derive(Debug, Clone)]
+pub struct PrecrackSpec {
+    pub shape: CrackShape,
+    pub kind: CrackKind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrackKind {
+    /// The bonds were never there: not counted in damage.
+    Absent,
+    /// The bonds are broken at the start: counted as damage.
+    Broken,
+}
+
+/// Flat shapes that cut bonds crossing them.
+#[derive(Debug, Clone)]
+pub enum CrackShape {
+    /// Segment between two points (2-D; in 3-D extruded along z without end).
+    Segment { from: [f64; 3], to: [f64; 3] },
+    /// Disk with centre, unit normal and radius (3-D).
+    Disk {
+        center: [f64; 3],
+        normal: [f64; 3],
+        radius: f64,
+    },
+    /// Flat polygon with three or more corners (3-D).
+    Polygon { corners: Vec<[f64; 3]> },
+    /// Point on a chain (1-D).
+    Point { x: f64 },
+}
+
+/// Short-range repulsion (`lammps-peri` item 10): force density `stiffness V_j (r − d)`,
+/// `d = min(bonded r0, free h)` with `h` the spacing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSpec {
+    /// Fraction of the reference distance below which any pair repels; 0.9 in LAMMPS.
+    pub bonded: f64,
+    /// Range in spacings for pairs far apart in the reference; 1.35 in LAMMPS.
+    pub free: f64,
+    pub stiffness: ContactStiffness,
+}
+
+/// Stiffness of repulsion (force / volume² / length).
+#[derive(Debug, Clone, PartialEq)]
+pub enum ContactStiffness {
+    /// `15 c/δ` (PMB), `15·18K/(πδ⁵)` (LPS) of a material; between unlike ones the harmonic mean, which is that of the
+    /// two in series: each gives way by its own stiffness, and it is never above twice the softer one's.
+    Laws,
+    /// The same for all pairs.
+    Same(f64),
+    /// `[materials][materials]`, symmetric: of every pair of materials.
+    Pairs(Vec<Vec<f64>>),
+}

@@ -1,0 +1,67 @@
+//! Initial values, and what is done to points during the run.
+
+use crate::expression::Expression;
+
+/// Initial values on a set; components are expressions of x, y, z (t = 0); `None` leaves a component.
+#[derive(Debug, Clone)]
+pub struct InitialSpec {
+    pub set: String,
+    pub displacement: [Option<Expression>; 3],
+    pub velocity: [Option<Expression>; 3],
+}
+
+/// Velocities of a given temperature: normally distributed, without total momentum, scaled to the temperature exactly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThermalSpec {
+    /// k_B T (energy).
+    pub energy: f64,
+    pub seed: u64,
+}
+
+/// What is done to a set during the run; expressions of reference x, y, z and t; `None` leaves a component free.
+#[derive(Debug, Clone)]
+pub struct ConditionSpec {
+    pub set: String,
+    pub kind: ConditionKind,
+}
+
+#[derive(Debug, Clone)]
+pub enum ConditionKind {
+    /// Prescribed displacement (length).
+    Displacement([Option<Expression>; 3]),
+    /// Prescribed velocity (length / time).
+    Velocity([Option<Expression>; 3]),
+    /// Body force density (force / volume).
+    BodyForce([Option<Expression>; 3]),
+    /// Traction (force / area) on the set, spread over its points by volume; the area defaults to one lattice
+    /// face (`spacing^(D−1)` times the section) per point.
+    Traction {
+        value: [Option<Expression>; 3],
+        area: Option<f64>,
+    },
+    /// The force density on these components becomes this, whatever else acts (LAMMPS `fix setforce`).
+    SetForce([Option<Expression>; 3]),
+    /// Viscous force density −c v (mass / volume / time).
+    Damping(Expression),
+}
+
+/// A rigid sphere that pushes points out with force density `K (r − R)²` (`lammps-peri` item 13).
+#[derive(Debug, Clone)]
+pub struct IndenterSpec {
+    /// Stiffness K (force density / length²).
+    pub stiffness: f64,
+    pub radius: f64,
+    pub motion: IndenterMotion,
+}
+
+#[derive(Debug, Clone)]
+pub enum IndenterMotion {
+    /// Centre as a function of t (x, y, z in the expressions are 0).
+    Kinematic([Expression; 3]),
+    /// A body with mass, start and initial velocity.
+    Free {
+        mass: f64,
+        center: [f64; 3],
+        velocity: [f64; 3],
+    },
+}

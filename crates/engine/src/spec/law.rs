@@ -1,0 +1,122 @@
+//! Materials: constitutive laws and their constants, fracture, and what bonds between them have.
+
+use super::{AnyLinearBody, PotentialSpec};
+use std::sync::Arc;
+
+/// A material on a set of points.
+#[derive(Debug, Clone)]
+pub struct MaterialSpec {
+    pub name: String,
+    /// Set that is made of it; `"all"` when there is one material.
+    pub set: String,
+    /// Mass density (mass / length³).
+    pub density: f64,
+    pub law: LawSpec,
+    /// `None`: bonds never break.
+    pub fracture: Option<FractureSpec>,
+}
+
+/// The constitutive law of a material. All materials of a body use the same kind of law.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LawSpec {
+    /// Prototype microelastic brittle (bond-based).
+    Pmb(PmbStiffness),
+    /// Linear peridynamic solid (state-based).
+    Lps(Moduli),
+    /// Linear peridynamic solid with the three-dimensional formulas and the moduli as typed, in any dimension
+    /// (what LAMMPS's `peri/lps` does): bulk and shear modulus.
+    LpsAsTyped { bulk: f64, shear: f64 },
+    /// `W = E(ϑ) + ½Σ κ-bonds` with the quadratic `E` of seleson2014 (A.16) and `κ` of (A.14): `κ = k ω e / m`,
+    /// `P = −(p/m) θ` with the two stiffnesses given directly (seleson2014 (A.24): `k = k̄`, `p = c̄/3`).
+    EamLike { pair: f64, volume: f64 },
+    /// Linear springs: the bond-based solid linearised about the reference (lattice bodies).
+    Springs(PmbStiffness),
+    /// An interatomic potential: on the lattice's fixed neighbours (family `Stencil`), or between atoms that are near now
+    /// (`Neighbours`, or `Auto`).
+    Atoms(PotentialSpec),
+    /// Given micromoduli, in order of the points of a cloud.
+    Micromoduli(Arc<AnyLinearBody>),
+}
+
+impl LawSpec {
+    /// Of atoms.
+    pub fn potential(&self) -> Option<&PotentialSpec> {
+        match self {
+            LawSpec::Atoms(potential) => Some(potential),
+            _ => None,
+        }
+    }
+
+    /// Of a body whose micromoduli are given.
+    pub fn micromoduli(&self) -> Option<&Arc<AnyLinearBody>> {
+        match self {
+            LawSpec::Micromoduli(body) => Some(body),
+            _ => None,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PmbStiffness {
+    /// Micromodulus c as typed (force / volume² ).
+    Micromodulus(f64),
+    /// Bulk modulus K (2-D: of the plane).
+    Bulk(f64),
+    /// Young's modulus E; Poisson's ratio is fixed by dimension (¼; plane stress ⅓).
+    Young(f64),
+}
+
+/// Isotropic moduli, any two of which may be given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moduli {
+    pub young: f64,
+    pub poisson: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FractureSpec {
+    pub criterion: Criterion,
+    /// Dependence of the critical stretch on compression: `s0 = s00 − α s_min`.
+    pub alpha: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// Critical stretch s00 (–).
+    Stretch(f64),
+    /// Fracture energy (energy / area).
+    Energy(f64),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InterfaceRule {
+    /// Harmonic mean: the two half bonds in series.
+    Series,
+    /// Arithmetic mean: in parallel.
+    Parallel,
+    Minimum,
+}
+
+/// When a bond past its critical stretch lets go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Release {
+    /// In the force evaluation that finds it there (CabanaPD). The dilatation of that evaluation still has it.
+    #[default]
+    AtOnce,
+    /// After the force of that evaluation: it pulls once more (LAMMPS).
+    AfterForce,
+}
+
+/// What points of one material have in their bonds with points of another (LAMMPS's `pair_coeff I J`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSpec {
+    /// At most the horizon of the spec (length); 0: no bonds.
+    pub horizon: f64,
+    /// `Pmb` with a micromodulus; `LpsAsTyped`: moduli with which both scalars act on the point, whatever its partner
+    /// is made of. With unlike moduli forces are then not opposite, and no energy is conserved.
+    pub law: LawSpec,
+    /// Critical stretch s00 of those bonds, and how it depends on compression: a point's s0 is the greatest
+    /// `s00 − α s` of its whole bonds.
+    pub critical_stretch: f64,
+    pub alpha: f64,
+}
