@@ -7,6 +7,7 @@ pub mod contact;
 mod history;
 pub mod linear;
 pub mod list;
+pub mod material;
 pub mod micromoduli;
 pub mod pairs;
 pub mod repulsion;
@@ -36,6 +37,8 @@ pub struct Tally {
     pub broken: u64,
     /// Energy that they held (energy).
     pub released: f64,
+    /// What laws with memory dissipated (energy).
+    pub dissipated: f64,
     /// The lowest critical `e` of any point from now on, where that is counted.
     pub least_critical: f64,
     /// Why these forces mean nothing.
@@ -56,6 +59,7 @@ impl Default for Tally {
         Tally {
             broken: 0,
             released: 0.0,
+            dissipated: 0.0,
             least_critical: f64::INFINITY,
             fault: None,
         }
@@ -66,6 +70,7 @@ impl AddAssign for Tally {
     fn add_assign(&mut self, o: Tally) {
         self.broken += o.broken;
         self.released += o.released;
+        self.dissipated += o.dissipated;
         self.least_critical = self.least_critical.min(o.least_critical);
         self.fault = self.fault.or(o.fault);
     }

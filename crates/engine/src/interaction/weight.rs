@@ -33,9 +33,24 @@ impl BondWeight {
     /// The same where the partner's volume begins to fade elsewhere: `cut` is `½ + δ/h` of the bond's own horizon.
     #[inline(always)]
     pub fn within<L: Lane>(&self, r0: L, inv_r0: L, cut: L) -> L {
-        let one = L::splat(1.0);
-        let fraction = r0.fma(L::splat(-self.rate), cut).min(one);
-        self.influence.at(r0, inv_r0) * fraction
+        self.influence.at(r0, inv_r0) * self.fraction(r0, cut)
+    }
+
+    /// ω alone.
+    #[inline(always)]
+    pub fn influence<L: Lane>(&self, r0: L, inv_r0: L) -> L {
+        self.influence.at(r0, inv_r0)
+    }
+
+    /// ν alone.
+    #[inline(always)]
+    pub fn volume_fraction<L: Lane>(&self, r0: L) -> L {
+        self.fraction(r0, L::splat(self.cut))
+    }
+
+    #[inline(always)]
+    fn fraction<L: Lane>(&self, r0: L, cut: L) -> L {
+        r0.fma(L::splat(-self.rate), cut).min(L::splat(1.0))
     }
 }
 

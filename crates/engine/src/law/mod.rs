@@ -4,6 +4,7 @@
 //! `e = |ξ+η|²/|ξ|² − 1` in the form the law asks for: extension over current length `g = (r − r0)/r`, or stretch
 //! `s = (r − r0)/r0`.
 
+pub mod descriptor;
 pub mod influence;
 pub mod jet;
 pub mod material;

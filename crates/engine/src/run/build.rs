@@ -1,7 +1,7 @@
 //! From a specification to a model: the only place that matches on dimension, law and family.
 
 use super::atoms;
-use super::constitutive::ConstitutiveModels;
+use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::StaticState;
 use super::model::Model;
 use super::parts::{Part, parts};
@@ -41,6 +41,15 @@ pub struct Options {
 
 /// Build the model of a spec.
 pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, BuildError> {
+    build_with(spec, options, &Shelf::standard())
+}
+
+/// The same with laws of one's own.
+pub fn build_with(
+    spec: &Spec,
+    options: Options,
+    shelf: &Shelf,
+) -> Result<Box<dyn Simulation>, BuildError> {
     if !spec.pairs.is_empty() && spec.schedule.statics.is_some() {
         return Err(BuildError::new(
             "pairs",
@@ -56,9 +65,9 @@ pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, Build
         ));
     }
     match spec.dimension {
-        1 => Ok(Box::new(build_in::<1>(spec, options)?)),
-        2 => Ok(Box::new(build_in::<2>(spec, options)?)),
-        3 => Ok(Box::new(build_in::<3>(spec, options)?)),
+        1 => Ok(Box::new(build_in::<1>(spec, options, shelf)?)),
+        2 => Ok(Box::new(build_in::<2>(spec, options, shelf)?)),
+        3 => Ok(Box::new(build_in::<3>(spec, options, shelf)?)),
         d => Err(BuildError::new(
             "dimension",
             format!("{d} dimensions; expected 1, 2 or 3"),
@@ -107,7 +116,14 @@ fn enough_memory<const D: usize>(
 }
 
 /// Build the model of a spec in D dimensions.
-pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D>, BuildError> {
+pub fn build_in<const D: usize>(
+    spec: &Spec,
+    options: Options,
+    shelf: &Shelf,
+) -> Result<Model<D>, BuildError> {
+    let mut resolved = spec.clone();
+    shelf.resolve(&mut resolved)?;
+    let spec = &resolved;
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = vec![];
     let (mut parts, mut body) = parts::<D>(spec)?;
@@ -138,7 +154,7 @@ pub fn build_in<const D: usize>(spec: &Spec, options: Options) -> Result<Model<D
         warnings.extend(atoms::crystal(spec, potential, *kind, *spacing)?);
     }
     let (mut constitutive, mut interaction) =
-        bind(spec, &mut parts, &mut body, simd, &mut warnings)?;
+        bind(spec, &mut parts, &mut body, shelf, simd, &mut warnings)?;
     let cell_volume = body.volume.uniform();
     if let Some(factors) = &spec.surface {
         surface::scale(factors, &mut body, interaction.as_mut())?;
@@ -395,11 +411,12 @@ fn bind<const D: usize>(
     spec: &Spec,
     parts: &mut [Part],
     body: &mut Body<D>,
+    shelf: &Shelf,
     simd: Simd,
     warnings: &mut Vec<String>,
 ) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
     let BodySpec::Several(named) = &spec.body else {
-        let model = parts[0].constitutive(body, simd, warnings)?;
+        let model = parts[0].constitutive(body, shelf, simd, warnings)?;
         let interaction = model.interaction(body, None)?;
         return Ok((ConstitutiveModels::one(model), interaction));
     };
@@ -408,7 +425,7 @@ fn bind<const D: usize>(
         let mut own = body.pieces()[n].body.clone();
         part.choose(body, n, &mut own);
         let mut told = vec![];
-        let made = part.constitutive(&own, simd, &mut told).and_then(|model| {
+        let made = part.constitutive(&own, shelf, simd, &mut told).and_then(|model| {
             let bonds = part.bonds(&model, &own)?;
             Ok((model, bonds))
         });

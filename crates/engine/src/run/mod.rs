@@ -22,7 +22,8 @@ mod sets;
 mod surface;
 mod virial;
 
-pub use build::{Options, build, build_in};
+pub use build::{Options, build, build_in, build_with};
+pub use constitutive::Shelf;
 pub use model::Model;
 
 use crate::condition::carried::Motion;

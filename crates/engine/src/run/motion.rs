@@ -50,6 +50,7 @@ impl<const D: usize> Model<D> {
             self.fault = tally.fault;
             self.broken += tally.broken;
             self.released += tally.released;
+            self.past_work[0] += tally.dissipated;
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
             if let Some(w) = &mut watched {

@@ -1,7 +1,7 @@
 //! The bodies of a spec on their way into a model: where their points are, their laws, their bonds.
 
 use super::calibration::cloud_moments;
-use super::constitutive::ConstitutiveModel;
+use super::constitutive::{ConstitutiveModel, Shelf};
 use super::reference::{Reference, cell, reference};
 use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
@@ -186,6 +186,7 @@ impl Part<'_> {
     pub fn constitutive<const D: usize>(
         &mut self,
         body: &Body<D>,
+        shelf: &Shelf,
         simd: Simd,
         warnings: &mut Vec<String>,
     ) -> Result<ConstitutiveModel, BuildError> {
@@ -193,7 +194,7 @@ impl Part<'_> {
         let cell = cell(spec, body);
         let from_modulus = |m: &MaterialSpec| {
             use PmbStiffness::{Bulk, Young};
-            matches!(m.law, LawSpec::Pmb(Bulk(_) | Young(_)))
+            matches!(m.law.linear(), LawSpec::Pmb(Bulk(_) | Young(_)))
         };
         let mut bulk = self.bulk;
         if bulk.is_none()
@@ -216,6 +217,7 @@ impl Part<'_> {
             self.horizon,
             cell,
             discrete,
+            shelf,
             simd,
         )
     }

@@ -36,9 +36,31 @@ pub enum LawSpec {
     Atoms(PotentialSpec),
     /// Given micromoduli, in order of the points of a cloud.
     Micromoduli(Arc<AnyLinearBody>),
+    /// A law of the shelf.
+    Named(NamedLaw),
 }
 
 impl LawSpec {
+    /// A law of the shelf.
+    pub fn named(name: &str, parameters: Parameters) -> LawSpec {
+        LawSpec::Named(NamedLaw {
+            name: name.into(),
+            parameters,
+            linear: None,
+        })
+    }
+
+    /// The linear law of the same elasticity about the reference: of a named law what the shelf says, of all others themselves.
+    pub fn linear(&self) -> &LawSpec {
+        match self {
+            LawSpec::Named(NamedLaw {
+                linear: Some(linear),
+                ..
+            }) => linear,
+            law => law,
+        }
+    }
+
     /// Of atoms.
     pub fn potential(&self) -> Option<&PotentialSpec> {
         match self {
@@ -119,4 +141,63 @@ pub struct PairSpec {
     /// `s00 − α s` of its whole bonds.
     pub critical_stretch: f64,
     pub alpha: f64,
+}
+
+/// A law of the shelf by its name ([`crate::law::descriptor`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedLaw {
+    pub name: String,
+    pub parameters: Parameters,
+    /// The linear law of the same elasticity, once the name was looked up.
+    pub linear: Option<Box<LawSpec>>,
+}
+
+/// Constants of a law by their keys.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Parameters(pub Vec<(String, Parameter)>);
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum Parameter {
+    Number(f64),
+    Rows(Vec<Vec<f64>>),
+    Word(String),
+}
+
+impl Parameters {
+    /// All numbers.
+    pub fn numbers(of: &[(&str, f64)]) -> Parameters {
+        let number = |(key, x): &(&str, f64)| (key.to_string(), Parameter::Number(*x));
+        Parameters(of.iter().map(number).collect())
+    }
+
+    /// And one more.
+    pub fn with(mut self, key: &str, value: Parameter) -> Parameters {
+        self.0.push((key.into(), value));
+        self
+    }
+
+    fn get(&self, key: &str) -> Option<&Parameter> {
+        self.0.iter().find(|(k, _)| k == key).map(|(_, p)| p)
+    }
+
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match self.get(key)? {
+            Parameter::Number(x) => Some(*x),
+            Parameter::Rows(_) | Parameter::Word(_) => None,
+        }
+    }
+
+    pub fn rows(&self, key: &str) -> Option<&[Vec<f64>]> {
+        match self.get(key)? {
+            Parameter::Rows(rows) => Some(rows),
+            Parameter::Number(_) | Parameter::Word(_) => None,
+        }
+    }
+
+    pub fn word(&self, key: &str) -> Option<&str> {
+        match self.get(key)? {
+            Parameter::Word(word) => Some(word),
+            Parameter::Number(_) | Parameter::Rows(_) => None,
+        }
+    }
 }

@@ -24,8 +24,8 @@ pub use condition::{
 };
 pub use family::{Calibration, FamilyChoice, Horizon, Influence};
 pub use law::{
-    Criterion, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, PairSpec, PmbStiffness,
-    Release,
+    Criterion, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw, PairSpec,
+    Parameter, Parameters, PmbStiffness, Release,
 };
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{

@@ -17,6 +17,10 @@ pub struct Material {
     pub name: &'static str,
     pub laws: Vec<LawSpec>,
     pub influence: Influence,
+    /// Where it can be: dimension and plane state.
+    pub lives: fn(usize, Plane) -> bool,
+    /// Of materials that cannot be without.
+    pub fracture: Option<f64>,
 }
 
 /// The table of materials: a line here buys all batteries.
@@ -25,12 +29,42 @@ pub fn materials() -> Vec<Material> {
         name,
         laws: vec![law],
         influence,
+        lives: |_, _| true,
+        fracture: None,
     };
     let two = |name, a, b, influence| Material {
         name,
         laws: vec![a, b],
         influence,
+        lives: |_, _| true,
+        fracture: None,
     };
+    let elastic = |young: f64, poisson: f64| {
+        Parameters::numbers(&[("young", young), ("poisson", poisson)])
+    };
+    let plastic = |yield_stress: f64, hardening: f64| {
+        let more = elastic(3.0, 0.3)
+            .with("yield_stress", Parameter::Number(yield_stress))
+            .with("hardening", Parameter::Number(hardening));
+        LawSpec::named("elastic_plastic", more)
+    };
+    let relaxing = |part: f64| {
+        let rows = vec![vec![part, 0.7], vec![0.2, 3.0]];
+        LawSpec::named(
+            "viscoelastic",
+            elastic(3.0, 0.2).with("branches", Parameter::Rows(rows)),
+        )
+    };
+    let correspondence = |young, stress: &str| {
+        LawSpec::named(
+            "correspondence",
+            elastic(young, 0.3).with("stress", Parameter::Word(stress.into())),
+        )
+    };
+    let softening = LawSpec::named(
+        "softening",
+        Parameters::numbers(&[("young", 3.0), ("onset", 0.1)]),
+    );
     let lps = |young, poisson| LawSpec::Lps(Moduli { young, poisson });
     let young = |e| LawSpec::Pmb(PmbStiffness::Young(e));
     vec![
@@ -65,6 +99,33 @@ pub fn materials() -> Vec<Material> {
             },
             Influence::CubicSpline,
         ),
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            ..one("elastic-plastic", plastic(10.0, 0.3), Influence::Inverse)
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            ..two("plastic mixed", plastic(20.0, 0.0), plastic(30.0, 1.0), Influence::Gaussian)
+        },
+        one("viscoelastic", relaxing(0.5), Influence::Conical),
+        two("viscoelastic mixed", relaxing(0.5), relaxing(0.1), Influence::Inverse),
+        Material {
+            lives: |d, _| d > 1,
+            ..one("correspondence", correspondence(3.0, "linear"), Influence::Inverse)
+        },
+        Material {
+            lives: |d, _| d > 1,
+            ..two(
+                "neo-hookean mixed",
+                correspondence(3.0, "neo_hookean"),
+                correspondence(1.0, "neo_hookean"),
+                Influence::Conical,
+            )
+        },
+        Material {
+            fracture: Some(3.0),
+            ..one("softening", softening, Influence::Constant)
+        },
     ]
 }
 
@@ -110,7 +171,8 @@ pub struct Case {
 pub fn cases() -> Vec<Case> {
     let mut all = vec![];
     for place in places() {
-        for material in materials() {
+        let lives = |m: &Material| (m.lives)(place.kind.dimension(), place.plane);
+        for material in materials().into_iter().filter(lives) {
             all.push(Case { material, place });
         }
     }
@@ -194,7 +256,10 @@ impl Case {
                     set: if two { set } else { "all" }.into(),
                     density: if set == "left" { RHO } else { 1.5 * RHO },
                     law: law.clone(),
-                    fracture: None,
+                    fracture: self.material.fracture.map(|s| FractureSpec {
+                        criterion: Criterion::Stretch(s),
+                        alpha: 0.0,
+                    }),
                 })
                 .collect(),
             interface: InterfaceRule::Series,

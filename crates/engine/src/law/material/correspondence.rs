@@ -8,7 +8,9 @@
 use super::tensor::{self, Matrix};
 use super::{Bond, Columns, End, Free, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
 use crate::law::number::Number;
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// Classical stored energy of one material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,12 +24,9 @@ pub enum Stress {
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CorrespondenceConstants {
-    pub stress: Stress,
     /// Lamé's λ of the solid and shear modulus μ.
     pub lame: f64,
     pub shear: f64,
-    /// In the plane: does the thickness give way until the stress across is 0?
-    pub plane_stress: bool,
     /// G_z (–).
     pub control: f64,
 }
@@ -36,6 +35,7 @@ pub struct CorrespondenceConstants {
 #[derive(Debug, Clone)]
 pub struct Correspondence {
     pub stress: Stress,
+    /// In the plane: does the thickness give way until the stress across is 0?
     pub plane_stress: bool,
     /// Per material.
     pub materials: Vec<CorrespondenceConstants>,
@@ -246,5 +246,77 @@ impl<const D: usize> Material<D> for Correspondence {
         // H K Hᵀ = S Hᵀ
         let seen = N::constant(0.5) * point.1 * tensor::contraction(&sum, &h);
         sound.fma(energy, N::constant(0.0)) - seen
+    }
+}
+
+impl Shelved for Correspondence {
+    fn descriptor() -> Descriptor {
+        let mut keys = MODULI.to_vec();
+        keys.push(Key {
+            name: "stress",
+            value: Value::Word(&[
+                ("linear", "S = λ tr(E) 1 + 2μE of Green's strain E (Saint Venant-Kirchhoff)"),
+                (
+                    "neo_hookean",
+                    "ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J (Bonet & Wood 1997)",
+                ),
+            ]),
+            need: Need::Word("linear"),
+            doc: "Classical law P(F).",
+        });
+        keys.push(
+            descriptor::number(
+                "control",
+                Dimension::NUMBER,
+                Bounds::NOT_NEGATIVE,
+                "Stiffness G_z against deformations that F does not see, 1: that of the linear peridynamic solid.",
+            )
+            .or(0.1),
+        );
+        Descriptor {
+            name: "correspondence".into(),
+            doc: "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.".into(),
+            source: "Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017".into(),
+            example: "{ young = \"1 GPa\", poisson = 0.45, stress = \"neo_hookean\" }".into(),
+            keys,
+        }
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        descriptor::moduli(parameters).map(LawSpec::Lps)
+    }
+
+    fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let word = |m: &Given| match m.parameters.word("stress") {
+            Some("neo_hookean") => Stress::NeoHookean,
+            _ => Stress::Linear,
+        };
+        let mut made = vec![];
+        let stress = materials.first().map_or(Stress::Linear, word);
+        for (n, m) in materials.iter().enumerate() {
+            if d == 1 {
+                return Err((
+                    n,
+                    "correspondence is for two and three dimensions: on a line take lps".into(),
+                ));
+            }
+            if word(m) != stress {
+                return Err((
+                    n,
+                    "all materials of a body have the same kind of stress".into(),
+                ));
+            }
+            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
+            made.push(CorrespondenceConstants {
+                lame: moduli.lame(),
+                shear: moduli.shear(),
+                control: m.parameters.number("control").unwrap_or(0.0),
+            });
+        }
+        Ok(Correspondence {
+            stress,
+            plane_stress: d == 2 && plane == Plane::Stress,
+            materials: made,
+        })
     }
 }

@@ -10,8 +10,10 @@
 
 use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
+use crate::spec::{LawSpec, Parameters, Plane};
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -216,4 +218,62 @@ fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 5]) -> N {
     let c = site.constants;
     let middle = N::constant(0.5).fma(point[FLOW], site.past[0]);
     c[HARDENING].fma(middle, c[YIELD]) * point[FLOW]
+}
+
+impl Shelved for ElasticPlastic {
+    fn descriptor() -> Descriptor {
+        let mut keys = MODULI.to_vec();
+        keys.push(descriptor::number(
+            "yield_stress",
+            Dimension::PRESSURE,
+            Bounds::POSITIVE,
+            "Yield stress σ_y in tension (von Mises).",
+        ));
+        keys.push(
+            descriptor::number(
+                "hardening",
+                Dimension::PRESSURE,
+                Bounds::NOT_NEGATIVE,
+                "Hardening modulus H = dσ_y/dε̄; 0 is perfect plasticity.",
+            )
+            .or(0.0),
+        );
+        Descriptor {
+            name: "elastic_plastic".into(),
+            doc: "Linear peridynamic solid whose deviatoric extensions flow: ½ Σ t²/ω = n(n+2) σ_y²/(6m), ė^p = λ t/ω. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            source: "Mitchell 2011, SAND2011-3166".into(),
+            example: "{ young = \"200 GPa\", poisson = 0.3, yield_stress = \"250 MPa\", hardening = \"1 GPa\" }".into(),
+            keys,
+        }
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        descriptor::moduli(parameters).map(LawSpec::Lps)
+    }
+
+    fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let mut made = vec![];
+        for (n, m) in materials.iter().enumerate() {
+            let refused = |message: &str| Err((n, message.to_string()));
+            if d == 1 {
+                return refused("on a line there is no shear, and nothing that flows: take two or three dimensions");
+            }
+            if d == 2 && plane == Plane::Stress {
+                return refused(
+                    "in the plane an ordinary solid flows without a change of thickness, which is plane strain: write plane = \"strain\"",
+                );
+            }
+            let (Some(solid), Ok(moduli)) = (m.solid, descriptor::moduli(m.parameters)) else {
+                return refused("an elastic-plastic solid needs its moduli");
+            };
+            let number = |key| m.parameters.number(key).unwrap_or(0.0);
+            made.push(ElasticPlasticConstants {
+                solid,
+                shear: moduli.shear(),
+                yield_stress: number("yield_stress"),
+                hardening: number("hardening"),
+            });
+        }
+        Ok(ElasticPlastic { materials: made })
+    }
 }

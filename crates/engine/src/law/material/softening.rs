@@ -7,7 +7,9 @@
 
 use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Shelved};
 use crate::law::number::Number;
+use crate::spec::{LawSpec, Parameters, Plane, PmbStiffness};
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,5 +143,66 @@ impl<const D: usize> Material<D> for Softening {
         memory[0] = b.peak;
         let more = lost(c, b.peak, b.envelope) - lost(c, past, before.envelope);
         c[C] * bond.omega * bond.length * more
+    }
+}
+
+impl Shelved for Softening {
+    fn descriptor() -> Descriptor {
+        Descriptor {
+            name: "softening".into(),
+            doc: "Bond-based, f = c ω ν V (1 − d) s: linear up to the onset, then falling linearly to nothing at the critical stretch; Poisson ratio 1/4, plane stress 1/3. With a fracture energy the critical stretch follows from the area under the curve.".into(),
+            source: "bilinear cohesive law, Petersson 1981; on bonds Zaccariotto, Luongo, Sarego & Galvanetto 2015".into(),
+            example: "{ young = \"30 GPa\", onset = 0.1 }".into(),
+            keys: vec![
+                descriptor::number(
+                    "young",
+                    Dimension::PRESSURE,
+                    Bounds::POSITIVE,
+                    "Young's modulus E.",
+                ),
+                descriptor::number(
+                    "onset",
+                    Dimension::NUMBER,
+                    Bounds {
+                        most: 1.0 - 1e-9,
+                        ..Bounds::PART
+                    },
+                    "Stretch at which softening begins, over the critical stretch.",
+                ),
+            ],
+        }
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        match parameters.number("young") {
+            Some(young) => Ok(LawSpec::Pmb(PmbStiffness::Young(young))),
+            None => Err("a softening bond needs young".into()),
+        }
+    }
+
+    /// The area under the curve is `½ c s0 s_c`, that of a brittle bond `½ c s_c²`.
+    fn brittle_energy(parameters: &Parameters, energy: f64) -> f64 {
+        energy / parameters.number("onset").unwrap_or(1.0)
+    }
+
+    fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let mut made = vec![];
+        for (n, m) in materials.iter().enumerate() {
+            let (Some(c), Some(onset)) = (m.micromodulus, m.parameters.number("onset")) else {
+                return Err((n, "a softening bond needs young and onset".into()));
+            };
+            if !m.critical_stretch.is_finite() {
+                return Err((
+                    n,
+                    "a softening bond ends at its critical stretch: give the material a fracture with critical_stretch or energy".into(),
+                ));
+            }
+            made.push(SofteningConstants {
+                micromodulus: c,
+                onset: onset * m.critical_stretch,
+                critical: m.critical_stretch,
+            });
+        }
+        Ok(Softening { materials: made })
     }
 }

@@ -1,5 +1,5 @@
 //! The ordinary viscoelastic solid (Mitchell 2011, "A non-local, ordinary-state-based viscoelasticity model for peridynamics",
-//! SAND2011-8064), in D dimensions and with B branches.
+//! SAND2011-8064), in D dimensions and with up to [`BRANCHES`] branches.
 //!
 //! The linear peridynamic solid of [`Solid`], whose shear relaxes: `G(t) = G (1 − Σ λ_b + Σ λ_b e^(−t/τ_b))`. A bond keeps the
 //! deviatoric extension e^d = e − θ|ξ|/n of the last step and a back extension of each branch,
@@ -8,8 +8,10 @@
 
 use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
+use crate::spec::{LawSpec, Parameters, Plane};
 use std::borrow::Cow;
 
 /// Constants of one material.
@@ -20,9 +22,12 @@ pub struct ViscoelasticConstants {
     pub branches: Vec<(f64, f64)>,
 }
 
+/// Most branches of a material of a deck.
+pub const BRANCHES: usize = 4;
+
 /// See the module; materials have up to B branches.
 #[derive(Debug, Clone)]
-pub struct Viscoelastic<const B: usize> {
+pub struct Viscoelastic<const B: usize = BRANCHES> {
     /// Per material.
     pub materials: Vec<ViscoelasticConstants>,
 }
@@ -203,6 +208,63 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
             sum = (end.constants.1[b][0] * force).fma(back[b] - old[b], sum);
         }
         N::constant(0.5) * end.point[ALPHA] * bond.omega * sum
+    }
+}
+
+/// Part and time of a branch.
+static BRANCH: [(&str, Dimension, Bounds); 2] = [
+    ("part of the shear modulus", Dimension::NUMBER, Bounds::PART),
+    ("relaxation time", Dimension::TIME, Bounds::POSITIVE),
+];
+
+impl Shelved for Viscoelastic {
+    fn descriptor() -> Descriptor {
+        let mut keys = MODULI.to_vec();
+        keys.push(Key {
+            name: "branches",
+            value: Value::Rows(&BRANCH),
+            need: Need::Given,
+            doc: "[part λ, time τ] of each branch of the shear modulus G (1 − Σλ + Σλ e^(−t/τ)); up to four, Σλ at most 1.",
+        });
+        Descriptor {
+            name: "viscoelastic".into(),
+            doc: "Linear peridynamic solid whose shear relaxes, G(t) = G (1 − Σλ + Σλ e^(−t/τ)). Two of young, poisson, bulk, shear of the unrelaxed solid.".into(),
+            source: "Mitchell 2011, SAND2011-8064".into(),
+            example: "{ young = \"3 GPa\", poisson = 0.35, branches = [[0.5, \"1 ms\"], [0.2, \"0.1 s\"]] }".into(),
+            keys,
+        }
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        descriptor::moduli(parameters).map(LawSpec::Lps)
+    }
+
+    fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let mut made = vec![];
+        for (n, m) in materials.iter().enumerate() {
+            let refused = |message: String| Err((n, message));
+            let rows = m.parameters.rows("branches").unwrap_or(&[]);
+            if rows.is_empty() || rows.len() > BRANCHES {
+                return refused(format!(
+                    "there are {} branches, expected one to {BRANCHES}",
+                    rows.len()
+                ));
+            }
+            let sum: f64 = rows.iter().map(|r| r[0]).sum();
+            if sum > 1.0 + 1e-12 {
+                return refused(format!(
+                    "the parts of the branches add up to {sum}, more than the shear modulus"
+                ));
+            }
+            let Some(solid) = m.solid else {
+                return refused("a viscoelastic solid needs its moduli".into());
+            };
+            made.push(ViscoelasticConstants {
+                solid,
+                branches: rows.iter().map(|r| (r[0], r[1])).collect(),
+            });
+        }
+        Ok(Viscoelastic { materials: made })
     }
 }
 

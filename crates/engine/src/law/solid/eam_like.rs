@@ -75,7 +75,7 @@ impl Solid {
 
     /// Of a state-based law of a spec; `None`: it is none.
     pub fn of_law(d: usize, plane: Plane, law: &LawSpec) -> Option<Solid> {
-        match law {
+        match law.linear() {
             LawSpec::Lps(moduli) => {
                 let (g, l) = (moduli.shear(), moduli.lame());
                 let lambda = match (d, plane) {
@@ -95,9 +95,11 @@ impl Solid {
                 kappa: volume / 3.0,
                 beta: 0.5 * pair,
             }),
-            LawSpec::Pmb(_) | LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
-                None
-            }
+            LawSpec::Pmb(_)
+            | LawSpec::Springs(_)
+            | LawSpec::Atoms(_)
+            | LawSpec::Micromoduli(_)
+            | LawSpec::Named(_) => None,
         }
     }
 

@@ -59,7 +59,7 @@ pub(super) fn constants<const D: usize>(
             .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
         }
         let hard = |stiffness| micromodulus(D, spec.plane, stiffness, continuum);
-        let (value, contact) = match &m.law {
+        let (value, contact) = match m.law.linear() {
             LawSpec::Pmb(stiffness) => {
                 let stiffness = *stiffness;
                 bond.push(c(stiffness));
@@ -89,6 +89,12 @@ pub(super) fn constants<const D: usize>(
             LawSpec::Micromoduli(body) => {
                 given.push(body);
                 (1.0, 0.0)
+            }
+            LawSpec::Named(law) => {
+                return Err(BuildError::new(
+                    at(n, "law"),
+                    format!("the law {} is on no shelf", law.name),
+                ));
             }
         };
         if !(value > 0.0 && value.is_finite()) {

@@ -1,5 +1,6 @@
 //! Law and family become an interaction on a body.
 
+use super::shelf::Place;
 use super::{ConstitutiveModel, Laws};
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
@@ -42,6 +43,18 @@ impl ConstitutiveModel {
             (Some(all), Some(n)) => Some(all.only(n)),
             (all, _) => all.clone(),
         };
+        if let Some(named) = &self.named {
+            return named.bind(Place {
+                body,
+                stencil: self.stencil.as_ref(),
+                horizon: self.reach(),
+                weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+                toughness,
+                repulsion,
+                simd: self.simd,
+                only,
+            });
+        }
         match &self.laws {
             Laws::Springs(c) => {
                 let links = self.links(body)?;
@@ -129,6 +142,19 @@ impl ConstitutiveModel {
         }
     }
 
+    /// Length up to which pairs are bonds: whole multiples of the spacing are meant inclusively.
+    fn reach(&self) -> f64 {
+        match self.ratio {
+            true => self.horizon * (1.0 + 1e-9),
+            false => self.horizon,
+        }
+    }
+
+    /// Length over which volumes fade at the horizon.
+    fn scaling(&self) -> Option<f64> {
+        self.scaling.then_some(self.spacing)
+    }
+
     fn links<const D: usize>(&self, body: &Body<D>) -> Result<Links<D>, BuildError> {
         match (&body.layout, &self.stencil) {
             (Layout::Grid(grid), Some(stencil)) => Ok(Links::new(body, grid, stencil)),
@@ -163,18 +189,11 @@ impl ConstitutiveModel {
                 })))
             }
             _ => {
-                let scaling = self.scaling.then_some(self.spacing);
-                // whole multiples of the spacing are meant inclusively
-                let reach = if self.ratio {
-                    self.horizon * (1.0 + 1e-9)
-                } else {
-                    self.horizon
-                };
                 Ok(Box::new(ListInteraction::new(ListParts {
                     body,
-                    list: HorizonList::new(body, reach)?,
+                    list: HorizonList::new(body, self.reach())?,
                     law,
-                    weight: BondWeight::new(self.influence, self.horizon, scaling),
+                    weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
                     point_constants,
                     toughness,
                     repulsion,
@@ -230,12 +249,11 @@ impl ConstitutiveModel {
             let pair = pairs.get(body.material_of(i), body.material_of(j));
             pair.horizon
         };
-        let scaling = self.scaling.then_some(self.spacing);
         let parts = ListParts {
             body,
             list: HorizonList::within(body, self.horizon, horizon)?,
             law,
-            weight: BondWeight::new(self.influence, self.horizon, scaling),
+            weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
             point_constants,
             toughness,
             repulsion: self.repulsion.clone(),

@@ -3,6 +3,7 @@
 mod constants;
 mod interaction;
 mod pairs;
+pub(super) mod shelf;
 mod toughness;
 
 use crate::error::BuildError;
@@ -17,6 +18,7 @@ use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
 pub(super) use pairs::contact_stiffness;
+pub use shelf::Shelf;
 use std::sync::Arc;
 use toughness::toughness;
 
@@ -38,6 +40,8 @@ pub(super) struct ConstitutiveModel {
     pub rule: InterfaceRule,
     /// Constants of pairs of materials, where they do not follow from the two.
     pub pairs: Option<Arc<BondTable>>,
+    /// The law of the shelf that all materials have; `None`: `laws` says all.
+    pub named: Option<shelf::Chosen>,
     pub simd: Simd,
 }
 
@@ -110,6 +114,7 @@ impl ConstitutiveModel {
         horizon: f64,
         spacing: f64,
         discrete: Moments,
+        shelf: &Shelf,
         simd: Simd,
     ) -> Result<ConstitutiveModel, BuildError> {
         let continuum = Moments::continuum(D, horizon, spec.section, spec.influence);
@@ -133,6 +138,7 @@ impl ConstitutiveModel {
             None => None,
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
+        let named = shelf::chosen::<D>(spec, shelf, moments, &toughness)?;
         Ok(ConstitutiveModel {
             laws,
             toughness,
@@ -146,6 +152,7 @@ impl ConstitutiveModel {
             ratio: matches!(spec.horizon, Horizon::Ratio(_)),
             rule: spec.interface,
             pairs,
+            named,
             simd,
         })
     }

@@ -22,7 +22,7 @@ pub(super) fn toughness<const D: usize>(
         Criterion::Stretch(s) => s,
         Criterion::Energy(energy) => {
             // the bond-based constant of the same bulk; for state-based solids of the same K
-            let stiffness = match &m.law {
+            let stiffness = match m.law.linear() {
                 LawSpec::Pmb(s) => *s,
                 LawSpec::Lps(m) if D == 1 => PmbStiffness::Young(m.young),
                 LawSpec::Lps(m) => {
@@ -32,7 +32,8 @@ pub(super) fn toughness<const D: usize>(
                 | LawSpec::EamLike { .. }
                 | LawSpec::Springs(_)
                 | LawSpec::Atoms(_)
-                | LawSpec::Micromoduli(_) => {
+                | LawSpec::Micromoduli(_)
+                | LawSpec::Named(_) => {
                     return Err(BuildError::new(
                         path,
                         "a fracture energy is known for pmb and lps materials only",

@@ -1,0 +1,247 @@
+//! The horizon list of a cloud: groups are slices of eight rows, partners are gathered from records.
+
+use super::family::{Family, Moved, Reference, Slots};
+use super::store::{Layout, Rows};
+use crate::body::Body;
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{self, Lane, TILE};
+use crate::family::horizon::HorizonList;
+use crate::interaction::weight::BondWeight;
+use crate::law::material::Numbers;
+
+/// Eight slots that are listed.
+#[derive(Clone, Copy)]
+pub struct Listed(*const u32);
+
+impl Slots for Listed {
+    #[inline(always)]
+    fn slot(self, l: usize) -> usize {
+        // SAFETY: made from eight listed slots
+        unsafe { *self.0.add(l) as usize }
+    }
+    #[inline(always)]
+    fn from(self, l: usize) -> Self {
+        // SAFETY: made from eight listed slots
+        Listed(unsafe { self.0.add(l) })
+    }
+    #[inline(always)]
+    unsafe fn one<L: Lane>(self, column: *const f64) -> L {
+        let mut all = [0.0; TILE];
+        for l in 0..L::N {
+            // SAFETY: the caller's promise
+            all[l] = unsafe { *column.add(self.slot(l)) };
+        }
+        // SAFETY: a number per lane
+        unsafe { L::load(all.as_ptr()) }
+    }
+    #[inline(always)]
+    unsafe fn load<L: Lane, N: Numbers<L>>(self, rows: Rows) -> N {
+        let mut out = N::constant(0.0);
+        let mut n = 0;
+        while n < N::COUNT {
+            // SAFETY: the caller's promise
+            let four = unsafe { L::gather4(rows.data.at(n / 4 * rows.layout.stride), self.0) };
+            for c in 0..4 {
+                if n + c < N::COUNT {
+                    out.set(n + c, four[c]);
+                }
+            }
+            n += 4;
+        }
+        out
+    }
+}
+
+/// All bonds of a cloud.
+#[derive(Debug, Clone)]
+pub struct CloudFamily<const D: usize> {
+    list: HorizonList,
+    weight: BondWeight,
+    /// `[slots][4]`: x, y, z, volume.
+    reference: Vec<f64>,
+    /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
+    back: Vec<u32>,
+    period: [f64; D],
+    inv_period: [f64; D],
+    slots: usize,
+}
+
+impl<const D: usize> CloudFamily<D> {
+    /// `remembers`: does the law have memory of bonds?
+    pub fn new(body: &Body<D>, list: HorizonList, weight: BondWeight, remembers: bool) -> Self {
+        let mut reference = vec![0.0; 4 * body.len];
+        for (slot, record) in reference.chunks_mut(4).enumerate() {
+            record[..3].copy_from_slice(&body.position(slot));
+            record[3] = body.volume.at(slot);
+        }
+        let back = if remembers { ways_back(&list) } else { vec![] };
+        CloudFamily {
+            list,
+            weight,
+            reference,
+            back,
+            period: body.period.map(|p| p.unwrap_or(0.0)),
+            inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
+            slots: body.len,
+        }
+    }
+
+    pub fn near_horizon(&self) -> u64 {
+        self.list.near_horizon
+    }
+
+    fn line(&self, group: usize, k: usize) -> usize {
+        self.list.start[group] + k
+    }
+}
+
+/// Place of the bond that leads back, for every bond of a list.
+fn ways_back(list: &HorizonList) -> Vec<u32> {
+    let mut place = vec![0u32; list.partner.len()];
+    let mut row_of = vec![0u32; list.rows.len()];
+    for (row, &slot) in list.rows.iter().enumerate() {
+        row_of[slot as usize] = row as u32;
+    }
+    for (row, &i) in list.rows.iter().enumerate() {
+        for (line, j) in list.partners(row) {
+            let other = row_of[j] as usize;
+            let back = list.partners(other).find(|(_, k)| *k == i as usize);
+            let (back, _) = back.expect("bonds of a list go both ways");
+            place[line * TILE + row % TILE] = (back * TILE + other % TILE) as u32;
+        }
+    }
+    place
+}
+
+impl<const D: usize> Family<D> for CloudFamily<D> {
+    type Slots = Listed;
+    /// x, y, z, volume
+    type Place<L: Lane> = [L; 4];
+
+    fn groups(&self) -> usize {
+        self.list.slices()
+    }
+    #[inline(always)]
+    fn rows(&self, group: usize) -> Listed {
+        Listed(self.list.rows[group * TILE..].as_ptr())
+    }
+    #[inline(always)]
+    fn bonds(&self, group: usize) -> usize {
+        self.list.start[group + 1] - self.list.start[group]
+    }
+    #[inline(always)]
+    fn ends(&self, group: usize, k: usize) -> Listed {
+        Listed(self.list.partner[self.line(group, k) * TILE..].as_ptr())
+    }
+    #[inline(always)]
+    fn byte(&self, group: usize, k: usize) -> usize {
+        self.line(group, k)
+    }
+    fn bytes_of_bits(&self) -> usize {
+        self.list.present.len()
+    }
+    fn is_point(&self, group: usize, l: usize) -> bool {
+        (self.rows(group).slot(l)) < self.slots
+    }
+    fn is_bond(&self, group: usize, k: usize, l: usize) -> bool {
+        self.list.present[self.line(group, k)] >> l & 1 == 1
+    }
+
+    #[inline(always)]
+    unsafe fn place<L: Lane>(&self, rows: Listed) -> [L; 4] {
+        // SAFETY: a record per slot
+        unsafe { L::gather4(self.reference.as_ptr(), rows.0) }
+    }
+    #[inline(always)]
+    unsafe fn reference<L: Lane>(
+        &self,
+        _: usize,
+        _: usize,
+        at: &[L; 4],
+        ends: Listed,
+        dead: L::Mask,
+    ) -> Reference<L, D> {
+        // SAFETY: a record per slot
+        let x = unsafe { L::gather4(self.reference.as_ptr(), ends.0) };
+        let mut xi = [L::splat(0.0); D];
+        let mut square = L::splat(0.0);
+        for a in 0..D {
+            let mut d = x[a] - at[a];
+            let turns = (d * L::splat(self.inv_period[a])).round();
+            d = turns.fma(L::splat(-self.period[a]), d);
+            xi[a] = d;
+            square = if a == 0 { d * d } else { d.fma(d, square) };
+        }
+        // padding has no length
+        square = L::select(L::splat(0.0).lt(square), square, L::splat(1.0));
+        let inv_length = lane::inv_sqrt(square);
+        let length = square * inv_length;
+        Reference {
+            xi,
+            length,
+            inv_length,
+            two_by_square: (inv_length + inv_length) * inv_length,
+            omega: self.weight.influence(length, inv_length),
+            weight: (self.weight.volume_fraction(length) * x[3]).zero_if(dead),
+        }
+    }
+    #[inline(always)]
+    unsafe fn displacement<L: Lane>(moved: &Moved<D>, slots: Listed) -> [L; D] {
+        // SAFETY: a record per slot
+        let four = unsafe { L::gather4(moved.records.as_ptr(), slots.0) };
+        let mut u = [L::splat(0.0); D];
+        for a in 0..D {
+            u[a] = four[a];
+        }
+        u
+    }
+
+    fn layout(&self, numbers: usize) -> Layout {
+        Layout::records(numbers, self.slots)
+    }
+    fn memory(&self) -> usize {
+        self.list.partner.len()
+    }
+    #[inline(always)]
+    fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize {
+        (self.line(group, k) * count + n) * TILE
+    }
+    #[inline(always)]
+    unsafe fn back<L: Lane>(
+        &self,
+        memory: Shared,
+        group: usize,
+        k: usize,
+        part: usize,
+        n: usize,
+        count: usize,
+    ) -> L {
+        let first = self.line(group, k) * TILE + part;
+        let mut all = [0.0; TILE];
+        for l in 0..L::N {
+            // SAFETY: a way back for every bond
+            unsafe {
+                let place = *self.back.get_unchecked(first + l) as usize;
+                all[l] = *memory.at((place / TILE * count + n) * TILE + place % TILE);
+            }
+        }
+        // SAFETY: a number per lane
+        unsafe { L::load(all.as_ptr()) }
+    }
+    fn fill_images(&self, _: &[(u32, u32)], _: &mut [f64], _: usize) {}
+
+    fn find(&self, slot: usize) -> Option<(usize, usize)> {
+        (slot < self.slots).then(|| {
+            let row = self.list.row(slot);
+            (row / TILE, row % TILE)
+        })
+    }
+
+    fn bytes(&self) -> usize {
+        self.list.bytes() + 8 * self.reference.len() + 4 * self.back.len()
+    }
+}
+
+// SAFETY: a pointer into a list that is only read
+unsafe impl Send for Listed {}
+unsafe impl Sync for Listed {}

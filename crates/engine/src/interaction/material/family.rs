@@ -1,0 +1,132 @@
+//! What a family is to the sweeps of a law: groups of eight points, whose bonds are walked together.
+
+use super::store::Rows;
+use crate::body::Field;
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{Lane, TILE};
+use crate::law::material::Numbers;
+
+/// Eight slots: where the points of a group are, or their partners along one of its bonds.
+pub trait Slots: Copy {
+    /// One of them.
+    fn slot(self, l: usize) -> usize;
+    /// Those from the l-th on, for a lane of one.
+    fn from(self, l: usize) -> Self;
+    /// # Safety
+    /// The slots lie inside the array.
+    unsafe fn one<L: Lane>(self, column: *const f64) -> L;
+    /// # Safety
+    /// The slots lie inside the store, which has the layout of the family.
+    unsafe fn load<L: Lane, N: Numbers<L>>(self, rows: Rows) -> N;
+}
+
+/// A bond in the reference.
+#[derive(Clone, Copy)]
+pub struct Reference<L, const D: usize> {
+    pub xi: [L; D],
+    pub length: L,
+    pub inv_length: L,
+    /// 2/|ξ|²
+    pub two_by_square: L,
+    /// ω
+    pub omega: L,
+    /// `ν V_j`
+    pub weight: L,
+}
+
+/// Displacements as sweeps read them.
+#[derive(Clone, Copy)]
+pub struct Moved<'a, const D: usize> {
+    pub columns: &'a Field<D>,
+    /// `[slots][4]`: displacement, where the family gathers; else empty.
+    pub records: &'a [f64],
+}
+
+/// A family in groups of eight points. Implemented by what the engine itself made: unsafe functions trust it.
+pub trait Family<const D: usize>: Send + Sync + 'static {
+    type Slots: Slots;
+    /// What a group has of its points in the reference.
+    type Place<L: Lane>: Copy;
+
+    fn groups(&self) -> usize;
+    fn rows(&self, group: usize) -> Self::Slots;
+    /// Bonds that any of a group's points has.
+    fn bonds(&self, group: usize) -> usize;
+    fn ends(&self, group: usize, k: usize) -> Self::Slots;
+    /// Place of the byte with a bit for each of the eight.
+    fn byte(&self, group: usize, k: usize) -> usize;
+    /// Bytes in all.
+    fn bytes_of_bits(&self) -> usize;
+    /// Is the point of this group a point of the body?
+    fn is_point(&self, group: usize, l: usize) -> bool;
+    /// Is there a partner, whole bond or not?
+    fn is_bond(&self, group: usize, k: usize, l: usize) -> bool;
+
+    /// # Safety
+    /// Rows of this family.
+    unsafe fn place<L: Lane>(&self, rows: Self::Slots) -> Self::Place<L>;
+    /// # Safety
+    /// A bond of the group, and its ends; `dead` are lanes without a whole bond.
+    unsafe fn reference<L: Lane>(
+        &self,
+        group: usize,
+        k: usize,
+        at: &Self::Place<L>,
+        ends: Self::Slots,
+        dead: L::Mask,
+    ) -> Reference<L, D>;
+    /// # Safety
+    /// Slots of this family, and the columns of its body.
+    unsafe fn displacement<L: Lane>(moved: &Moved<D>, slots: Self::Slots) -> [L; D];
+
+    /// How numbers of points are laid out.
+    fn layout(&self, numbers: usize) -> super::store::Layout;
+    /// How many numbers it takes to remember one for each bond.
+    fn memory(&self) -> usize;
+    /// Where number `n` of `count` of a bond's eight is remembered, side by side.
+    fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize;
+    /// The same of the bonds that lead back.
+    ///
+    /// # Safety
+    /// A bond of the group; memory as large as [`Family::memory`] says.
+    unsafe fn back<L: Lane>(
+        &self,
+        memory: Shared,
+        group: usize,
+        k: usize,
+        part: usize,
+        n: usize,
+        count: usize,
+    ) -> L;
+    /// Copies what bonds of original points remember to those of their images.
+    fn fill_images(&self, images: &[(u32, u32)], memory: &mut [f64], count: usize);
+
+    /// ξ and `ν V_j` of one bond, plainly.
+    fn bond(&self, group: usize, k: usize, l: usize) -> ([f64; D], f64) {
+        let ends = self.ends(group, k).from(l);
+        // SAFETY: a bond of this family
+        unsafe {
+            let at = self.place::<f64>(self.rows(group).from(l));
+            let alive = f64::dead(1);
+            let r = self.reference::<f64>(group, k, &at, ends, alive);
+            (r.xi, r.weight)
+        }
+    }
+
+    /// Group and place in it of a slot; `None`: no point.
+    fn find(&self, slot: usize) -> Option<(usize, usize)>;
+    fn bytes(&self) -> usize;
+}
+
+/// Write eight numbers to a column.
+///
+/// # Safety
+/// The slots lie inside the array, and nobody else writes there.
+#[inline(always)]
+pub unsafe fn put<L: Lane, S: Slots>(value: L, out: Shared, slots: S) {
+    let all = value.to_array();
+    for l in 0..TILE {
+        // SAFETY: the caller's promise
+        unsafe { *out.at(slots.slot(l)) = all[l] };
+    }
+}

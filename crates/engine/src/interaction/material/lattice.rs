@@ -1,0 +1,249 @@
+//! The stencil of a lattice body: groups are tiles of eight consecutive slots, and partners lie a fixed number of slots away.
+
+use super::family::{Family, Moved, Reference, Slots};
+use super::store::{Layout, Rows};
+use crate::body::{Body, Grid};
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{Lane, TILE};
+use crate::family::links::Links;
+use crate::family::stencil::Stencil;
+use crate::interaction::material::numbers_of;
+use crate::law::material::Numbers;
+
+/// Consecutive slots.
+#[derive(Clone, Copy)]
+pub struct Run(usize);
+
+impl Slots for Run {
+    #[inline(always)]
+    fn slot(self, l: usize) -> usize {
+        self.0 + l
+    }
+    #[inline(always)]
+    fn from(self, l: usize) -> Self {
+        Run(self.0 + l)
+    }
+    #[inline(always)]
+    unsafe fn one<L: Lane>(self, column: *const f64) -> L {
+        // SAFETY: the caller's promise
+        unsafe { L::load(column.add(self.0)) }
+    }
+    #[inline(always)]
+    unsafe fn load<L: Lane, N: Numbers<L>>(self, rows: Rows) -> N {
+        let mut out = N::constant(0.0);
+        for n in 0..N::COUNT {
+            // SAFETY: the caller's promise
+            unsafe { out.set(n, L::load(rows.data.at(n * rows.layout.stride + self.0))) };
+        }
+        out
+    }
+}
+
+/// A bond of the stencil.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+struct Offset<const D: usize> {
+    shift: isize,
+    xi: [f64; D],
+    length: f64,
+    inv_length: f64,
+    two_by_square: f64,
+    omega: f64,
+    weight: f64,
+}
+
+/// All bonds of a lattice body.
+#[derive(Debug, Clone)]
+pub struct LatticeFamily<const D: usize> {
+    links: Links<D>,
+    /// Per sublattice.
+    offsets: Vec<Vec<Offset<D>>>,
+    /// Per sublattice: the bond that leads back, among those of the sublattice where a bond ends.
+    back: Vec<Vec<u32>>,
+    grid: Grid<D>,
+    /// Bits per group.
+    width: usize,
+    slots: usize,
+    /// From column to column of what bonds remember.
+    stride: usize,
+}
+
+impl<const D: usize> LatticeFamily<D> {
+    /// `weight` gives `(ω, ν)` of a bond of a length.
+    pub fn new(
+        body: &Body<D>,
+        grid: &Grid<D>,
+        stencil: &Stencil,
+        weight: &dyn Fn(f64) -> [f64; 2],
+    ) -> Self {
+        let links = Links::new(body, grid, stencil);
+        let volume = body.volume.uniform().unwrap_or(1.0);
+        let h = grid.lattice.spacing;
+        let made = stencil.offsets.iter().zip(&links.links).map(|(list, links)| {
+            let all = list.iter().zip(links).map(|(o, link)| {
+                let square = h * h * (o.squared as f64 / 16.0);
+                let length = square.sqrt();
+                let [omega, fraction] = weight(length);
+                Offset {
+                    shift: link.shift,
+                    xi: link.xi,
+                    length,
+                    inv_length: 1.0 / length,
+                    two_by_square: 2.0 / square,
+                    omega,
+                    weight: fraction * volume,
+                }
+            });
+            all.collect::<Vec<_>>()
+        });
+        let offsets: Vec<Vec<Offset<D>>> = made.collect();
+        let back = stencil.offsets.iter().enumerate().map(|(from, list)| {
+            let of = |o: &crate::family::stencil::Offset| {
+                let there = |b: &crate::family::stencil::Offset| {
+                    b.to == from && (0..3).all(|a| b.cell[a] == -o.cell[a])
+                };
+                let place = stencil.offsets[o.to].iter().position(there);
+                place.expect("every bond of a stencil leads back") as u32
+            };
+            list.iter().map(of).collect()
+        });
+        LatticeFamily {
+            back: back.collect(),
+            width: offsets.iter().map(Vec::len).max().unwrap_or(0),
+            offsets,
+            links,
+            grid: grid.clone(),
+            slots: body.len,
+            stride: Layout::columns(1, body.len).stride,
+        }
+    }
+
+    #[inline(always)]
+    fn sublattice(&self, group: usize) -> usize {
+        self.grid.tile_sublattice(self.links.tiles[group] as usize)
+    }
+
+    #[inline(always)]
+    fn first(&self, group: usize) -> usize {
+        self.grid.tile_slot(self.links.tiles[group] as usize)
+    }
+
+    #[inline(always)]
+    fn offset(&self, group: usize, k: usize) -> &Offset<D> {
+        &self.offsets[self.sublattice(group)][k]
+    }
+
+}
+
+impl<const D: usize> Family<D> for LatticeFamily<D> {
+    type Slots = Run;
+    type Place<L: Lane> = ();
+
+    fn groups(&self) -> usize {
+        self.links.tiles.len()
+    }
+    #[inline(always)]
+    fn rows(&self, group: usize) -> Run {
+        Run(self.first(group))
+    }
+    #[inline(always)]
+    fn bonds(&self, group: usize) -> usize {
+        self.offsets[self.sublattice(group)].len()
+    }
+    #[inline(always)]
+    fn ends(&self, group: usize, k: usize) -> Run {
+        Run(self.first(group).wrapping_add_signed(self.offset(group, k).shift))
+    }
+    #[inline(always)]
+    fn byte(&self, group: usize, k: usize) -> usize {
+        group * self.width + k
+    }
+    fn bytes_of_bits(&self) -> usize {
+        self.links.tiles.len() * self.width
+    }
+    fn is_point(&self, group: usize, l: usize) -> bool {
+        self.grid.is_owned(self.first(group) + l)
+    }
+    fn is_bond(&self, group: usize, k: usize, l: usize) -> bool {
+        let link = &self.links.links[self.sublattice(group)][k];
+        link.partner(&self.grid, self.first(group) + l).is_some()
+    }
+
+    #[inline(always)]
+    unsafe fn place<L: Lane>(&self, _: Run) {}
+    #[inline(always)]
+    unsafe fn reference<L: Lane>(
+        &self,
+        group: usize,
+        k: usize,
+        (): &(),
+        _: Run,
+        dead: L::Mask,
+    ) -> Reference<L, D> {
+        let o = self.offset(group, k);
+        let mut xi = [L::splat(0.0); D];
+        for a in 0..D {
+            xi[a] = L::splat(o.xi[a]);
+        }
+        Reference {
+            xi,
+            length: L::splat(o.length),
+            inv_length: L::splat(o.inv_length),
+            two_by_square: L::splat(o.two_by_square),
+            omega: L::splat(o.omega),
+            weight: L::splat(o.weight).zero_if(dead),
+        }
+    }
+    #[inline(always)]
+    unsafe fn displacement<L: Lane>(moved: &Moved<D>, slots: Run) -> [L; D] {
+        let mut u = [L::splat(0.0); D];
+        for a in 0..D {
+            // SAFETY: the caller's promise; guards surround the columns
+            u[a] = unsafe { slots.one(moved.columns[a].as_ptr()) };
+        }
+        u
+    }
+
+    fn layout(&self, numbers: usize) -> Layout {
+        Layout::columns(numbers, self.slots)
+    }
+    fn memory(&self) -> usize {
+        self.width * self.stride
+    }
+    #[inline(always)]
+    fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize {
+        (k * count + n) * self.stride + self.first(group)
+    }
+    #[inline(always)]
+    unsafe fn back<L: Lane>(
+        &self,
+        memory: Shared,
+        group: usize,
+        k: usize,
+        part: usize,
+        n: usize,
+        count: usize,
+    ) -> L {
+        let back = self.back[self.sublattice(group)][k] as usize;
+        let slot = self.ends(group, k).0 + part;
+        // SAFETY: the caller's promise
+        unsafe { L::load(memory.at((back * count + n) * self.stride + slot)) }
+    }
+    fn fill_images(&self, images: &[(u32, u32)], memory: &mut [f64], count: usize) {
+        for column in memory.chunks_mut(self.stride).take(self.width * count) {
+            for &(copy, original) in images {
+                column[copy as usize] = column[original as usize];
+            }
+        }
+    }
+
+    fn find(&self, slot: usize) -> Option<(usize, usize)> {
+        let at = slot.checked_sub(self.grid.guard)?;
+        let group = self.links.tiles.binary_search(&((at / TILE) as u32)).ok()?;
+        self.is_point(group, at % TILE).then_some((group, at % TILE))
+    }
+
+    fn bytes(&self) -> usize {
+        self.links.bytes() + numbers_of(&self.offsets) + 4 * self.width
+    }
+}

@@ -1,0 +1,584 @@
+//! Any law on any family: laws with memory, with tensors, along the bond or not ([`crate::law::material`]). Written once over groups of eight
+//! points; a lattice and a cloud differ in where partners are and what of a bond is stored.
+
+mod breaking;
+mod cloud;
+mod columns;
+mod family;
+mod lattice;
+mod plain;
+mod repulsion;
+mod store;
+mod sweeps;
+mod tangents;
+mod view;
+
+pub use cloud::CloudFamily;
+pub use lattice::LatticeFamily;
+
+use super::{
+    BondForce, BondState, BondTangent, EnergyFields, Interaction, PointEnergies, Repulsion, Sweep,
+    Tally, Toughness,
+};
+use crate::body::{Body, Column, Field, field};
+use crate::columns::Declaration;
+use crate::execute::blocks::{PerBlock, Shared, run_blocks};
+use crate::execute::lane::TILE;
+use crate::execute::simd::Simd;
+use crate::interaction::bond::critical_stretch;
+use crate::law::material::{Material, Numbers};
+use crate::spec::{CrackKind, Release};
+use breaking::Break;
+use family::{Family, Moved, Slots};
+use repulsion::Pushed;
+use std::ops::AddAssign;
+use store::Store;
+use sweeps::{Energies, Forces, Remember, Sums};
+use view::{BLOCK, View};
+
+/// A law on a family.
+pub struct MaterialInteraction<const D: usize, F, M> {
+    law: M,
+    family: F,
+    simd: Simd,
+    kind: &'static str,
+    /// Bits of whole bonds, and of those that damage counts.
+    alive: Vec<u8>,
+    counted: Vec<u8>,
+    directed: u64,
+    near_horizon: u64,
+    materials: usize,
+    /// Material per slot; empty: one.
+    material: Vec<u8>,
+    form: Store,
+    point: Store,
+    past: Store,
+    memory: Vec<f64>,
+    /// `[slots][4]`, where the family gathers.
+    records: Vec<f64>,
+    toughness: Vec<Toughness>,
+    repulsion: Option<Repulsion>,
+    /// Critical `e` per slot, now and next; empty: nothing breaks.
+    critical: Column,
+    next: Column,
+    /// Length of the step that equilibrium is sought for; 0: memory stands still.
+    step: f64,
+    prepared: bool,
+    tallies: PerBlock<Tally>,
+    sums: PerBlock<[f64; 2]>,
+}
+
+/// Everything such an interaction is made of.
+pub struct MaterialParts<'a, const D: usize, F, M> {
+    pub body: &'a Body<D>,
+    pub family: F,
+    pub law: M,
+    pub kind: &'static str,
+    pub near_horizon: u64,
+    /// One per material.
+    pub toughness: Vec<Toughness>,
+    pub repulsion: Option<Repulsion>,
+    pub simd: Simd,
+}
+
+fn numbers_of<T>(of: &[Vec<T>]) -> usize {
+    of.iter().map(|o| size_of::<T>() * o.len()).sum()
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
+    pub fn new(parts: MaterialParts<D, F, M>) -> Self {
+        let MaterialParts {
+            body,
+            family,
+            law,
+            kind,
+            near_horizon,
+            toughness,
+            repulsion,
+            simd,
+        } = parts;
+        let mut alive = vec![0u8; family.bytes_of_bits()];
+        let mut directed = 0;
+        for group in 0..family.groups() {
+            for l in (0..TILE).filter(|l| family.is_point(group, *l)) {
+                for k in 0..family.bonds(group) {
+                    if family.is_bond(group, k, l) {
+                        alive[family.byte(group, k)] |= 1 << l;
+                        directed += 1;
+                    }
+                }
+            }
+        }
+        let breaks = toughness.iter().any(|t| t.s00.is_finite());
+        let critical = || match breaks {
+            true => Column::new(body.len, f64::INFINITY, field::line(3)),
+            false => Column::default(),
+        };
+        let several = toughness.len() > 1;
+        let store = |numbers| Store::zeros(family.layout(numbers));
+        let blocks = family.groups().div_ceil(BLOCK);
+        let gathers = family.layout(1).records;
+        MaterialInteraction {
+            counted: alive.clone(),
+            alive,
+            directed,
+            near_horizon,
+            materials: toughness.len(),
+            material: match several {
+                true => (0..body.len).map(|s| body.material_of(s) as u8).collect(),
+                false => vec![],
+            },
+            form: store(<M::Form<f64> as Numbers<f64>>::COUNT),
+            point: store(<M::Point<f64> as Numbers<f64>>::COUNT),
+            past: store(<M::Past<f64> as Numbers<f64>>::COUNT),
+            memory: vec![0.0; family.memory() * <M::Memory<f64> as Numbers<f64>>::COUNT],
+            records: vec![0.0; if gathers { 4 * body.len } else { 0 }],
+            critical: critical(),
+            next: critical(),
+            step: 0.0,
+            prepared: false,
+            tallies: PerBlock::new(blocks, Tally::default()),
+            sums: PerBlock::sums(blocks),
+            law,
+            family,
+            simd,
+            kind,
+            toughness,
+            repulsion,
+        }
+    }
+
+    /// `[materials][numbers]` for a step of this length.
+    fn constants(&self, dt: f64) -> Vec<f64> {
+        let count = <M::Constants<f64> as Numbers<f64>>::COUNT;
+        let mut all = Vec::with_capacity(self.materials * count);
+        for m in 0..self.materials {
+            let of = self.law.constants(m, dt);
+            all.extend((0..count).map(|n| of.get(n)));
+        }
+        all
+    }
+
+    fn view<'a>(
+        &'a self,
+        u: &'a Field<D>,
+        records: &'a [f64],
+        constants: &'a [f64],
+    ) -> View<'a, D, F, M> {
+        View {
+            law: &self.law,
+            family: &self.family,
+            moved: Moved {
+                columns: u,
+                records,
+            },
+            // sweeps that write were given these by `&mut self`
+            alive: Shared(self.alive.as_ptr().cast_mut()),
+            constants,
+            material: &self.material,
+            form: self.form.view(),
+            point: self.point.view(),
+            past: self.past.view(),
+            memory: Shared(self.memory.as_ptr().cast_mut()),
+        }
+    }
+
+    /// Displacements as gathers want them.
+    fn pack(&self, u: &Field<D>, records: &mut [f64]) {
+        for (slot, record) in records.chunks_mut(4).enumerate() {
+            for a in 0..D {
+                record[a] = u[a][slot];
+            }
+        }
+    }
+
+    fn packed(&self, u: &Field<D>) -> Vec<f64> {
+        let mut records = vec![0.0; self.records.len()];
+        self.pack(u, &mut records);
+        records
+    }
+
+    /// All passes: points as the bonds see them.
+    fn settle(&mut self, body: &Body<D>, u: &Field<D>, records: &[f64], constants: &[f64]) {
+        let mut point = std::mem::replace(&mut self.point, Store::zeros(self.family.layout(0)));
+        for pass in 0..M::PASSES {
+            let out = point.shared();
+            let mut view = self.view(u, records, constants);
+            view.point = out;
+            let kernel = Sums { view, pass, out };
+            run_blocks(self.simd, &kernel, self.sums.blocks());
+            point.fill_images(&body.images);
+        }
+        self.point = point;
+    }
+
+    fn pushed<'a>(&'a self, body: &'a Body<D>) -> Option<Pushed<'a, D>> {
+        let repulsion = self.repulsion.as_ref()?;
+        Some(Pushed { repulsion, body })
+    }
+
+    fn energies(
+        &self,
+        body: &Body<D>,
+        u: &Field<D>,
+        records: &[f64],
+        out: Option<&mut PointEnergies>,
+    ) -> [f64; 2] {
+        let constants = self.constants(self.step);
+        let fields = out.map(|out| {
+            out.zeros(body.len);
+            EnergyFields {
+                strain: Shared(out.strain.as_mut_ptr()),
+                repulsion: Shared(out.repulsion.as_mut_ptr()),
+                share: Shared(out.dilatation.as_mut_ptr()),
+                weight: Shared(out.whole.as_mut_ptr()),
+            }
+        });
+        let kernel = Energies {
+            view: self.view(u, records, &constants),
+            pushed: self.pushed(body),
+            volume: &body.volume,
+            fields,
+        };
+        self.sums.sum(self.simd, &kernel)
+    }
+
+    fn seen(&self, body: &Body<D>, u: &Field<D>, records: &[f64], out: &mut PointEnergies) {
+        self.energies(body, u, records, Some(&mut *out));
+        for &s in &body.slots {
+            let i = s as usize;
+            if out.whole[i] > 0.0 {
+                out.dilatation[i] *= D as f64 / out.whole[i];
+            }
+        }
+    }
+
+    /// Test and break, and what points lose.
+    fn tear(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        records: &[f64],
+        constants: &[f64],
+        v: &Field<D>,
+        drift: f64,
+    ) -> Tally {
+        let still = self.constants(0.0);
+        let mut next = std::mem::take(&mut self.next);
+        let form = self.form.shared();
+        let alive = Shared(self.alive.as_mut_ptr());
+        let mut view = self.view(u, records, constants);
+        (view.form, view.alive) = (form, alive);
+        let kernel = Break {
+            view,
+            still: &still,
+            body,
+            critical: &self.critical,
+            next: Shared(next.as_mut_ptr()),
+            toughness: &self.toughness,
+            v,
+            drift,
+        };
+        let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);
+        self.next = next;
+        tally
+    }
+
+    /// Memory at the end of a step.
+    fn remember(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        records: &[f64],
+        constants: &[f64],
+    ) -> Tally {
+        if self.memory.is_empty() && self.past.data.is_empty() {
+            return Tally::default();
+        }
+        let past = self.past.shared();
+        let memory = Shared(self.memory.as_mut_ptr());
+        let mut view = self.view(u, records, constants);
+        (view.past, view.memory) = (past, memory);
+        let kernel = Remember {
+            view,
+            past,
+            volume: &body.volume,
+        };
+        let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);
+        let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
+        if count > 0 && !body.images.is_empty() {
+            self.family
+                .fill_images(&body.images, &mut self.memory, count);
+        }
+        tally
+    }
+
+    /// What points know of their families, from the bonds in `bits`.
+    fn look(&mut self, body: &Body<D>) {
+        let count = <M::Form<f64> as Numbers<f64>>::COUNT;
+        if count == 0 {
+            return;
+        }
+        let u = crate::body::zeros(0);
+        let bits = match M::FORM_OF_WHOLE {
+            true => &self.alive,
+            false => &self.counted,
+        };
+        let mut form = self.form.clone();
+        let view = self.view(&u, &[], &[]);
+        for group in 0..self.family.groups() {
+            let first = self.family.byte(group, 0);
+            let bits = match self.family.bonds(group) {
+                0 => &[],
+                bonds => &bits[first..first + bonds],
+            };
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                let made = view.form_of(group, bits, l, body);
+                let slot = self.family.rows(group).slot(l);
+                for n in 0..count {
+                    form.set(n, slot, made.get(n));
+                }
+            }
+        }
+        self.form = form;
+    }
+
+    /// Every directed bond of the family that damage counts: group, bond, place.
+    fn each_counted(&self, mut visit: impl FnMut(usize, usize, usize)) {
+        for group in 0..self.family.groups() {
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                for k in 0..self.family.bonds(group) {
+                    if self.counted[self.family.byte(group, k)] >> l & 1 == 1 {
+                        visit(group, k, l);
+                    }
+                }
+            }
+        }
+    }
+
+    fn is_whole(&self, group: usize, k: usize, l: usize) -> bool {
+        self.alive[self.family.byte(group, k)] >> l & 1 == 1
+    }
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialInteraction<D, F, M> {
+    fn family(&self) -> &'static str {
+        self.kind
+    }
+
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        let mut records = std::mem::take(&mut self.records);
+        self.pack(u, &mut records);
+        if let Some(seen) = seen {
+            self.seen(body, u, &records, seen);
+        }
+        let motion = sweep.motion();
+        let constants = self.constants(motion.map_or(self.step, |m| m.steps[0]));
+        let breaks = motion.filter(|_| !self.critical.is_empty());
+        let mut total = Tally::default();
+        if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
+            total += self.tear(body, u, &records, &constants, m.v, -m.steps[0]);
+        }
+        self.settle(body, u, &records, &constants);
+        let kernel = Forces {
+            view: self.view(u, &records, &constants),
+            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            pushed: self.pushed(body),
+        };
+        run_blocks(self.simd, &kernel, self.sums.blocks());
+        if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
+            total += self.tear(body, u, &records, &constants, m.v, m.steps[1]);
+        }
+        if motion.is_some() {
+            total += self.remember(body, u, &records, &constants);
+        }
+        if breaks.is_some() {
+            std::mem::swap(&mut self.critical, &mut self.next);
+            body.fill_images(&mut self.critical);
+        }
+        self.records = records;
+        total
+    }
+
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let mut records = std::mem::take(&mut self.records);
+        self.pack(u, &mut records);
+        let sums = self.energies(body, u, &records, None);
+        self.records = records;
+        sums
+    }
+
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        self.seen(body, u, &self.packed(u), out);
+    }
+
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.strained(body, gradient, out);
+    }
+
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        self.each_tangent(body, u, visit);
+    }
+
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let original = body.originals();
+        self.each_counted(|group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let j = original(end);
+            // a bond between a point and its own image counts from one side only
+            if i < j || (i == j && end > i) {
+                let state = match self.is_whole(group, k, l) {
+                    true => BondState::Whole,
+                    false => BondState::Broken,
+                };
+                visit(i, j, self.family.bond(group, k, l).0, state);
+            }
+        });
+    }
+
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.each_pull(body, u, visit);
+        true
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        let mut family = vec![0.0; body.len];
+        let mut whole = vec![0.0; body.len];
+        let original = body.originals();
+        self.each_counted(|group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
+            family[i] += volume;
+            if self.is_whole(group, k, l) {
+                whole[i] += volume;
+            }
+        });
+        for (i, damage) in out.iter_mut().enumerate() {
+            *damage = match family[i] > 0.0 {
+                true => 1.0 - whole[i] / family[i],
+                false => 0.0,
+            };
+        }
+    }
+
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        let original = body.originals();
+        let mut cut = vec![];
+        self.each_counted(|group, k, l| {
+            if !self.is_whole(group, k, l) {
+                return;
+            }
+            let (xi, _) = self.family.bond(group, k, l);
+            let at = |slot: usize| -> [f64; D] {
+                let x = body.position(slot);
+                std::array::from_fn(|a| x[a])
+            };
+            let from = at(self.family.rows(group).slot(l));
+            // a bond through a periodic face is in two places; either end must see the same
+            let to = at(original(self.family.ends(group, k).slot(l)));
+            if crosses(from, std::array::from_fn(|a| from[a] + xi[a]))
+                || crosses(std::array::from_fn(|a| to[a] - xi[a]), to)
+            {
+                cut.push((self.family.byte(group, k), 1u8 << l));
+            }
+        });
+        for (byte, bit) in &cut {
+            self.alive[*byte] &= !bit;
+            if kind == CrackKind::Absent {
+                self.counted[*byte] &= !bit;
+            }
+        }
+        if kind == CrackKind::Absent {
+            self.directed -= cut.len() as u64;
+        }
+        if self.prepared {
+            self.look(body);
+        }
+        cut.len() as u64
+    }
+
+    fn prepare(&mut self, body: &Body<D>) {
+        self.prepared = true;
+        self.look(body);
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.directed
+    }
+
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
+        let Some((group, l)) = self.family.find(slot) else {
+            return 0;
+        };
+        (0..self.family.bonds(group))
+            .filter(|k| self.counted[self.family.byte(group, *k)] >> l & 1 == 1)
+            .count()
+    }
+
+    fn near_horizon(&self) -> u64 {
+        self.near_horizon
+    }
+
+    fn critical_stretch(&self, slot: usize) -> f64 {
+        self.critical
+            .get(slot)
+            .map_or(f64::INFINITY, |e| critical_stretch(*e))
+    }
+
+    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        let Some((group, l)) = self.family.find(i) else {
+            return false;
+        };
+        let original = body.originals();
+        (0..self.family.bonds(group)).any(|k| {
+            self.family.is_bond(group, k, l) && original(self.family.ends(group, k).slot(l)) == j
+        })
+    }
+
+    fn columns(&self) -> Vec<Declaration> {
+        self.declared()
+    }
+
+    fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        self.read_named(body, u, name, out)
+    }
+
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        self.write_named(body, name, values)
+    }
+
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&self.alive, &self.critical)
+    }
+
+    fn bytes(&self) -> usize {
+        self.family.bytes()
+            + self.alive.len()
+            + self.counted.len()
+            + self.material.len()
+            + self.form.bytes()
+            + self.point.bytes()
+            + self.past.bytes()
+            + 8 * (self.memory.len() + self.records.len())
+            + 8 * (self.critical.len() + self.next.len())
+    }
+}
+

@@ -1,0 +1,152 @@
+//! One bond after the other, in plain numbers: homogeneous strains, forces bond by bond.
+
+use super::MaterialInteraction;
+use super::family::{Family, Slots};
+use super::sweeps::pull;
+use crate::body::{Body, Field};
+use crate::execute::lane::TILE;
+use crate::interaction::{BondForce, PointEnergies, along};
+use crate::law::material::{Bond, End, Material, Numbers, Site};
+
+impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
+    /// ξ, ω and `ν V` of the whole bonds of a point, with their places.
+    pub(super) fn bonds_of(&self, group: usize, l: usize) -> Vec<(usize, [f64; D], f64, f64)> {
+        use crate::execute::lane::Lane;
+        let rows = self.family.rows(group).from(l);
+        let mut all = vec![];
+        for k in (0..self.family.bonds(group)).filter(|k| self.is_whole(group, *k, l)) {
+            // SAFETY: a bond of the family
+            let r = unsafe {
+                let place = self.family.place::<f64>(rows);
+                let ends = self.family.ends(group, k).from(l);
+                self.family
+                    .reference::<f64>(group, k, &place, ends, f64::dead(1))
+            };
+            all.push((k, r.xi, r.omega, r.weight));
+        }
+        all
+    }
+
+    /// Energies under a homogeneous displacement gradient.
+    pub(super) fn strained(
+        &self,
+        body: &Body<D>,
+        gradient: &[[f64; D]; D],
+        out: &mut PointEnergies,
+    ) {
+        out.zeros(body.len);
+        let u = crate::body::zeros(0);
+        let constants = self.constants(self.step);
+        let view = self.view(&u, &[], &constants);
+        for group in 0..self.family.groups() {
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                let rows = self.family.rows(group).from(l);
+                let slot = rows.slot(0);
+                // SAFETY: rows of the family
+                let (constants, form, past) = unsafe {
+                    (
+                        view.constants_at::<f64>(rows),
+                        rows.load::<f64, M::Form<f64>>(view.form),
+                        rows.load::<f64, M::Past<f64>>(view.past),
+                    )
+                };
+                let site = Site {
+                    constants: &constants,
+                    form: &form,
+                    past: &past,
+                };
+                let bonds = self.bonds_of(group, l);
+                let bond = |xi: &[f64; D], omega: f64| Bond::new(*xi, along(gradient, xi), omega);
+                let mut point = <M::Point<f64> as Numbers<f64>>::constant(0.0);
+                let mut sum = <M::Sum<f64> as Numbers<f64>>::constant(0.0);
+                for pass in 0..M::PASSES {
+                    sum = <M::Sum<f64> as Numbers<f64>>::constant(0.0);
+                    for (k, xi, omega, weight) in &bonds {
+                        // SAFETY: a bond of the family
+                        let memory = unsafe { view.memory::<f64>(group, *k, l) };
+                        let end = End {
+                            constants: &constants,
+                            point: &point,
+                            memory: &memory,
+                        };
+                        sum = sum.plus(*weight, self.law.share(pass, &bond(xi, *omega), &end));
+                    }
+                    self.law.settle(pass, &site, sum, &mut point);
+                }
+                let mut energy = self.law.point_energy(&site, sum, &point);
+                let (mut share, mut whole) = (0.0, 0.0);
+                for (k, xi, omega, weight) in &bonds {
+                    // SAFETY: a bond of the family
+                    let memory = unsafe { view.memory::<f64>(group, *k, l) };
+                    let end = End {
+                        constants: &constants,
+                        point: &point,
+                        memory: &memory,
+                    };
+                    let bond = bond(xi, *omega);
+                    energy += weight * self.law.energy(&bond, &end);
+                    let part = weight * omega * bond.length * bond.length;
+                    share += part * bond.stretch;
+                    whole += part;
+                }
+                out.strain[slot] = energy;
+                out.whole[slot] = whole;
+                if whole > 0.0 {
+                    out.dilatation[slot] = D as f64 * share / whole;
+                }
+            }
+        }
+    }
+
+    /// Forces bond by bond, in order of slots.
+    pub(super) fn each_pull(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) {
+        let records = self.packed(u);
+        let constants = self.constants(self.step);
+        self.settle(body, u, &records, &constants);
+        let view = self.view(u, &records, &constants);
+        let original = body.originals();
+        let pushed = self.pushed(body);
+        for &s in &body.slots {
+            let Some((group, l)) = self.family.find(s as usize) else {
+                continue;
+            };
+            for k in 0..self.family.bonds(group) {
+                if !self.family.is_bond(group, k, l) {
+                    continue;
+                }
+                let j = self.family.ends(group, k).slot(l);
+                // SAFETY: a bond of the family
+                let (mut force, y) = unsafe {
+                    let at = view.group::<f64>(group, l);
+                    let point = view.point::<f64>(at.rows);
+                    let force = pull::<f64, D, F, M>(&view, &at, &point, k, l);
+                    let uj = F::displacement::<f64>(&view.moved, self.family.ends(group, k).from(l));
+                    let (xi, _) = self.family.bond(group, k, l);
+                    let y: [f64; D] = std::array::from_fn(|a| xi[a] + uj[a] - at.u[a]);
+                    (force, y)
+                };
+                if let Some(push) = pushed
+                    .as_ref()
+                    .and_then(|p| p.of(&self.family, &view.moved, group, k, l))
+                {
+                    for a in 0..D {
+                        force[a] += push.pull * push.y[a];
+                    }
+                }
+                if force != [0.0; D] {
+                    visit(BondForce {
+                        i: s as usize,
+                        j: original(j),
+                        y,
+                        force,
+                    });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! The sweeps of a law: sums of each pass, answers of bonds, what is remembered, energies.
+
+use super::family::{Family, Slots, put};
+use super::store::Rows;
+use super::view::{Drift, GroupOf, View, mirrored, save};
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{Lane, Piece, TILE};
+use crate::execute::simd::Kernel;
+use crate::interaction::material::repulsion::Pushed;
+use crate::interaction::{EnergyFields, Tally};
+use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site};
+
+/// A pass: sums over bonds, and what the points make of them.
+pub struct Sums<'a, const D: usize, F, M> {
+    pub view: View<'a, D, F, M>,
+    pub pass: usize,
+    pub out: Rows,
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> {
+    type Out = ();
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        let (v, pass) = (&self.view, self.pass);
+        for group in v.block(block) {
+            // SAFETY: groups of the family; each is written by one block
+            unsafe {
+                let at = v.group::<L>(group, 0);
+                let mut point = <M::Point<L> as Numbers<L>>::constant(0.0);
+                if pass > 0 {
+                    point = v.point::<L>(at.rows);
+                }
+                let sum = v.sum::<L>(pass, &at, &point);
+                v.settle::<L>(pass, &at, sum, &mut point);
+                save(self.out, at.rows, &point);
+            }
+        }
+    }
+}
+
+/// Force pass.
+pub struct Forces<'a, const D: usize, F, M> {
+    pub view: View<'a, D, F, M>,
+    pub f: [Shared; D],
+    pub pushed: Option<Pushed<'a, D>>,
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Forces<'_, D, F, M> {
+    type Out = ();
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        let v = &self.view;
+        for group in v.block(block) {
+            // SAFETY: groups of the family; each is written by one block
+            unsafe {
+                let at = v.group::<L>(group, 0);
+                let point = v.point::<L>(at.rows);
+                let mut acc = [L::splat(0.0); D];
+                for k in 0..v.family.bonds(group) {
+                    let pull = pull::<L, D, F, M>(v, &at, &point, k, 0);
+                    for a in 0..D {
+                        acc[a] = acc[a] + pull[a];
+                    }
+                }
+                if let Some(pushed) = &self.pushed {
+                    pushed.add::<L, F>(v.family, &v.moved, group, &mut acc);
+                }
+                for a in 0..D {
+                    put(acc[a], self.f[a], at.rows);
+                }
+            }
+        }
+    }
+}
+
+/// What the points of a group get from their bond `k` (force / volume).
+///
+/// # Safety
+/// A bond of the group; `part` as of the group.
+#[inline(always)]
+pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
+    v: &View<D, F, M>,
+    at: &GroupOf<L, D, F, M>,
+    point: &M::Point<L>,
+    k: usize,
+    part: usize,
+) -> [L; D] {
+    // SAFETY: the caller's promise
+    unsafe {
+        let ends = v.family.ends(at.number, k).from(part);
+        let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
+        let (bond, weight) = v.bond::<L>(at, k, ends, dead);
+        let memory = v.memory::<L>(at.number, k, part);
+        let own = v.law.answer(
+            &bond,
+            &End {
+                constants: &at.constants,
+                point,
+                memory: &memory,
+            },
+        );
+        let back = v.memory_back::<L>(at.number, k, part);
+        let partner = v.point::<L>(ends);
+        let constants = if v.material.is_empty() {
+            at.constants
+        } else {
+            v.constants_at::<L>(ends)
+        };
+        let other = v.law.answer(
+            &mirrored(&bond),
+            &End {
+                constants: &constants,
+                point: &partner,
+                memory: &back,
+            },
+        );
+        let mut pull = own.pull(other, &bond);
+        for a in 0..D {
+            pull[a] = weight * pull[a];
+        }
+        pull
+    }
+}
+
+/// What bonds and points remember at the end of a step.
+pub struct Remember<'a, const D: usize, F, M> {
+    pub view: View<'a, D, F, M>,
+    pub past: Rows,
+    /// Volume per slot.
+    pub volume: &'a crate::body::Values,
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F, M> {
+    type Out = Tally;
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> Tally {
+        let v = &self.view;
+        let mut tally = Tally::default();
+        for group in v.block(block) {
+            // SAFETY: groups of the family; each is written by one block
+            unsafe {
+                let at = v.group::<L>(group, 0);
+                let point = v.point::<L>(at.rows);
+                if !v.law.moves::<L>(&point) {
+                    continue;
+                }
+                let form = at.rows.load::<L, M::Form<L>>(v.form);
+                let mut past = at.rows.load::<L, M::Past<L>>(v.past);
+                let before = past;
+                let site = Site {
+                    constants: &at.constants,
+                    form: &form,
+                    past: &before,
+                };
+                let mut lost = v.law.remember(&site, &point, &mut past);
+                save(self.past, at.rows, &past);
+                let count = <M::Memory<L> as Numbers<L>>::COUNT;
+                if count > 0 {
+                    for k in 0..v.family.bonds(group) {
+                        let dead = v.dead(&at, k);
+                        let ends = v.family.ends(group, k);
+                        let (bond, weight) = v.bond::<L>(&at, k, ends, dead);
+                        let old = v.memory::<L>(group, k, 0);
+                        let end = End {
+                            constants: &at.constants,
+                            point: &point,
+                            memory: &old,
+                        };
+                        let mut new = old;
+                        lost = weight.fma(v.law.advance(&bond, &end, &mut new), lost);
+                        for n in 0..count {
+                            let x = L::select(dead, old.get(n), new.get(n));
+                            x.store(v.memory.at(v.family.own(group, k, n, count)));
+                        }
+                    }
+                }
+                for (l, x) in lost.to_array().iter().enumerate() {
+                    if v.family.is_point(group, l) {
+                        tally.dissipated += x * self.volume.at(at.rows.slot(l));
+                    }
+                }
+            }
+        }
+        tally
+    }
+}
+
+/// Strain energy density of a group, with all passes of its own.
+pub struct EnergyOf<'a, 'b, L: Lane, const D: usize, F: Family<D>, M: Material<D>> {
+    pub view: &'a View<'b, D, F, M>,
+    pub at: &'a GroupOf<L, D, F, M>,
+    /// A byte per bond: these are whole.
+    pub bits: &'a [u8],
+    /// Of displacements that are away.
+    pub drift: Option<Drift<'a, D>>,
+    pub form: &'a M::Form<L>,
+}
+
+impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> EnergyOf<'_, '_, L, D, F, M> {
+    /// # Safety
+    /// A bond of the group.
+    #[inline(always)]
+    unsafe fn bond(&self, k: usize) -> (Bond<L, D>, L) {
+        let (v, at, dead) = (self.view, self.at, L::dead(self.bits[k]));
+        let ends = v.family.ends(at.number, k);
+        // SAFETY: the caller's promise
+        unsafe {
+            let mut eta = v.apart::<L>(at, ends, dead);
+            if let Some(drift) = &self.drift {
+                for a in 0..D {
+                    let column = drift.v[a].as_ptr();
+                    let rate = ends.one::<L>(column) - at.rows.one::<L>(column);
+                    eta[a] = rate.fma(L::splat(drift.time), eta[a]).zero_if(dead);
+                }
+            }
+            v.deformed(at, k, ends, dead, eta)
+        }
+    }
+}
+
+impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece
+    for EnergyOf<'_, '_, L, D, F, M>
+{
+    type Out = L;
+
+    #[inline(always)]
+    fn run(self) -> L {
+        let (v, at) = (self.view, self.at);
+        // SAFETY: a group of the family
+        unsafe {
+            let past = at.rows.load::<L, M::Past<L>>(v.past);
+            let site = Site {
+                constants: &at.constants,
+                form: self.form,
+                past: &past,
+            };
+            let mut point = <M::Point<L> as Numbers<L>>::constant(0.0);
+            let mut sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
+            let mut energy = L::splat(0.0);
+            // the last round is that of energies
+            for pass in 0..=M::PASSES {
+                let last = pass == M::PASSES;
+                if last {
+                    energy = v.law.point_energy(&site, sum, &point);
+                }
+                sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
+                for k in 0..v.family.bonds(at.number) {
+                    let (bond, weight) = self.bond(k);
+                    let memory = v.memory::<L>(at.number, k, 0);
+                    let end = End {
+                        constants: &at.constants,
+                        point: &point,
+                        memory: &memory,
+                    };
+                    if last {
+                        energy = weight.fma(v.law.energy(&bond, &end), energy);
+                    } else {
+                        sum = sum.plus(weight, v.law.share(pass, &bond, &end));
+                    }
+                }
+                if !last {
+                    v.law.settle(pass, &site, sum, &mut point);
+                }
+            }
+            energy
+        }
+    }
+}
+
+/// Energy pass: strain and repulsion energy densities, `Σ ω ν V |ξ|² s` and `Σ ω ν V |ξ|²` over whole bonds.
+pub struct Energies<'a, const D: usize, F, M> {
+    pub view: View<'a, D, F, M>,
+    pub pushed: Option<Pushed<'a, D>>,
+    pub volume: &'a crate::body::Values,
+    pub fields: Option<EnergyFields>,
+}
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Energies<'_, D, F, M> {
+    type Out = [f64; 2];
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
+        let v = &self.view;
+        let mut sums = [0.0; 2];
+        for group in v.block(block) {
+            // SAFETY: groups of the family; each is written by one block
+            unsafe {
+                let at = v.group::<L>(group, 0);
+                let bits = v.bits(group);
+                let form = at.rows.load::<L, M::Form<L>>(v.form);
+                let strain = L::apart(EnergyOf::<L, D, F, M> {
+                    view: v,
+                    at: &at,
+                    bits,
+                    drift: None,
+                    form: &form,
+                });
+                let repulsion = match &self.pushed {
+                    Some(pushed) => pushed.energy::<L, F>(v.family, &v.moved, group),
+                    None => [0.0; TILE],
+                };
+                let all = strain.to_array();
+                for l in 0..TILE {
+                    if v.family.is_point(group, l) {
+                        let volume = self.volume.at(at.rows.slot(l));
+                        sums[0] += all[l] * volume;
+                        sums[1] += repulsion[l] * volume;
+                    }
+                }
+                let Some(out) = self.fields else { continue };
+                let (mut share, mut weight) = (L::splat(0.0), L::splat(0.0));
+                for k in 0..v.family.bonds(group) {
+                    let ends = v.family.ends(group, k);
+                    let (bond, w) = v.bond::<L>(&at, k, ends, L::dead(bits[k]));
+                    let part = w * bond.omega * bond.length * bond.length;
+                    share = part.fma(bond.stretch, share);
+                    weight = weight + part;
+                }
+                put(strain, out.strain, at.rows);
+                for l in 0..TILE {
+                    *out.repulsion.at(at.rows.slot(l)) = repulsion[l];
+                }
+                put(share, out.share, at.rows);
+                put(weight, out.weight, at.rows);
+            }
+        }
+        sums
+    }
+}

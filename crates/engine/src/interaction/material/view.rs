@@ -1,0 +1,320 @@
+//! What all sweeps of a law read, and the arithmetic of one bond. No closure touches a lane (see the stencil's kernel).
+
+use super::family::{Family, Moved, Slots};
+use super::store::Rows;
+use crate::body::Field;
+use crate::execute::blocks::Shared;
+use crate::execute::lane::series::{Extension, Series, Stretch};
+use crate::execute::lane::{Lane, TILE};
+use crate::interaction::bond::relative_square_stretch;
+use crate::law::material::{Bond, End, Material, Numbers, Site};
+use crate::law::number::Number;
+
+/// Groups per block of work.
+pub const BLOCK: usize = 32;
+
+pub struct View<'a, const D: usize, F, M> {
+    pub law: &'a M,
+    pub family: &'a F,
+    pub moved: Moved<'a, D>,
+    /// Bits of whole bonds.
+    pub alive: Shared<u8>,
+    /// `[materials][numbers]`
+    pub constants: &'a [f64],
+    /// Material per slot; empty: one.
+    pub material: &'a [u8],
+    pub form: Rows,
+    pub point: Rows,
+    pub past: Rows,
+    /// What bonds remember.
+    pub memory: Shared,
+}
+
+/// The points of a group.
+pub struct Group<L: Lane, S, P, C, const D: usize> {
+    pub number: usize,
+    pub rows: S,
+    pub place: P,
+    pub u: [L; D],
+    pub constants: C,
+}
+
+/// Displacements a time away from those of now.
+#[derive(Clone, Copy)]
+pub struct Drift<'a, const D: usize> {
+    pub v: &'a Field<D>,
+    pub time: f64,
+}
+
+/// The points of a group of a family and a law.
+pub type GroupOf<L, const D: usize, F, M> = Group<
+    L,
+    <F as Family<D>>::Slots,
+    <F as Family<D>>::Place<L>,
+    <M as Material<D>>::Constants<L>,
+    D,
+>;
+
+impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
+    pub fn block(&self, block: usize) -> std::ops::Range<usize> {
+        block * BLOCK..((block + 1) * BLOCK).min(self.family.groups())
+    }
+
+    /// # Safety
+    /// A group of the family; for lanes of one, `part` is which of its points.
+    #[inline(always)]
+    pub unsafe fn group<L: Lane>(&self, number: usize, part: usize) -> GroupOf<L, D, F, M> {
+        let rows = self.family.rows(number).from(part);
+        // SAFETY: rows of the family
+        unsafe {
+            Group {
+                number,
+                rows,
+                place: self.family.place::<L>(rows),
+                u: F::displacement::<L>(&self.moved, rows),
+                constants: self.constants_at::<L>(rows),
+            }
+        }
+    }
+
+    /// Constants of the materials at some slots.
+    #[inline(always)]
+    pub unsafe fn constants_at<L: Lane>(&self, slots: F::Slots) -> M::Constants<L> {
+        let count = <M::Constants<L> as Numbers<L>>::COUNT;
+        let mut out = <M::Constants<L> as Numbers<L>>::constant(0.0);
+        if self.material.is_empty() {
+            for n in 0..count {
+                // SAFETY: a row per material
+                out.set(n, L::splat(unsafe { *self.constants.get_unchecked(n) }));
+            }
+            return out;
+        }
+        for n in 0..count {
+            let mut all = [0.0; TILE];
+            for l in 0..L::N {
+                // SAFETY: a material per slot, a row per material
+                unsafe {
+                    let m = *self.material.get_unchecked(slots.slot(l)) as usize;
+                    all[l] = *self.constants.get_unchecked(m * count + n);
+                }
+            }
+            // SAFETY: a number per lane
+            out.set(n, unsafe { L::load(all.as_ptr()) });
+        }
+        out
+    }
+
+    /// η of a group's bonds; 0 in lanes without one.
+    ///
+    /// # Safety
+    /// Ends of the group's bond.
+    #[inline(always)]
+    pub unsafe fn apart<L: Lane>(
+        &self,
+        at: &GroupOf<L, D, F, M>,
+        ends: F::Slots,
+        dead: L::Mask,
+    ) -> [L; D] {
+        // SAFETY: the caller's promise
+        let mut eta = unsafe { F::displacement::<L>(&self.moved, ends) };
+        for a in 0..D {
+            eta[a] = (eta[a] - at.u[a]).zero_if(dead);
+        }
+        eta
+    }
+
+    /// Bond `k` of a group, and `ν V_j`. Lanes without one have a bond at rest and a weight of 0.
+    ///
+    /// # Safety
+    /// A bond of the group, and its ends.
+    #[inline(always)]
+    pub unsafe fn bond<L: Lane>(
+        &self,
+        at: &GroupOf<L, D, F, M>,
+        k: usize,
+        ends: F::Slots,
+        dead: L::Mask,
+    ) -> (Bond<L, D>, L) {
+        // SAFETY: the caller's promise
+        unsafe {
+            let eta = self.apart::<L>(at, ends, dead);
+            self.deformed(at, k, ends, dead, eta)
+        }
+    }
+
+    /// The same with an η of its own.
+    ///
+    /// # Safety
+    /// As of [`View::bond`].
+    #[inline(always)]
+    pub unsafe fn deformed<L: Lane>(
+        &self,
+        at: &GroupOf<L, D, F, M>,
+        k: usize,
+        ends: F::Slots,
+        dead: L::Mask,
+        eta: [L; D],
+    ) -> (Bond<L, D>, L) {
+        // SAFETY: a bond of the group
+        let r = unsafe { self.family.reference::<L>(at.number, k, &at.place, ends, dead) };
+        let e = relative_square_stretch(eta, r.xi, r.two_by_square);
+        let bond = Bond {
+            xi: r.xi,
+            eta,
+            length: r.length,
+            inv_length: r.inv_length,
+            omega: r.omega,
+            stretch: Series::<Stretch>::new().at(e),
+            contraction: Series::<Extension>::new().at(e),
+        };
+        (bond, r.weight)
+    }
+
+    /// Lanes without a whole bond.
+    #[inline(always)]
+    pub unsafe fn dead<L: Lane>(&self, at: &GroupOf<L, D, F, M>, k: usize) -> L::Mask {
+        // SAFETY: a byte per bond
+        L::dead(unsafe { *self.alive.at(self.family.byte(at.number, k)) })
+    }
+
+    /// What a group's bond remembers.
+    #[inline(always)]
+    pub unsafe fn memory<L: Lane>(&self, number: usize, k: usize, part: usize) -> M::Memory<L> {
+        let count = <M::Memory<L> as Numbers<L>>::COUNT;
+        let mut out = <M::Memory<L> as Numbers<L>>::constant(0.0);
+        for n in 0..count {
+            // SAFETY: numbers for every bond
+            unsafe {
+                let place = self.family.own(number, k, n, count) + part;
+                out.set(n, L::load(self.memory.at(place)));
+            }
+        }
+        out
+    }
+
+    /// What the bonds remember that lead back.
+    #[inline(always)]
+    pub unsafe fn memory_back<L: Lane>(
+        &self,
+        number: usize,
+        k: usize,
+        part: usize,
+    ) -> M::Memory<L> {
+        let count = <M::Memory<L> as Numbers<L>>::COUNT;
+        let mut out = <M::Memory<L> as Numbers<L>>::constant(0.0);
+        for n in 0..count {
+            // SAFETY: numbers for every bond
+            out.set(n, unsafe {
+                self.family.back::<L>(self.memory, number, k, part, n, count)
+            });
+        }
+        out
+    }
+
+    #[inline(always)]
+    pub unsafe fn point<L: Lane>(&self, slots: F::Slots) -> M::Point<L> {
+        // SAFETY: slots of the family
+        unsafe { slots.load::<L, M::Point<L>>(self.point) }
+    }
+
+    /// The sum of a pass over the whole bonds of a group, whose points are as the pass before left them.
+    ///
+    /// # Safety
+    /// A group of the family.
+    #[inline(always)]
+    pub unsafe fn sum<L: Lane>(
+        &self,
+        pass: usize,
+        at: &GroupOf<L, D, F, M>,
+        point: &M::Point<L>,
+    ) -> M::Sum<L> {
+        let mut sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
+        // SAFETY: bonds of the group
+        unsafe {
+            for k in 0..self.family.bonds(at.number) {
+                let ends = self.family.ends(at.number, k);
+                let (bond, weight) = self.bond::<L>(at, k, ends, self.dead(at, k));
+                let memory = self.memory::<L>(at.number, k, 0);
+                let end = End {
+                    constants: &at.constants,
+                    point,
+                    memory: &memory,
+                };
+                sum = sum.plus(weight, self.law.share(pass, &bond, &end));
+            }
+        }
+        sum
+    }
+
+    /// What points make of a sum.
+    #[inline(always)]
+    pub unsafe fn settle<L: Lane>(
+        &self,
+        pass: usize,
+        at: &GroupOf<L, D, F, M>,
+        sum: M::Sum<L>,
+        point: &mut M::Point<L>,
+    ) {
+        // SAFETY: rows of the family
+        unsafe {
+            let form = at.rows.load::<L, M::Form<L>>(self.form);
+            let past = at.rows.load::<L, M::Past<L>>(self.past);
+            let site = Site {
+                constants: &at.constants,
+                form: &form,
+                past: &past,
+            };
+            self.law.settle(pass, &site, sum, point);
+        }
+    }
+}
+
+/// `bond` from its other end.
+#[inline(always)]
+pub fn mirrored<N: Number, const D: usize>(bond: &Bond<N, D>) -> Bond<N, D> {
+    let mut out = *bond;
+    let zero = N::constant(0.0);
+    for a in 0..D {
+        out.xi[a] = zero - bond.xi[a];
+        out.eta[a] = zero - bond.eta[a];
+    }
+    out
+}
+
+/// Write a group's numbers.
+///
+/// # Safety
+/// Rows of the store's family, and nobody else writes them.
+#[inline(always)]
+pub unsafe fn save<L: Lane, S: Slots, N: Numbers<L>>(rows: Rows, slots: S, value: &N) {
+    for n in 0..N::COUNT {
+        let x = value.get(n);
+        // SAFETY: the caller's promise
+        unsafe {
+            if rows.layout.records {
+                let all = x.to_array();
+                for l in 0..TILE {
+                    *rows.data.at(rows.layout.at(n, slots.slot(l))) = all[l];
+                }
+            } else {
+                x.store(rows.data.at(rows.layout.at(n, slots.slot(0))));
+            }
+        }
+    }
+}
+
+impl<const D: usize, F: Family<D>, M> View<'_, D, F, M> {
+    /// Bits of the bonds of a group.
+    ///
+    /// # Safety
+    /// A group of the family; nobody writes them meanwhile.
+    #[inline(always)]
+    pub unsafe fn bits(&self, group: usize) -> &[u8] {
+        let bonds = self.family.bonds(group);
+        if bonds == 0 {
+            return &[];
+        }
+        // SAFETY: the bytes of a group lie side by side
+        unsafe { std::slice::from_raw_parts(self.alive.at(self.family.byte(group, 0)), bonds) }
+    }
+}
