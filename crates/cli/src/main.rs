@@ -83,8 +83,8 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(answer) => return answered(&answer),
     };
-    if let Err(failure) = signals::listen() {
-        return failure.report();
+    if let Err(e) = signals::listen() {
+        return Failure::Run(format!("signals cannot be listened to: {e}")).report();
     }
     let outcome = match arguments.verb {
         Verb::Run(arguments) => run::run(&arguments),

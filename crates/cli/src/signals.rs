@@ -3,7 +3,6 @@
 //! Until a run steps there is nothing to keep, and a signal ends the program at once. From its first step on
 //! ([`asked`]) the first signal is a request to end at the next step, and a second one ends the program at once.
 
-use crate::failure::Failure;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt;
@@ -48,14 +47,16 @@ static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool
 static LAST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(|| Arc::new(AtomicUsize::new(0)));
 
 /// From now on signals end the program as said above.
-pub fn listen() -> Result<(), Failure> {
+///
+/// # Errors
+/// The operating system does not say when a signal comes.
+pub fn listen() -> std::io::Result<()> {
     for signal in Signal::ALL {
         let number = signal.number();
         // in this order: a signal that finds `AT_ONCE` set never gets to the next two
         flag::register_conditional_shutdown(number, signal.exit_code().into(), AT_ONCE.clone())
             .and_then(|_| flag::register_usize(number, LAST.clone(), number as usize))
-            .and_then(|_| flag::register(number, AT_ONCE.clone()))
-            .map_err(|e| Failure::Run(format!("signals cannot be listened to: {e}")))?;
+            .and_then(|_| flag::register(number, AT_ONCE.clone()))?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 use super::Program;
 use super::indenter::{Form, Indenter, Push};
 use super::load::{Load, LoadKind};
+use super::reaction::Reaction;
 use crate::body::{Body, Field};
 use crate::space::Point;
 
@@ -30,16 +31,6 @@ pub enum Drive {
     /// The force density −γ v is added, v as it is when forces are evaluated (in a step: of its middle); γ of each point
     /// (mass / volume / time).
     Drag(Vec<f64>),
-}
-
-/// What a condition had at the last force evaluation, in sums over points of *densities* (as LAMMPS prints them).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Reaction {
-    /// `Σ K (R − r)³ / 3` of an indenter.
-    pub energy: f64,
-    /// Of an indenter minus the sum of the force densities on the points; of a load the sum of the force densities on
-    /// its points before it acted, without points that its list leaves alone.
-    pub force: [f64; 3],
 }
 
 #[derive(Debug, Clone)]

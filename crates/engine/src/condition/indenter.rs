@@ -1,7 +1,7 @@
 //! Rigid spheres, cylinders and planes that push points: force density `K g²` along the normal where the gap g between
 //! point and surface is negative (LAMMPS's `fix indent`; sandia2010 ch. 3, The Projectile).
 
-use super::driven::Reaction;
+use super::reaction::Reaction;
 use crate::body::{Body, Field};
 use crate::expression::Expression;
 use crate::spec::{IndenterMotion, IndenterSpec};

@@ -2,7 +2,7 @@
 
 use super::atoms;
 use super::constitutive::{ConstitutiveModels, Shelf};
-use super::equilibrium::StaticState;
+use super::equilibrium::state::StaticState;
 use super::model::Model;
 use super::parts::{Part, parts};
 use super::probe;

@@ -1,6 +1,6 @@
 //! A body left to itself: the equilibrium of its bonds alone. Crystals with surfaces or vacancies are not in it about their lattice.
 
-use super::equilibrium::StaticState;
+use super::equilibrium::state::StaticState;
 use super::model::Model;
 use crate::error::{RunError, SolveError};
 use crate::fracture::fragments::Fragments;

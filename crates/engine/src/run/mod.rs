@@ -27,7 +27,8 @@ pub use constitutive::Shelf;
 pub use model::Model;
 
 use crate::condition::carried::Motion;
-use crate::condition::driven::{Drive, Reaction};
+use crate::condition::driven::Drive;
+use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;

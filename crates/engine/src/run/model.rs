@@ -1,16 +1,17 @@
 //! The running model: its state, and what may be asked of it.
 
 use super::constitutive::ConstitutiveModels;
-use super::equilibrium::StaticState;
+use super::equilibrium::state::StaticState;
 use super::{
     AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions, Wall,
 };
 use crate::body::{Body, Field};
 use crate::condition::carried::{Carried, Motion};
 use crate::condition::constraint::Constraint;
-use crate::condition::driven::{Drive, Driven, Reaction};
+use crate::condition::driven::{Drive, Driven};
 use crate::condition::indenter::Indenter;
 use crate::condition::load::Load;
+use crate::condition::reaction::Reaction;
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError, SolveError};

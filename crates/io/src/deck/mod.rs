@@ -12,6 +12,7 @@ mod locate;
 mod lower;
 mod schema;
 mod source;
+mod syntax;
 mod units;
 pub mod upscaled;
 mod value;
@@ -122,7 +123,7 @@ impl Deck {
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
-            .map_err(|e| error::from_toml(&source, e.span(), e.message()))?;
+            .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
         let units = lower::units(&document);
         let mut lowered = lower::lower(&source, &document, &Files { folder })?;

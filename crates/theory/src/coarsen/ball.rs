@@ -6,12 +6,9 @@
 use super::block::{Block, add, add_product, largest, scaled, zero};
 use super::error::CoarsenError;
 use super::near::inside;
-use super::solve;
 use peridyne::spec::LinearBody;
 
 const NONE: u32 = u32::MAX;
-/// Asymmetry of a ball's matrix up to which conjugate gradients solve it: round-off.
-pub(super) const SYMMETRIC: f64 = 1e-13;
 
 /// What lies beyond the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -174,7 +171,7 @@ impl<'a, const D: usize> Ball<'a, D> {
     }
 
     /// `V_i C_ie` of the centre i and each removed point e.
-    fn load(&self) -> Vec<Block<D>> {
+    pub fn load(&self) -> Vec<Block<D>> {
         let i = self.walk.rim[0] as usize;
         let of = |e: &u32| self.body.micromodulus(i, *e as usize);
         self.walk
@@ -184,22 +181,9 @@ impl<'a, const D: usize> Ball<'a, D> {
             .collect()
     }
 
-    /// Solves `Mᵀ x = (V_i C_ie)ᵀ`, `asymmetry` that of the body: one adjoint system of D right-hand sides (`x[e][a][c]`: side a, component c) stands for the whole
-    /// resolvent, of which only the product with the centre's row is wanted.
-    ///
-    /// # Errors
-    /// No stable equilibrium (symmetric), a singular matrix (else), or no convergence.
-    pub fn adjoint(&self, asymmetry: f64) -> Result<(Vec<Block<D>>, solve::Effort), CoarsenError> {
-        let load = self.load();
-        match asymmetry.max(self.asymmetry()) < SYMMETRIC {
-            true => solve::conjugate_gradients(self, &load),
-            false => solve::direct(self, &load),
-        }
-    }
-
     /// Largest `|M_ee − M_eeᵀ|` over the largest `|M_ee|`. A free ball leaves bonds out of these sums: for state-based laws
     /// the `C_ep` are not symmetric one by one, and what is left of the sum is not either.
-    fn asymmetry(&self) -> f64 {
+    pub fn asymmetry(&self) -> f64 {
         let (mut apart, mut most) = (0.0f64, 0.0f64);
         for d in &self.diagonal {
             most = most.max(largest(d));

@@ -5,7 +5,7 @@ use super::block::{Block, unit};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
 use super::signature::{Looks, Signature, grain};
-use super::solve::Effort;
+use super::solve::{Effort, adjoint};
 use peridyne::spec::LinearBody;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -124,7 +124,7 @@ impl<const D: usize> Task<'_, D> {
                 |scratch, &k| {
                     let walk = self.walk(k, radius, scratch);
                     let ball = Ball::new(self.body, &walk, radius, beyond, scratch);
-                    let (adjoint, effort) = ball.adjoint(self.asymmetry)?;
+                    let (adjoint, effort) = adjoint(&ball, self.asymmetry)?;
                     let row = ball.coarse_row(&adjoint);
                     let row_sum = match beyond {
                         Beyond::Free => ball.row_sum(&row),

@@ -1,10 +1,10 @@
 //! The exact elimination of all removed points at once: the reference for every ball and every number of levels.
 
-use super::ball::SYMMETRIC;
 use super::balls::{Eliminated, Task, Work};
 use super::block::{Block, add_product, scaled, transposed, zero};
 use super::coupling::Coupling;
 use super::error::CoarsenError;
+use super::solve::SYMMETRIC;
 use peridyne::error::SolveError;
 use peridyne::statics::{Direct, Support};
 use rayon::prelude::*;

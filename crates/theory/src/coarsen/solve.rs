@@ -10,6 +10,9 @@ use super::block::{Block, add, add_product, largest, scaled, zero};
 use super::error::CoarsenError;
 use peridyne_algebra::{FactorError, Factors};
 
+/// Asymmetry of a ball's matrix up to which conjugate gradients solve it: round-off.
+pub(super) const SYMMETRIC: f64 = 1e-13;
+
 /// Of the largest component of the load, preconditioned.
 const RESIDUAL: f64 = 1e-14;
 
@@ -23,6 +26,22 @@ pub(super) struct Effort {
     pub flops: f64,
     /// By LU?
     pub direct: bool,
+}
+
+/// Solves `Mᵀ x = (V_i C_ie)ᵀ`, `asymmetry` that of the body: one adjoint system of D right-hand sides (`x[e][a][c]`: side a, component c) stands for the whole
+/// resolvent, of which only the product with the centre's row is wanted.
+///
+/// # Errors
+/// No stable equilibrium (symmetric), a singular matrix (else), or no convergence.
+pub(super) fn adjoint<const D: usize>(
+    ball: &Ball<D>,
+    asymmetry: f64,
+) -> Result<(Vec<Block<D>>, Effort), CoarsenError> {
+    let load = ball.load();
+    match asymmetry.max(ball.asymmetry()) < SYMMETRIC {
+        true => conjugate_gradients(ball, &load),
+        false => direct(ball, &load),
+    }
 }
 
 /// `(Σ_e x_a·y_a)` per side a.
@@ -62,7 +81,7 @@ fn apply<const D: usize>(ball: &Ball<D>, x: &[Block<D>], y: &mut [Block<D>]) {
     }
 }
 
-pub(super) fn conjugate_gradients<const D: usize>(
+fn conjugate_gradients<const D: usize>(
     ball: &Ball<D>,
     load: &[Block<D>],
 ) -> Result<(Vec<Block<D>>, Effort), CoarsenError> {
@@ -163,7 +182,7 @@ fn apply_transposed<const D: usize>(ball: &Ball<D>, x: &[Block<D>], y: &mut [Blo
 }
 
 /// Sparse LU of `Mᵀ`, refined once.
-pub(super) fn direct<const D: usize>(
+fn direct<const D: usize>(
     ball: &Ball<D>,
     load: &[Block<D>],
 ) -> Result<(Vec<Block<D>>, Effort), CoarsenError> {

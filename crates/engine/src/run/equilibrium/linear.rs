@@ -10,7 +10,7 @@ use crate::spec::Method;
 use crate::statics::operator::SMALL;
 use crate::statics::{Solved, Support};
 
-use super::StaticState;
+use super::state::StaticState;
 
 impl<const D: usize> Model<D> {
     /// Does the state stand for the linear body about the reference? Laws that pull at rest (atoms) keep their own energy.

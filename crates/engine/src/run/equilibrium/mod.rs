@@ -2,7 +2,9 @@
 
 mod linear;
 mod solve;
+pub(super) mod state;
 
+use self::state::StaticState;
 use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
@@ -16,32 +18,10 @@ use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
 use crate::spec::{LinearBody, Method, Solver, Statics};
 use crate::statics::modes::{self, Mode};
-use crate::statics::{self, Direct, Solved, Support};
+use crate::statics::{self, Solved, Support};
 
 /// Rounds of breaking and new equilibrium within one increment.
 const ROUNDS: usize = 10_000;
-
-/// What statics keeps between increments.
-pub(super) struct StaticState<const D: usize> {
-    pub options: Statics,
-    /// The linear body about the reference and its factors, as long as no bond broke.
-    factors: Option<(LinearBody<D>, Direct<D>)>,
-    /// Of the operator about the reference, once looked at.
-    asymmetry: Option<f64>,
-    /// Of the last increment.
-    pub solved: Solved,
-}
-
-impl<const D: usize> StaticState<D> {
-    pub fn new(options: Statics) -> Self {
-        StaticState {
-            options,
-            factors: None,
-            asymmetry: None,
-            solved: Solved::default(),
-        }
-    }
-}
 
 impl<const D: usize> Model<D> {
     /// Which components the conditions leave free.

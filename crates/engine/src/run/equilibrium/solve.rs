@@ -1,6 +1,6 @@
 //! How one increment finds its equilibrium: linear about the reference, Newton's method, dynamic relaxation.
 
-use super::StaticState;
+use super::state::StaticState;
 use crate::body::{Field, zeros};
 use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;

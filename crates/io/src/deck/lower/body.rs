@@ -307,7 +307,7 @@ pub(super) fn sets(
         ];
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
         let piece = match &set.value.body {
-            Some(name) => Some(super::bodies::named(context, name, body)?),
+            Some(name) => Some(super::pieces::named(context, name, body)?),
             None => None,
         };
         let of = piece.map_or(body, |p| &p.body);
@@ -324,7 +324,7 @@ pub(super) fn sets(
         sets.push(SetSpec {
             name: name.clone(),
             members: match piece {
-                Some(piece) => super::bodies::within(&piece.name, members),
+                Some(piece) => super::pieces::within(&piece.name, members),
                 None => members,
             },
         });

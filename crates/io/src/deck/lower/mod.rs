@@ -6,6 +6,7 @@ mod body;
 mod context;
 mod material;
 mod motion;
+mod pieces;
 mod schedule;
 mod warnings;
 

@@ -7,7 +7,7 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | coefficients of the equations | [`stiffness`] |
+//! | coefficients of the equations | [`stiffness`], [`equations`] |
 //! | which factors make uniform strain exact? | [`parameters`] |
 //! | strains and displacements, a million points or fractions | [`strain`] |
 //! | f(N), the elongation over the classical one, as a fraction | [`elongation`] |
@@ -22,6 +22,7 @@
 
 pub mod elongation;
 pub mod energy;
+pub mod equations;
 pub mod limit;
 pub mod micromodulus;
 pub mod parameters;

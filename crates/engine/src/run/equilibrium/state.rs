@@ -1,0 +1,25 @@
+//! What statics keeps between increments.
+
+use crate::spec::{LinearBody, Statics};
+use crate::statics::{Direct, Solved};
+
+pub(in crate::run) struct StaticState<const D: usize> {
+    pub options: Statics,
+    /// The linear body about the reference and its factors, as long as no bond broke.
+    pub(super) factors: Option<(LinearBody<D>, Direct<D>)>,
+    /// Of the operator about the reference, once looked at.
+    pub(super) asymmetry: Option<f64>,
+    /// Of the last increment.
+    pub solved: Solved,
+}
+
+impl<const D: usize> StaticState<D> {
+    pub fn new(options: Statics) -> Self {
+        StaticState {
+            options,
+            factors: None,
+            asymmetry: None,
+            solved: Solved::default(),
+        }
+    }
+}
