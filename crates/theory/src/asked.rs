@@ -28,7 +28,7 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
             springs = LawSpec::Pmb(*s);
             &springs
         }
-        other => other,
+        other => other.linear(),
     };
     match (law, dimension, plane) {
         (LawSpec::Pmb(PmbStiffness::Young(e)), ..) => Some(bond_based(*e)),
@@ -56,7 +56,8 @@ pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) ->
             | LawSpec::EamLike { .. }
             | LawSpec::Springs(_)
             | LawSpec::Atoms(_)
-            | LawSpec::Micromoduli(_),
+            | LawSpec::Micromoduli(_)
+            | LawSpec::Named(_),
             ..,
         ) => None,
     }

@@ -54,7 +54,8 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
         | LawSpec::Atoms(_)
-        | LawSpec::Micromoduli(_) => None,
+        | LawSpec::Micromoduli(_)
+        | LawSpec::Named(_) => None,
     }
 }
 

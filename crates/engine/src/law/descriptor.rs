@@ -3,7 +3,7 @@
 
 use crate::columns::Dimension;
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{LawSpec, Moduli, Parameter, Parameters, Plane};
+use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
 use std::borrow::Cow;
 
 /// A law as its users see it.
@@ -16,6 +16,8 @@ pub struct Descriptor {
     pub source: Cow<'static, str>,
     /// Keys as one would write them.
     pub example: Cow<'static, str>,
+    /// The customary influence function.
+    pub influence: Influence,
     pub keys: Vec<Key>,
 }
 
@@ -221,7 +223,10 @@ impl Descriptor {
             let Some(key) = self.key(name) else {
                 let known: Vec<&str> = self.keys.iter().map(|k| k.name).collect();
                 let known = known.join(", ");
-                return wrong(format!("the law {} has no key `{name}`; it has {known}", self.name));
+                return wrong(format!(
+                    "the law {} has no key `{name}`; it has {known}",
+                    self.name
+                ));
             };
             match (key.value, given) {
                 (Value::Number(_, bounds), Parameter::Number(x)) => {

@@ -425,10 +425,12 @@ fn bind<const D: usize>(
         let mut own = body.pieces()[n].body.clone();
         part.choose(body, n, &mut own);
         let mut told = vec![];
-        let made = part.constitutive(&own, shelf, simd, &mut told).and_then(|model| {
-            let bonds = part.bonds(&model, &own)?;
-            Ok((model, bonds))
-        });
+        let made = part
+            .constitutive(&own, shelf, simd, &mut told)
+            .and_then(|model| {
+                let bonds = part.bonds(&model, &own)?;
+                Ok((model, bonds))
+            });
         let (model, bond) = made.map_err(|e| BuildError {
             message: format!("body `{}`: {}", named[n].name, e.message),
             ..e

@@ -1,6 +1,7 @@
 //! The moduli asked for are the moduli had: energy under homogeneous strain, in every dimension.
 
 use crate::sample::*;
+use peridyne::law::descriptor;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::*;
@@ -34,6 +35,10 @@ fn lame(law: &LawSpec, d: usize, plane: Plane) -> (f64, f64) {
         LawSpec::Pmb(PmbStiffness::Micromodulus(_)) => panic!("no modulus was asked for"),
         LawSpec::Lps(m) => from(m.young, m.poisson),
         LawSpec::LpsAsTyped { bulk, shear } => typed(*bulk, *shear),
+        LawSpec::Named(law) => match descriptor::moduli(&law.parameters) {
+            Ok(m) => from(m.young, m.poisson),
+            Err(_) => from(law.parameters.number("young").unwrap(), bond_based),
+        },
         LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
             panic!("not a law of this battery")
         }

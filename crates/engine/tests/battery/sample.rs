@@ -39,9 +39,8 @@ pub fn materials() -> Vec<Material> {
         lives: |_, _| true,
         fracture: None,
     };
-    let elastic = |young: f64, poisson: f64| {
-        Parameters::numbers(&[("young", young), ("poisson", poisson)])
-    };
+    let elastic =
+        |young: f64, poisson: f64| Parameters::numbers(&[("young", young), ("poisson", poisson)]);
     let plastic = |yield_stress: f64, hardening: f64| {
         let more = elastic(3.0, 0.3)
             .with("yield_stress", Parameter::Number(yield_stress))
@@ -105,13 +104,27 @@ pub fn materials() -> Vec<Material> {
         },
         Material {
             lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
-            ..two("plastic mixed", plastic(20.0, 0.0), plastic(30.0, 1.0), Influence::Gaussian)
+            ..two(
+                "plastic mixed",
+                plastic(20.0, 0.0),
+                plastic(30.0, 1.0),
+                Influence::Gaussian,
+            )
         },
         one("viscoelastic", relaxing(0.5), Influence::Conical),
-        two("viscoelastic mixed", relaxing(0.5), relaxing(0.1), Influence::Inverse),
+        two(
+            "viscoelastic mixed",
+            relaxing(0.5),
+            relaxing(0.1),
+            Influence::Inverse,
+        ),
         Material {
             lives: |d, _| d > 1,
-            ..one("correspondence", correspondence(3.0, "linear"), Influence::Inverse)
+            ..one(
+                "correspondence",
+                correspondence(3.0, "linear"),
+                Influence::Inverse,
+            )
         },
         Material {
             lives: |d, _| d > 1,

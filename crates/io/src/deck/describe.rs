@@ -1,10 +1,12 @@
 //! What was understood, in words.
 
 use super::units::{Dim, UnitSystem};
+use peridyne::law::descriptor::Value;
+use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Method, Plane, PmbStiffness, Release, Spec, TimeStep,
+    MaterialSpec, Method, NamedLaw, Parameter, Plane, PmbStiffness, Release, Spec, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -239,6 +241,33 @@ fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
     format!("within {}", sizes.join(" × "))
 }
 
+/// A law of the shelf with its constants.
+fn named(law: &NamedLaw, units: UnitSystem) -> String {
+    let shelf = Shelf::standard();
+    let Some(descriptor) = shelf.descriptor(&law.name) else {
+        return law.name.clone();
+    };
+    let mut said = law.name.replace('_', "-");
+    for (key, given) in &law.parameters.0 {
+        let value = match (descriptor.key(key).map(|k| k.value), given) {
+            (Some(Value::Number(dimension, _)), Parameter::Number(x)) => units.write(*x, dimension),
+            (Some(Value::Rows(columns)), Parameter::Rows(rows)) => {
+                let row = |row: &Vec<f64>| {
+                    let each = row.iter().zip(columns);
+                    let each: Vec<String> = each.map(|(x, c)| units.write(*x, c.1)).collect();
+                    format!("[{}]", each.join(", "))
+                };
+                rows.iter().map(row).collect::<Vec<_>>().join(" ")
+            }
+            (_, Parameter::Word(word)) => word.clone(),
+            (_, Parameter::Number(x)) => super::units::short(*x),
+            (_, Parameter::Rows(rows)) => format!("{rows:?}"),
+        };
+        said += &format!(", {} = {value}", key.replace('_', " "));
+    }
+    said
+}
+
 fn material(m: &MaterialSpec, units: UnitSystem) -> String {
     let pressure = |p: f64| units.write(p, Dim::PRESSURE);
     let law = match &m.law {
@@ -249,6 +278,7 @@ fn material(m: &MaterialSpec, units: UnitSystem) -> String {
         }
         LawSpec::Atoms(_) => "atoms".to_string(),
         LawSpec::Micromoduli(_) => "given micromoduli".to_string(),
+        LawSpec::Named(law) => named(law, units),
         LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(*e)),
         LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(*k)),
         LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => {

@@ -1,10 +1,12 @@
 //! The deck as written: one struct per table, nothing interpreted yet.
 
 mod atoms;
+mod named;
 
 use super::units::{Constants, UnitSystem};
 use super::value::{At, Components, Named, Number, Or, Vector, Written};
 pub use atoms::{Buckingham, Eam, EamForm, EndName, LennardJones, Morse, Thermal};
+pub use named::{AnyLaw, Given, NamedLaw};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -185,7 +187,7 @@ pub struct Material {
     pub density: Option<Number>,
     /// Mass of a point, instead of the density; of atoms taken from an eam file when left out.
     pub mass: Option<Number>,
-    pub law: At<Law>,
+    pub law: At<AnyLaw>,
     pub fracture: Option<At<Fracture>>,
 }
 
@@ -215,6 +217,9 @@ pub enum Law {
     Eam(Eam),
     /// Atoms: embedded-atom model in closed form (Mei, Davenport & Fernando 1991).
     EamForm(Box<EamForm>),
+    /// A law of the shelf.
+    #[serde(skip)]
+    Named(NamedLaw),
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -40,6 +40,16 @@ const LAWS: [(&str, &str); 10] = [
     ("eam_form", "{ cohesive = 1, pair = 1, … }"),
 ];
 
+/// Is it a law with keys of its own?
+pub(super) fn is_law(name: &str) -> bool {
+    laws().any(|law| law == name)
+}
+
+/// Their names.
+pub(super) fn laws() -> impl Iterator<Item = &'static str> {
+    LAWS.iter().map(|(law, _)| *law).chain(["micromoduli"])
+}
+
 pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
     let error = |at: &Spanned<DeValue>, message: String, help: String| {
         Err(source.error(Some(at.span()), message, Some(help)))

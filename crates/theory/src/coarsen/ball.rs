@@ -4,7 +4,6 @@
 //! the retained points that these talk to.
 
 use super::block::{Block, add, add_product, largest, scaled, zero};
-use super::error::CoarsenError;
 use super::near::inside;
 use peridyne::spec::LinearBody;
 

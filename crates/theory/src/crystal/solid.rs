@@ -166,7 +166,8 @@ impl LatticeSolid {
             | LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Atoms(_)
-            | LawSpec::Micromoduli(_) => Err(CrystalError::NotASolid),
+            | LawSpec::Micromoduli(_)
+            | LawSpec::Named(_) => Err(CrystalError::NotASolid),
         }
     }
 }

@@ -34,7 +34,8 @@ pub fn fractions(spec: &Spec, terms: usize) -> Option<Vec<Q>> {
             | LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Atoms(_)
-            | LawSpec::Micromoduli(_),
+            | LawSpec::Micromoduli(_)
+            | LawSpec::Named(_),
             _,
         ) => None,
     };

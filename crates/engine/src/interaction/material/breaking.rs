@@ -51,7 +51,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Break<'_, D, F, M>
                     torn |= L::any(other.min(own).lt(e));
                 }
                 let material = |l: usize| self.body.material_of(at.rows.slot(l));
-                let alone = if M::PASSES > 0 { own } else { L::splat(f64::INFINITY) };
+                let alone = if M::PASSES > 0 {
+                    own
+                } else {
+                    L::splat(f64::INFINITY)
+                };
                 let next = history::next_critical(self.toughness, material, lowest, alone);
                 put(next, self.next, at.rows);
                 if torn {
@@ -173,7 +177,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         // SAFETY: the caller's promise
         unsafe {
             let eta = self.apart::<L>(at, ends, dead);
-            let r = self.family.reference::<L>(at.number, k, &at.place, ends, dead);
+            let r = self
+                .family
+                .reference::<L>(at.number, k, &at.place, ends, dead);
             relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead)
         }
     }

@@ -79,23 +79,27 @@ impl<const D: usize> LatticeFamily<D> {
         let links = Links::new(body, grid, stencil);
         let volume = body.volume.uniform().unwrap_or(1.0);
         let h = grid.lattice.spacing;
-        let made = stencil.offsets.iter().zip(&links.links).map(|(list, links)| {
-            let all = list.iter().zip(links).map(|(o, link)| {
-                let square = h * h * (o.squared as f64 / 16.0);
-                let length = square.sqrt();
-                let [omega, fraction] = weight(length);
-                Offset {
-                    shift: link.shift,
-                    xi: link.xi,
-                    length,
-                    inv_length: 1.0 / length,
-                    two_by_square: 2.0 / square,
-                    omega,
-                    weight: fraction * volume,
-                }
+        let made = stencil
+            .offsets
+            .iter()
+            .zip(&links.links)
+            .map(|(list, links)| {
+                let all = list.iter().zip(links).map(|(o, link)| {
+                    let square = h * h * (o.squared as f64 / 16.0);
+                    let length = square.sqrt();
+                    let [omega, fraction] = weight(length);
+                    Offset {
+                        shift: link.shift,
+                        xi: link.xi,
+                        length,
+                        inv_length: 1.0 / length,
+                        two_by_square: 2.0 / square,
+                        omega,
+                        weight: fraction * volume,
+                    }
+                });
+                all.collect::<Vec<_>>()
             });
-            all.collect::<Vec<_>>()
-        });
         let offsets: Vec<Vec<Offset<D>>> = made.collect();
         let back = stencil.offsets.iter().enumerate().map(|(from, list)| {
             let of = |o: &crate::family::stencil::Offset| {
@@ -132,7 +136,6 @@ impl<const D: usize> LatticeFamily<D> {
     fn offset(&self, group: usize, k: usize) -> &Offset<D> {
         &self.offsets[self.sublattice(group)][k]
     }
-
 }
 
 impl<const D: usize> Family<D> for LatticeFamily<D> {
@@ -152,7 +155,9 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     }
     #[inline(always)]
     fn ends(&self, group: usize, k: usize) -> Run {
-        Run(self.first(group).wrapping_add_signed(self.offset(group, k).shift))
+        Run(self
+            .first(group)
+            .wrapping_add_signed(self.offset(group, k).shift))
     }
     #[inline(always)]
     fn byte(&self, group: usize, k: usize) -> usize {
@@ -240,7 +245,8 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     fn find(&self, slot: usize) -> Option<(usize, usize)> {
         let at = slot.checked_sub(self.grid.guard)?;
         let group = self.links.tiles.binary_search(&((at / TILE) as u32)).ok()?;
-        self.is_point(group, at % TILE).then_some((group, at % TILE))
+        self.is_point(group, at % TILE)
+            .then_some((group, at % TILE))
     }
 
     fn bytes(&self) -> usize {

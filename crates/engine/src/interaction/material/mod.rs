@@ -581,4 +581,3 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + 8 * (self.critical.len() + self.next.len())
     }
 }
-

@@ -125,7 +125,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     let at = view.group::<f64>(group, l);
                     let point = view.point::<f64>(at.rows);
                     let force = pull::<f64, D, F, M>(&view, &at, &point, k, l);
-                    let uj = F::displacement::<f64>(&view.moved, self.family.ends(group, k).from(l));
+                    let uj =
+                        F::displacement::<f64>(&view.moved, self.family.ends(group, k).from(l));
                     let (xi, _) = self.family.bond(group, k, l);
                     let y: [f64; D] = std::array::from_fn(|a| xi[a] + uj[a] - at.u[a]);
                     (force, y)

@@ -221,9 +221,7 @@ impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> EnergyOf<'_, '_, L, 
     }
 }
 
-impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece
-    for EnergyOf<'_, '_, L, D, F, M>
-{
+impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece for EnergyOf<'_, '_, L, D, F, M> {
     type Out = L;
 
     #[inline(always)]

@@ -156,7 +156,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         eta: [L; D],
     ) -> (Bond<L, D>, L) {
         // SAFETY: a bond of the group
-        let r = unsafe { self.family.reference::<L>(at.number, k, &at.place, ends, dead) };
+        let r = unsafe {
+            self.family
+                .reference::<L>(at.number, k, &at.place, ends, dead)
+        };
         let e = relative_square_stretch(eta, r.xi, r.two_by_square);
         let bond = Bond {
             xi: r.xi,
@@ -205,7 +208,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         for n in 0..count {
             // SAFETY: numbers for every bond
             out.set(n, unsafe {
-                self.family.back::<L>(self.memory, number, k, part, n, count)
+                self.family
+                    .back::<L>(self.memory, number, k, part, n, count)
             });
         }
         out

@@ -10,7 +10,7 @@ use super::{Bond, Columns, End, Free, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
 use crate::law::number::Number;
-use crate::spec::{LawSpec, Parameters, Plane};
+use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
 /// Classical stored energy of one material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,8 +121,8 @@ impl Correspondence {
                     }
                 }
                 let wide = across.exp_m1();
-                let energy = half * c[SHEAR] * (strain + wide - two * volume)
-                    + half * pull * volume;
+                let energy =
+                    half * c[SHEAR] * (strain + wide - two * volume) + half * pull * volume;
                 (p, energy)
             }
         }
@@ -255,7 +255,10 @@ impl Shelved for Correspondence {
         keys.push(Key {
             name: "stress",
             value: Value::Word(&[
-                ("linear", "S = λ tr(E) 1 + 2μE of Green's strain E (Saint Venant-Kirchhoff)"),
+                (
+                    "linear",
+                    "S = λ tr(E) 1 + 2μE of Green's strain E (Saint Venant-Kirchhoff)",
+                ),
                 (
                     "neo_hookean",
                     "ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J (Bonet & Wood 1997)",
@@ -278,6 +281,7 @@ impl Shelved for Correspondence {
             doc: "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.".into(),
             source: "Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017".into(),
             example: "{ young = \"1 GPa\", poisson = 0.45, stress = \"neo_hookean\" }".into(),
+            influence: Influence::Constant,
             keys,
         }
     }

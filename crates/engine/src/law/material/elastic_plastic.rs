@@ -13,7 +13,7 @@ use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{LawSpec, Parameters, Plane};
+use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,10 +52,7 @@ const FLOW: usize = 4; // Δε̄
 impl ElasticPlastic {
     /// `e^d − e^p` before the step's flow.
     #[inline(always)]
-    fn trial<N: Number, const D: usize>(
-        bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 5], [N; 1]>,
-    ) -> N {
+    fn trial<N: Number, const D: usize>(bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> N {
         bond.extension() - end.point[MEAN] * bond.length - end.memory[0]
     }
 
@@ -160,10 +157,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
 
     #[inline(always)]
     fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> Along<N> {
-        let t = end.point[ALPHA].fma(
-            Self::elastic(bond, end),
-            end.point[P] * bond.length,
-        );
+        let t = end.point[ALPHA].fma(Self::elastic(bond, end), end.point[P] * bond.length);
         Along(bond.omega * t * bond.inv_current())
     }
 
@@ -174,12 +168,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn point_energy<N: Number>(
-        &self,
-        site: &Site<[N; 6], N, [N; 1]>,
-        _: N,
-        point: &[N; 5],
-    ) -> N {
+    fn point_energy<N: Number>(&self, site: &Site<[N; 6], N, [N; 1]>, _: N, point: &[N; 5]) -> N {
         let mean = point[MEAN];
         (N::constant(0.5) * site.constants[BULK] * mean).fma(mean, work(site, point))
     }
@@ -243,6 +232,7 @@ impl Shelved for ElasticPlastic {
             doc: "Linear peridynamic solid whose deviatoric extensions flow: ½ Σ t²/ω = n(n+2) σ_y²/(6m), ė^p = λ t/ω. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
             source: "Mitchell 2011, SAND2011-3166".into(),
             example: "{ young = \"200 GPa\", poisson = 0.3, yield_stress = \"250 MPa\", hardening = \"1 GPa\" }".into(),
+            influence: Influence::Inverse,
             keys,
         }
     }
@@ -256,7 +246,9 @@ impl Shelved for ElasticPlastic {
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: &str| Err((n, message.to_string()));
             if d == 1 {
-                return refused("on a line there is no shear, and nothing that flows: take two or three dimensions");
+                return refused(
+                    "on a line there is no shear, and nothing that flows: take two or three dimensions",
+                );
             }
             if d == 2 && plane == Plane::Stress {
                 return refused(

@@ -9,7 +9,7 @@ use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Shelved};
 use crate::law::number::Number;
-use crate::spec::{LawSpec, Parameters, Plane, PmbStiffness};
+use crate::spec::{Influence, LawSpec, Parameters, Plane, PmbStiffness};
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,6 +153,7 @@ impl Shelved for Softening {
             doc: "Bond-based, f = c ω ν V (1 − d) s: linear up to the onset, then falling linearly to nothing at the critical stretch; Poisson ratio 1/4, plane stress 1/3. With a fracture energy the critical stretch follows from the area under the curve.".into(),
             source: "bilinear cohesive law, Petersson 1981; on bonds Zaccariotto, Luongo, Sarego & Galvanetto 2015".into(),
             example: "{ young = \"30 GPa\", onset = 0.1 }".into(),
+            influence: Influence::Constant,
             keys: vec![
                 descriptor::number(
                     "young",

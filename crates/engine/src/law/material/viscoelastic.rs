@@ -11,7 +11,7 @@ use crate::columns::{Declaration, Dimension};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{LawSpec, Parameters, Plane};
+use crate::spec::{Influence, LawSpec, Parameters, Plane};
 use std::borrow::Cow;
 
 /// Constants of one material.
@@ -231,6 +231,7 @@ impl Shelved for Viscoelastic {
             doc: "Linear peridynamic solid whose shear relaxes, G(t) = G (1 − Σλ + Σλ e^(−t/τ)). Two of young, poisson, bulk, shear of the unrelaxed solid.".into(),
             source: "Mitchell 2011, SAND2011-8064".into(),
             example: "{ young = \"3 GPa\", poisson = 0.35, branches = [[0.5, \"1 ms\"], [0.2, \"0.1 s\"]] }".into(),
+            influence: Influence::Inverse,
             keys,
         }
     }

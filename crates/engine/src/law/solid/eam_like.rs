@@ -75,7 +75,7 @@ impl Solid {
 
     /// Of a state-based law of a spec; `None`: it is none.
     pub fn of_law(d: usize, plane: Plane, law: &LawSpec) -> Option<Solid> {
-        match law.linear() {
+        match law {
             LawSpec::Lps(moduli) => {
                 let (g, l) = (moduli.shear(), moduli.lame());
                 let lambda = match (d, plane) {

@@ -39,7 +39,7 @@ pub(super) fn constants<const D: usize>(
     let mut given = vec![];
     let mut repulsive = vec![];
     for (n, m) in spec.materials.iter().enumerate() {
-        solid.extend(Solid::of_law(D, spec.plane, &m.law));
+        solid.extend(Solid::of_law(D, spec.plane, m.law.linear()));
         if !(m.density > 0.0 && m.density.is_finite()) {
             return Err(BuildError::new(
                 at(n, "density"),

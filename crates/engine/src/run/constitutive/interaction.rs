@@ -188,18 +188,16 @@ impl ConstitutiveModel {
                     simd: self.simd,
                 })))
             }
-            _ => {
-                Ok(Box::new(ListInteraction::new(ListParts {
-                    body,
-                    list: HorizonList::new(body, self.reach())?,
-                    law,
-                    weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
-                    point_constants,
-                    toughness,
-                    repulsion,
-                    simd: self.simd,
-                })))
-            }
+            _ => Ok(Box::new(ListInteraction::new(ListParts {
+                body,
+                list: HorizonList::new(body, self.reach())?,
+                law,
+                weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+                point_constants,
+                toughness,
+                repulsion,
+                simd: self.simd,
+            }))),
         }
     }
 

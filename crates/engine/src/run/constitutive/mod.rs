@@ -127,7 +127,10 @@ impl ConstitutiveModel {
             .materials
             .iter()
             .enumerate()
-            .map(|(n, m)| toughness::<D>(spec, m, moments, &format!("materials[{n}].fracture")))
+            .map(|(n, m)| {
+                let path = format!("materials[{n}].fracture");
+                toughness::<D>(spec, m, moments, shelf, &path)
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let repulsion = match &spec.contact {
             Some(contact_spec) => Some(Repulsion {

@@ -18,7 +18,7 @@ use crate::law::material::viscoelastic::Viscoelastic;
 use crate::law::material::{Material, Numbers};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{Criterion, LawSpec, NamedLaw, Parameters, Plane, Spec};
+use crate::spec::{LawSpec, NamedLaw, Parameters, Plane, Spec};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -96,6 +96,11 @@ impl Shelf {
         self.entries.iter().map(|e| &e.descriptor)
     }
 
+    /// What a law says of itself.
+    pub fn descriptor(&self, name: &str) -> Option<&Descriptor> {
+        self.entry(name).map(|e| &e.descriptor)
+    }
+
     fn entry(&self, name: &str) -> Option<&Arc<Entry>> {
         self.entries.iter().find(|e| e.descriptor.name == name)
     }
@@ -106,36 +111,46 @@ impl Shelf {
     /// No such law, or parameters that do not fit it.
     pub fn resolve(&self, spec: &mut Spec) -> Result<(), BuildError> {
         for (n, m) in spec.materials.iter_mut().enumerate() {
-            let LawSpec::Named(law) = &mut m.law else {
-                continue;
-            };
             let path = format!("materials[{n}].law");
-            let Some(entry) = self.entry(&law.name) else {
-                let known: Vec<&str> = self.descriptors().map(|d| d.name.as_ref()).collect();
-                return Err(
-                    BuildError::new(path, format!("there is no law named {}", law.name))
-                        .help(format!("the shelf has {}", known.join(", "))),
-                );
-            };
-            let example = || format!("for example {} = {}", law.name, entry.descriptor.example);
-            if let Err((key, message)) = entry.descriptor.check(&mut law.parameters) {
-                let path = match key.as_str() {
-                    "" => path,
-                    key => format!("{path}.{key}"),
-                };
-                return Err(BuildError::new(path, message).help(example()));
-            }
-            let linear = (entry.linear)(&law.parameters)
-                .map_err(|message| BuildError::new(path, message).help(example()))?;
-            if law.linear.is_none()
-                && let Some(fracture) = &mut m.fracture
-                && let Criterion::Energy(energy) = &mut fracture.criterion
-            {
-                *energy = (entry.brittle_energy)(&law.parameters, *energy);
-            }
-            law.linear = Some(Box::new(linear));
+            self.look_up(&mut m.law)
+                .map_err(|message| BuildError::new(path, message))?;
         }
         Ok(())
+    }
+
+    /// Look up the law of one material; laws that need none are left alone.
+    ///
+    /// # Errors
+    /// As of [`Shelf::resolve`].
+    pub fn look_up(&self, law: &mut LawSpec) -> Result<(), String> {
+        let LawSpec::Named(law) = law else {
+            return Ok(());
+        };
+        let Some(entry) = self.entry(&law.name) else {
+            let known: Vec<&str> = self.descriptors().map(|d| d.name.as_ref()).collect();
+            return Err(format!(
+                "there is no law named {}; the shelf has {}",
+                law.name,
+                known.join(", ")
+            ));
+        };
+        entry
+            .descriptor
+            .check(&mut law.parameters)
+            .map_err(|(_, message)| message)?;
+        law.linear = Some(Box::new((entry.linear)(&law.parameters)?));
+        Ok(())
+    }
+
+    /// The fracture energy of a brittle bond with the critical stretch of this law's (see [`Shelved::brittle_energy`]).
+    pub(crate) fn brittle_energy(&self, law: &LawSpec, energy: f64) -> f64 {
+        match law {
+            LawSpec::Named(law) => match self.entry(&law.name) {
+                Some(entry) => (entry.brittle_energy)(&law.parameters, energy),
+                None => energy,
+            },
+            _ => energy,
+        }
     }
 }
 
@@ -185,11 +200,9 @@ pub(super) fn chosen<const D: usize>(
         let of = &spec.materials[n].law;
         materials.push(Made {
             parameters: law.parameters.clone(),
-            solid: Solid::of_law(D, spec.plane, of),
+            solid: Solid::of_law(D, spec.plane, of.linear()),
             micromodulus: match of.linear() {
-                LawSpec::Pmb(stiffness) => {
-                    Some(micromodulus(D, spec.plane, *stiffness, moments))
-                }
+                LawSpec::Pmb(stiffness) => Some(micromodulus(D, spec.plane, *stiffness, moments)),
                 _ => None,
             },
             critical_stretch: toughness[n].s00,

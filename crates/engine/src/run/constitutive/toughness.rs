@@ -1,5 +1,6 @@
 //! When bonds break: the critical stretch of a material.
 
+use super::Shelf;
 use crate::error::BuildError;
 use crate::interaction::Toughness;
 use crate::law::micromodulus::{self, Moments, micromodulus};
@@ -10,6 +11,7 @@ pub(super) fn toughness<const D: usize>(
     spec: &Spec,
     m: &MaterialSpec,
     moments: Moments,
+    shelf: &Shelf,
     path: &str,
 ) -> Result<Toughness, BuildError> {
     let Some(fracture) = m.fracture else {
@@ -21,6 +23,7 @@ pub(super) fn toughness<const D: usize>(
     let s00 = match fracture.criterion {
         Criterion::Stretch(s) => s,
         Criterion::Energy(energy) => {
+            let energy = shelf.brittle_energy(&m.law, energy);
             // the bond-based constant of the same bulk; for state-based solids of the same K
             let stiffness = match m.law.linear() {
                 LawSpec::Pmb(s) => *s,

@@ -34,7 +34,7 @@ pub(super) fn potential(
 ) -> Result<Option<AtomsPotential>> {
     for material in written.values() {
         let law = &material.value.law;
-        let (form, end) = match &law.value {
+        let (form, end) = match &law.value.0 {
             Law::LennardJones(p) => (
                 Form::LennardJones(LennardJones {
                     epsilon: context.positive(&p.epsilon, Dim::ENERGY, "ε")?,
@@ -129,7 +129,8 @@ pub(super) fn potential(
             | Law::LpsAsTyped(_)
             | Law::EamLike(_)
             | Law::Springs(_)
-            | Law::Micromoduli => continue,
+            | Law::Micromoduli
+            | Law::Named(_) => continue,
         };
         let (cutoff, end) = ended(context, end)?;
         if written.len() > 1 {
@@ -153,7 +154,7 @@ pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<(
     if document.units.is_some() {
         return Ok(());
     }
-    let laws = document.material.values().map(|m| &m.value.law.value);
+    let laws = document.material.values().map(|m| &m.value.law.value.0);
     let constants = laws.flat_map(|law| match law {
         Law::LennardJones(p) => vec![&p.epsilon, &p.sigma],
         Law::Morse(p) => vec![&p.depth, &p.distance],
@@ -165,7 +166,8 @@ pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<(
         | Law::LpsAsTyped(_)
         | Law::EamLike(_)
         | Law::Springs(_)
-        | Law::Micromoduli => vec![],
+        | Law::Micromoduli
+        | Law::Named(_) => vec![],
     });
     let plain = |n: &&Number| match &n.value {
         Written::Plain(_) => true,

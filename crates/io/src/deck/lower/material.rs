@@ -3,12 +3,16 @@
 use super::atoms::AtomsPotential;
 use super::bodies;
 use super::context::{Context, Result};
-use crate::deck::document::{Document, Elastic, Fracture, Law, Material, ReleaseName};
+use crate::deck::document::{
+    AnyLaw, Document, Elastic, Fracture, Given, Law, Material, NamedLaw, ReleaseName,
+};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Number};
+use peridyne::law::descriptor::Value;
+use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, PieceSpec,
-    PmbStiffness, Release, SetSpec,
+    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, Parameter,
+    Parameters, PieceSpec, PmbStiffness, Release, SetSpec,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -172,9 +176,69 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
     }
 }
 
-fn law(context: &Context, law: &At<Law>, potential: Option<&AtomsPotential>) -> Result<LawSpec> {
+/// A law of the shelf, checked and with its defaults.
+fn shelved(context: &Context, span: &Range<usize>, named: &NamedLaw) -> Result<LawSpec> {
+    let shelf = Shelf::standard();
+    let Some(descriptor) = shelf.descriptor(&named.name) else {
+        return Err(context.error(span, format!("there is no law named {}", named.name)));
+    };
+    let mut parameters = Parameters::default();
+    let mut spans = vec![];
+    for (name, given) in &named.given {
+        let Some(key) = descriptor.key(name) else {
+            return Err(context.error(span, format!("the law has no key `{name}`")));
+        };
+        let (value, place) = match (given, key.value) {
+            (Given::Number(number), Value::Number(dimension, _)) => {
+                let x = context.finite(number, dimension)?;
+                (Parameter::Number(x), &number.span)
+            }
+            (Given::Rows(rows), Value::Rows(columns)) => {
+                let row = |row: &Vec<Number>| {
+                    if row.len() != columns.len() {
+                        let names: Vec<&str> = columns.iter().map(|c| c.0).collect();
+                        let message = format!(
+                            "a row of `{name}` has {} numbers, expected [{}]",
+                            row.len(),
+                            names.join(", ")
+                        );
+                        return Err(context.error(&rows.span, message));
+                    }
+                    let each = row.iter().zip(columns);
+                    each.map(|(x, c)| context.finite(x, c.1)).collect()
+                };
+                let rows_read = rows.value.iter().map(row).collect::<Result<_>>()?;
+                (Parameter::Rows(rows_read), &rows.span)
+            }
+            (Given::Word(word), _) => (Parameter::Word(word.value.clone()), &word.span),
+            (Given::Number(_) | Given::Rows(_), _) => {
+                return Err(context.error(span, format!("`{name}` has another form")));
+            }
+        };
+        parameters = parameters.with(name, value);
+        spans.push((name, place));
+    }
+    let help = || {
+        format!(
+            "write for example law = {{ {} = {} }}",
+            named.name, descriptor.example
+        )
+    };
+    if let Err((key, message)) = descriptor.check(&mut parameters) {
+        let place = spans.iter().find(|(name, _)| **name == key);
+        let place = place.map_or(span, |(_, place)| *place);
+        return Err(context.error_with(place, message, help()));
+    }
+    let mut law = LawSpec::named(&named.name, parameters);
+    if let Err(message) = shelf.look_up(&mut law) {
+        return Err(context.error_with(span, message, help()));
+    }
+    Ok(law)
+}
+
+fn law(context: &Context, law: &At<AnyLaw>, potential: Option<&AtomsPotential>) -> Result<LawSpec> {
     let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
-    match &law.value {
+    match &law.value.0 {
         Law::Pmb(e) => pmb(context, &law.span, e, "pmb").map(LawSpec::Pmb),
         Law::Lps(e) => moduli(context, &law.span, e).map(LawSpec::Lps),
         Law::LpsAsTyped(e) => match e {
@@ -210,6 +274,7 @@ fn law(context: &Context, law: &At<Law>, potential: Option<&AtomsPotential>) -> 
                 "write body = { file = \"coarse.npz\" }, as `peridyne coarsen` makes it",
             )),
         },
+        Law::Named(named) => shelved(context, &law.span, named),
         Law::EamLike(e) => Ok(LawSpec::EamLike {
             pair: pressure(&e.pair, "the stiffness of the pairs")?,
             volume: context.finite(&e.volume, Dim::PRESSURE)?,

@@ -25,6 +25,7 @@ use super::value::{At, Or, Written};
 use crate::read::eam::{self, EamFile};
 use crate::read::{Frame, Points};
 use context::{Context, Result};
+use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon, Influence,
     InterfaceRule, LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
@@ -341,6 +342,9 @@ fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
         Some(InfluenceName::CubicSpline) => Influence::CubicSpline,
         None => match materials.first().map(|m| &m.law) {
             Some(LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. }) => Influence::Inverse,
+            Some(LawSpec::Named(law)) => Shelf::standard()
+                .descriptor(&law.name)
+                .map_or(Influence::Constant, |d| d.influence),
             Some(
                 LawSpec::Pmb(_)
                 | LawSpec::EamLike { .. }
