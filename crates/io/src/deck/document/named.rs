@@ -62,7 +62,8 @@ impl<'de> Deserialize<'de> for AnyLaw {
                         map: &mut map,
                     })?,
                     None => {
-                        let known = form::laws().chain(shelf.descriptors().map(|d| &*d.name));
+                        let shelved = shelf.descriptors().map(|d| d.name.to_string());
+                        let known = form::laws().map(str::to_string).chain(shelved);
                         let known: Vec<String> = known.map(|n| format!("`{n}`")).collect();
                         return Err(A::Error::custom(format!(
                             "unknown variant `{name}`, expected one of {}",
