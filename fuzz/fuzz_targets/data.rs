@@ -2,7 +2,7 @@
 //! LAMMPS data files.
 
 use libfuzzer_sys::fuzz_target;
-use peridyne_io::lammps::read_data;
+use peridyne_io::read::lammps::read_data;
 use std::io::Cursor;
 
 fuzz_target!(|bytes: &[u8]| {

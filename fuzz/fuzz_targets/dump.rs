@@ -2,7 +2,7 @@
 //! LAMMPS dump files; the first number is the step that is looked for.
 
 use libfuzzer_sys::fuzz_target;
-use peridyne_io::lammps::read_frame;
+use peridyne_lammps::read_frame;
 use std::io::Cursor;
 
 fuzz_target!(|input: (u8, &[u8])| {

@@ -2,8 +2,8 @@
 //! LAMMPS scripts up to their first run.
 
 use libfuzzer_sys::fuzz_target;
-use peridyne_io::lammps::host::{Console, Engine, Host, HostError, Setup};
-use peridyne_io::lammps::{Options, run_text};
+use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
+use peridyne_lammps::{Options, run_text};
 
 struct Nothing;
 

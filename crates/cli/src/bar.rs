@@ -3,8 +3,8 @@
 use crate::failure::{Failure, say};
 use clap::ValueEnum;
 use peridyne_theory::exact::{Field, Q};
+use peridyne_theory::homogenize::bar::equations::Corner;
 use peridyne_theory::homogenize::bar::limit::decimals;
-use peridyne_theory::homogenize::bar::stiffness::Corner;
 use peridyne_theory::homogenize::bar::{Bar, BarError, Ends, micromodulus};
 use serde_json::{Value, json};
 

@@ -16,7 +16,7 @@ use peridyne::run::{Families, Simulation};
 use peridyne::spec::{Criterion, Moduli, Spec};
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
-use peridyne_io::lammps::Units;
+use peridyne_lammps::Units;
 use peridyne_theory::asked::asked;
 use peridyne_theory::elastic::{PatchTest, patch_test};
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};

@@ -7,13 +7,13 @@ use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::run::{Simulation, SnapshotOptions};
 use peridyne_io::drive::default_dir;
-use peridyne_io::lammps::host::{Console, Engine, Host, HostError, Setup};
-use peridyne_io::lammps::model::{ModelEngine, ModelHost, Prepared};
-use peridyne_io::lammps::{Options, Outcome, run_text};
 use peridyne_io::write::folder::Folder;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::run_json::{self, EnergyReport, RunReport, Status};
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
+use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
+use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared};
+use peridyne_lammps::{Options, Outcome, run_text};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 

@@ -22,16 +22,7 @@ const FLOORS: &[&[&str]] = &[
 ];
 
 /// Circles that may be, by one of their files, and why.
-const CIRCLES: &[(&str, &str)] = &[
-    (
-        "lammps/host",
-        "a script's atoms are read through the seam that its engine fills",
-    ),
-    (
-        "lammps/session",
-        "what a script has collected is read by all of its parts",
-    ),
-];
+const CIRCLES: &[(&str, &str)] = &[];
 
 /// A crate's modules: path and file.
 type Modules = BTreeMap<Vec<String>, PathBuf>;

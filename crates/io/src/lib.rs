@@ -1,8 +1,7 @@
-//! peridyne-io: decks, LAMMPS scripts and meshes in; VTU, CSV, JSON, dumps and pictures out.
+//! peridyne-io: decks, meshes and files of atoms in; VTU, CSV, JSON, dumps and pictures out.
 
 pub mod balance;
 pub mod deck;
 pub mod drive;
-pub mod lammps;
 pub mod read;
 pub mod write;

@@ -1,8 +1,8 @@
 //! LAMMPS data files of `atom_style atomic`.
 
 use super::atoms::{Atoms, Species};
+use super::lammps::{DataFile, Style};
 use super::{ReadError, lammps};
-use crate::lammps::{DataFile, Style};
 use std::path::Path;
 
 /// Reads the atoms, in order of the ids; species are named by the comments of `Masses`, else by the number of the type.
@@ -31,7 +31,6 @@ pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
         let message = format!("{} atom types, of which 65536 are read", file.types);
         return Err(lammps::error(name, None, message));
     }
-    let n = file.atoms.len();
     let species = (0..file.types)
         .map(|t| {
             let mass = file.masses.get(t).cloned().flatten();
@@ -44,11 +43,9 @@ pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
         .collect();
     Ok(Atoms {
         species,
-        kind: (0..n).map(|i| file.atoms.types.get(i) - 1).collect(),
-        position: (0..n).map(|i| file.atoms.position(i)).collect(),
-        velocity: file
-            .has_velocities
-            .then(|| (0..n).map(|i| file.atoms.velocity.get(i)).collect()),
+        kind: file.atoms.types.iter().map(|t| t - 1).collect(),
+        position: file.atoms.position,
+        velocity: file.atoms.velocity,
         low: file.low,
         high: file.high,
         periodic: [true; 3],

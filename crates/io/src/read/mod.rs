@@ -12,7 +12,7 @@ pub mod dump;
 pub mod eam;
 pub mod extxyz;
 mod gmsh;
-mod lammps;
+pub mod lammps;
 mod linear;
 mod lines;
 mod mesh;
@@ -157,7 +157,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
     let points = match extension {
         "extxyz" => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
         "xyz" if extended => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
-        "data" | "lmp" if lammps::file(text, name)?.style == crate::lammps::Style::Atomic => {
+        "data" | "lmp" if lammps::file(text, name)?.style == lammps::Style::Atomic => {
             sourced(data::parse_data(text, name)?, true, name)?
         }
         "lammpstrj" | "dump" => sourced(dump::parse_dump(text, name, Frame::Last)?, false, name)?,

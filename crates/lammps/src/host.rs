@@ -1,0 +1,273 @@
+//! The seam between a LAMMPS script and whatever moves the points.
+//!
+//! The interpreter collects a [`Setup`]; at the first `run` a [`Host`] makes an [`Engine`] of it. From then on
+//! the engine owns all per-atom data and the interpreter reads and writes it through [`Particles`].
+//! All arrays are in order of atom id. Forces and masses are *densities*, as in LAMMPS's `peri` styles.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use super::atoms::{Atoms, Members};
+use super::domain::SimBox;
+pub use super::quantity::{BLOCK, HostError, Particles, Quantity};
+use super::units::Units;
+pub use peridyne::condition::carried::{Carry, Motion};
+pub use peridyne::condition::indenter::{Form, Push};
+pub use peridyne::run::Wall;
+
+/// What is asked for at the first `run`.
+#[derive(Debug)]
+pub struct Setup {
+    /// The script's file name.
+    pub title: String,
+    /// 2 or 3.
+    pub dimension: usize,
+    pub units: Units,
+    /// Box and boundaries; periodic axes have the length `high − low`.
+    pub domain: SimBox,
+    /// Edge of the cubic (square) cell of the script's `lattice`: volume scaling and contact use it.
+    pub lattice_constant: f64,
+    /// Time step as it is at the first `run`.
+    pub time_step: f64,
+    /// Number of steps of that `run`.
+    pub steps: u64,
+    pub atoms: Atoms,
+    pub pair: Pair,
+}
+
+/// `pair_style` and `pair_coeff`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pair {
+    Pmb(PairTable<PmbCoefficients>),
+    Lps(PairTable<LpsCoefficients>),
+}
+
+impl Pair {
+    /// Number of atom types.
+    pub fn types(&self) -> usize {
+        match self {
+            Pair::Pmb(table) => table.types(),
+            Pair::Lps(table) => table.types(),
+        }
+    }
+}
+
+/// Coefficients for every pair of atom types; symmetric, complete.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairTable<T> {
+    types: usize,
+    values: Vec<T>,
+}
+
+impl<T: Copy> PairTable<T> {
+    /// `None` if a pair has no coefficients. `values[(i−1)·types + (j−1)]` for types `i`, `j` from 1.
+    pub fn complete(types: usize, values: &[Option<T>]) -> Option<Self> {
+        let values = values.iter().copied().collect::<Option<Vec<T>>>()?;
+        (values.len() == types * types).then_some(PairTable { types, values })
+    }
+    /// Number of atom types.
+    pub fn types(&self) -> usize {
+        self.types
+    }
+    /// For atom types `i` and `j`, from 1 to [`PairTable::types`].
+    pub fn get(&self, i: usize, j: usize) -> T {
+        self.values[(i - 1) * self.types + (j - 1)]
+    }
+}
+
+/// `pair_coeff I J c δ s00 α` of `peri/pmb`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PmbCoefficients {
+    /// Micromodulus c as typed.
+    pub micromodulus: f64,
+    /// Horizon δ as typed (bonds have `r² ≤ δ²`).
+    pub horizon: f64,
+    pub critical_stretch: f64,
+    pub alpha: f64,
+}
+
+/// `pair_coeff I J K G δ s00 α` of `peri/lps`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LpsCoefficients {
+    pub bulk: f64,
+    pub shear: f64,
+    /// Horizon δ as typed.
+    pub horizon: f64,
+    pub critical_stretch: f64,
+    pub alpha: f64,
+}
+
+/// What acts on the atoms besides the bonds, in the order of the script's fixes: each works on the force left
+/// by the ones before it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// Adds the force density `K g²` along the surface's normal where the gap g between atom and surface is negative;
+    /// minimum image on periodic axes.
+    Indent {
+        members: Arc<Members>,
+        stiffness: f64,
+        form: Form,
+        push: Push,
+        center: [f64; 3],
+        radius: f64,
+    },
+    /// Overwrites the given components of the force density.
+    SetForce {
+        members: Arc<Members>,
+        force: [Option<f64>; 3],
+    },
+    /// The same, with values for each member.
+    SetForceEach {
+        members: Arc<Members>,
+        force: Vec<[Option<f64>; 3]>,
+    },
+    /// Adds a force density.
+    AddForce {
+        members: Arc<Members>,
+        force: [f64; 3],
+    },
+    /// The same, with values for each member.
+    AddForceEach {
+        members: Arc<Members>,
+        force: Vec<[Option<f64>; 3]>,
+    },
+    /// Adds the force density −γ v with the γ of each member, v as it is at that moment (in a step: of its middle).
+    Drag {
+        members: Arc<Members>,
+        gamma: Vec<f64>,
+    },
+    /// Zeroes the z components of force density and velocity.
+    Enforce2d { members: Arc<Members> },
+}
+
+/// What a `run` starts with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunStart {
+    /// Step counter of the state as it is.
+    pub step: u64,
+    /// Number of steps of this run.
+    pub steps: u64,
+    pub time_step: f64,
+    /// Atoms that forces move; `None`: none.
+    pub moving: Option<Arc<Members>>,
+    /// Atoms (from 0) that are carried.
+    pub carried: Vec<u32>,
+    /// The box as it is now.
+    pub domain: SimBox,
+}
+
+/// Sums over all atoms as LAMMPS prints them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energies {
+    /// Σ W (sum of energy densities, not weighted with volumes).
+    pub potential: f64,
+}
+
+/// What a [`Condition`] had at the last force evaluation.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Reaction {
+    /// Σ K g³ / 3 of an indenter.
+    pub energy: f64,
+    /// Of an indenter minus the sum of the force densities on the atoms; of other conditions the sum of the force
+    /// densities on their atoms before they acted.
+    pub force: [f64; 3],
+}
+
+/// A model that can be stepped.
+pub trait Engine: Particles {
+    /// Start of a `run`: takes up written positions and velocities and evaluates the forces with `conditions`.
+    /// The first call builds the bonds from the positions of that moment.
+    ///
+    /// # Errors
+    /// The model cannot be run like this.
+    fn setup(&mut self, run: &RunStart, conditions: &[Condition]) -> Result<(), HostError>;
+
+    /// The first half of a velocity-Verlet step: positions of its end. `carried` says where the atoms of
+    /// [`RunStart::carried`] are then, in displacements from their reference. Answers a bound on the path of any atom
+    /// (length).
+    ///
+    /// # Errors
+    /// The state went bad.
+    fn depart(&mut self, carried: &[Motion]) -> Result<f64, HostError>;
+
+    /// Mirrors atoms behind a wall, with their velocity across it.
+    fn reflect(&mut self, wall: &Wall, members: &Members);
+
+    /// The second half of a step: forces at its end. `conditions` hold their values there, in the order (and number) of
+    /// `setup`.
+    ///
+    /// # Errors
+    /// The state went bad.
+    fn arrive(&mut self, conditions: &[Condition]) -> Result<(), HostError>;
+
+    /// Takes atoms (from 0) away for ever; their bonds break, those above move down.
+    fn remove(&mut self, atoms: &[u32]);
+
+    /// Values will be asked for after the next step: LAMMPS's energies and dilatations still have the bonds that
+    /// break in that step. [`Engine::setup`] expects it always.
+    fn expect_output(&mut self) {}
+
+    /// Energies of the current state.
+    ///
+    /// # Errors
+    /// They cannot be computed.
+    fn energies(&mut self) -> Result<Energies, HostError>;
+
+    /// The virial will be asked for after the next step or [`Engine::setup`].
+    fn expect_virial(&mut self) {}
+
+    /// The same for [`Quantity::Virial`].
+    fn expect_virials(&mut self) {}
+
+    /// Σ of distance times force over bonds and contacts, xx yy zz xy xz yz (energy; weighted with volumes, unlike
+    /// [`Energies`]).
+    ///
+    /// # Errors
+    /// It cannot be computed.
+    fn virial(&mut self) -> Result<[f64; 6], HostError>;
+
+    /// Of condition number `index`.
+    fn reaction(&self, index: usize) -> Reaction;
+
+    /// Everything about the model now, for a picture.
+    fn snapshot(&mut self) -> Option<peridyne::observe::Snapshot> {
+        None
+    }
+
+    /// Directed bonds of the reference family (each bond counts twice).
+    fn directed_bonds(&self) -> u64;
+
+    /// Bytes that the model holds.
+    fn memory_bytes(&self) -> u64;
+
+    /// What the user should know since the last call: printed as notes after each set-up.
+    fn notes(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// For the caller of the interpreter, who knows the type.
+    fn as_any(&mut self) -> &mut dyn Any;
+}
+
+/// Makes engines.
+pub trait Host {
+    /// Called once, at the first `run`. Bonds may be built here or in the first [`Engine::setup`].
+    ///
+    /// # Errors
+    /// The set-up cannot be built.
+    fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError>;
+}
+
+/// Where text goes.
+pub trait Console {
+    /// A line of LAMMPS's screen output.
+    fn print(&mut self, line: &str);
+    /// Something worth knowing that is no error.
+    fn note(&mut self, line: &str);
+    /// After each step of a run.
+    fn progress(&mut self, _done: u64, _of: u64) {}
+    /// Asked after each step: shall the script end here, with the state that it has?
+    fn ended(&mut self) -> bool {
+        false
+    }
+}

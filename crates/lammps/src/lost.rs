@@ -1,0 +1,155 @@
+//! Atoms that leave the box: they are lost when LAMMPS would rebuild its neighbour lists.
+
+use crate::domain::Face;
+use crate::error::{Problem, Result};
+use crate::session::{Session, Store};
+use crate::thermo::Lost;
+
+impl Session<'_> {
+    /// Can atoms be lost at all?
+    fn can_lose(&self) -> bool {
+        self.domain
+            .as_ref()
+            .is_some_and(|d| d.faces.iter().flatten().any(|f| *f == Face::Fixed))
+    }
+
+    /// A rebuild at the start of a run.
+    ///
+    /// # Errors
+    /// The atoms cannot be read.
+    pub fn rebuild(&mut self) -> Result<()> {
+        if !self.can_lose() {
+            return Ok(());
+        }
+        self.shrink_box()?;
+        self.lose()?;
+        self.rebuild.held = self.unwrapped()?;
+        (self.rebuild.ago, self.rebuild.farthest, self.rebuild.path) = (0, 0.0, 0.0);
+        Ok(())
+    }
+
+    /// After the drift of a step in which no atom went further than `path`.
+    ///
+    /// # Errors
+    /// The atoms cannot be read.
+    pub fn rebuild_if_due(&mut self, path: f64) -> Result<()> {
+        if !self.can_lose() {
+            return Ok(());
+        }
+        let (schedule, trigger) = (self.neighbors, 0.5 * self.skin);
+        let state = &mut self.rebuild;
+        state.ago += 1;
+        state.path += path;
+        let looks = state.ago >= schedule.delay && state.ago.is_multiple_of(schedule.every);
+        if schedule.once || !looks {
+            return Ok(());
+        }
+        if !schedule.check {
+            return self.rebuild();
+        }
+        // a thousandth for round-off of the bound
+        if (state.farthest + state.path) * 1.001 <= trigger {
+            return Ok(());
+        }
+        let now = self.unwrapped()?;
+        let state = &mut self.rebuild;
+        let far = now.iter().zip(&state.held).map(|(x, h)| {
+            let d = [0, 1, 2].map(|a| x[a] - h[a]);
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+        });
+        let farthest = far.fold(0.0, f64::max);
+        (state.farthest, state.path) = (farthest.sqrt(), 0.0);
+        if farthest > trigger * trigger {
+            return self.rebuild();
+        }
+        Ok(())
+    }
+
+    /// Takes away what is outside a fixed face.
+    fn lose(&mut self) -> Result<()> {
+        let domain = *self.domain()?;
+        let x = self.unwrapped()?;
+        let outside = |x: &[f64; 3]| {
+            (0..3).find(|&a| {
+                let [low, high] = domain.faces[a];
+                (low == Face::Fixed && x[a] < domain.low[a])
+                    || (high == Face::Fixed && x[a] >= domain.high[a])
+            })
+        };
+        let gone: Vec<(u32, usize)> = x
+            .iter()
+            .enumerate()
+            .filter_map(|(i, x)| Some((i as u32, outside(x)?)))
+            .collect();
+        let Some((first, axis)) = gone.first().copied() else {
+            return Ok(());
+        };
+        let place = x[first as usize][axis];
+        self.rebuild.lost = match self.thermo.lost {
+            // they stay, and are counted again
+            Lost::Error => gone.len(),
+            Lost::Warn | Lost::Ignore => self.rebuild.lost + gone.len(),
+        };
+        let example = (self.ids.get(first as usize), axis, place);
+        self.rebuild.example.get_or_insert(example);
+        if self.thermo.lost == Lost::Error {
+            // the next line of output stops the run
+            return Ok(());
+        }
+        if gone.len() == x.len() {
+            return Err(Problem::new("all atoms left the box through fixed faces")
+                .help("use `boundary s` so that the box follows the atoms, or a larger box"));
+        }
+        let gone: Vec<u32> = gone.iter().map(|(i, _)| *i).collect();
+        self.remove(&gone)
+    }
+
+    /// Takes atoms (from 0, ascending) away for ever.
+    ///
+    /// # Errors
+    /// None are left.
+    pub fn remove(&mut self, gone: &[u32]) -> Result<()> {
+        let n = self.count();
+        let stays = |i: usize| gone.binary_search(&(i as u32)).is_err();
+        let places: Vec<usize> = (0..n).filter(|i| stays(*i)).collect();
+        match &mut self.store {
+            Store::Atoms(atoms) => atoms.pick(&places, self.ids.only(&places)),
+            Store::Engine(e) => e.remove(gone),
+        }
+        self.ids = self.ids.only(&places);
+        self.forget(&places);
+        if !self.rebuild.held.is_empty() {
+            let held = std::mem::take(&mut self.rebuild.held);
+            self.rebuild.held = places.iter().map(|i| held[*i]).collect();
+        }
+        Ok(())
+    }
+
+    /// What was lost since the last line of output.
+    ///
+    /// # Errors
+    /// Something was, and that is an error.
+    pub fn check_lost(&mut self) -> Result<()> {
+        let lost = std::mem::take(&mut self.rebuild.lost);
+        let Some((id, axis, place)) = self.rebuild.example.take() else {
+            return Ok(());
+        };
+        let axis = ["x", "y", "z"][axis];
+        let what = format!(
+            "{lost} atoms left the box through a fixed face by step {}, first the atom with id {id}: {axis} = {place:.6e}",
+            self.progress.step
+        );
+        match self.thermo.lost {
+            Lost::Error => Err(Problem::new(what).help(
+                "use `boundary s` so that the box follows the atoms, or a larger box; `thermo_modify lost ignore` goes on without them",
+            )),
+            Lost::Warn => {
+                let (was, now) = (self.count() + lost, self.count());
+                self.console
+                    .note(&format!("{what}; lost atoms: original {was} current {now}"));
+                Ok(())
+            }
+            Lost::Ignore => Ok(()),
+        }
+    }
+}
