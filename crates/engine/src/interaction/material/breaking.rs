@@ -1,70 +1,156 @@
 //! Which bonds break, what their points lose with them, and the next critical stretch.
 
-use super::family::{Family, Slots, put};
+use super::family::{Family, Moved, Slots, put};
 use super::sweeps::EnergyOf;
-use super::view::{Drift, GroupOf, View};
+use super::view::{BLOCK, Drift, View, save};
 use crate::body::{Body, Field};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
-use crate::family::stencil::MOST;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::material::{Material, Numbers};
 
-/// Test and break. What points lose is the energy of their bonds before less that of those that they keep, the mean of here and a step
-/// away (see [`Break::drift`]): so the balance of energy is of second order in the step.
-pub struct Break<'a, const D: usize, F, M> {
+/// Which bonds are beyond their critical stretch; they break later. Knows nothing of laws.
+pub struct Test<'a, const D: usize, F> {
+    pub family: &'a F,
+    pub moved: Moved<'a, D>,
+    pub body: &'a Body<D>,
+    pub alive: &'a [u8],
+    pub critical: &'a [f64],
+    pub next: Shared,
+    pub toughness: &'a [Toughness],
+    /// Do points without whole bonds keep the critical stretch that they had?
+    pub keeps: bool,
+    /// A bit for every bond that breaks, and a mark for every group that has any.
+    pub breaks: Shared<u8>,
+    pub torn: Shared<u8>,
+}
+
+impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
+    type Out = ();
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) {
+        let f = self.family;
+        for group in block * BLOCK..((block + 1) * BLOCK).min(f.groups()) {
+            // SAFETY: groups of the family; each is written by one block
+            unsafe {
+                let rows = f.rows(group);
+                let place = f.place::<L>(rows);
+                let u = F::displacement::<L>(&self.moved, rows);
+                let own = rows.one::<L>(self.critical.as_ptr());
+                let mut lowest = L::splat(f64::INFINITY);
+                let mut torn = 0;
+                for k in 0..f.bonds(group) {
+                    let byte = f.byte(group, k);
+                    let dead = L::dead(*self.alive.get_unchecked(byte));
+                    let ends = f.ends(group, k);
+                    let mut eta = F::displacement::<L>(&self.moved, ends);
+                    for a in 0..D {
+                        eta[a] = (eta[a] - u[a]).zero_if(dead);
+                    }
+                    let r = f.reference::<L>(group, k, &place, ends, dead);
+                    let e = relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead);
+                    lowest = e.min(lowest);
+                    let other = ends.one::<L>(self.critical.as_ptr());
+                    let breaks = L::bits(other.min(own).lt(e)) as u8;
+                    *self.breaks.at(byte) = breaks;
+                    torn |= breaks;
+                }
+                *self.torn.at(group) = torn;
+                let material = |l: usize| self.body.material_of(rows.slot(l));
+                let alone = if self.keeps {
+                    own
+                } else {
+                    L::splat(f64::INFINITY)
+                };
+                let next = history::next_critical(self.toughness, material, lowest, alone);
+                put(next, self.next, rows);
+            }
+        }
+    }
+}
+
+/// Break them. What points lose is the energy of their bonds before less that of those that they keep, the mean of here and a step
+/// away (see [`Tear::drift`]): so the balance of energy is of second order in the step.
+pub struct Tear<'a, const D: usize, F, M> {
     /// With the constants of the step.
     pub view: View<'a, D, F, M>,
     /// Constants of a step of no length.
     pub still: &'a [f64],
     pub body: &'a Body<D>,
-    pub critical: &'a [f64],
-    pub next: Shared,
-    pub toughness: &'a [Toughness],
+    /// Groups with bonds that break.
+    pub groups: &'a [u32],
+    pub breaks: &'a [u8],
     pub v: &'a Field<D>,
     /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
     /// it), or will be (it pulls once more).
     pub drift: f64,
 }
 
-impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Break<'_, D, F, M> {
+impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> {
     type Out = Tally;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Tally {
         let v = &self.view;
         let mut tally = Tally::default();
-        for group in v.block(block) {
+        let mut after = vec![];
+        for &group in &self.groups[block * BLOCK..((block + 1) * BLOCK).min(self.groups.len())] {
+            let group = group as usize;
             // SAFETY: groups of the family; each is written by one block
             unsafe {
-                let at = v.group::<L>(group, 0);
-                let own = at.rows.one::<L>(self.critical.as_ptr());
-                let mut lowest = L::splat(f64::INFINITY);
-                let mut torn = false;
-                for k in 0..v.family.bonds(group) {
-                    let ends = v.family.ends(group, k);
-                    let e = v.strain::<L>(&at, k, ends, v.dead(&at, k));
-                    lowest = e.min(lowest);
-                    let other = ends.one::<L>(self.critical.as_ptr());
-                    torn |= L::any(other.min(own).lt(e));
-                }
-                let material = |l: usize| self.body.material_of(at.rows.slot(l));
-                let alone = if M::PASSES > 0 {
-                    own
+                let first = v.family.byte(group, 0);
+                let bonds = v.family.bonds(group);
+                let before = v.bits(group);
+                let breaks = &self.breaks[first..first + bonds];
+                after.clear();
+                after.extend(before.iter().zip(breaks).map(|(b, x)| b & !x));
+                let mut at = v.group::<L>(group, 0);
+                let old = at.rows.load::<L, M::Form<L>>(v.form);
+                let new = if M::FORM_OF_WHOLE {
+                    v.forms::<L>(group, &after, self.body)
                 } else {
-                    L::splat(f64::INFINITY)
+                    old
                 };
-                let next = history::next_critical(self.toughness, material, lowest, alone);
-                put(next, self.next, at.rows);
-                if torn {
-                    L::apart(Torn::<L, D, F, M> {
-                        pass: self,
-                        group,
-                        tally: &mut tally,
-                        own,
-                    });
+                let still = View {
+                    constants: self.still,
+                    ..*v
+                };
+                let away = Drift {
+                    v: self.v,
+                    time: self.drift,
+                };
+                let mut lost = L::splat(0.0);
+                for (view, drift) in [(v, None), (&still, Some(away))] {
+                    at.constants = view.constants_at::<L>(at.rows);
+                    let mut part = L::splat(0.5);
+                    for (bits, form) in [(before, &old), (&after, &new)] {
+                        let energy = L::apart(EnergyOf::<L, D, F, M> {
+                            view,
+                            at: &at,
+                            bits,
+                            drift,
+                            form,
+                        });
+                        lost = part.fma(energy, lost);
+                        part = L::splat(-0.5);
+                    }
+                }
+                let lost = lost.to_array();
+                for l in 0..TILE {
+                    let broken = breaks.iter().filter(|b| *b >> l & 1 == 1).count();
+                    if broken > 0 {
+                        tally.broken += broken as u64;
+                        tally.released += lost[l] * self.body.volume.at(at.rows.slot(l));
+                    }
+                }
+                for (k, bits) in after.iter().enumerate() {
+                    *v.alive.at(first + k) = *bits;
+                }
+                if M::FORM_OF_WHOLE {
+                    save(v.form, at.rows, &new);
                 }
             }
         }
@@ -72,132 +158,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Break<'_, D, F, M>
     }
 }
 
-struct Torn<'a, 'b, L, const D: usize, F, M> {
-    pass: &'a Break<'b, D, F, M>,
-    group: usize,
-    tally: &'a mut Tally,
-    own: L,
-}
-
-impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> crate::execute::lane::Piece
-    for Torn<'_, '_, L, D, F, M>
-{
-    type Out = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let (pass, group) = (self.pass, self.group);
-        let v = &pass.view;
-        // SAFETY: as in the pass
-        unsafe {
-            let mut at = v.group::<L>(group, 0);
-            let bonds = v.family.bonds(group);
-            let mut before = [0u8; MOST];
-            let mut after = [0u8; MOST];
-            let mut broken = [0u32; TILE];
-            // families of clouds may be larger than any stencil
-            let (mut many_before, mut many_after) = (vec![], vec![]);
-            let (before, after) = if bonds <= MOST {
-                (&mut before[..bonds], &mut after[..bonds])
-            } else {
-                many_before.resize(bonds, 0);
-                many_after.resize(bonds, 0);
-                (&mut many_before[..], &mut many_after[..])
-            };
-            for k in 0..bonds {
-                let bits = v.alive.at(v.family.byte(group, k));
-                before[k] = *bits;
-                let ends = v.family.ends(group, k);
-                let e = v.strain::<L>(&at, k, ends, L::dead(*bits));
-                let other = ends.one::<L>(pass.critical.as_ptr());
-                let which = L::bits(other.min(self.own).lt(e)) as u8;
-                after[k] = before[k] & !which;
-                *bits = after[k];
-                self.tally.broken += u64::from(which.count_ones());
-                for (l, count) in broken.iter_mut().enumerate() {
-                    *count += u32::from(which >> l & 1);
-                }
-            }
-            let old = at.rows.load::<L, M::Form<L>>(v.form);
-            let new = if M::FORM_OF_WHOLE {
-                v.forms::<L>(group, after, pass.body)
-            } else {
-                old
-            };
-            let still = View {
-                constants: pass.still,
-                ..*v
-            };
-            let away = Drift {
-                v: pass.v,
-                time: pass.drift,
-            };
-            let mut lost = L::splat(0.0);
-            for (view, drift) in [(v, None), (&still, Some(away))] {
-                at.constants = view.constants_at::<L>(at.rows);
-                let mut one = L::splat(0.5);
-                for (bits, form) in [(&*before, &old), (&*after, &new)] {
-                    let energy = L::apart(EnergyOf::<L, D, F, M> {
-                        view,
-                        at: &at,
-                        bits,
-                        drift,
-                        form,
-                    });
-                    lost = one.fma(energy, lost);
-                    one = L::splat(-0.5);
-                }
-            }
-            let lost = lost.to_array();
-            for l in 0..TILE {
-                if broken[l] > 0 {
-                    self.tally.released += lost[l] * pass.body.volume.at(at.rows.slot(l));
-                }
-            }
-            if M::FORM_OF_WHOLE {
-                super::view::save(v.form, at.rows, &new);
-            }
-        }
-    }
-}
-
 impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
-    /// `e` of a group's bonds; not a number in lanes without one.
-    ///
-    /// # Safety
-    /// A bond of the group, and its ends.
-    #[inline(always)]
-    unsafe fn strain<L: Lane>(
-        &self,
-        at: &GroupOf<L, D, F, M>,
-        k: usize,
-        ends: F::Slots,
-        dead: L::Mask,
-    ) -> L {
-        // SAFETY: the caller's promise
-        unsafe {
-            let eta = self.apart::<L>(at, ends, dead);
-            let r = self
-                .family
-                .reference::<L>(at.number, k, &at.place, ends, dead);
-            relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead)
-        }
-    }
-
     /// What the points of a group know of a family with these bonds.
-    pub fn forms<L: Lane>(&self, group: usize, bits: &[u8], body: &Body<D>) -> M::Form<L> {
+    fn forms<L: Lane>(&self, group: usize, bits: &[u8], body: &Body<D>) -> M::Form<L> {
         let count = <M::Form<L> as Numbers<L>>::COUNT;
         let mut out = <M::Form<L> as Numbers<L>>::constant(0.0);
-        let mut all = [[0.0; TILE]; 64];
+        let mut all = vec![[0.0; TILE]; count];
         for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
             let form = self.form_of(group, bits, l, body);
-            for n in 0..count {
-                all[n][l] = form.get(n);
+            for (n, all) in all.iter_mut().enumerate() {
+                all[l] = form.get(n);
             }
         }
-        for n in 0..count {
+        for (n, all) in all.iter().enumerate() {
             // SAFETY: a number per lane
-            out.set(n, unsafe { L::load(all[n].as_ptr()) });
+            out.set(n, unsafe { L::load(all.as_ptr()) });
         }
         out
     }

@@ -28,7 +28,7 @@ use crate::execute::simd::Simd;
 use crate::interaction::bond::critical_stretch;
 use crate::law::material::{Material, Numbers};
 use crate::spec::{CrackKind, Release};
-use breaking::Break;
+use breaking::{Tear, Test};
 use family::{Family, Moved, Slots};
 use repulsion::Pushed;
 use std::ops::AddAssign;
@@ -61,6 +61,9 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     /// Critical `e` per slot, now and next; empty: nothing breaks.
     critical: Column,
     next: Column,
+    /// Bits of bonds that break in a sweep, and marks of their groups.
+    breaks: Vec<u8>,
+    torn: Vec<u8>,
     /// Length of the step that equilibrium is sought for; 0: memory stands still.
     step: f64,
     prepared: bool,
@@ -135,6 +138,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             records: vec![0.0; if gathers { 4 * body.len } else { 0 }],
             critical: critical(),
             next: critical(),
+            breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
+            torn: vec![0; if breaks { family.groups() } else { 0 }],
             step: 0.0,
             prepared: false,
             tallies: PerBlock::new(blocks, Tally::default()),
@@ -263,24 +268,48 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         v: &Field<D>,
         drift: f64,
     ) -> Tally {
-        let still = self.constants(0.0);
         let mut next = std::mem::take(&mut self.next);
-        let form = self.form.shared();
-        let alive = Shared(self.alive.as_mut_ptr());
-        let mut view = self.view(u, records, constants);
-        (view.form, view.alive) = (form, alive);
-        let kernel = Break {
-            view,
-            still: &still,
+        let mut breaks = std::mem::take(&mut self.breaks);
+        let mut torn = std::mem::take(&mut self.torn);
+        let test = Test {
+            family: &self.family,
+            moved: Moved {
+                columns: u,
+                records,
+            },
             body,
+            alive: &self.alive,
             critical: &self.critical,
             next: Shared(next.as_mut_ptr()),
             toughness: &self.toughness,
-            v,
-            drift,
+            keeps: M::PASSES > 0,
+            breaks: Shared(breaks.as_mut_ptr()),
+            torn: Shared(torn.as_mut_ptr()),
         };
-        let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);
+        run_blocks(self.simd, &test, self.sums.blocks());
         self.next = next;
+        let marked = torn.iter().enumerate().filter(|(_, t)| **t != 0);
+        let groups: Vec<u32> = marked.map(|(g, _)| g as u32).collect();
+        let mut tally = Tally::default();
+        if !groups.is_empty() {
+            let still = self.constants(0.0);
+            let form = self.form.shared();
+            let alive = Shared(self.alive.as_mut_ptr());
+            let mut view = self.view(u, records, constants);
+            (view.form, view.alive) = (form, alive);
+            let kernel = Tear {
+                view,
+                still: &still,
+                body,
+                groups: &groups,
+                breaks: &breaks,
+                v,
+                drift,
+            };
+            let blocks = PerBlock::new(groups.len().div_ceil(BLOCK), tally);
+            tally = blocks.fold(self.simd, &kernel, Tally::add_assign);
+        }
+        (self.breaks, self.torn) = (breaks, torn);
         tally
     }
 
@@ -573,6 +602,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         self.family.bytes()
             + self.alive.len()
             + self.counted.len()
+            + self.breaks.len()
+            + self.torn.len()
             + self.material.len()
             + self.form.bytes()
             + self.point.bytes()

@@ -4,8 +4,8 @@ use super::family::{Family, Moved, Slots};
 use super::store::Rows;
 use crate::body::Field;
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{Extension, Series, Stretch};
-use crate::execute::lane::{Lane, TILE};
+use crate::execute::lane::series::{Series, Stretch};
+use crate::execute::lane::{self, Lane, TILE};
 use crate::interaction::bond::relative_square_stretch;
 use crate::law::material::{Bond, End, Material, Numbers, Site};
 use crate::law::number::Number;
@@ -167,8 +167,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             length: r.length,
             inv_length: r.inv_length,
             omega: r.omega,
-            stretch: Series::<Stretch>::new().at(e),
-            contraction: Series::<Extension>::new().at(e),
+            stretch: if M::STRETCHES {
+                Series::<Stretch>::new().at(e)
+            } else {
+                e
+            },
+            inv_current: r.inv_length * lane::inv_sqrt(L::splat(1.0) + e),
         };
         (bond, r.weight)
     }

@@ -153,6 +153,7 @@ impl<const D: usize> Material<D> for Correspondence {
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 1;
+    const STRETCHES: bool = false;
     const FORM_OF_WHOLE: bool = true;
 
     fn columns(&self) -> Columns {
@@ -205,9 +206,11 @@ impl<const D: usize> Material<D> for Correspondence {
         let (p, _) = self.stress(site.constants, &h);
         let along = tensor::product(&p, inverse);
         let g = site.constants[CONTROL] * *per_m;
+        // where F is not known P may be anything
+        let (half, zero) = (N::constant(0.5), N::constant(0.0));
         for r in 0..D {
             for c in 0..D {
-                point.0[r][c] = *sound * along[r][c] - g * h[r][c];
+                point.0[r][c] = sound.choose(half, zero, along[r][c]) - g * h[r][c];
             }
         }
         point.1 = g;
@@ -245,7 +248,7 @@ impl<const D: usize> Material<D> for Correspondence {
         let (_, energy) = self.stress(site.constants, &h);
         // H K Hᵀ = S Hᵀ
         let seen = N::constant(0.5) * point.1 * tensor::contraction(&sum, &h);
-        sound.fma(energy, N::constant(0.0)) - seen
+        sound.choose(N::constant(0.5), N::constant(0.0), energy) - seen
     }
 }
 
@@ -298,12 +301,6 @@ impl Shelved for Correspondence {
         let mut made = vec![];
         let stress = materials.first().map_or(Stress::Linear, word);
         for (n, m) in materials.iter().enumerate() {
-            if d == 1 {
-                return Err((
-                    n,
-                    "correspondence is for two and three dimensions: on a line take lps".into(),
-                ));
-            }
             if word(m) != stress {
                 return Err((
                     n,

@@ -158,7 +158,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     #[inline(always)]
     fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> Along<N> {
         let t = end.point[ALPHA].fma(Self::elastic(bond, end), end.point[P] * bond.length);
-        Along(bond.omega * t * bond.inv_current())
+        Along(bond.omega * t * bond.inv_current)
     }
 
     #[inline(always)]
@@ -245,11 +245,6 @@ impl Shelved for ElasticPlastic {
         let mut made = vec![];
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: &str| Err((n, message.to_string()));
-            if d == 1 {
-                return refused(
-                    "on a line there is no shear, and nothing that flows: take two or three dimensions",
-                );
-            }
             if d == 2 && plane == Plane::Stress {
                 return refused(
                     "in the plane an ordinary solid flows without a change of thickness, which is plane strain: write plane = \"strain\"",

@@ -29,8 +29,8 @@ pub struct Bond<N, const D: usize> {
     pub omega: N,
     /// `(|ξ+η| − |ξ|)/|ξ|`, without cancellation.
     pub stretch: N,
-    /// `(|ξ+η| − |ξ|)/|ξ+η|`, without cancellation.
-    pub contraction: N,
+    /// `1/|ξ+η|` (1 / length)
+    pub inv_current: N,
 }
 
 impl<N: Number, const D: usize> Bond<N, D> {
@@ -45,7 +45,7 @@ impl<N: Number, const D: usize> Bond<N, D> {
         }
         let length = square.sqrt();
         let e = (change + change).div(square);
-        // the closed forms of `execute::lane::series`, over any number
+        // the closed form of `execute::lane::series`, over any number
         let one = N::constant(1.0);
         let root = (one + e).sqrt();
         Bond {
@@ -55,7 +55,7 @@ impl<N: Number, const D: usize> Bond<N, D> {
             inv_length: length.recip(),
             omega,
             stretch: e.div(one + root),
-            contraction: e.div(root * (one + root)),
+            inv_current: (length * root).recip(),
         }
     }
 
@@ -63,12 +63,6 @@ impl<N: Number, const D: usize> Bond<N, D> {
     #[inline(always)]
     pub fn extension(&self) -> N {
         self.stretch * self.length
-    }
-
-    /// `1/|ξ+η|`
-    #[inline(always)]
-    pub fn inv_current(&self) -> N {
-        (N::constant(1.0) - self.contraction) * self.inv_length
     }
 }
 
@@ -177,6 +171,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     type State<N: Number>: ForceState<N, D>;
     /// Sums before bonds answer.
     const PASSES: usize;
+    /// Do its functions read the stretch of bonds?
+    const STRETCHES: bool = true;
     /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?
     const FORM_OF_WHOLE: bool = false;
 

@@ -64,6 +64,8 @@ fn branch<N: Number>(s: N, c: &[N; 4], past: N) -> Branch<N> {
 /// Dissipated at a greatest stretch, per `½ c ω |ξ|`: the triangle of origin, onset and envelope.
 #[inline(always)]
 fn lost<N: Number>(c: &[N; 4], peak: N, envelope: N) -> N {
+    // beyond the critical stretch nothing is left to lose
+    let peak = peak.least(c[CRITICAL]);
     let area = N::constant(0.5) * (peak * c[ONSET] - c[ONSET] * envelope);
     c[ONSET].choose(peak, area, N::constant(0.0))
 }
@@ -122,7 +124,7 @@ impl<const D: usize> Material<D> for Softening {
     #[inline(always)]
     fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
         let b = branch(bond.stretch, end.constants, end.memory[0]);
-        Along(end.constants[C] * bond.omega * b.force * bond.inv_current())
+        Along(end.constants[C] * bond.omega * b.force * bond.inv_current)
     }
 
     #[inline(always)]

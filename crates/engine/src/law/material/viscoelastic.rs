@@ -160,7 +160,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
             e = e - end.constants.1[b][0] * back[b];
         }
         let t = end.point[ALPHA].fma(e, end.point[P] * bond.length);
-        Along(bond.omega * t * bond.inv_current())
+        Along(bond.omega * t * bond.inv_current)
     }
 
     #[inline(always)]

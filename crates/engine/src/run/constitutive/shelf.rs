@@ -65,16 +65,32 @@ impl Shelf {
     /// The laws that come with the engine.
     pub fn standard() -> Shelf {
         Shelf { entries: vec![] }
-            .with::<ElasticPlastic>()
+            .with_solid::<ElasticPlastic>()
             .with::<Viscoelastic>()
-            .with::<Correspondence>()
+            .with_solid::<Correspondence>()
             .with::<Softening>()
     }
 
     /// And one more; it takes the place of one of the same name.
-    pub fn with<M>(mut self) -> Shelf
+    pub fn with<M>(self) -> Shelf
     where
         M: Shelved + Material<1> + Material<2> + Material<3>,
+    {
+        let line: Arc<dyn Any + Send + Sync> = Arc::new(bind::<1, M> as Binder<1>);
+        self.put::<M>(line)
+    }
+
+    /// The same of a law that means nothing on a line.
+    pub fn with_solid<M>(self) -> Shelf
+    where
+        M: Shelved + Material<2> + Material<3>,
+    {
+        self.put::<M>(Arc::new(()))
+    }
+
+    fn put<M>(mut self, line: Arc<dyn Any + Send + Sync>) -> Shelf
+    where
+        M: Shelved + Material<2> + Material<3>,
     {
         let descriptor = M::descriptor();
         self.entries
@@ -84,7 +100,7 @@ impl Shelf {
             linear: M::linear,
             brittle_energy: M::brittle_energy,
             binders: [
-                Arc::new(bind::<1, M> as Binder<1>),
+                line,
                 Arc::new(bind::<2, M> as Binder<2>),
                 Arc::new(bind::<3, M> as Binder<3>),
             ],
@@ -229,9 +245,13 @@ impl Chosen {
         match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
             Some(binder) => binder(self, place),
             None => Err(BuildError::new(
-                "dimension",
-                format!("{D} dimensions; expected 1, 2 or 3"),
-            )),
+                "materials[0].law",
+                format!(
+                    "the law {} is for two and three dimensions, this body has {D}",
+                    self.entry.descriptor.name
+                ),
+            )
+            .help("on a line take pmb, lps or viscoelastic")),
         }
     }
 }
