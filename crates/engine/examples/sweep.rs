@@ -1,7 +1,7 @@
 //! Time per directed bond of the force sweep, on one thread or as many as asked for:
 //! `cargo run --release --example sweep [threads] [words]`. Only cases whose line has every word run, for example
 //! `sweep avx2 cube lps/stencil mixed`; bodies are calm where no word says otherwise.
-use peridyne::body::{Body, Layout, zeros};
+use peridyne::body::{Body, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::{horizon::HorizonList, stencil::Stencil};
 use peridyne::interaction::list::{ListInteraction, ListParts};
@@ -144,12 +144,8 @@ impl Case {
         let body =
             Body::<3>::on_lattice(lattice, &self.sites(), stencil.reach, [false; 3], H * H * H)
                 .unwrap();
-        let Layout::Grid(grid) = &body.layout else {
-            unreachable!("a lattice body has a grid")
-        };
         let it = StencilInteraction::new(StencilParts {
             body: &body,
-            grid,
             stencil: &stencil,
             law,
             weight: &|r0| peridyne::family::volume_fraction(r0, 3.0 * H, H),
@@ -190,14 +186,14 @@ impl Case {
         it.prepare(body);
         let mut u = body.at_rest();
         let mut random = random();
-        for &s in &body.slots {
+        for &s in body.slots() {
             let p = body.position(s as usize);
             for a in 0..3 {
                 u[a][s as usize] = self.state.displacement(p, a, random());
             }
         }
-        let mut f = zeros::<3>(body.len);
-        let v = zeros::<3>(body.len);
+        let mut f = zeros::<3>(body.len());
+        let v = zeros::<3>(body.len());
         let mut best = f64::MAX;
         for _ in 0..if self.simd == Simd::Portable { 2 } else { 20 } {
             let start = Instant::now();

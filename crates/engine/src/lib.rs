@@ -7,12 +7,12 @@
 pub mod body;
 pub mod columns;
 pub mod condition;
-pub mod dynamics;
+pub(crate) mod dynamics;
 pub mod error;
 pub mod execute;
 pub mod expression;
 pub mod family;
-pub mod fracture;
+pub(crate) mod fracture;
 pub mod interaction;
 pub mod law;
 pub mod observe;

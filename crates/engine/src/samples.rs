@@ -1,6 +1,6 @@
 //! Bodies for tests.
 
-use crate::body::{Body, Layout};
+use crate::body::Body;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
@@ -40,12 +40,8 @@ pub fn lattice<const D: usize>(
     };
     let volume = kind.site_volume() * spacing.powi(D as i32);
     let body = Body::<D>::on_lattice(lattice, quarters, stencil.reach, periodic, volume).unwrap();
-    let Layout::Grid(grid) = &body.layout else {
-        panic!("a lattice body has a grid")
-    };
     let interaction = StencilInteraction::new(StencilParts {
         body: &body,
-        grid,
         stencil: &stencil,
         law: BondBased { c: 1.0 },
         weight: &|_| 1.0,

@@ -38,14 +38,14 @@ fn steps_and_rebuilds_allocate_nothing() {
     // the upper block goes up and down
     let mut u = body.at_rest();
     let place = |u: &mut Field<3>, step: usize| {
-        for &s in &body.slots {
+        for &s in body.slots() {
             if body.position(s as usize)[2] > 11.0 {
                 u[2][s as usize] = -4.2 + (step as f64 * 0.1).sin();
             }
         }
     };
     let mut contact = Contact::new(rule, &body, 2.0, &[]);
-    let mut f = zeros::<3>(body.len);
+    let mut f = zeros::<3>(body.len());
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()

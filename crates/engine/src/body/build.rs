@@ -1,6 +1,6 @@
 //! Bodies from lattice sites and from clouds.
 
-use super::{Body, Grid, Layout, Values};
+use super::{Body, Grid, Identity, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use crate::space::AXES;
@@ -102,6 +102,7 @@ impl<const D: usize> Body<D> {
         let spacing = lattice.spacing * lattice.kind.site_volume().powf(1.0 / D as f64);
         let len = grid.slots();
         Ok(Body {
+            identity: Identity::new(),
             layout: Layout::Grid(grid),
             slots,
             len,
@@ -164,6 +165,7 @@ impl<const D: usize> Body<D> {
         }
         let volume = Values::from_points(volume, &slots, len, 0.0);
         Ok(Body {
+            identity: Identity::new(),
             layout: Layout::Cloud(x),
             slots,
             len,

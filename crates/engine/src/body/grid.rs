@@ -6,21 +6,21 @@ use crate::space::lattice::Lattice;
 
 #[derive(Debug, Clone)]
 pub struct Grid<const D: usize> {
-    pub lattice: Lattice,
+    pub(crate) lattice: Lattice,
     /// Cells along each axis, image cells of periodic axes included.
-    pub cells: [usize; D],
+    pub(crate) cells: [usize; D],
     /// Lattice coordinates of the box's first cell.
-    pub low: [i32; D],
+    pub(crate) low: [i32; D],
     /// Image cells on each side of periodic axes.
-    pub halo: [usize; D],
+    pub(crate) halo: [usize; D],
     /// Slots of one sublattice: the cells, rounded up to whole tiles.
-    pub stride: usize,
+    pub(crate) stride: usize,
     /// Slots before the first and after the last, so that every offset stays inside the arrays.
-    pub guard: usize,
+    pub(crate) guard: usize,
     /// One bit per slot (guards excluded): a point or an image of one is there. One byte per tile.
-    pub present: Vec<u8>,
+    pub(crate) present: Vec<u8>,
     /// Like `present`, images excluded.
-    pub owned: Vec<u8>,
+    pub(crate) owned: Vec<u8>,
 }
 
 impl<const D: usize> Grid<D> {

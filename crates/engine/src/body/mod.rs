@@ -15,6 +15,7 @@ pub use several::Piece;
 pub use values::Values;
 
 use crate::space::Point;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Displacement of absent sites, in spacings: so far that no test of nearness or breaking can ever hold.
 pub const FAR: f64 = 1e20;
@@ -31,28 +32,79 @@ pub enum Layout<const D: usize> {
 /// Reference configuration of a body in D dimensions.
 #[derive(Debug, Clone)]
 pub struct Body<const D: usize> {
-    pub layout: Layout<D>,
+    /// Interactions are made for a body, and refuse others.
+    pub(crate) identity: Identity,
+    pub(crate) layout: Layout<D>,
     /// Slot of each point, in order of id.
-    pub slots: Vec<u32>,
+    pub(crate) slots: Vec<u32>,
     /// Number of slots, guards included; a multiple of the tile where it matters.
-    pub len: usize,
+    pub(crate) len: usize,
     /// Typical distance of nearest points (length).
-    pub spacing: f64,
+    pub(crate) spacing: f64,
     /// Volume per point (length^D × section).
-    pub volume: Values,
+    pub(crate) volume: Values,
     /// Mass density per point.
-    pub density: Values,
+    pub(crate) density: Values,
     /// Period per axis, if periodic.
-    pub period: [Option<f64>; D],
+    pub(crate) period: [Option<f64>; D],
     /// Material per slot; empty when there is one.
-    pub material: Vec<u8>,
+    pub(crate) material: Vec<u8>,
     /// Mark per point, in order of id; empty: all 0.
-    pub mark: Vec<i32>,
+    pub(crate) mark: Vec<i32>,
     /// `(copy, original)` slots of periodic images.
-    pub images: Vec<(u32, u32)>,
+    pub(crate) images: Vec<(u32, u32)>,
+}
+
+/// Which body it is: the number of slots and who is in them. Copies of a body are the same one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Identity(u64);
+
+impl Identity {
+    /// Another body than all before.
+    pub(crate) fn new() -> Identity {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Identity(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
 }
 
 impl<const D: usize> Body<D> {
+    pub fn layout(&self) -> &Layout<D> {
+        &self.layout
+    }
+
+    /// Slot of each point, in order of id.
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
+    /// Number of slots, guards included: the length of its fields.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Never: a body has points.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Gives each slot its material.
+    ///
+    /// # Panics
+    /// If there are not as many as slots.
+    pub fn set_materials(&mut self, material: Vec<u8>) {
+        assert_eq!(material.len(), self.len, "a material for each slot");
+        self.material = material;
+    }
+
+    /// Reference coordinates of the slots of a cloud, by axis; `None`: it is no cloud. Interactions are made afterwards.
+    pub fn coordinates_mut(&mut self) -> Option<[&mut [f64]; D]> {
+        self.identity = Identity::new();
+        match &mut self.layout {
+            Layout::Cloud(x) => Some(x.each_mut().map(Vec::as_mut_slice)),
+            Layout::Grid(_) | Layout::Several(_) => None,
+        }
+    }
+
     /// Number of points.
     pub fn points(&self) -> usize {
         self.slots.len()

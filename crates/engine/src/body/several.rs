@@ -1,6 +1,6 @@
 //! Several bodies as one: each keeps its own layout, its slots and its points come one after another.
 
-use super::{Body, Layout, Values};
+use super::{Body, Identity, Layout, Values};
 
 /// A body among several.
 #[derive(Debug, Clone)]
@@ -44,6 +44,7 @@ impl<const D: usize> Body<D> {
             false => p.body.mark.clone(),
         };
         Body {
+            identity: Identity::new(),
             slots,
             len,
             spacing: pieces

@@ -1,6 +1,6 @@
 //! How loops run: lanes of a vector register, and blocks of points shared out to threads.
 
-pub mod blocks;
+pub(crate) mod blocks;
 pub mod lane;
 pub mod memory;
 pub mod simd;

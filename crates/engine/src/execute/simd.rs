@@ -1,8 +1,8 @@
 //! The one place where an instruction set is chosen: detected at start, or asked for.
 
-use super::lane::{Lane, eight::Eight};
+use super::lane::{Eight, Lane};
 #[cfg(target_arch = "x86_64")]
-use super::lane::{avx2::F64x4, avx512::F64x8, pair::Pair};
+use super::lane::{F64x4, F64x8, Pair};
 
 /// Instruction sets with a path of their own. All give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@
 //! slice have families of nearly one size, and little of a line is padding. Four bytes and a bit per bond.
 
 use super::cells::Cells;
-use crate::body::{Body, Layout};
+use crate::body::{Body, Identity, Layout};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use crate::execute::memory;
@@ -18,18 +18,20 @@ const WINDOW: usize = 64;
 /// Partners of every point of a cloud.
 #[derive(Debug, Clone)]
 pub struct HorizonList {
+    /// The body whose pairs these are.
+    pub(crate) body: Identity,
     /// Slot of each row; every slot of the body has one.
-    pub rows: Vec<u32>,
+    pub(crate) rows: Vec<u32>,
     /// First line of each slice, and the end.
-    pub start: Vec<usize>,
+    pub(crate) start: Vec<usize>,
     /// `[lines][TILE]` slots; the row's own slot where there is no bond. Partners of a row ascend.
-    pub partner: Vec<u32>,
+    pub(crate) partner: Vec<u32>,
     /// Bits of the bonds that are there, a byte per line.
-    pub present: Vec<u8>,
+    pub(crate) present: Vec<u8>,
     /// Directed bonds.
-    pub directed: u64,
+    pub(crate) directed: u64,
     /// Directed pairs within 1e-9 of the horizon, in or out: round-off decides about them.
-    pub near_horizon: u64,
+    pub(crate) near_horizon: u64,
 }
 
 impl HorizonList {
@@ -116,6 +118,7 @@ impl HorizonList {
             ),
         )?;
         let mut list = HorizonList {
+            body: body.identity,
             rows,
             start,
             partner: vec![0; lines * TILE],
@@ -164,6 +167,21 @@ impl HorizonList {
                     }
                 }
             });
+    }
+
+    /// Directed bonds.
+    pub fn directed(&self) -> u64 {
+        self.directed
+    }
+
+    /// Directed pairs within 1e-9 of the horizon, in or out.
+    pub fn near_horizon(&self) -> u64 {
+        self.near_horizon
+    }
+
+    /// Lines of all slices: bytes that a bit per bond takes.
+    pub fn line_count(&self) -> usize {
+        self.present.len()
     }
 
     /// Number of slices of eight rows.

@@ -1,7 +1,7 @@
 //! The bonds of a lattice body, for laws that remember nothing of them: offsets, and who is there.
 
 use super::stencil::Stencil;
-use crate::body::{Body, Field, Grid, Layout};
+use crate::body::{Body, Field, Grid, Identity, Layout};
 use crate::execute::lane::{Lane, TILE};
 use std::ops::Range;
 
@@ -30,6 +30,8 @@ impl<const D: usize> Link<D> {
 /// All bonds of a lattice body.
 #[derive(Debug, Clone)]
 pub struct Links<const D: usize> {
+    /// The body whose bonds these are.
+    pub body: Identity,
     /// Per sublattice.
     pub links: Vec<Vec<Link<D>>>,
     /// Tiles that have points.
@@ -70,7 +72,13 @@ impl<const D: usize> Links<D> {
             .filter(|t| grid.owned[*t] != 0)
             .map(|t| t as u32)
             .collect();
+        let shifts = links.iter().flatten().map(|l| l.shift.unsigned_abs());
+        assert!(
+            shifts.max().unwrap_or(0) <= grid.guard,
+            "the body was made for shorter bonds"
+        );
         let mut made = Links {
+            body: body.identity,
             links,
             begin: Vec::with_capacity(tiles.len()),
             bits: vec![],

@@ -2,9 +2,9 @@
 
 pub(crate) mod cells;
 pub mod horizon;
-pub mod links;
-pub mod neighbours;
-pub mod offsets;
+pub(crate) mod links;
+pub(crate) mod neighbours;
+pub(crate) mod offsets;
 pub mod stencil;
 
 /// Fraction of a partner's volume that lies inside the horizon, linear over one cell:

@@ -202,12 +202,9 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Number of listed pairs.
+    #[cfg(test)]
     pub fn len(&self) -> usize {
         self.partner.len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.partner.is_empty()
     }
 
     /// How often the list was built.

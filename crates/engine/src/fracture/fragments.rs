@@ -107,7 +107,7 @@ impl Sets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fracture::Crack;
+    use crate::fracture::precrack::Crack;
     use crate::samples::{lattice, sites};
     use crate::space::lattice::LatticeKind;
     use crate::spec::{CrackKind, CrackShape};

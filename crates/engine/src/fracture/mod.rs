@@ -3,5 +3,3 @@
 pub mod fragments;
 pub mod precrack;
 
-pub use fragments::Fragments;
-pub use precrack::Crack;

@@ -18,11 +18,6 @@ pub fn relative_square_stretch<L: Lane, const D: usize>(
     q * two_by_r0_squared
 }
 
-/// The critical value of `e` for a critical stretch: `e > s0 (2 + s0)` is `s > s0`.
-pub fn critical_e(s0: f64) -> f64 {
-    if s0 <= -1.0 { -1.0 } else { s0 * (2.0 + s0) }
-}
-
 /// The stretch that a critical `e` stands for.
 pub fn critical_stretch(e0: f64) -> f64 {
     if e0.is_infinite() {

@@ -5,7 +5,7 @@
 
 use super::scale::{Scale, TileFactors};
 use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
-use crate::body::{Body, Field, Grid, Layout, Values};
+use crate::body::{Body, Field, Grid, Identity, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -15,6 +15,7 @@ use crate::law::BondFactors;
 
 /// Micromoduli on a lattice.
 pub struct LinearInteraction<const D: usize> {
+    body: Identity,
     simd: Simd,
     links: Links<D>,
     /// Per sublattice and bond: `C` (force density / length).
@@ -28,6 +29,7 @@ impl<const D: usize> LinearInteraction<D> {
     /// `modulus` gives `C` from ξ (force density / length).
     pub fn new(links: Links<D>, simd: Simd, modulus: impl Fn([f64; D]) -> [[f64; D]; D]) -> Self {
         LinearInteraction {
+            body: links.body,
             simd,
             stiffness: links
                 .links
@@ -188,11 +190,15 @@ impl<const D: usize> Kernel for Energies<'_, D> {
 }
 
 impl<const D: usize> Interaction<D> for LinearInteraction<D> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         "stencil"
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -211,16 +217,21 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         Tally::default()
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         [self.energies(body, u, Shared::NULL), 0.0]
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
         self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
 
-    fn tangents(&mut self, body: &Body<D>, _: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        _: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         let Layout::Grid(grid) = &body.layout else {
             return;
         };
@@ -244,6 +255,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
 
     /// Of the linear forces, along the reference distances.
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.check(body, &[u]);
         let Layout::Grid(grid) = &body.layout else {
             return None;
         };

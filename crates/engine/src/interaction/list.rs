@@ -9,9 +9,9 @@ use super::pairs::BondTable;
 use super::weight::BondWeight;
 use super::{
     BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
-    Repulsion, Sweep, Tally, Toughness, add_virial, along,
+    Repulsion, Sweep, Tally, Toughness, add_virial, along, laws_fields,
 };
-use crate::body::{Body, Field, zeros};
+use crate::body::{Body, Field, Identity, zeros};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -26,6 +26,7 @@ use std::sync::Arc;
 
 /// A law on a horizon list.
 pub struct ListInteraction<const D: usize, W: Law> {
+    body: Identity,
     law: W,
     simd: Simd,
     weight: BondWeight,
@@ -77,7 +78,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     /// With constants of pairs of materials; the law is that of unit constants, `c = 1`, or `n = 3, κ = β = 1`.
+    ///
+    /// # Panics
+    /// If the list is that of another body, or a material has no constants.
     pub fn of_pairs(parts: ListParts<D, W>, pairs: Arc<BondTable>) -> Self {
+        laws_fields::<W>();
         let ListParts {
             body,
             list,
@@ -88,6 +93,10 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             repulsion,
             simd,
         } = parts;
+        assert!(
+            list.body == body.identity,
+            "the list of another body: make one for this body"
+        );
         let mut reference = vec![0.0; 4 * body.len];
         for (slot, record) in reference.chunks_mut(4).enumerate() {
             record[..3].copy_from_slice(&body.position(slot));
@@ -111,6 +120,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         }
         let blocks = list.slices().div_ceil(BLOCK);
         ListInteraction {
+            body: body.identity,
             law,
             simd,
             weight,
@@ -261,11 +271,15 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 }
 
 impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         "list"
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -300,7 +314,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         total
     }
 
-    fn energy(&mut self, _: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, _: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let mut moved = std::mem::take(&mut self.moved);
         self.pack(u, &mut moved);
         self.moved = moved;
@@ -311,12 +325,13 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.sums.sum(self.simd, &kernel)
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         self.sums(body, u, out);
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
         let images = Images::new(self);
         let mut moved = vec![0.0; images.reference.len()];
         for (u, x) in moved.chunks_mut(4).zip(images.reference.chunks(4)) {
@@ -326,7 +341,12 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         if W::SHARES {
             // the pressures of this state
             self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
@@ -377,6 +397,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
 
     /// With constants of pairs: their directed bonds need not pull with opposite forces.
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.check(body, &[u]);
         if self.pairs.materials() == 0 {
             return None;
         }
@@ -465,6 +486,7 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
     }
 
     fn prepare(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
         match &self.point_constants {
             PointConstants::None => {}
             PointConstants::PerMaterial(c) => {

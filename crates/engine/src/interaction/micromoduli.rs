@@ -1,7 +1,7 @@
 //! Given micromoduli: `f_i = Σ_j C_ij (u_j − u_i)`, a block for every directed bond. Coarsened bodies, composites, defects.
 
 use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, add_virial};
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, Identity};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
@@ -12,6 +12,7 @@ const BLOCK: usize = 256;
 
 /// Micromoduli of a cloud.
 pub struct MicromoduliInteraction<const D: usize> {
+    body: Identity,
     simd: Simd,
     /// `[rows]` slots, ascending.
     slots: Vec<u32>,
@@ -33,6 +34,7 @@ impl<const D: usize> MicromoduliInteraction<D> {
         let mut ids: Vec<usize> = (0..body.points()).collect();
         ids.sort_by_key(|id| body.slots[*id]);
         let mut made = MicromoduliInteraction {
+            body: body.identity,
             simd,
             slots: ids.iter().map(|id| body.slots[*id]).collect(),
             row: vec![0; body.len],
@@ -151,11 +153,15 @@ impl<const D: usize> Kernel for Energies<'_, D> {
 }
 
 impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         "list"
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -177,7 +183,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         Tally::default()
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let mut sums = std::mem::take(&mut self.sums);
         self.energies(body, u, Shared::NULL, &mut sums);
         let total = sums.iter().sum();
@@ -185,13 +191,14 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         [total, 0.0]
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
         let strain = Shared(out.strain.as_mut_ptr());
         self.energies(body, u, strain, &mut vec![0.0; self.sums.len()]);
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
         out.zeros(body.len);
         for (row, &slot) in self.slots.iter().enumerate() {
             for (_, c, xi) in self.bonds(row) {
@@ -203,7 +210,12 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
         }
     }
 
-    fn tangents(&mut self, _: &Body<D>, _: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        _: &Body<D>,
+        _: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         for (row, &slot) in self.slots.iter().enumerate() {
             for (j, c, xi) in self.bonds(row) {
                 visit(BondTangent::direct(slot as usize, j, *xi, *c));
@@ -229,6 +241,7 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
 
     /// Of the linear forces, along the reference distances.
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.check(body, &[u]);
         let mut sum = [0.0; 6];
         for (row, &slot) in self.slots.iter().enumerate() {
             let i = slot as usize;

@@ -1,23 +1,23 @@
 //! A law bound to a family: forces, energies and bonds of a body. Compiled once per law and family, called once
 //! per sweep.
 
-pub mod atoms;
-pub mod bond;
+pub(crate) mod atoms;
+pub(crate) mod bond;
 pub mod contact;
 mod history;
-pub mod linear;
+pub(crate) mod linear;
 pub mod list;
-pub mod material;
-pub mod micromoduli;
+pub(crate) mod material;
+pub(crate) mod micromoduli;
 pub mod pairs;
 pub mod repulsion;
-pub mod scale;
-pub mod several;
+pub(crate) mod scale;
+pub(crate) mod several;
 pub mod stencil;
 pub mod tangent;
 pub mod weight;
 
-use crate::body::{Body, Field};
+use crate::body::{Body, Field, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::execute::blocks::Shared;
@@ -211,6 +211,17 @@ struct EnergyFields {
     weight: Shared,
 }
 
+/// Kernels have two point fields, and laws that share a scalar keep it and the weighted volume there.
+///
+/// # Panics
+/// If the law says otherwise.
+fn laws_fields<W: Law>() {
+    assert!(
+        W::FIELDS <= 2 && (!W::SHARES || W::FIELDS == 2),
+        "a law has at most two point fields, and two if it shares a scalar"
+    );
+}
+
 /// Axes of the components of a virial.
 const VIRIAL: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
@@ -240,12 +251,60 @@ pub struct BondForce<const D: usize> {
     pub force: [f64; D],
 }
 
-/// A law on a family.
+/// A law on a family, made for one body.
+///
+/// What kernels read and write without looking is checked here, once for each sweep: methods that take a body refuse another one
+/// than that of [`made_for`](Interaction::made_for), and fields of another length.
 pub trait Interaction<const D: usize>: Send + Sync {
+    /// The body that it was made for.
+    fn made_for(&self) -> Identity;
+
+    /// Does a sweep over this body with these fields stay inside what was made?
+    ///
+    /// # Panics
+    /// If the body is another one, or a field has another length than it.
+    fn check(&self, body: &Body<D>, fields: &[&Field<D>]) {
+        assert!(
+            body.identity == self.made_for(),
+            "an interaction made for another body: make one for this body"
+        );
+        let columns = fields.iter().flat_map(|f| f.iter());
+        if let Some(column) = { columns }.find(|c| c.len() != body.len) {
+            panic!(
+                "a field of {} slots, the body has {}: fields come from `at_rest` or `zeros(body.len())`",
+                column.len(),
+                body.len
+            );
+        }
+    }
+
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
     /// bonds' memory if asked to. Images of `u` must be fresh. What is `seen` are the energies of the bonds that are
     /// whole before any breaks, as [observe](Interaction::observe) gives them, at less cost.
+    ///
+    /// # Panics
+    /// If the body is another one than that of [`made_for`](Interaction::made_for), or a field does not have its length.
     fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        self.check(body, &[u, &*f]);
+        if let Sweep::Evolve { v, .. } = sweep {
+            self.check(body, &[v]);
+        }
+        // SAFETY: just checked
+        unsafe { self.forces_unchecked(body, u, f, sweep, seen) }
+    }
+
+    /// [`forces`](Interaction::forces).
+    ///
+    /// # Safety
+    /// The body and all fields pass [`check`](Interaction::check).
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -255,10 +314,36 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ) -> Tally;
 
     /// Strain energy of bonds and energy of repulsion inside the family at `u` (energy), without allocating.
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2];
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        self.check(body, &[u]);
+        // SAFETY: just checked
+        unsafe { self.energy_unchecked(body, u) }
+    }
+
+    /// [`energy`](Interaction::energy).
+    ///
+    /// # Safety
+    /// The body and the field pass [`check`](Interaction::check).
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2];
 
     /// Energy densities and dilatation of all points at `u`.
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        self.check(body, &[u]);
+        // SAFETY: just checked
+        unsafe { self.observe_unchecked(body, u, out) }
+    }
+
+    /// [`observe`](Interaction::observe).
+    ///
+    /// # Safety
+    /// The body and the field pass [`check`](Interaction::check).
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
 
     /// Energy densities and dilatation of all points under a homogeneous displacement gradient `∂u_a/∂x_b`, so small that
     /// nobody gets other neighbours; periodic images move like everything else.
@@ -282,7 +367,25 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Every directed bond that is whole with its tangent at `u`, images of which are fresh, in order of slots. Repulsion inside
     /// the family is left out. The scalars' gains are in [`Interaction::gain`] afterwards.
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>));
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        self.check(body, &[u]);
+        // SAFETY: just checked
+        unsafe { self.tangents_unchecked(body, u, visit) }
+    }
+
+    /// [`tangents`](Interaction::tangents).
+    ///
+    /// # Safety
+    /// The body and the field pass [`check`](Interaction::check).
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    );
 
     /// `∂p_i / ∂(Σ share)` of a slot, since the last call of [`Interaction::tangents`].
     fn gain(&self, _slot: usize) -> f64 {

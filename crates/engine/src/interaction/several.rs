@@ -4,7 +4,7 @@
 
 use super::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::several::Piece;
-use crate::body::{Body, Field, Layout, zeros};
+use crate::body::{Body, Field, Identity, Layout, zeros};
 use crate::error::BuildError;
 use crate::law::BondFactors;
 use crate::spec::CrackKind;
@@ -23,6 +23,7 @@ struct Own<const D: usize> {
 
 /// Interactions of several bodies, in their order.
 pub struct SeveralInteraction<const D: usize> {
+    body: Identity,
     own: Vec<Own<D>>,
     /// Family of those that have bonds.
     family: &'static str,
@@ -46,6 +47,7 @@ impl<const D: usize> SeveralInteraction<D> {
             seen: PointEnergies::default(),
         });
         SeveralInteraction {
+            body: body.identity,
             own: own.collect(),
             family,
         }
@@ -119,11 +121,15 @@ fn shifted(fault: Fault, first: usize) -> Fault {
 }
 
 impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         self.family
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -168,7 +174,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         total
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
@@ -180,7 +186,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         sum
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
         for (p, bonds) in self.each(body) {
             let mut seen = PointEnergies::default();
@@ -190,6 +196,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
         out.zeros(body.len);
         for (p, bonds) in self.each(body) {
             let mut seen = PointEnergies::default();
@@ -198,7 +205,12 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
                 take(u, p, &mut own.u);
@@ -262,6 +274,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     }
 
     fn prepare(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
         for (p, own) in pieces(body).iter().zip(&mut self.own) {
             if let Some(bonds) = &mut own.bonds {
                 bonds.prepare(&p.body);

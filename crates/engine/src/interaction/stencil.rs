@@ -10,7 +10,7 @@ use super::{
     BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
     Repulsion, Sweep, Tally, Toughness,
 };
-use crate::body::{Body, Column, Field, Layout, field, zeros};
+use crate::body::{Body, Column, Field, Identity, Layout, field, zeros};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
@@ -26,6 +26,7 @@ use std::ops::AddAssign;
 
 /// A law on a stencil.
 pub struct StencilInteraction<const D: usize, W: Law> {
+    body: Identity,
     law: W,
     simd: Simd,
     /// Per sublattice.
@@ -177,11 +178,15 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
 }
 
 impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         "stencil"
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -234,7 +239,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         total
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let kernel = Energies {
             view: self.view(body, u),
             fields: None,
@@ -242,12 +247,17 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         self.sums.sum(self.simd, &kernel)
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         self.sums(body, u, out);
         out.dilate::<W, D>(body, |i| self.per_weight(body, i));
     }
 
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         if W::SHARES {
             // the pressures of this state
             self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
@@ -443,6 +453,7 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn prepare(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
         let Layout::Grid(grid) = &body.layout else {
             unreachable!("stencils live on grids")
         };

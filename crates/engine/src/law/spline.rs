@@ -78,6 +78,7 @@ impl Spline {
     pub fn new(first: f64, step: f64, values: &[f64], linear: bool) -> Spline {
         let n = values.len();
         assert!(n >= 5, "a table needs five values");
+        assert!(n < 1 << 30, "indices count with 32 bits");
         let f = |m: usize| values[m];
         let mut slope = vec![0.0; n];
         slope[0] = f(1) - f(0);
@@ -213,8 +214,12 @@ impl Twin {
     }
 
     /// Values and slopes of one of the two in all lanes.
+    ///
+    /// # Panics
+    /// If `n` is not 0 or 1.
     #[inline(always)]
     pub fn lanes_of<L: Lane>(&self, n: usize, x: L) -> [L; 2] {
+        assert!(n < 2, "twins are two");
         let (m, p) = self.knots.place(x);
         let index = indices(m, 2);
         // SAFETY: every index is below the number of pieces

@@ -1,7 +1,7 @@
 //! Pre-cracks, damage, fragments, and perturbed lattices.
 
 use crate::sample::*;
-use peridyne::body::{Body, Layout};
+use peridyne::body::Body;
 use peridyne::execute::simd::Simd;
 use peridyne::family::stencil::Stencil;
 use peridyne::interaction::stencil::{StencilInteraction, StencilParts};
@@ -188,16 +188,12 @@ fn a_cut_of_one_image_cuts_both_directions() {
     };
     let quarters: Vec<[i32; 3]> = (0..n).map(|i| [4 * i, 0, 0]).collect();
     let body = Body::<1>::on_lattice(lattice, &quarters, stencil.reach, [true], 1.0).unwrap();
-    let Layout::Grid(grid) = &body.layout else {
-        panic!("a lattice body has a grid")
-    };
     for (face, kind) in [
         (-0.5, CrackKind::Broken),
         (n as f64 - 0.5, CrackKind::Absent),
     ] {
         let mut it = StencilInteraction::new(StencilParts {
             body: &body,
-            grid,
             stencil: &stencil,
             law: BondBased { c: 1.0 },
             weight: &|_| 1.0,
@@ -213,11 +209,11 @@ fn a_cut_of_one_image_cuts_both_directions() {
         // 0–11, 0–10, 1–11
         assert_eq!(it.cut(&body, kind, &crosses), 6);
         assert_eq!(it.cut(&body, kind, &crosses), 0);
-        let mut damage = vec![0.0; body.len];
+        let mut damage = vec![0.0; body.len()];
         it.damage(&body, &mut damage);
-        let lost: Vec<f64> = body.slots.iter().map(|s| damage[*s as usize]).collect();
+        let lost: Vec<f64> = body.slots().iter().map(|s| damage[*s as usize]).collect();
         let family: Vec<usize> = body
-            .slots
+            .slots()
             .iter()
             .map(|s| it.family_size(&body, *s as usize))
             .collect();

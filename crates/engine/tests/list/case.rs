@@ -1,6 +1,6 @@
 //! The bodies, laws and displacements that lists are tried on.
 
-use peridyne::body::{Body, Field, Layout};
+use peridyne::body::{Body, Field};
 use peridyne::execute::simd::Simd;
 use peridyne::family::{horizon::HorizonList, stencil::Stencil};
 use peridyne::interaction::list::{ListInteraction, ListParts};
@@ -103,10 +103,11 @@ impl<const D: usize> Case<D> {
         let mut body =
             Body::<D>::on_lattice(lattice, &quarters, reach, self.periodic, volume).unwrap();
         if self.materials {
-            body.material = vec![0; body.len];
-            for (id, s) in body.slots.iter().enumerate() {
-                body.material[*s as usize] = (id / 5 % 2) as u8;
+            let mut material = vec![0; body.len()];
+            for (id, s) in body.slots().iter().enumerate() {
+                material[*s as usize] = (id / 5 % 2) as u8;
             }
+            body.set_materials(material);
         }
         body
     }
@@ -115,11 +116,10 @@ impl<const D: usize> Case<D> {
     pub fn perturbed_cloud(&self) -> Body<D> {
         let mut body = self.body().to_cloud().unwrap();
         let mut random = Random(5);
-        if let Layout::Cloud(x) = &mut body.layout {
-            x.iter_mut()
-                .flatten()
-                .for_each(|x| *x += 0.2 * H * random.next());
-        }
+        let axes = body.coordinates_mut().unwrap();
+        axes.into_iter()
+            .flatten()
+            .for_each(|x| *x += 0.2 * H * random.next());
         body
     }
     pub fn stencil(&self) -> Stencil {
@@ -168,7 +168,7 @@ impl<const D: usize> Case<D> {
 pub fn displace<const D: usize>(body: &Body<D>, amplitude: f64, seed: u64) -> Field<D> {
     let mut u = body.at_rest();
     let mut random = Random(seed);
-    for &s in &body.slots {
+    for &s in body.slots() {
         for c in &mut u {
             c[s as usize] = amplitude * random.next();
         }
@@ -179,7 +179,7 @@ pub fn displace<const D: usize>(body: &Body<D>, amplitude: f64, seed: u64) -> Fi
 
 /// Values of points in order of id.
 pub fn by_id<const D: usize>(body: &Body<D>, field: &[f64]) -> Vec<f64> {
-    body.slots.iter().map(|s| field[*s as usize]).collect()
+    body.slots().iter().map(|s| field[*s as usize]).collect()
 }
 
 pub fn close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {

@@ -96,7 +96,7 @@ fn textbook<const D: usize>() {
     }
 
     let mut field = body.at_rest();
-    for (s, u) in body.slots.iter().zip(&u) {
+    for (s, u) in body.slots().iter().zip(&u) {
         for a in 0..D {
             field[a][*s as usize] = u[a];
         }
@@ -109,7 +109,7 @@ fn textbook<const D: usize>() {
     };
     let list = HorizonList::new(&body, delta).unwrap();
     let bonds: usize = family.iter().map(Vec::len).sum();
-    assert_eq!(list.directed, bonds as u64);
+    assert_eq!(list.directed(), bonds as u64);
     let mut pmb = ListInteraction::new(ListParts {
         body: &body,
         list: list.clone(),
@@ -135,13 +135,13 @@ fn textbook<const D: usize>() {
     let laws: [&mut dyn Interaction<D>; 2] = [&mut pmb, &mut lps];
     for (law, expected) in laws.into_iter().zip(expected) {
         law.prepare(&body);
-        let mut f = zeros(body.len);
+        let mut f = zeros(body.len());
         law.forces(
             &body,
             &field,
             &mut f,
             Sweep::Evolve {
-                v: &zeros(body.len),
+                v: &zeros(body.len()),
                 steps: [0.0; 2],
                 release: Release::AfterForce,
             },
@@ -155,7 +155,7 @@ fn textbook<const D: usize>() {
             let size: f64 = force.iter().map(|f| f.abs()).sum();
             assert!(momentum.abs() <= 1e-14 * size, "{momentum:e} of {size:e}");
         }
-        let mut damage = vec![1.0; body.len];
+        let mut damage = vec![1.0; body.len()];
         law.damage(&body, &mut damage);
         assert!(damage.iter().all(|d| *d == 0.0));
         // with volumes that differ: half of the body falls off
@@ -216,14 +216,14 @@ fn a_body_at_rest_has_exactly_no_force() {
         repulsion: None,
         simd: Simd::detect(),
     });
-    let mut f = zeros(body.len);
+    let mut f = zeros(body.len());
     for _ in 0..2 {
         it.forces(
             &body,
             &body.at_rest(),
             &mut f,
             Sweep::Evolve {
-                v: &zeros(body.len),
+                v: &zeros(body.len()),
                 steps: [0.0; 2],
                 release: Release::AfterForce,
             },
@@ -254,7 +254,7 @@ fn bonds_at_the_horizon_are_inclusive_and_counted() {
     let body = Body::<1>::from_cloud(&points, &[1.0; 10], &[], 1.0, [Some(10.0)]).unwrap();
     let counts = |horizon| {
         let list = HorizonList::new(&body, horizon).unwrap();
-        (list.directed, list.near_horizon)
+        (list.directed(), list.near_horizon())
     };
     assert_eq!(counts(3.0), (60, 20));
     assert_eq!(counts(3.5), (60, 0));

@@ -37,7 +37,7 @@ fn trace_of_pairs<W: Law>(
     pool.unwrap().install(|| {
         let mut it = case.list_of_pairs(&body, law, constants, simd, pairs);
         let mut bits = vec![];
-        let mut f = zeros(body.len);
+        let mut f = zeros(body.len());
         for step in 0..3 {
             let u = displace(&body, case.amplitude * (step as f64 + 0.05), step);
             let tally = it.forces(
@@ -123,7 +123,7 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
     let case = Case::new(LatticeKind::Cubic, 3, [30, 30, 30]).breaking();
     let body = case.perturbed_cloud();
     let list = HorizonList::new(&body, case.delta()).unwrap();
-    let stored = (list.bytes() + list.present.len()) as f64 / list.directed as f64;
+    let stored = (list.bytes() + list.line_count()) as f64 / list.directed() as f64;
     assert!(stored < 5.5, "{stored} bytes per bond in the list");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(|| {
@@ -135,9 +135,9 @@ fn forces_allocate_nothing_and_a_bond_takes_eight_bytes() {
         let mut it = case.list(&body, law, constants, Simd::detect());
         let bytes = it.bytes() as f64 / it.directed_bonds() as f64;
         assert!(bytes <= 8.0, "{bytes} bytes per bond in all");
-        let mut f = zeros(body.len);
+        let mut f = zeros(body.len());
         let u = displace(&body, case.amplitude, 3);
-        let still = zeros(body.len);
+        let still = zeros(body.len());
         let evolve = Sweep::Evolve {
             v: &still,
             steps: [0.0; 2],
@@ -214,7 +214,7 @@ fn a_table_of_equal_pairs_is_the_law() {
                 steps: [0.3; 2],
                 release: Release::AtOnce,
             };
-            let mut f = (zeros(body.len), zeros(body.len));
+            let mut f = (zeros(body.len()), zeros(body.len()));
             let a = plain.forces(&body, &u, &mut f.0, evolve, None);
             let b = paired.forces(&body, &u, &mut f.1, evolve, None);
             assert_eq!(a.broken, b.broken);

@@ -1,7 +1,7 @@
 //! A list over the points of a lattice is the lattice's stencil.
 
 use crate::case::*;
-use peridyne::body::{Body, Field, Layout, zeros};
+use peridyne::body::{Body, Field, zeros};
 use peridyne::execute::simd::Simd;
 use peridyne::family::volume_fraction;
 use peridyne::interaction::stencil::{StencilInteraction, StencilParts};
@@ -19,8 +19,8 @@ fn bonds<const D: usize>(
     body: &Body<D>,
     it: &dyn Interaction<D>,
 ) -> BTreeSet<(usize, usize, bool)> {
-    let mut id = vec![usize::MAX; body.len];
-    for (n, s) in body.slots.iter().enumerate() {
+    let mut id = vec![usize::MAX; body.len()];
+    for (n, s) in body.slots().iter().enumerate() {
         id[*s as usize] = n;
     }
     let mut all = BTreeSet::new();
@@ -38,7 +38,7 @@ fn watching_changes_nothing<const D: usize>(
     body: &Body<D>,
     u: &Field<D>,
 ) {
-    let (mut f, mut g) = (zeros(body.len), zeros(body.len));
+    let (mut f, mut g) = (zeros(body.len()), zeros(body.len()));
     let (mut seen, mut observed) = (PointEnergies::default(), PointEnergies::default());
     it.forces(body, u, &mut f, Sweep::Hold, None);
     it.observe(body, u, &mut observed);
@@ -59,15 +59,11 @@ fn same_as_stencil<const D: usize, W: Law>(
 ) -> Tally {
     let body = case.body();
     let cloud = body.to_cloud().unwrap();
-    let Layout::Grid(grid) = &body.layout else {
-        unreachable!()
-    };
     let weight = |r0: f64| {
         influence(case.influence, r0, case.delta()) * volume_fraction(r0, case.delta(), H)
     };
     let mut stencil = StencilInteraction::new(StencilParts {
         body: &body,
-        grid,
         stencil: &case.stencil(),
         law,
         weight: &weight,
@@ -96,7 +92,7 @@ fn same_as_stencil<const D: usize, W: Law>(
     stencil.prepare(&body);
     list.prepare(&cloud);
     let mut total = Tally::default();
-    let mut f = (zeros(body.len), zeros(cloud.len));
+    let mut f = (zeros(body.len()), zeros(cloud.len()));
     for step in 0..4 {
         let amplitude = case.amplitude * (1.0 + 0.5 * step as f64);
         let release = [Release::AtOnce, Release::AfterForce][step as usize % 2];
@@ -148,12 +144,12 @@ fn same_as_stencil<const D: usize, W: Law>(
         }
         let repelled = seen.1.repulsion.iter().any(|e| *e > 0.0);
         assert_eq!(repelled, case.repulsion.is_some());
-        let mut damage = (vec![0.0; body.len], vec![0.0; cloud.len]);
+        let mut damage = (vec![0.0; body.len()], vec![0.0; cloud.len()]);
         stencil.damage(&body, &mut damage.0);
         list.damage(&cloud, &mut damage.1);
         let (a, b) = (by_id(&body, &damage.0), by_id(&cloud, &damage.1));
         close("damage", &a, &b, 1e-14);
-        for (g, c) in body.slots.iter().zip(&cloud.slots) {
+        for (g, c) in body.slots().iter().zip(cloud.slots()) {
             let (g, c) = (*g as usize, *c as usize);
             assert_eq!(stencil.family_size(&body, g), list.family_size(&cloud, c));
             let (a, b) = (stencil.critical_stretch(g), list.critical_stretch(c));
@@ -169,7 +165,7 @@ fn same_as_stencil<const D: usize, W: Law>(
         b.len()
     );
     for id in 1..body.points() {
-        let pair = |b: &Body<D>| (b.slots[0] as usize, b.slots[id] as usize);
+        let pair = |b: &Body<D>| (b.slots()[0] as usize, b.slots()[id] as usize);
         let ((gi, gj), (ci, cj)) = (pair(&body), pair(&cloud));
         assert_eq!(
             stencil.in_family(&body, gi, gj),

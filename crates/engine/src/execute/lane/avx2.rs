@@ -41,6 +41,8 @@ fn apart<P: Piece>(piece: P) -> P::Out {
     piece.run()
 }
 
+impl super::sealed::Sealed for F64x4 {}
+
 impl Lane for F64x4 {
     #[inline(always)]
     fn apart<P: Piece>(piece: P) -> P::Out {

@@ -59,6 +59,8 @@ fn apart<P: Piece>(piece: P) -> P::Out {
     piece.run()
 }
 
+impl super::sealed::Sealed for F64x8 {}
+
 impl Lane for F64x8 {
     #[inline(always)]
     fn apart<P: Piece>(piece: P) -> P::Out {

@@ -70,6 +70,8 @@ impl Mul for Eight {
     }
 }
 
+impl super::sealed::Sealed for Eight {}
+
 impl Lane for Eight {
     const N: usize = TILE;
     type Mask = Mask;

@@ -2,17 +2,24 @@
 //!
 //! Every operation is the IEEE one (fused where it says so), so all widths give the same bits.
 
+#[cfg(target_arch = "x86_64")]
+pub(super) use avx2::F64x4;
+#[cfg(target_arch = "x86_64")]
+pub(super) use avx512::F64x8;
+pub(super) use eight::Eight;
+#[cfg(target_arch = "x86_64")]
+pub(super) use pair::Pair;
 use std::ops::{Add, Mul, Sub};
 
 #[cfg(target_arch = "x86_64")]
-pub mod avx2;
+mod avx2;
 #[cfg(target_arch = "x86_64")]
-pub mod avx512;
-pub mod eight;
+mod avx512;
+mod eight;
 #[cfg(target_arch = "x86_64")]
-pub mod pair;
-pub mod scalar;
-pub mod series;
+mod pair;
+mod scalar;
+pub(crate) mod series;
 
 /// Number of points that one byte of bond bits covers.
 pub const TILE: usize = 8;
@@ -24,12 +31,20 @@ pub trait Piece {
     fn run(self) -> Self::Out;
 }
 
-/// `N` numbers advancing together.
+/// Only this crate makes lanes.
+pub(crate) mod sealed {
+    pub trait Sealed {}
+}
+
+/// `N` numbers advancing together. Laws are written over any; what lanes there are is known inside kernels alone, but for a
+/// single `f64`.
 ///
 /// # Safety of implementations
 /// Vector implementations may only be used inside functions compiled for their instruction set; [`super::simd`]
 /// is the one place that does this.
-pub trait Lane: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub trait Lane:
+    sealed::Sealed + Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
     /// Lanes; divides [`TILE`].
     const N: usize;
     type Mask: Copy;

@@ -29,6 +29,8 @@ impl<L: Lane> Mul for Pair<L> {
 }
 
 // SAFETY, for every block: as the trait's callers promise
+impl<L: Lane> super::sealed::Sealed for Pair<L> {}
+
 impl<L: Lane> Lane for Pair<L> {
     const N: usize = 2 * L::N;
     type Mask = (L::Mask, L::Mask);

@@ -2,6 +2,8 @@
 
 use super::{Lane, Piece};
 
+impl super::sealed::Sealed for f64 {}
+
 impl Lane for f64 {
     const N: usize = 1;
     type Mask = bool;

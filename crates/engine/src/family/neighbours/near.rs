@@ -150,6 +150,7 @@ impl<const D: usize> NearList<D> {
     }
 
     /// How often the list was made.
+    #[cfg(test)]
     pub fn builds(&self) -> u64 {
         self.builds
     }

@@ -1,7 +1,7 @@
 //! A potential between atoms that are near now: molecular dynamics.
 
 use super::{Faults, bad_density, embed, find_fault};
-use crate::body::{Body, Field, Values};
+use crate::body::{Body, Field, Identity, Values};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::{Kernel, Simd};
@@ -17,6 +17,7 @@ const SKIN: f64 = 0.12;
 
 /// A potential on current neighbours.
 pub struct CurrentAtoms<const D: usize, P> {
+    body: Identity,
     simd: Simd,
     potential: P,
     cutoff: f64,
@@ -48,6 +49,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             }
         }
         CurrentAtoms {
+            body: body.identity,
             simd,
             potential,
             cutoff,
@@ -311,11 +313,15 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
 }
 
 impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         "neighbours"
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -336,14 +342,14 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         tally
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         self.list.update(body, u, self.simd);
         let list = &self.list;
         let sums = self.sums(false, list, list.positions(), Shared::NULL, &body.volume);
         [sums[0], 0.0]
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         if let Some(position) = self.list.positions_at(u, self.simd) {
             self.see(body, &self.list, &position, out);
         } else {
@@ -353,6 +359,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
         let list = list_at(body, self.cutoff, &body.at_rest(), self.simd);
         let mut position = list.positions().to_vec();
         // what is nowhere stays there
@@ -369,7 +376,12 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         true
     }
 
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         self.ready(body, u);
         let at = self.list.positions();
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
@@ -431,6 +443,7 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
     }
 
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.check(body, &[u]);
         self.ready(body, u);
         let list = &self.list;
         let sums = self.sums(true, list, list.positions(), Shared::NULL, &body.volume);

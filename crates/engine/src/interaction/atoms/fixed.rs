@@ -2,7 +2,7 @@
 //! seleson2014 (3.4). Distances are the current ones.
 
 use super::{Faults, bad_density, embed, find_fault};
-use crate::body::{Body, Column, FAR, Field, Layout, field};
+use crate::body::{Body, Column, FAR, Field, Identity, Layout, field};
 use crate::execute::blocks::{PerBlock, Shared};
 use crate::execute::lane::Lane;
 use crate::execute::simd::{Kernel, Simd};
@@ -16,6 +16,7 @@ use crate::law::potential::Potential;
 
 /// A potential on a stencil.
 pub struct FixedAtoms<const D: usize, P> {
+    body: Identity,
     simd: Simd,
     potential: P,
     links: Links<D>,
@@ -35,6 +36,7 @@ pub struct FixedAtoms<const D: usize, P> {
 impl<const D: usize, P: Potential> FixedAtoms<D, P> {
     pub fn new(body: &Body<D>, links: Links<D>, potential: P, simd: Simd) -> Self {
         FixedAtoms {
+            body: body.identity,
             simd,
             // displacements of absent sites are farther than this
             limit: potential.cutoff().min(0.5 * FAR * body.spacing),
@@ -280,11 +282,15 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
 }
 
 impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         "stencil"
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -312,16 +318,21 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         first
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         [self.energies(body, u, Shared::NULL), 0.0]
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         out.zeros(body.len);
         self.energies(body, u, Shared(out.strain.as_mut_ptr()));
     }
 
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         if P::EMBEDDED {
             self.embed(body, u);
         }
@@ -369,6 +380,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     }
 
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.check(body, &[u]);
         if P::EMBEDDED {
             self.embed(body, u);
         }

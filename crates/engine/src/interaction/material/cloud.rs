@@ -86,10 +86,6 @@ impl<const D: usize> CloudFamily<D> {
         }
     }
 
-    pub fn near_horizon(&self) -> u64 {
-        self.list.near_horizon
-    }
-
     fn line(&self, group: usize, k: usize) -> usize {
         self.list.start[group] + k
     }

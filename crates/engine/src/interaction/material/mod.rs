@@ -20,7 +20,7 @@ use super::{
     BondForce, BondState, BondTangent, EnergyFields, Interaction, PointEnergies, Repulsion, Sweep,
     Tally, Toughness,
 };
-use crate::body::{Body, Column, Field, field};
+use crate::body::{Body, Column, Field, Identity, field};
 use crate::columns::Declaration;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
@@ -38,6 +38,7 @@ use view::{BLOCK, View};
 
 /// A law on a family.
 pub struct MaterialInteraction<const D: usize, F, M> {
+    body: Identity,
     law: M,
     family: F,
     simd: Simd,
@@ -122,6 +123,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let blocks = family.groups().div_ceil(BLOCK);
         let gathers = family.layout(1).records;
         MaterialInteraction {
+            body: body.identity,
             counted: alive.clone(),
             alive,
             directed,
@@ -391,11 +393,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialInteraction<D, F, M> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
     fn family(&self) -> &'static str {
         self.kind
     }
 
-    fn forces(
+    unsafe fn forces_unchecked(
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
@@ -436,7 +442,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         total
     }
 
-    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let mut records = std::mem::take(&mut self.records);
         self.pack(u, &mut records);
         let sums = self.energies(body, u, &records, None);
@@ -444,15 +450,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         sums
     }
 
-    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
         self.seen(body, u, &self.packed(u), out);
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
         self.strained(body, gradient, out);
     }
 
-    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
         self.each_tangent(body, u, visit);
     }
 
@@ -545,6 +557,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
     }
 
     fn prepare(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
         self.prepared = true;
         self.look(body);
     }
@@ -587,10 +600,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
     }
 
     fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        self.check(body, &[u]);
         self.read_named(body, u, name, out)
     }
 
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        self.check(body, &[]);
         self.write_named(body, name, values)
     }
 

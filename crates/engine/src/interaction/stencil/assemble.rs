@@ -2,21 +2,21 @@
 
 use super::StencilInteraction;
 use super::kernel::{ALIKE, BLOCK, Bond, MOST, Partner, WHOLE};
-use crate::body::{Body, Column, Grid, field};
+use crate::body::{Body, Column, Grid, Layout, field};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
 use crate::family::stencil::{Offset, Stencil};
 use crate::interaction::scale::Scale;
-use crate::interaction::{PointConstants, Repulsion, Tally, Toughness};
+use crate::interaction::{PointConstants, Repulsion, Tally, Toughness, laws_fields};
 use crate::law::Law;
 use std::collections::HashMap;
 
 /// Everything a stencil interaction is made of.
 pub struct StencilParts<'a, const D: usize, W> {
+    /// A lattice body, made for bonds as long as these.
     pub body: &'a Body<D>,
-    pub grid: &'a Grid<D>,
     pub stencil: &'a Stencil,
     pub law: W,
     /// `ω ν` of a bond of this length.
@@ -28,10 +28,11 @@ pub struct StencilParts<'a, const D: usize, W> {
 }
 
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
+    /// # Panics
+    /// If the body is no lattice, has unlike volumes, or was made for shorter bonds.
     pub fn new(parts: StencilParts<D, W>) -> Self {
         let StencilParts {
             body,
-            grid,
             stencil,
             law,
             weight,
@@ -40,6 +41,14 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             repulsion,
             simd,
         } = parts;
+        laws_fields::<W>();
+        let Layout::Grid(grid) = &body.layout else {
+            panic!("a stencil needs a lattice body, this is a cloud of points: take a list")
+        };
+        assert_eq!(
+            stencil.kind, grid.lattice.kind,
+            "the stencil of another lattice"
+        );
         let volume = body
             .volume
             .uniform()
@@ -54,9 +63,13 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             let d = repulsion.as_ref().map_or(0.0, |c| c.distance(r0, [0, 0]));
             let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
             let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
+            let shift = grid.shift(cell.map(i64::from), o.to as i64 - from as i64);
+            assert!(
+                shift.unsigned_abs() as usize <= grid.guard,
+                "the body was made for shorter bonds: give `on_lattice` the reach of this stencil"
+            );
             let bond = Bond {
-                shift: i32::try_from(grid.shift(cell.map(i64::from), o.to as i64 - from as i64))
-                    .expect("bonds span fewer than 2^31 slots"),
+                shift: i32::try_from(shift).expect("bonds span fewer than 2^31 slots"),
                 number: number as u32,
                 back,
                 two_by_r0_squared: 2.0 / r0_squared,
@@ -124,6 +137,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let next = vec![0.0; if remembers { tiles.len() * TILE } else { 0 }];
         let blocks = tiles.len().div_ceil(BLOCK);
         let mut made = StencilInteraction {
+            body: body.identity,
             law,
             simd,
             offsets: OffsetSet::new(grid, &partners, |b| (b.cell, b.to)),
@@ -138,7 +152,10 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             scale: Scale::default(),
             family,
             directed,
-            fields: Default::default(),
+            fields: std::array::from_fn(|n| match n < W::FIELDS {
+                true => Column::new(body.len, 0.0, field::line(4 + n)),
+                false => Column::default(),
+            }),
             pressure: Column::default(),
             point_constants,
             toughness,

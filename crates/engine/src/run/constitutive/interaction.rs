@@ -175,10 +175,9 @@ impl ConstitutiveModel {
         repulsion: Option<Repulsion>,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         match (&body.layout, &self.stencil) {
-            (Layout::Grid(grid), Some(stencil)) => {
+            (Layout::Grid(_), Some(stencil)) => {
                 Ok(Box::new(StencilInteraction::new(StencilParts {
                     body,
-                    grid,
                     stencil,
                     law,
                     weight: &|r0| self.weight(r0),
