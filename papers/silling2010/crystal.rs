@@ -3,7 +3,7 @@
 use peridyne::law::potential::{Potential, Visitor};
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{BodySpec, LinearBody};
+use peridyne::spec::{BodySpec, LinearBody, Stepper};
 use peridyne_io::deck::Deck;
 use peridyne_theory::coarsen::Selection;
 use peridyne_theory::crystal::Reach;
@@ -40,7 +40,7 @@ impl<const D: usize> Crystal<D> {
     pub fn of(deck: &Deck) -> Result<Self, Failure> {
         let mut spec = deck.spec.clone();
         spec.conditions.clear();
-        spec.schedule.statics = None;
+        spec.schedule.stepper = Stepper::Verlet;
         let options = Options {
             trust_time_step: true,
             ..Options::default()

@@ -7,7 +7,9 @@ use crate::run::with_threads;
 use crate::side_by_side::{compare, run, save};
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
-use peridyne::spec::{AnyLinearBody, Carriers, ConditionKind, LinearBody, Method, TimeStep};
+use peridyne::spec::{
+    AnyLinearBody, Carriers, ConditionKind, LinearBody, Method, Stepper, TimeStep,
+};
 use peridyne::statics::SYMMETRIC;
 use peridyne_io::deck::Deck;
 use peridyne_io::deck::coarsened::coarsened;
@@ -87,7 +89,7 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
     spec.initial.clear();
     spec.thermal = None;
     spec.conditions.clear();
-    spec.schedule.statics = None;
+    spec.schedule.stepper = Stepper::Verlet;
     spec.schedule.time_step = TimeStep::Fixed(1.0);
     let options = Options {
         trust_time_step: true,
@@ -345,7 +347,7 @@ fn levels<const D: usize>(
         say(&told(level, &made_of, way));
         if let Stability::Stable { growth } = made_of.report.stability
             && growth > 0.0
-            && deck.spec.schedule.statics.is_none()
+            && deck.spec.schedule.statics().is_none()
         {
             say(&format!(
                 "note: without symmetry there is no energy: in dynamics the free vibrations of level {level} grow by a factor e in {:.3e}",
@@ -389,7 +391,7 @@ fn levels<const D: usize>(
     } else if deck
         .spec
         .schedule
-        .statics
+        .statics()
         .is_some_and(|s| s.method != Method::Linear)
     {
         say("note: level 0 is run as its deck says, nonlinear; the levels are linear");

@@ -4,6 +4,7 @@ use crate::Input;
 use crate::failure::Failure;
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Options, Simulation, build};
+use peridyne::spec::Stepper;
 use peridyne_io::deck::Deck;
 use std::io::Read;
 
@@ -140,10 +141,14 @@ pub fn headline(sim: &dyn Simulation) -> String {
         i.family.1,
         i.family_kind,
         i.horizon,
-        match sim.solved() {
-            Some(_) => String::new(),
-            None => format!(
+        match i.stepper {
+            Stepper::Statics(_) => String::new(),
+            Stepper::Verlet => format!(
                 "\nstep      {:.6e}, stable up to {:.6e}",
+                i.time_step, i.stable_step
+            ),
+            Stepper::Newmark(_) => format!(
+                "\nstep      {:.6e}, implicit (explicit ones are stable up to {:.6e})",
                 i.time_step, i.stable_step
             ),
         },

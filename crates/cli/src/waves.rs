@@ -7,7 +7,7 @@ use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::run::with_threads;
-use peridyne::spec::TimeStep;
+use peridyne::spec::{Stepper, TimeStep};
 use peridyne_io::deck::{Deck, UnitSystem};
 use peridyne_theory::survey::{Survey, TERMS, survey};
 use peridyne_theory::upscale::{UpscaleError, lattice};
@@ -70,6 +70,12 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
     lattice(&deck.spec).map_err(told)?;
     if deck.spec.materials.len() != 1 {
         return Err(told(UpscaleError::SeveralMaterials));
+    }
+    if let Stepper::Newmark(_) = deck.spec.schedule.stepper {
+        return Err(Failure::input(format!(
+            "{}: waves are told as velocity Verlet steps through them, and this deck has integrator = \"newmark\": leave it out",
+            deck.file()
+        )));
     }
     let (time_step, estimate) = match deck.spec.schedule.time_step {
         TimeStep::Fixed(dt) => (dt, None),

@@ -82,7 +82,7 @@ fn main() {
             steps,
             time_step: TimeStep::Fixed(1e-7),
             force_unstable: false,
-            statics: None,
+            stepper: Stepper::Verlet,
         },
     };
     let t = std::time::Instant::now();

@@ -45,7 +45,7 @@ fn stretched(bonds: Vec<BondFactorSpec>, rule: InterfaceRule) -> Box<dyn Simulat
     }
     spec.schedule.steps = 1;
     spec.schedule.time_step = TimeStep::Fixed(1.0);
-    spec.schedule.statics = Some(Statics::default());
+    spec.schedule.stepper = Stepper::Statics(Statics::default());
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     sim.step().unwrap();

@@ -40,7 +40,7 @@ fn block(size: [f64; 3], d: usize, law: LawSpec) -> Spec {
         steps: 1,
         time_step: TimeStep::Fixed(1.0),
         force_unstable: false,
-        statics: Some(Statics::default()),
+        stepper: Stepper::Statics(Statics::default()),
     };
     spec
 }
@@ -63,7 +63,7 @@ fn solved(spec: &Spec) -> Box<dyn Simulation> {
 
 fn with(spec: &Spec, method: Method, solver: Solver, tolerance: f64) -> Spec {
     let mut spec = spec.clone();
-    spec.schedule.statics = Some(Statics {
+    spec.schedule.stepper = Stepper::Statics(Statics {
         method,
         solver,
         tolerance,

@@ -254,11 +254,17 @@ pub fn drive(
             stepping += begin.elapsed();
             match result {
                 Ok(()) => progress.step(n, plan.steps, stepping),
-                // within an increment, which is undone
-                Err(RunError::Equilibrium {
-                    error: SolveError::Stopped,
-                    ..
-                }) => ended = Some(progress.ended().unwrap_or_default()),
+                // within an increment or an implicit step, which is undone
+                Err(
+                    RunError::Equilibrium {
+                        error: SolveError::Stopped,
+                        ..
+                    }
+                    | RunError::Implicit {
+                        error: SolveError::Stopped,
+                        ..
+                    },
+                ) => ended = Some(progress.ended().unwrap_or_default()),
                 Err(error) => {
                     stopped = Some(error);
                     break;

@@ -102,7 +102,7 @@ fn case(
             steps: 0,
             time_step: TimeStep::Fraction(0.5),
             force_unstable: true,
-            statics: None,
+            stepper: Stepper::Verlet,
         },
     };
     let mut solid = LatticeSolid::new(kind, H, Horizon::Ratio(ratio));

@@ -2,6 +2,7 @@
 
 use super::advice::advice;
 use super::{Findings, directions, mean};
+use peridyne::spec::Stepper;
 use peridyne_theory::elastic::Class;
 use peridyne_theory::stiffness::{Stiffness, components};
 use serde_json::{Value, json};
@@ -46,7 +47,12 @@ pub fn write(found: &Findings) -> String {
         "cut_by_precracks": info.cut,
         "materials": materials.collect::<Vec<_>>(),
         "steps": found.steps,
-        "time_step": found.spec.schedule.statics.is_none().then_some(info.time_step),
+        "time_step": found.spec.schedule.statics().is_none().then_some(info.time_step),
+        "integrator": match info.stepper {
+            Stepper::Verlet => Some("verlet"),
+            Stepper::Newmark(_) => Some("newmark"),
+            Stepper::Statics(_) => None,
+        },
         "stable_step": info.stable_step,
         "contact_step": info.contact_step.is_finite().then_some(info.contact_step),
         "bodies": info.bodies.iter().map(|(name, points)| json!({"name": name, "points": points})).collect::<Vec<_>>(),

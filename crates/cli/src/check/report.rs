@@ -2,7 +2,7 @@
 
 use super::advice::advice;
 use super::{Findings, Material, directions, mean};
-use peridyne::spec::{Criterion, LawSpec, Method, Moduli, PmbStiffness};
+use peridyne::spec::{Criterion, LawSpec, Method, Moduli, PmbStiffness, Stepper};
 use peridyne_io::deck::{Dim, UnitSystem, describe};
 use peridyne_theory::elastic::{Class, PatchTest, Place};
 use peridyne_theory::stiffness::components;
@@ -360,7 +360,7 @@ fn waves(found: &Findings) -> String {
             format!("{prefix}{kind}{speeds}{shear}"),
         );
         let crossing = long / m.pressure_wave;
-        let steps = match found.spec.schedule.statics {
+        let steps = match found.spec.schedule.statics() {
             Some(_) => String::new(),
             None => format!(
                 " = {} steps",
@@ -376,7 +376,7 @@ fn waves(found: &Findings) -> String {
             ),
         );
     }
-    if let Some(statics) = found.spec.schedule.statics {
+    if let Some(statics) = found.spec.schedule.statics() {
         let how = match statics.method {
             Method::Linear => "linear about the reference",
             Method::Newton => "by Newton's method",
@@ -389,6 +389,37 @@ fn waves(found: &Findings) -> String {
         );
         return out;
     }
+    if let Stepper::Newmark(n) = found.spec.schedule.stepper {
+        row(
+            &mut out,
+            "integrator",
+            format!(
+                "implicit, Newmark's method with beta = {}, gamma = {}",
+                n.beta, n.gamma
+            ),
+        );
+        let ratio = info.time_step / info.stable_step;
+        row(
+            &mut out,
+            "time step",
+            format!(
+                "{}, {ratio:.3} times the limit {} of explicit steps",
+                units.write(info.time_step, Dim::TIME),
+                units.write(info.stable_step, Dim::TIME)
+            ),
+        );
+        row(
+            &mut out,
+            "run",
+            format!(
+                "{} steps = {}",
+                whole(found.steps),
+                units.write(found.steps as f64 * info.time_step, Dim::TIME)
+            ),
+        );
+        return out;
+    }
+    row(&mut out, "integrator", "velocity Verlet");
     row(
         &mut out,
         "time step",

@@ -40,6 +40,11 @@ impl Carried {
         self.slots.retain(|s| keep(*s));
     }
 
+    /// Slots and axes that are told.
+    pub fn holds(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.each().map(|(i, a, _)| (i, a))
+    }
+
     fn each(&self) -> impl Iterator<Item = (usize, usize, Carry)> {
         self.slots.iter().zip(&self.next).flat_map(|(s, next)| {
             let told = |(a, c): (usize, &Option<Carry>)| c.map(|c| (*s as usize, a, c));

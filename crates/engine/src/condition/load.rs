@@ -132,6 +132,38 @@ impl<const D: usize> Load<D> {
         }
     }
 
+    /// Force densities of the last evaluation, in order of the load's points.
+    pub fn acting(&self) -> &[[f64; D]] {
+        &self.last
+    }
+
+    /// Work over a whole step along `path` (displacement of a slot), with force densities that were `before` at its start and
+    /// are what they are now at its end: the trapezoidal rule.
+    pub fn account(
+        &mut self,
+        body: &Body<D>,
+        before: &[[f64; D]],
+        path: impl Fn(usize) -> [f64; D],
+    ) {
+        for ((f, g), &s) in before.iter().zip(&self.last).zip(&self.slots) {
+            let i = s as usize;
+            let path = path(i);
+            let along: f64 = (0..D).map(|a| (f[a] + g[a]) * path[a]).sum();
+            self.work += 0.5 * body.volume.at(i) * along;
+        }
+    }
+
+    /// Visits the slots of a load that resists velocities, with the viscosity there at time `t` (mass / volume / time).
+    pub fn each_viscosity(&self, t: f64, mut visit: impl FnMut(usize, f64)) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            match &self.kind {
+                LoadKind::Damping(c) => visit(s as usize, c.at(0, k, &self.points[k], t)),
+                LoadKind::Drag(gamma) => visit(s as usize, gamma[k]),
+                LoadKind::Body(_) | LoadKind::Replace(_) => {}
+            }
+        }
+    }
+
     pub fn is_damping(&self) -> bool {
         matches!(self.kind, LoadKind::Damping(_))
     }

@@ -25,6 +25,10 @@ impl<const D: usize> Still<D> {
         self.slots.retain(|s| keep(*s));
     }
 
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
     /// Let the coming pass leave the points alone. `whole`: does `v` hold the velocities of the whole step?
     pub fn begin(&mut self, v: &mut Field<D>, f: &mut Field<D>, whole: bool) {
         for (kept, &s) in self.velocity.iter_mut().zip(&self.slots) {

@@ -41,6 +41,13 @@ pub enum RunError {
         position: Option<[f64; 3]>,
         error: SolveError,
     },
+    #[error("step {step}: the equations of the implicit step have no solution: {error}{}{}", position.map_or(String::new(), |x| format!(" at ({:.6e}, {:.6e}, {:.6e})", x[0], x[1], x[2])), shorter(error))]
+    Implicit {
+        step: u64,
+        /// Where, if it is one place.
+        position: Option<[f64; 3]>,
+        error: SolveError,
+    },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
     #[error(
@@ -54,6 +61,26 @@ pub enum RunError {
         /// The stability limit of contact, if contact holds the energy.
         contact: Option<f64>,
     },
+}
+
+/// Does a shorter implicit step help?
+fn shorter(error: &SolveError) -> &'static str {
+    match error {
+        SolveError::Indefinite { .. } | SolveError::NotConverged { .. } => {
+            "; a shorter time step makes them easier"
+        }
+        SolveError::NothingFree
+        | SolveError::Loose(_)
+        | SolveError::Singular
+        | SolveError::TooLarge
+        | SolveError::TooManyModes { .. }
+        | SolveError::NotSymmetric { .. }
+        | SolveError::StillBreaking { .. }
+        | SolveError::Contact
+        | SolveError::NoTangent { .. }
+        | SolveError::NotFinite
+        | SolveError::Stopped => "",
+    }
 }
 
 /// What a run dies of: `otherwise`, or contact, whose limit of the step is known.

@@ -48,6 +48,8 @@ pub enum SolveError {
     StillBreaking { rounds: usize },
     #[error("contact has no tangent here: leave it out of a body that relaxes by itself")]
     Contact,
+    #[error("{what} has no tangent here: the explicit integrator knows it")]
+    NoTangent { what: &'static str },
     #[error("a force or displacement is not a number")]
     NotFinite,
     #[error("it was asked to end before it was found")]

@@ -3,6 +3,7 @@
 use super::atoms;
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
+use super::implicit::state::Implicit;
 use super::model::Model;
 use super::parts::{Part, parts};
 use super::probe;
@@ -24,7 +25,7 @@ use crate::interaction::Interaction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
 use crate::space::ball_volume;
-use crate::spec::{BodySpec, Cloud, CrackKind, Spec, TimeStep};
+use crate::spec::{BodySpec, Cloud, CrackKind, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
@@ -50,10 +51,10 @@ pub fn build_with(
     options: Options,
     shelf: &Shelf,
 ) -> Result<Box<dyn Simulation>, BuildError> {
-    if !spec.pairs.is_empty() && spec.schedule.statics.is_some() {
+    if !spec.pairs.is_empty() && spec.schedule.stepper != Stepper::Verlet {
         return Err(BuildError::new(
             "pairs",
-            "pairs of materials with constants of their own move in time; there is no statics of them",
+            "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
         ));
     }
     if let Some(simd) = options.simd
@@ -233,7 +234,7 @@ pub fn build_in<const D: usize>(
     warnings.extend(gaps::warnings(spec, &gaps, spacing));
     let (mut bond_step, mut contact_step) = (f64::INFINITY, f64::INFINITY);
     let mut touching = None;
-    if !options.trust_time_step && spec.schedule.statics.is_none() {
+    if !options.trust_time_step && spec.schedule.statics().is_none() {
         let first = constitutive.first();
         let lambda = probe::bonds(first, &body, interaction.as_mut(), spec, cell_volume)?;
         bond_step = probe::step(lambda);
@@ -243,6 +244,17 @@ pub fn build_in<const D: usize>(
         contact_step = touching.map_or(f64::INFINITY, |t| probe::step(t.lambda));
     }
     let stable_step = bond_step.min(contact_step);
+    let explicit = match spec.schedule.stepper {
+        Stepper::Verlet | Stepper::Statics(_) => true,
+        Stepper::Newmark(_) => false,
+    };
+    if !explicit && spec.schedule.time_step == TimeStep::Auto {
+        return Err(BuildError::new(
+            "schedule.time_step",
+            "an implicit step is stable at any length: how long it is must be said",
+        )
+        .help("write time_step as a number, a thirtieth of the shortest period of interest, or { safety = 20 } for twenty explicit ones"));
+    }
     let fraction = match spec.schedule.time_step {
         TimeStep::Fixed(_) => None,
         TimeStep::Fraction(x) => Some(x),
@@ -276,7 +288,7 @@ pub fn build_in<const D: usize>(
     // a step that was chosen may be right where nothing ever touches
     let chosen = matches!(spec.schedule.time_step, TimeStep::Fixed(_));
     let limit = if chosen { bond_step } else { stable_step };
-    if dt > contact_step && dt <= limit {
+    if dt > contact_step && dt <= limit && explicit {
         let of = touching
             .map_or([0, 0], |t| t.materials)
             .map(|k| repulsion.as_ref().map_or("", |r| r.name(spec, k)));
@@ -290,7 +302,7 @@ pub fn build_in<const D: usize>(
             "the time step {dt:.4e} is above the stability limit {contact_step:.4e} of contact between {between}: the run goes unstable if many of them touch"
         ));
     }
-    if dt > limit {
+    if dt > limit && explicit {
         let message =
             format!("the time step {dt:.4e} is above the stability limit {limit:.4e} of this body");
         if !spec.schedule.force_unstable {
@@ -326,6 +338,7 @@ pub fn build_in<const D: usize>(
             micromodulus: constitutive.micromoduli(spec.materials.len()),
             critical_stretch: constitutive.critical_stretches(spec.materials.len()),
             time_step: dt,
+            stepper: spec.schedule.stepper,
             stable_step,
             contact_step,
             bodies: names(spec, &body),
@@ -374,6 +387,7 @@ pub fn build_in<const D: usize>(
         initial_energy: None,
         fault: None,
         statics: None,
+        implicit: None,
     };
     model.info.bytes = model.bytes();
     if let Some(thermal) = spec.thermal {
@@ -396,11 +410,18 @@ pub fn build_in<const D: usize>(
         steps => steps,
     };
     model.check_agreement(&spec.conditions, steps as f64 * dt)?;
-    if let Some(statics) = spec.schedule.statics {
-        if spec.schedule.steps > 0 {
-            model.check_statics(statics)?;
+    match spec.schedule.stepper {
+        Stepper::Verlet => {}
+        Stepper::Newmark(newmark) => {
+            model.check_implicit(newmark, spec)?;
+            model.implicit = Some(Implicit::new(newmark));
         }
-        model.statics = Some(StaticState::new(statics));
+        Stepper::Statics(statics) => {
+            if spec.schedule.steps > 0 {
+                model.check_statics(statics)?;
+            }
+            model.statics = Some(StaticState::new(statics));
+        }
     }
     Ok(model)
 }

@@ -12,6 +12,7 @@ mod contact;
 mod equilibrium;
 mod free;
 mod gaps;
+mod implicit;
 mod model;
 mod motion;
 mod parts;
@@ -32,7 +33,7 @@ use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
-use crate::spec::AnyLinearBody;
+use crate::spec::{AnyLinearBody, Stepper};
 use crate::statics::Solved;
 
 /// What a model is, for headers and reports.
@@ -58,7 +59,8 @@ pub struct Info {
     /// Critical stretch s00 per material; ∞: never breaks.
     pub critical_stretch: Vec<f64>,
     pub time_step: f64,
-    /// Stability limit of the step: that of bonds, and of contact if that is lower.
+    pub stepper: Stepper,
+    /// Stability limit of explicit steps: that of bonds, and of contact if that is lower.
     pub stable_step: f64,
     /// Of points in contact alone; ∞ without contact.
     pub contact_step: f64,
@@ -189,7 +191,7 @@ pub trait Simulation: Send {
     /// Answers a bound on the path of any point (length).
     ///
     /// # Errors
-    /// As for [`Simulation::step`], whose state is left behind then.
+    /// As for [`Simulation::step`], whose state is left behind then; implicit steps have no halves.
     fn depart(&mut self) -> Result<f64, RunError>;
     /// The second half of a step: the forces at its end.
     ///

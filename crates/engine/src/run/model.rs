@@ -2,6 +2,7 @@
 
 use super::constitutive::ConstitutiveModels;
 use super::equilibrium::state::StaticState;
+use super::implicit::state::Implicit;
 use super::{
     AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions, Wall,
 };
@@ -77,6 +78,8 @@ pub struct Model<const D: usize> {
     pub(super) fault: Option<Fault>,
     /// Steps are increments of load.
     pub(super) statics: Option<StaticState<D>>,
+    /// Steps are implicit.
+    pub(super) implicit: Option<Implicit<D>>,
 }
 
 impl<const D: usize> Model<D> {
@@ -160,6 +163,9 @@ impl<const D: usize> Simulation for Model<D> {
         if self.statics.is_some() {
             return self.increment();
         }
+        if self.implicit.is_some() {
+            return self.implicit_step();
+        }
         self.advance()
     }
 
@@ -168,6 +174,15 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn depart(&mut self) -> Result<f64, RunError> {
+        if self.implicit.is_some() {
+            return Err(RunError::Implicit {
+                step: self.step + 1,
+                position: None,
+                error: SolveError::NoTangent {
+                    what: "what acts between the halves of a step",
+                },
+            });
+        }
         Model::depart(self)?;
         Ok(self.fastest)
     }
@@ -487,7 +502,8 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn solved(&self) -> Option<Solved> {
-        self.statics.as_ref().map(|s| s.solved)
+        let implicit = self.implicit.as_ref().map(|i| &i.equations);
+        self.statics.as_ref().or(implicit).map(|s| s.solved)
     }
 
     fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {

@@ -31,7 +31,7 @@ pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{
     Buckingham, End, Form, LennardJones, MeiSpec, Morse, PotentialSpec, TableSpec,
 };
-pub use schedule::{Method, Schedule, Solver, Statics, TimeStep};
+pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};
 
@@ -122,7 +122,7 @@ impl Spec {
                 steps: 0,
                 time_step: TimeStep::Auto,
                 force_unstable: false,
-                statics: None,
+                stepper: Stepper::Verlet,
             },
         }
     }

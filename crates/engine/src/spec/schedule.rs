@@ -1,4 +1,4 @@
-//! Steps: how many, how long, and whether each ends in equilibrium.
+//! Steps: how many, how long, and what moves the state.
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
@@ -6,8 +6,56 @@ pub struct Schedule {
     pub time_step: TimeStep,
     /// Run even if the step is above the stability limit.
     pub force_unstable: bool,
+    pub stepper: Stepper,
+}
+
+impl Schedule {
+    /// `None`: motion in time.
+    pub fn statics(&self) -> Option<Statics> {
+        match self.stepper {
+            Stepper::Statics(statics) => Some(statics),
+            Stepper::Verlet | Stepper::Newmark(_) => None,
+        }
+    }
+}
+
+/// What moves the state from step to step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Stepper {
+    /// Motion in time by velocity Verlet: explicit, stable below a limit of the step.
+    #[default]
+    Verlet,
+    /// Motion in time by Newmark's method: implicit, stable at any step.
+    Newmark(Newmark),
     /// Every step is an increment of load that ends in equilibrium; `time_step` is what t grows by.
-    pub statics: Option<Statics>,
+    Statics(Statics),
+}
+
+/// Newmark's method (Newmark 1959): `u₁ = u₀ + Δt v₀ + Δt² ((½ − β) a₀ + β a₁)`, `v₁ = v₀ + Δt ((1 − γ) a₀ + γ a₁)`, with
+/// `a₁` from the forces at the end of the step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Newmark {
+    pub beta: f64,
+    pub gamma: f64,
+    /// How the linear equations of Newton's method are solved.
+    pub solver: Solver,
+    /// Residual force over loads, reactions, inertia `m a` and `m v/Δt`.
+    pub tolerance: f64,
+    /// Of conjugate gradients, per solution.
+    pub most_iterations: usize,
+}
+
+impl Default for Newmark {
+    /// The trapezoidal rule, β = ¼ and γ = ½: second order, and no energy is lost.
+    fn default() -> Self {
+        Newmark {
+            beta: 0.25,
+            gamma: 0.5,
+            solver: Solver::Auto,
+            tolerance: 1e-10,
+            most_iterations: 100_000,
+        }
+    }
 }
 
 /// How equilibrium is found.

@@ -1,7 +1,7 @@
 //! Direct solution of the equations of a linear body: banded in one dimension, sparse (faer) otherwise.
 
 use super::Solved;
-use super::operator::{Assembled, LinearOperator};
+use super::operator::LinearOperator;
 use super::support::Support;
 use super::vectors::{add, norm};
 use crate::error::SolveError;
@@ -27,6 +27,7 @@ pub struct Direct<const D: usize> {
     /// Place of every free component among the unknowns.
     place: Vec<[Option<usize>; D]>,
     unknowns: usize,
+    shift: f64,
     factors: Factors,
 }
 
@@ -97,8 +98,14 @@ impl<const D: usize> Direct<D> {
         Ok(Direct {
             place,
             unknowns,
+            shift,
             factors,
         })
+    }
+
+    /// Which part of the masses is in the factors.
+    pub fn shift(&self) -> f64 {
+        self.shift
     }
 
     /// Solves for the free components; others become 0.
@@ -119,15 +126,15 @@ impl<const D: usize> Direct<D> {
         self.place.iter().map(of).collect()
     }
 
-    /// Solves `A x = b` for the free components, refined once; held ones keep their `x`. `body` is what was factored.
+    /// Solves `A x = b` for the free components, refined once; held ones keep their `x`. `operator` is what was factored,
+    /// or near to it.
     pub fn solve_held(
         &self,
-        body: &LinearBody<D>,
+        operator: &mut dyn LinearOperator<D>,
         support: &Support<D>,
         b: &[[f64; D]],
         x: &mut [[f64; D]],
     ) -> Solved {
-        let mut operator = Assembled(body);
         let mut product = vec![[0.0; D]; b.len()];
         // what the held ones pull, and what the loads add
         let mut left = |x: &[[f64; D]], b: &[[f64; D]]| {

@@ -22,7 +22,7 @@ mod vectors;
 use crate::error::SolveError;
 pub use assemble::linear_body;
 pub use direct::{Direct, SYMMETRIC};
-pub use operator::{Assembled, LinearOperator, Swept};
+pub use operator::{Assembled, LinearOperator, Shifted, Swept};
 pub use soundness::Soundness;
 pub use support::Support;
 pub use vectors::norm;

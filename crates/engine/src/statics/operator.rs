@@ -85,6 +85,38 @@ impl<const D: usize> LinearOperator<D> for Assembled<'_, D> {
     }
 }
 
+/// An operator and a stiffness of every point against its own place: what inertia and damping add within a step in time.
+pub struct Shifted<'a, const D: usize> {
+    pub operator: &'a mut dyn LinearOperator<D>,
+    /// `[N]` (force / length); empty: nothing.
+    pub added: &'a [f64],
+}
+
+impl<const D: usize> LinearOperator<D> for Shifted<'_, D> {
+    fn points(&self) -> usize {
+        self.operator.points()
+    }
+
+    fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]) {
+        self.operator.apply(x, y);
+        for ((y, x), s) in y.iter_mut().zip(x).zip(self.added) {
+            for a in 0..D {
+                y[a] = s.mul_add(x[a], y[a]);
+            }
+        }
+    }
+
+    fn diagonal(&mut self) -> Vec<[[f64; D]; D]> {
+        let mut diagonal = self.operator.diagonal();
+        for (block, s) in diagonal.iter_mut().zip(self.added) {
+            for a in 0..D {
+                block[a][a] += s;
+            }
+        }
+        diagonal
+    }
+}
+
 /// Displacements so small (in spacings) that the square of a strain is beyond round-off.
 pub const SMALL: f64 = 1e-60;
 

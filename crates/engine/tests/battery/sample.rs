@@ -295,7 +295,7 @@ impl Case {
                 steps: 0,
                 time_step: TimeStep::Fraction(0.5),
                 force_unstable: true,
-                statics: None,
+                stepper: Stepper::Verlet,
             },
         }
     }

@@ -6,7 +6,8 @@ use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Method, NamedLaw, Parameter, Plane, PmbStiffness, Release, Spec, TimeStep,
+    MaterialSpec, Method, NamedLaw, Parameter, Plane, PmbStiffness, Release, Spec, Stepper,
+    TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -152,7 +153,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         spec.conditions.len(),
         spec.precracks.len()
     ));
-    if let Some(statics) = &spec.schedule.statics {
+    if let Some(statics) = &spec.schedule.statics() {
         let method = match statics.method {
             Method::Linear => "linear equations about the reference",
             Method::Newton => "Newton's method",
@@ -176,7 +177,14 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         0 => "as many steps as the duration takes".to_string(),
         steps => format!("{steps} steps"),
     };
-    lines.push(format!("run        {steps} of {step}"));
+    let how = match spec.schedule.stepper {
+        Stepper::Verlet | Stepper::Statics(_) => String::new(),
+        Stepper::Newmark(n) => format!(
+            ", implicit by Newmark's method with beta = {}, gamma = {}, tolerance {:e}",
+            n.beta, n.gamma, n.tolerance
+        ),
+    };
+    lines.push(format!("run        {steps} of {step}{how}"));
     lines.join("\n")
 }
 

@@ -432,6 +432,18 @@ pub struct Run {
     /// Run even if the step is above the stability limit.
     #[serde(default)]
     pub force_unstable: bool,
+    /// verlet when left out. newmark is implicit: stable at any step, which must be given, and without fracture and contact.
+    pub integrator: Option<At<IntegratorName>>,
+    /// newmark: 1/4 when left out.
+    pub beta: Option<Number>,
+    /// newmark: 1/2 when left out; more damps what is fast beside the step.
+    pub gamma: Option<Number>,
+    /// newmark: auto when left out, factors of small systems, conjugate gradients of large ones.
+    pub solver: Option<At<SolverName>>,
+    /// newmark: residual force over loads, reactions and inertia; 1e-10 when left out.
+    pub tolerance: Option<Number>,
+    /// newmark: iterations of conjugate gradients; 100,000 when left out.
+    pub iterations: Option<At<usize>>,
     pub threads: Option<At<usize>>,
 }
 
@@ -565,6 +577,13 @@ names! {
         List,
         /// Atoms within the cut-off now.
         Neighbours,
+    }
+    /// How a motion goes on in time.
+    IntegratorName {
+        /// Velocity Verlet: explicit, stable below a limit of the step.
+        Verlet,
+        /// Newmark's method: implicit, stable at any step.
+        Newmark,
     }
     CrackName {
         /// Bonds that never were.

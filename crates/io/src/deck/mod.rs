@@ -190,7 +190,7 @@ impl Deck {
     /// What to say about the length of a run whose time step is known.
     pub fn long_run(&self, time_step: f64) -> Option<String> {
         let steps = self.steps(time_step);
-        (self.spec.schedule.statics.is_none() && steps > lower::MANY_STEPS).then(|| {
+        (self.spec.schedule.statics().is_none() && steps > lower::MANY_STEPS).then(|| {
             let step = self.units.write(time_step, Dim::TIME);
             format!(
                 "{steps} steps of {step}: check the unit of run.duration (\"50 us\") or run.time_step, or the number of steps"

@@ -5,7 +5,7 @@ use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, Criterion, FamilyChoice, FractureSpec, Horizon,
     Influence, InterfaceRule, MaterialSpec, Members, Plane, Release, Schedule, SetSpec, Spec,
-    TimeStep,
+    Stepper, TimeStep,
 };
 
 use super::in_plane;
@@ -92,7 +92,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
             time_step: TimeStep::Fixed(setup.time_step),
             // LAMMPS runs any step; a warning is given at the start of the run
             force_unstable: true,
-            statics: None,
+            stepper: Stepper::Verlet,
         },
     })
 }

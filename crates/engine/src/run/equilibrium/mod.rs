@@ -3,6 +3,7 @@
 mod linear;
 mod solve;
 pub(super) mod state;
+pub(super) mod tried;
 
 use self::state::StaticState;
 use super::accounts::ledger_base;
@@ -136,7 +137,7 @@ impl<const D: usize> Model<D> {
 
     /// Do the rows of the equations fit into memory? Laws with a point scalar reach two families. What the factors fill in
     /// comes on top.
-    fn enough_memory_for_rows(&self) -> Result<(), BuildError> {
+    pub(super) fn enough_memory_for_rows(&self) -> Result<(), BuildError> {
         let points = self.body.points() as f64;
         let families = self.constitutive.all().map(|r| match &r.laws {
             Laws::Solid(_) | Laws::Atoms(_) => 2f64.powi(D as i32),
@@ -195,16 +196,21 @@ impl<const D: usize> Model<D> {
     }
 
     pub(super) fn unsolved(&self, error: SolveError) -> RunError {
-        let place = match &error {
+        RunError::Equilibrium {
+            step: self.step + 1,
+            position: self.place_of(&error),
+            error,
+        }
+    }
+
+    /// The reference position that an error is about, if it is about one.
+    pub(super) fn place_of(&self, error: &SolveError) -> Option<Point> {
+        let place = match error {
             SolveError::Indefinite { point } => Some(*point),
             SolveError::Loose(loose) => Some(loose.point),
             _ => None,
         };
-        RunError::Equilibrium {
-            step: self.step + 1,
-            position: place.map(|n| self.body.position(self.body.slots[n] as usize)),
-            error,
-        }
+        place.map(|n| self.body.position(self.body.slots[n] as usize))
     }
 
     /// Equilibrium, and again after bonds broke, until none breaks.
@@ -235,8 +241,7 @@ impl<const D: usize> Model<D> {
             if self.broken == before {
                 return Ok(total);
             }
-            state.factors = None;
-            state.asymmetry = None;
+            state.forget();
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
     }

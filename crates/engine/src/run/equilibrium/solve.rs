@@ -1,6 +1,7 @@
 //! How one increment finds its equilibrium: linear about the reference, Newton's method, dynamic relaxation.
 
 use super::state::StaticState;
+use super::tried::{Inertia, Tried};
 use crate::body::{Field, zeros};
 use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;
@@ -11,7 +12,9 @@ use crate::run::model::Model;
 use crate::spec::{LinearBody, Solver, Statics};
 use crate::statics::cg::{self, Goal};
 use crate::statics::relaxation::relax;
-use crate::statics::{self, Assembled, Direct, LinearOperator, Solved, Support, Swept, norm};
+use crate::statics::{
+    self, Assembled, Direct, LinearOperator, Shifted, Solved, Support, Swept, norm,
+};
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
@@ -25,6 +28,8 @@ const LEAST_STEP: f64 = 1e-14;
 const LONGEST_STEP: f64 = 0.1;
 /// How often a Newton step is halved.
 const HALVINGS: usize = 12;
+/// Factors of an earlier state serve as long as a step with them leaves no more than this part of the residual.
+const SERVES: f64 = 0.1;
 /// Residual at which conjugate gradients end within a Newton step.
 const ROUGH: f64 = 1e-4;
 /// Largest stretch up to which a linear solution is taken without a warning.
@@ -49,11 +54,11 @@ impl<const D: usize> Model<D> {
         })
     }
 
-    fn values(&self, u: &Field<D>) -> Vec<[f64; D]> {
+    pub(in crate::run) fn values(&self, u: &Field<D>) -> Vec<[f64; D]> {
         self.by_id(|i| std::array::from_fn(|a| u[a][i]))
     }
 
-    fn set_values(&mut self, x: &[[f64; D]]) {
+    pub(in crate::run) fn set_values(&mut self, x: &[[f64; D]]) {
         for (x, &s) in x.iter().zip(&self.body.slots) {
             for a in 0..D {
                 self.u[a][s as usize] = x[a];
@@ -62,7 +67,7 @@ impl<const D: usize> Model<D> {
         self.refresh_images();
     }
 
-    pub(super) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
+    pub(in crate::run) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
         if self.interaction.asymmetry() > statics::SYMMETRIC {
             return true;
         }
@@ -140,7 +145,7 @@ impl<const D: usize> Model<D> {
                     (body, factors)
                 }
             };
-            let solved = factors.solve_held(&body, support, b, x);
+            let solved = factors.solve_held(&mut Assembled(&body), support, b, x);
             // LU of a singular matrix says nothing; what is not a number is no solution
             if !(solved.residual <= SOLVED) {
                 return Err(SolveError::Singular);
@@ -160,21 +165,35 @@ impl<const D: usize> Model<D> {
             cg::solve(&mut operator, support, b, x, goal)
         } else {
             let body = self.reference_body();
-            solve_assembled(&body, support, b, x, goal)
+            solve_assembled(&body, &[], support, b, x, goal)
         }
     }
 
-    /// Newton's method with the tangent of every state; where that is too large, with the tangent of the reference.
+    /// Equilibrium by Newton's method, from the displacements of now.
     pub(in crate::run) fn solve_newton(
         &mut self,
         state: &mut StaticState<D>,
         support: &Support<D>,
     ) -> Result<Solved, SolveError> {
+        let start = Tried::at_rest(self.values(&self.u));
+        let (solved, _) = self.solve_from(state, support, start, None)?;
+        Ok(solved)
+    }
+
+    /// Newton's method with the tangent of every state; where that is too large, with the tangent of the reference. With
+    /// inertia factors are kept as long as they serve. What was found is the state.
+    pub(in crate::run) fn solve_from(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+        mut now: Tried<D>,
+        inertia: Option<&Inertia<D>>,
+    ) -> Result<(Solved, Tried<D>), SolveError> {
         let goal = self.goal(state.options);
-        let mut x = self.values(&self.u);
-        let mut r = vec![[0.0; D]; x.len()];
+        let mut r = vec![[0.0; D]; now.x.len()];
         let rest = self.rest(support);
-        let mut scale = self.imbalance(&x, &mut r, support).hypot(rest);
+        let mut scale = self.missing(&now, inertia, &mut r, support).hypot(rest);
+        let added = inertia.map_or(&[][..], |m| &m.added);
         let mut iterations = 0;
         for _ in 0..NEWTON {
             goal.go_on()?;
@@ -182,44 +201,80 @@ impl<const D: usize> Model<D> {
             if !size.is_finite() {
                 return Err(SolveError::NotFinite);
             }
+            let part_of = |scale: f64| if scale > 0.0 { size / scale } else { 0.0 };
+            let solved = Solved {
+                iterations,
+                residual: part_of(scale),
+            };
             if size <= goal.tolerance * scale {
-                return Ok(Solved {
-                    iterations,
-                    residual: if scale > 0.0 { size / scale } else { 0.0 },
-                });
+                return Ok((solved, now));
             }
-            let mut step = vec![[0.0; D]; x.len()];
+            let mut step = vec![[0.0; D]; now.x.len()];
             let rough = Goal {
                 tolerance: ROUGH,
                 ..goal
             };
-            let mut unstable = false;
-            let solved = if self.factored(state.options, support) {
-                let body = self.linear_now();
-                let factors = match Direct::new(&body, support, 0.0) {
-                    Err(SolveError::Indefinite { .. }) if !self.at_peace() => {
-                        unstable = true;
-                        downhill(&body, support)?
+            let (mut unstable, mut old) = (false, false);
+            let linear = if self.factored(state.options, support) {
+                let shift = inertia.map_or(0.0, Inertia::shift);
+                let kept = state.factors.take();
+                let kept = kept.filter(|(_, f)| inertia.is_some() && f.shift() == shift);
+                old = kept.is_some();
+                let (body, factors) = match kept {
+                    Some(kept) => kept,
+                    None => {
+                        let mut body = self.linear_now();
+                        if let Some(inertia) = inertia {
+                            inertia.load(&mut body);
+                        }
+                        let factors = match Direct::new(&body, support, shift) {
+                            Err(SolveError::Indefinite { .. })
+                                if !self.at_peace() && inertia.is_none() =>
+                            {
+                                unstable = true;
+                                downhill(&body, support)?
+                            }
+                            made => made?,
+                        };
+                        (body, factors)
                     }
-                    made => made?,
                 };
-                factors.solve_held(&body, support, &r, &mut step)
+                let operator = &mut Assembled(&body);
+                let linear =
+                    factors.solve_held(&mut Shifted { operator, added }, support, &r, &mut step);
+                if inertia.is_some() {
+                    state.factors = Some((body, factors));
+                }
+                linear
             } else if self.at_peace() {
-                let mut operator = Swept::new(&self.body, self.interaction.as_mut());
+                let operator = &mut Swept::new(&self.body, self.interaction.as_mut());
+                let mut operator = Shifted { operator, added };
                 cg::solve(&mut operator, support, &r, &mut step, rough)?
             } else {
-                solve_assembled(&self.linear_now(), support, &r, &mut step, rough)?
+                let body = self.linear_now();
+                solve_assembled(&body, added, support, &r, &mut step, rough)?
             };
-            iterations += solved.iterations.max(1);
-            let far = step
-                .as_flattened()
-                .iter()
-                .fold(0.0f64, |m, s| m.max(s.abs()));
-            if far < LEAST_STEP * self.body.spacing {
-                return Ok(Solved {
-                    iterations,
-                    residual: size / scale,
-                });
+            iterations += linear.iterations.max(1);
+            let longest = |x: &[[f64; D]]| {
+                let all = x.as_flattened().iter();
+                all.fold(0.0f64, |m, s| m.max(s.abs()))
+            };
+            let far = longest(&step);
+            let least = match inertia {
+                None => LEAST_STEP * self.body.spacing,
+                // points may have gone far from where they were
+                Some(_) => {
+                    (LEAST_STEP * self.body.spacing).max(4.0 * f64::EPSILON * longest(&now.x))
+                }
+            };
+            if far < least {
+                return Ok((
+                    Solved {
+                        iterations,
+                        ..solved
+                    },
+                    now,
+                ));
             }
             // a full step, or as much of it as lowers the residual; downhill that may grow
             let mut part = match unstable {
@@ -227,14 +282,19 @@ impl<const D: usize> Model<D> {
                 false => 1.0,
             };
             for halving in 0..=HALVINGS {
-                let tried: Vec<[f64; D]> = x
-                    .iter()
-                    .zip(&step)
-                    .map(|(x, s)| std::array::from_fn(|a| x[a] + part * s[a]))
-                    .collect();
-                let new = self.imbalance(&tried, &mut r, support);
-                if norm(&r) < size || unstable || halving == HALVINGS {
-                    (x, scale) = (tried, new.hypot(rest));
+                let tried = now.along(&step, part, inertia);
+                let new = self.missing(&tried, inertia, &mut r, support);
+                let left = norm(&r);
+                if old && !(left < SERVES * size) {
+                    state.factors = None;
+                }
+                if left < size || unstable || halving == HALVINGS {
+                    (now, scale) = (tried, new.hypot(rest));
+                    break;
+                }
+                if old {
+                    // with factors of here
+                    scale = self.missing(&now, inertia, &mut r, support).hypot(rest);
                     break;
                 }
                 part *= 0.5;
@@ -245,6 +305,22 @@ impl<const D: usize> Model<D> {
             residual: norm(&r) / scale,
             tolerance: goal.tolerance,
         })
+    }
+
+    /// Forces that are missing on the free components, less what inertia takes, and what they are compared with.
+    fn missing(
+        &mut self,
+        tried: &Tried<D>,
+        inertia: Option<&Inertia<D>>,
+        r: &mut [[f64; D]],
+        support: &Support<D>,
+    ) -> f64 {
+        let Some(inertia) = inertia else {
+            return self.imbalance(&tried.x, r, support);
+        };
+        self.set_velocities_of(tried);
+        let scale = self.imbalance(&tried.x, r, support);
+        scale.hypot(inertia.take(tried, r, support))
     }
 
     /// What atoms at their sites pull at each other without any load; 0 of other laws.
@@ -347,6 +423,7 @@ fn downhill<const D: usize>(
 
 fn solve_assembled<const D: usize>(
     body: &LinearBody<D>,
+    added: &[f64],
     support: &Support<D>,
     b: &[[f64; D]],
     x: &mut [[f64; D]],
@@ -356,5 +433,6 @@ fn solve_assembled<const D: usize>(
     if asymmetry > statics::SYMMETRIC {
         return Err(SolveError::NotSymmetric { asymmetry });
     }
-    cg::solve(&mut Assembled(body), support, b, x, goal)
+    let operator = &mut Assembled(body);
+    cg::solve(&mut Shifted { operator, added }, support, b, x, goal)
 }

@@ -22,4 +22,10 @@ impl<const D: usize> StaticState<D> {
             solved: Solved::default(),
         }
     }
+
+    /// Factors belong to other equations.
+    pub fn forget(&mut self) {
+        self.factors = None;
+        self.asymmetry = None;
+    }
 }

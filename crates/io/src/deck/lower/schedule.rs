@@ -3,13 +3,13 @@
 use super::context::{Context, Result};
 use crate::deck::OutputSpec;
 use crate::deck::document::{
-    Document, FieldName, MethodName, Output, Run, Safety, SolverName, Statics,
+    Document, FieldName, IntegratorName, MethodName, Output, Run, Safety, SolverName, Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
-use peridyne::spec::{Method, Schedule, Solver, TimeStep};
+use peridyne::spec::{Method, Newmark, Schedule, Solver, Stepper, TimeStep};
 use std::path::PathBuf;
 
 /// A run of more steps is likely a slip of units.
@@ -71,13 +71,9 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
             steps: increments,
             time_step: TimeStep::Fixed(1.0 / increments.max(1) as f64),
             force_unstable: false,
-            statics: Some(peridyne::spec::Statics {
+            stepper: Stepper::Statics(peridyne::spec::Statics {
                 method,
-                solver: match written.solver {
-                    None | Some(SolverName::Auto) => Solver::Auto,
-                    Some(SolverName::Direct) => Solver::Direct,
-                    Some(SolverName::Cg) => Solver::ConjugateGradients,
-                },
+                solver: solver(written.solver),
                 tolerance,
                 most_iterations: written.iterations.as_ref().map_or(100_000, |n| n.value),
             }),
@@ -86,6 +82,56 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
         duration: None,
         modes,
     })
+}
+
+fn solver(written: Option<SolverName>) -> Solver {
+    match written {
+        None | Some(SolverName::Auto) => Solver::Auto,
+        Some(SolverName::Direct) => Solver::Direct,
+        Some(SolverName::Cg) => Solver::ConjugateGradients,
+    }
+}
+
+/// What moves the points; keys of the implicit method belong to it alone.
+fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
+    let implicit = match run.integrator.as_ref().map(|i| i.value) {
+        None | Some(IntegratorName::Verlet) => false,
+        Some(IntegratorName::Newmark) => true,
+    };
+    let own = [
+        ("beta", run.beta.as_ref().map(|n| &n.span)),
+        ("gamma", run.gamma.as_ref().map(|n| &n.span)),
+        ("solver", run.solver.as_ref().map(|n| &n.span)),
+        ("tolerance", run.tolerance.as_ref().map(|n| &n.span)),
+        ("iterations", run.iterations.as_ref().map(|n| &n.span)),
+    ];
+    if let Some((key, span)) = own.iter().find_map(|(key, span)| Some((key, (*span)?)))
+        && !implicit
+    {
+        return Err(context.error_with(
+            span,
+            format!("{key} belongs to the implicit integrator"),
+            "write integrator = \"newmark\", or leave it out",
+        ));
+    }
+    if !implicit {
+        return Ok(Stepper::Verlet);
+    }
+    let number = |written: &Option<_>, or: f64, what: &str| match written {
+        None => Ok(or),
+        Some(written) => context.positive(written, Dim::NUMBER, what),
+    };
+    let standard = Newmark::default();
+    Ok(Stepper::Newmark(Newmark {
+        beta: number(&run.beta, standard.beta, "beta")?,
+        gamma: number(&run.gamma, standard.gamma, "gamma")?,
+        solver: solver(run.solver.as_ref().map(|s| s.value)),
+        tolerance: number(&run.tolerance, standard.tolerance, "the tolerance")?,
+        most_iterations: run
+            .iterations
+            .as_ref()
+            .map_or(standard.most_iterations, |n| n.value),
+    }))
 }
 
 fn threads(context: &Context, written: &Option<At<usize>>) -> Result<Option<usize>> {
@@ -101,6 +147,7 @@ fn threads(context: &Context, written: &Option<At<usize>>) -> Result<Option<usiz
 
 fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
     let written = &run.value;
+    let stepper = stepper(context, written)?;
     let time_step = match &written.time_step {
         None => TimeStep::Auto,
         Some(At {
@@ -122,7 +169,7 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
             ..
         }) => {
             let fraction = context.positive(safety, Dim::NUMBER, "the safety factor")?;
-            if fraction > 1.0 && !written.force_unstable {
+            if fraction > 1.0 && !written.force_unstable && stepper == Stepper::Verlet {
                 let message = format!(
                     "a safety factor of {} is above the stability limit",
                     short(fraction)
@@ -165,7 +212,7 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
         steps,
         time_step,
         force_unstable: written.force_unstable,
-        statics: None,
+        stepper,
     };
     Ok(RunSpec {
         schedule,

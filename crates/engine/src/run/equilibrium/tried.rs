@@ -1,0 +1,94 @@
+//! What Newton's method tries: displacements, and within a step in time the velocities and accelerations that go with them.
+
+use crate::run::model::Model;
+use crate::spec::LinearBody;
+use crate::statics::Support;
+
+/// A state on trial, in order of ids.
+#[derive(Debug, Clone)]
+pub(in crate::run) struct Tried<const D: usize> {
+    /// Displacements (length).
+    pub x: Vec<[f64; D]>,
+    /// Velocities; empty in equilibrium.
+    pub v: Vec<[f64; D]>,
+    /// Accelerations; empty in equilibrium.
+    pub a: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Tried<D> {
+    pub fn at_rest(x: Vec<[f64; D]>) -> Self {
+        Tried {
+            x,
+            v: vec![],
+            a: vec![],
+        }
+    }
+
+    /// `part` of a step of the displacements further. Accelerations are no difference of displacements: round-off of
+    /// these divided by Δt² would be all that is left of small ones.
+    pub fn along(&self, step: &[[f64; D]], part: f64, inertia: Option<&Inertia<D>>) -> Self {
+        let further = |of: &[[f64; D]], rate: f64| {
+            let both = of.iter().zip(step);
+            both.map(|(x, s)| std::array::from_fn(|a| x[a] + part * (rate * s[a])))
+                .collect()
+        };
+        let [v, a] = inertia.map_or([0.0; 2], |m| [m.velocity, m.acceleration]);
+        Tried {
+            x: further(&self.x, 1.0),
+            v: further(&self.v, v),
+            a: further(&self.a, a),
+        }
+    }
+}
+
+/// What a step in time adds to the equations of equilibrium: `f(u, v, t) = m a`, with v and a that follow u.
+pub(in crate::run) struct Inertia<const D: usize> {
+    /// `[N]`
+    pub mass: Vec<f64>,
+    /// `[N]` what it adds to the stiffness (force / length): `m ∂a/∂u + c ∂v/∂u`, c what damping takes per velocity.
+    pub added: Vec<f64>,
+    /// `∂v/∂u = γ/(βΔt)`
+    pub velocity: f64,
+    /// `∂a/∂u = 1/(βΔt²)`
+    pub acceleration: f64,
+    /// Δt
+    pub step: f64,
+}
+
+impl<const D: usize> Inertia<D> {
+    /// Which part of the densities of [`Inertia::load`] is added to the stiffness.
+    pub fn shift(&self) -> f64 {
+        self.acceleration
+    }
+
+    /// Densities whose inertia alone is what this one adds.
+    pub fn load(&self, body: &mut LinearBody<D>) {
+        for (n, added) in self.added.iter().enumerate() {
+            body.density[n] = added / (self.acceleration * body.volume[n]);
+        }
+    }
+
+    /// Takes `m a` from the forces on the free components; how large it and `m v/Δt` are.
+    pub fn take(&self, tried: &Tried<D>, r: &mut [[f64; D]], support: &Support<D>) -> f64 {
+        let mut size = 0.0;
+        for (n, r) in r.iter_mut().enumerate() {
+            let m = self.mass[n];
+            for a in (0..D).filter(|a| support.free[n][*a]) {
+                let [inertia, momentum] = [m * tried.a[n][a], m * tried.v[n][a] / self.step];
+                r[a] -= inertia;
+                size += inertia * inertia + momentum * momentum;
+            }
+        }
+        size.sqrt()
+    }
+}
+
+impl<const D: usize> Model<D> {
+    pub(in crate::run) fn set_velocities_of(&mut self, tried: &Tried<D>) {
+        for (v, &s) in tried.v.iter().zip(&self.body.slots) {
+            for a in 0..D {
+                self.v[a][s as usize] = v[a];
+            }
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! What the implicit stepper keeps between steps.
+
+use crate::run::equilibrium::state::StaticState;
+use crate::spec::{Method, Newmark, Statics};
+use crate::statics::Support;
+
+/// Factors that may serve again, and for whom.
+pub(in crate::run) struct Implicit<const D: usize> {
+    pub options: Newmark,
+    pub equations: StaticState<D>,
+    /// What was held when the factors were made.
+    pub held: Support<D>,
+}
+
+impl<const D: usize> Implicit<D> {
+    pub fn new(options: Newmark) -> Self {
+        let equations = StaticState::new(Statics {
+            method: Method::Newton,
+            solver: options.solver,
+            tolerance: options.tolerance,
+            most_iterations: options.most_iterations,
+        });
+        Implicit {
+            options,
+            equations,
+            held: Support::none(0),
+        }
+    }
+}
