@@ -69,6 +69,7 @@ fn main() {
             bonded: 0.9,
             free: 1.35,
             stiffness: ContactStiffness::Laws,
+            friction: 0.0,
         }),
         initial: vec![],
         conditions: vec![],

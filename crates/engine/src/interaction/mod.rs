@@ -4,6 +4,7 @@
 pub(crate) mod atoms;
 pub(crate) mod bond;
 pub mod contact;
+pub mod friction;
 mod history;
 pub(crate) mod linear;
 pub mod list;

@@ -22,6 +22,7 @@ use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
+use crate::interaction::friction::Friction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
 use crate::space::ball_volume;
@@ -203,6 +204,14 @@ pub fn build_in<const D: usize>(
             cut += count;
         }
     }
+    if spec.contact.as_ref().is_some_and(|c| c.friction > 0.0)
+        && spec.materials.iter().any(|m| m.fracture.is_some())
+    {
+        warnings.push(
+            "friction acts between points that were never bonded: the faces of a crack slide on each other without it"
+                .into(),
+        );
+    }
     let asymmetry = interaction.asymmetry();
     if asymmetry > SYMMETRIC {
         warnings.push(format!(
@@ -356,6 +365,7 @@ pub fn build_in<const D: usize>(
             let pairs = constitutive.first().pairs.as_ref();
             r.contact(&parts, &body, pairs.map_or(horizon, |p| p.shortest()))
         }),
+        friction: friction(spec, &body)?,
         release: spec.release,
         stop: || false,
         constitutive,
@@ -471,6 +481,41 @@ fn bind<const D: usize>(
         ConstitutiveModels::several(constitutive),
         Box::new(interaction),
     ))
+}
+
+/// Friction of contact; `None`: points slide freely.
+fn friction<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+) -> Result<Option<Friction<D>>, BuildError> {
+    let Some(coefficient) = spec.contact.as_ref().map(|c| c.friction) else {
+        return Ok(None);
+    };
+    let refused = |message: String, help: &str| {
+        Err(BuildError::new("contact.friction", message).help(help.to_string()))
+    };
+    if !(coefficient >= 0.0 && coefficient.is_finite()) {
+        return refused(
+            format!("the friction coefficient is {coefficient}, expected a number from 0 on"),
+            "0.3 is usual",
+        );
+    }
+    if coefficient == 0.0 {
+        return Ok(None);
+    }
+    if D == 1 {
+        return refused(
+            "points on a line have nothing to rub along".into(),
+            "leave friction out",
+        );
+    }
+    if spec.schedule.statics().is_some() {
+        return refused(
+            "friction follows velocities, which equilibrium does not have".into(),
+            "leave friction out, or take [run] instead of [statics]",
+        );
+    }
+    Ok(Some(Friction::new(coefficient, body)))
 }
 
 /// Names and sizes of several bodies.

@@ -18,6 +18,7 @@ use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
+use crate::interaction::friction::Friction;
 use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
 use crate::observe::{Ledger, Snapshot};
 use crate::space::Point;
@@ -31,6 +32,8 @@ pub struct Model<const D: usize> {
     pub(super) interaction: Box<dyn Interaction<D>>,
     /// Repulsion between points that are not in each other's family.
     pub(super) contact: Option<Contact<D>>,
+    /// Of the same points.
+    pub(super) friction: Option<Friction<D>>,
     pub(super) u: Field<D>,
     pub(super) v: Field<D>,
     pub(super) f: Field<D>,
@@ -88,6 +91,7 @@ impl<const D: usize> Model<D> {
         self.body.bytes()
             + self.interaction.bytes()
             + self.contact.as_ref().map_or(0, Contact::bytes)
+            + self.friction.as_ref().map_or(0, Friction::bytes)
             + 3 * D * 8 * self.body.len
     }
 

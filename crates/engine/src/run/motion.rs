@@ -80,6 +80,10 @@ impl<const D: usize> Model<D> {
             if let Some(watched) = &mut self.watched {
                 contact.add_energy_density(body, &self.u, &mut watched.repulsion);
             }
+            if let Some(friction) = &mut self.friction {
+                let state = [&self.u, &self.v];
+                friction.add(contact, body, state, &mut self.f, [dt, self.dt]);
+            }
         }
         for indenter in &mut self.indenters {
             indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
@@ -189,6 +193,9 @@ impl<const D: usize> Model<D> {
         let (t, dt, path) = (self.time(), self.dt, self.fastest);
         for load in &mut self.loads {
             load.begin(&self.body, &self.v, dt);
+        }
+        if let Some(friction) = &mut self.friction {
+            friction.begin(&self.body, &self.v, dt);
         }
         for indenter in &mut self.indenters {
             indenter.begin(&self.body, &self.v, t, dt, path);

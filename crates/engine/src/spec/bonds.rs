@@ -52,6 +52,8 @@ pub struct ContactSpec {
     /// Range in spacings for pairs far apart in the reference; 1.35 in LAMMPS.
     pub free: f64,
     pub stiffness: ContactStiffness,
+    /// Coulomb friction μ between points that were never bonded (–); 0: none.
+    pub friction: f64,
 }
 
 /// Stiffness of repulsion (force / volume² / length).

@@ -324,6 +324,7 @@ pub const CONTACT: ContactSpec = ContactSpec {
     bonded: 0.9,
     free: 1.35,
     stiffness: ContactStiffness::Laws,
+    friction: 0.0,
 };
 
 pub fn made(spec: &Spec) -> Box<dyn Simulation> {

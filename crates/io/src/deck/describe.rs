@@ -124,8 +124,13 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     }
     if let Some(contact) = &spec.contact {
         lines.push(format!(
-            "contact    below {} of the reference distance, within {} spacings",
-            contact.bonded, contact.free
+            "contact    below {} of the reference distance, within {} spacings{}",
+            contact.bonded,
+            contact.free,
+            match contact.friction {
+                0.0 => String::new(),
+                friction => format!(", friction {friction}"),
+            }
         ));
     }
     for indenter in &spec.indenters {

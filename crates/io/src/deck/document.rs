@@ -377,6 +377,8 @@ pub struct Contact {
     pub free: Option<Number>,
     /// Force / volume² / length; from the law when left out.
     pub stiffness: Option<Number>,
+    /// Coulomb friction between points that were never bonded; 0 when left out.
+    pub friction: Option<Number>,
 }
 
 /// Values at t = 0, expressions of x, y, z.

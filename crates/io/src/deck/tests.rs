@@ -58,7 +58,8 @@ fn a_deck_becomes_a_spec() {
         Some(ContactSpec {
             bonded: 0.9,
             free: 1.35,
-            stiffness: ContactStiffness::Laws
+            stiffness: ContactStiffness::Laws,
+            friction: 0.0,
         })
     );
     assert_eq!(spec.schedule.time_step, TimeStep::Fixed(1e-7));

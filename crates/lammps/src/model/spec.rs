@@ -82,6 +82,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
             bonded: 0.9,
             free: 1.35,
             stiffness: types.contact(),
+            friction: 0.0,
         }),
         initial: vec![],
         conditions: vec![],

@@ -413,6 +413,7 @@ fn contact(
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
+        friction: 0.0,
     };
     match &document.contact {
         Some(Or::Bare(false)) => Ok(None),
@@ -441,6 +442,10 @@ fn contact(
                         "the stiffness",
                     )?),
                     None => ContactStiffness::Laws,
+                },
+                friction: match &c.friction {
+                    Some(n) => context.positive(n, Dim::NUMBER, "the friction coefficient")?,
+                    None => 0.0,
                 },
             }))
         }
