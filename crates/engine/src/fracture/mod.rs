@@ -2,4 +2,3 @@
 
 pub mod fragments;
 pub mod precrack;
-

@@ -29,7 +29,7 @@ use crate::law::solid::eam_like::Solid;
 use crate::spec::{CrackKind, Release};
 pub use repulsion::{PairTable, Repulsion};
 use std::ops::AddAssign;
-pub use tangent::BondTangent;
+pub use tangent::{BondTangent, Channel};
 
 /// What a sweep reports besides its forces.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,14 +1,24 @@
 //! What small changes do: the tangent of a law about a state, bond by bond. Statics assembles it.
 //!
 //! With `η` the change of `u_j − u_i`: `δf_i = Σ_j C_ij η + Σ_j (δp_i pull_ij + δp_j pull'_ij)`, `δp_i = gain_i Σ_j share_ij · η`.
-//! The scalar p is the pressure of state-based solids, F′ of embedded atoms; pair laws have none.
+//! The scalar p is the pressure of state-based solids, F′ of embedded atoms; pair laws have none. Laws whose points make more than one
+//! number of their sums have a [`Channel`] for each sum.
 
 use crate::law::jet::{self, Jet};
 use crate::law::potential::Potential;
 use crate::law::{BondFactors, Law};
 
-/// A directed bond between two points.
+/// What a bond does through a sum `S` of a point, with its gain: `δf_i = δS_i pull + δS_j pull'`, `δS_i = Σ_j share_ij · η`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Channel<const D: usize> {
+    /// What the bond adds to the sum of i.
+    pub share: [f64; D],
+    /// What the sums of i and of j add to the force density on i.
+    pub pull: [[f64; D]; 2],
+}
+
+/// A directed bond between two points.
+#[derive(Debug, Clone, PartialEq)]
 pub struct BondTangent<const D: usize> {
     /// Slots of points, images resolved.
     pub i: usize,
@@ -23,6 +33,8 @@ pub struct BondTangent<const D: usize> {
     pub share: [f64; D],
     /// What the scalars of i and of j add to the force density on i.
     pub pull: [[f64; D]; 2],
+    /// Of laws with more than a scalar, as many for every bond; else none.
+    pub channels: Vec<Channel<D>>,
 }
 
 impl<const D: usize> BondTangent<D> {
@@ -36,6 +48,7 @@ impl<const D: usize> BondTangent<D> {
             stiffness,
             share: [0.0; D],
             pull: [[0.0; D]; 2],
+            channels: vec![],
         }
     }
 
@@ -75,6 +88,7 @@ impl<const D: usize> BondTangent<D> {
             stiffness: central(tension, slope * r0 / r, &n),
             share,
             pull,
+            channels: vec![],
         }
     }
 
@@ -105,6 +119,7 @@ impl<const D: usize> BondTangent<D> {
             stiffness: central(scale * first, scale * 2.0 * second, &y),
             share,
             pull,
+            channels: vec![],
         }
     }
 }

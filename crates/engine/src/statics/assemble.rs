@@ -1,7 +1,7 @@
 //! The linear body of any law about any state: tangents of bonds, gathered row by row.
 
 use crate::body::{Body, Field};
-use crate::interaction::{BondTangent, Interaction};
+use crate::interaction::{BondTangent, Channel, Interaction};
 use crate::spec::LinearBody;
 use rayon::prelude::*;
 
@@ -32,9 +32,10 @@ pub fn linear_body<const D: usize>(
     for i in 0..n {
         first[i + 1] += first[i];
     }
-    let gain: Vec<f64> = match bonds.scalar.is_empty() {
-        true => vec![],
-        false => (body.slots.iter())
+    let gain: Vec<f64> = match (bonds.channels, bonds.gained) {
+        (0, _) => vec![],
+        (_, true) => vec![1.0; n],
+        (_, false) => (body.slots.iter())
             .map(|s| interaction.gain(*s as usize))
             .collect(),
     };
@@ -81,41 +82,62 @@ struct DirectBond<const D: usize> {
     stiffness: [[f64; D]; D],
 }
 
-/// What a bond does through the scalars of its ends, as in [`BondTangent`].
-#[derive(Debug, Clone, Copy)]
-struct ScalarBond<const D: usize> {
-    share: [f64; D],
-    pull: [[f64; D]; 2],
-}
-
 /// All bonds.
 #[derive(Default)]
 struct Bonds<const D: usize> {
     direct: Vec<DirectBond<D>>,
-    /// Of laws without a scalar: empty.
-    scalar: Vec<ScalarBond<D>>,
+    /// So many for each bond.
+    channels: usize,
+    through: Vec<Channel<D>>,
+    /// Are gains in the channels?
+    gained: bool,
 }
 
 impl<const D: usize> Bonds<D> {
     fn push(&mut self, bond: &BondTangent<D>) {
-        let scalar = ScalarBond {
+        let none = Channel {
+            share: [0.0; D],
+            pull: [[0.0; D]; 2],
+        };
+        let scalar = Channel {
             share: bond.share,
             pull: bond.pull,
         };
-        if !self.scalar.is_empty() || scalar.share != [0.0; D] || scalar.pull != [[0.0; D]; 2] {
-            // those before had none
-            let none = ScalarBond {
-                share: [0.0; D],
-                pull: [[0.0; D]; 2],
-            };
-            self.scalar.resize(self.direct.len(), none);
-            self.scalar.push(scalar);
+        if !bond.channels.is_empty() {
+            // bodies beside this one may have fewer
+            self.widen(bond.channels.len(), none);
+            self.gained = true;
+            self.through.extend(&bond.channels);
+        } else if self.channels > 0 || scalar != none {
+            self.widen(1, none);
+            self.through.push(scalar);
         }
+        self.through
+            .resize((self.direct.len() + 1) * self.channels, none);
         self.direct.push(DirectBond {
             i: bond.i as u32,
             j: bond.j as u32,
             stiffness: bond.stiffness,
         });
+    }
+
+    /// At least so many channels for each bond so far.
+    fn widen(&mut self, channels: usize, none: Channel<D>) {
+        if channels <= self.channels {
+            return;
+        }
+        let mut wide = Vec::with_capacity(self.direct.len() * channels);
+        for n in 0..self.direct.len() {
+            let old = &self.through[n * self.channels..(n + 1) * self.channels];
+            wide.extend(old);
+            wide.resize((n + 1) * channels, none);
+        }
+        self.through = wide;
+        self.channels = channels;
+    }
+
+    fn channels_of(&self, n: usize) -> &[Channel<D>] {
+        &self.through[n * self.channels..(n + 1) * self.channels]
     }
 
     /// Into the order of i; most interactions come in it.
@@ -126,9 +148,10 @@ impl<const D: usize> Bonds<D> {
         let mut order: Vec<usize> = (0..self.direct.len()).collect();
         order.sort_by_key(|k| self.direct[*k].i);
         self.direct = order.iter().map(|k| self.direct[*k]).collect();
-        if !self.scalar.is_empty() {
-            self.scalar = order.iter().map(|k| self.scalar[*k]).collect();
-        }
+        self.through = order
+            .iter()
+            .flat_map(|k| self.channels_of(*k).to_vec())
+            .collect();
     }
 }
 
@@ -177,10 +200,9 @@ impl<const D: usize> Rows<'_, D> {
         }
     }
 
-    fn of(&self, i: usize) -> impl Iterator<Item = (&DirectBond<D>, &ScalarBond<D>)> {
+    fn of(&self, i: usize) -> impl Iterator<Item = (&DirectBond<D>, &[Channel<D>])> {
         let range = self.first[i]..self.first[i + 1];
-        let scalar = &self.bonds.scalar[range.clone()];
-        self.bonds.direct[range].iter().zip(scalar)
+        range.map(|n| (&self.bonds.direct[n], self.bonds.channels_of(n)))
     }
 
     fn part(&self, points: &[usize], row: &mut Row<D>) -> Part<D> {
@@ -232,31 +254,43 @@ impl<const D: usize> Rows<'_, D> {
 
     /// Every `η_jk` is `(u_k − u_i) − (u_j − u_i)`.
     fn gather(&self, i: usize, row: &mut Row<D>) {
-        let mut pulls = [0.0; D];
-        for (bond, scalar) in self.of(i) {
+        let mut pulls = vec![[0.0; D]; self.bonds.channels];
+        let mut shares = vec![[0.0; D]; self.bonds.channels];
+        for (bond, through) in self.of(i) {
             let j = bond.j as usize;
             row.add(j, |a, b| bond.stiffness[a][b]);
-            for a in 0..D {
-                pulls[a] += scalar.pull[0][a];
+            for (sum, c) in pulls.iter_mut().zip(through) {
+                for a in 0..D {
+                    sum[a] += c.pull[0][a];
+                }
             }
             let gain = self.gain[j];
             if gain != 0.0 {
-                let mut shares = [0.0; D];
+                shares.fill([0.0; D]);
                 for (far, beyond) in self.of(j) {
                     row.add(far.j as usize, |a, b| {
-                        gain * scalar.pull[1][a] * beyond.share[b]
+                        let all = through.iter().zip(beyond);
+                        all.map(|(c, far)| gain * c.pull[1][a] * far.share[b]).sum()
                     });
-                    for b in 0..D {
-                        shares[b] += beyond.share[b];
+                    for (sum, c) in shares.iter_mut().zip(beyond) {
+                        for b in 0..D {
+                            sum[b] += c.share[b];
+                        }
                     }
                 }
-                row.add(j, |a, b| -gain * scalar.pull[1][a] * shares[b]);
+                row.add(j, |a, b| {
+                    let all = through.iter().zip(&shares);
+                    all.map(|(c, sum)| -gain * c.pull[1][a] * sum[b]).sum()
+                });
             }
         }
         let gain = self.gain[i];
         if gain != 0.0 {
-            for (bond, scalar) in self.of(i) {
-                row.add(bond.j as usize, |a, b| gain * pulls[a] * scalar.share[b]);
+            for (bond, through) in self.of(i) {
+                row.add(bond.j as usize, |a, b| {
+                    let all = through.iter().zip(&pulls);
+                    all.map(|(c, sum)| gain * sum[a] * c.share[b]).sum()
+                });
             }
         }
     }

@@ -64,8 +64,10 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
             let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
             let shift = grid.shift(cell.map(i64::from), o.to as i64 - from as i64);
+            // other sublattices lie inside the arrays
+            let cells = grid.shift(cell.map(i64::from), 0);
             assert!(
-                shift.unsigned_abs() as usize <= grid.guard,
+                cells.unsigned_abs() as usize <= grid.guard,
                 "the body was made for shorter bonds: give `on_lattice` the reach of this stencil"
             );
             let bond = Bond {

@@ -92,6 +92,8 @@ pub struct Site<'a, C, F, H> {
 pub trait ForceState<N, const D: usize>: Copy {
     /// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` at i, where `other` is what j answers to the bond as it sees it.
     fn pull(self, other: Self, bond: &Bond<N, D>) -> [N; D];
+    /// `T⟨ξ⟩`
+    fn alone(self, bond: &Bond<N, D>) -> [N; D];
 }
 
 /// `T⟨ξ⟩ = t (ξ+η)`: along the bond, `t` over the current length.
@@ -108,6 +110,10 @@ impl<N: Number, const D: usize> ForceState<N, D> for Along<N> {
         }
         pull
     }
+    #[inline(always)]
+    fn alone(self, bond: &Bond<N, D>) -> [N; D] {
+        self.pull(Along(N::constant(0.0)), bond)
+    }
 }
 
 /// `T⟨ξ⟩` in any direction.
@@ -122,6 +128,10 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
             pull[a] = self.0[a] - other.0[a];
         }
         pull
+    }
+    #[inline(always)]
+    fn alone(self, _: &Bond<N, D>) -> [N; D] {
+        self.0
     }
 }
 
