@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crc32fast::Hasher;
-use peridyne::run::{PointField, Simulation};
+use peridyne::run::Simulation;
 use peridyne_io::write::atomic::{create_directory, write_file};
 
 use crate::experiment::{Context, Failure};
@@ -184,9 +184,9 @@ impl<R: Read> Summed<R> {
 }
 
 /// Displacements, then velocities, axis by axis.
-fn fields(dimension: usize) -> Vec<PointField> {
-    let u = (0..dimension).map(PointField::Displacement);
-    u.chain((0..dimension).map(PointField::Velocity)).collect()
+fn fields(dimension: usize) -> Vec<(&'static str, usize)> {
+    let of = |name| (0..dimension).map(move |axis| (name, axis));
+    of("displacement").chain(of("velocity")).collect()
 }
 
 fn save(
@@ -216,7 +216,7 @@ fn save(
         for field in fields(dimension) {
             for first in (0..points).step_by(BLOCK) {
                 let n = BLOCK.min(points - first);
-                sim.read(field, first, &mut block[..n]);
+                sim.read(field.0, field.1, first, &mut block[..n]);
                 out.numbers(&block[..n])?;
             }
         }
@@ -292,7 +292,7 @@ fn load(path: &PathBuf, inputs: &str, sim: &mut dyn Simulation) -> io::Result<Re
                 .iter()
                 .map(|b| f64::from_le_bytes(*b))
                 .collect();
-            sim.write(field, first, &values);
+            sim.write(field.0, field.1, first, &values);
         }
     }
     sim.set_time(step, step as f64 * dt);

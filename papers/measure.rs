@@ -1,6 +1,6 @@
 //! What several figures say of their runs, in numbers.
 
-use peridyne::run::{PointField, Simulation};
+use peridyne::run::Simulation;
 
 /// Points that are read at once.
 const BLOCK: usize = 8192;
@@ -43,10 +43,10 @@ pub fn stepper_energy(sim: &mut dyn Simulation) -> f64 {
     let [mut volume, mut density, mut force] = [0; 3].map(|_| vec![0.0; BLOCK.min(points)]);
     for first in (0..points).step_by(BLOCK) {
         let n = BLOCK.min(points - first);
-        sim.read(PointField::Volume, first, &mut volume[..n]);
-        sim.read(PointField::Density, first, &mut density[..n]);
+        sim.read("volume", 0, first, &mut volume[..n]);
+        sim.read("density", 0, first, &mut density[..n]);
         for axis in 0..dimension {
-            sim.read(PointField::Force(axis), first, &mut force[..n]);
+            sim.read("force_density", axis, first, &mut force[..n]);
             // force densities: m a² = V f²/ρ
             sum += (0..n)
                 .map(|i| volume[i] * force[i] * force[i] / density[i])

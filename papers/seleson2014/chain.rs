@@ -48,12 +48,12 @@ impl Wave {
     pub fn run(h: f64, family: Family) -> Result<Wave, Failure> {
         let deck = parsed(h, family)?;
         let mut sim = model(&deck, true)?;
-        let x: Vec<f64> = sim.reference().iter().map(|x| x[0]).collect();
-        let volume = sim.volumes();
+        let x: Vec<f64> = sim.vectors("reference").iter().map(|x| x[0]).collect();
+        let volume = sim.scalars("volume");
         let initial = sim.displacements();
         sim.set_displacements(&vec![[0.0; 3]; x.len()]);
         let at_rest = sim
-            .energy_density()
+            .scalars("energy_density")
             .iter()
             .zip(&volume)
             .map(|(e, v)| e * v)

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use peridyne::run::{PointField, Simulation};
+use peridyne::run::Simulation;
 use peridyne_io::write::plot::{Map, Plot};
 
 use super::{conserved, deck, model};
@@ -77,15 +77,11 @@ impl Cube {
                 let mut at = [0; 3];
                 at[axis] = k;
                 let mut u = [0.0];
-                sim.read(
-                    PointField::Displacement(axis),
-                    id(at[0], at[1], at[2]),
-                    &mut u,
-                );
+                sim.read("displacement", axis, id(at[0], at[1], at[2]), &mut u);
                 values.push(u[0]);
             }
         }
-        let energy = sim.energy_density();
+        let energy = sim.scalars("energy_density");
         let face = |axis: usize| {
             let half = n / 2;
             let pairs = (0..half).flat_map(|b| (0..half).map(move |a| [a, b]));
@@ -126,7 +122,7 @@ fn displacements(sim: &mut dyn Simulation) -> Vec<[f32; 3]> {
     for (block, part) in u.chunks_mut(BLOCK).enumerate() {
         for axis in 0..3 {
             let values = &mut values[..part.len()];
-            sim.read(PointField::Displacement(axis), block * BLOCK, values);
+            sim.read("displacement", axis, block * BLOCK, values);
             for (u, x) in part.iter_mut().zip(values) {
                 u[axis] = *x as f32;
             }
@@ -254,9 +250,9 @@ mod tests {
             steps: 10,
             part: 0,
         };
-        let sim = cube.model().unwrap();
+        let mut sim = cube.model().unwrap();
         assert_eq!(sim.info().points, 20 * 20 * 21);
-        let x = sim.reference();
+        let x = sim.vectors("reference");
         for (x, u) in x.iter().zip(sim.displacements()) {
             let r = x.iter().map(|x| x * x).sum::<f64>().sqrt();
             let p = if r > 0.0 {

@@ -104,9 +104,13 @@ impl Plate {
             bonds: info.directed_bonds,
             steps,
             record,
-            x: sim.reference().iter().map(|x| [x[0], x[1]]).collect(),
+            x: sim
+                .vectors("reference")
+                .iter()
+                .map(|x| [x[0], x[1]])
+                .collect(),
             u: sim.displacements().iter().map(|u| [u[0], u[1]]).collect(),
-            energy: sim.energy_density(),
+            energy: sim.scalars("energy_density"),
         })
     }
 }
@@ -320,9 +324,9 @@ mod tests {
     #[test]
     fn the_deck_begins_with_the_profile_and_has_the_bonds() {
         let coarse = plate(4, Step::Hundred);
-        let sim = coarse.model(false).unwrap();
+        let mut sim = coarse.model(false).unwrap();
         assert_eq!(sim.info().directed_bonds, bonds(200, 3.025));
-        for (x, u) in sim.reference().iter().zip(sim.displacements()) {
+        for (x, u) in sim.vectors("reference").iter().zip(sim.displacements()) {
             let r = x[0].hypot(x[1]);
             let p = if r > 0.0 {
                 pulse(r, 0.0, 0.2, 1e-4)

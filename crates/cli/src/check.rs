@@ -13,6 +13,7 @@ use crate::run::{enough_disk, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Simulation};
+use peridyne::space::Point;
 use peridyne::spec::{Criterion, Moduli, Spec};
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
@@ -148,7 +149,8 @@ fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) {
     let patch = patience(sim).then(|| patch_test(sim));
     let families = sim.families();
     let trial = trial(sim);
-    let found = find(&subject, patch, families, trial, threads);
+    let reference = subject.sim.vectors("reference");
+    let found = find(&subject, &reference, patch, families, trial, threads);
     say(&if arguments.json {
         json::write(&found)
     } else {
@@ -163,13 +165,13 @@ fn patience(sim: &dyn Simulation) -> bool {
 
 fn find<'a>(
     subject: &'a Subject,
+    reference: &[Point],
     patch: Option<PatchTest>,
     families: Families,
     trial: Trial,
     threads: usize,
 ) -> Findings<'a> {
     let sim = subject.sim.as_ref();
-    let reference = sim.reference();
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|a| reference.iter().map(|x| x[a]).fold(start, pick))
     };

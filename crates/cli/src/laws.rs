@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::fmt::Write;
 
 /// Tables of names in this order, with where they stand; others follow.
-const ORDER: [(&str, &str); 15] = [
+const ORDER: [(&str, &str); 14] = [
     ("Law", "laws (material.law)"),
     ("EndName", "ends of pair potentials at their cut-off (end)"),
     ("Fracture", "fracture (material.fracture)"),
@@ -32,7 +32,6 @@ const ORDER: [(&str, &str); 15] = [
     ("CrackName", "kinds of pre-crack (precrack.kind)"),
     ("MethodName", "methods of statics (statics.method)"),
     ("SolverName", "solvers of linear systems (statics.solver)"),
-    ("FieldName", "fields (output.fields)"),
     (
         "Constants",
         "physical constants of metal units (units.constants)",
@@ -55,6 +54,25 @@ pub fn print() -> Result<(), Failure> {
         if let Some(table) = all.get(name) {
             say(&format!("{title}\n{}", names(table, all)));
         }
+    }
+    say("fields of points (output.fields), beside those that laws declare");
+    for observable in peridyne::observe::observables::ALL {
+        let declaration = &observable.declaration;
+        let shape = match declaration.shape.components() {
+            [] => String::new(),
+            components => format!(" ({})", components.join(" ")),
+        };
+        let mut line = format!(
+            "  {:<26} {}{shape}; {}",
+            declaration.name, declaration.dimension, declaration.doc
+        );
+        if !observable.equation.is_empty() {
+            let _ = write!(line, " {}", observable.equation);
+        }
+        if !observable.source.is_empty() {
+            let _ = write!(line, " [{}]", observable.source);
+        }
+        say(&line);
     }
     say("lattices (body.lattice), spacing = edge of the cell (triangular: nearest neighbours)");
     for kind in LatticeKind::ALL {

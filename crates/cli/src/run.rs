@@ -7,8 +7,9 @@ use crate::progress::Terminal;
 use crate::script;
 use crate::signals;
 use peridyne::error::{BuildError, size};
-use peridyne::run::{Simulation, SnapshotOptions};
-use peridyne_io::deck::{Deck, Dim, FieldName, UnitSystem};
+use peridyne::observe::observables::USUAL;
+use peridyne::run::Simulation;
+use peridyne_io::deck::{Deck, Dim, UnitSystem};
 use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
@@ -169,6 +170,12 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     }
 }
 
+/// Columns of a frame.
+fn fields(deck: &Deck) -> Vec<String> {
+    let usual = || USUAL.map(String::from).to_vec();
+    deck.spec.fields.clone().unwrap_or_else(usual)
+}
+
 fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bool) -> Plan {
     let output = &deck.output;
     let (length_unit, time_unit, energy_unit) = match deck.units {
@@ -176,10 +183,6 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
         UnitSystem::Metal(_) => ("Å", "ps", "eV"),
         UnitSystem::Lj | UnitSystem::None => ("", "", ""),
     };
-    let energies = output
-        .fields
-        .iter()
-        .any(|f| matches!(f, FieldName::EnergyDensity | FieldName::Dilatation));
     let title = deck.spec.title.clone();
     Plan {
         deck: deck.file().to_string(),
@@ -205,11 +208,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
                 ..PictureOptions::default()
             }),
         },
-        snapshot: SnapshotOptions {
-            energies,
-            fragments: output.fields.contains(&FieldName::Fragment),
-            bonds: output.bonds,
-        },
+        fields: fields(deck),
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),
         atoms: deck.spec.potential().map(|_| {

@@ -5,7 +5,8 @@ use crate::deck;
 use crate::failure::{Failure, note, say};
 use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
-use peridyne::run::{Simulation, SnapshotOptions};
+use peridyne::observe::observables::USUAL;
+use peridyne::run::Simulation;
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::folder::Folder;
 use peridyne_io::write::picture::PictureOptions;
@@ -199,10 +200,7 @@ fn finish(
         report.status = Status::Ended;
         report.ended_by = Some(signal.to_string());
     }
-    let snapshot = sim.snapshot(SnapshotOptions {
-        energies: true,
-        ..SnapshotOptions::default()
-    });
+    let snapshot = sim.snapshot(&USUAL, false);
     // files and picture are made of the snapshot: room for them
     outcome.engine = None;
     let mut series = Series::new(dir, series_options)?;

@@ -67,7 +67,7 @@ pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
     sim.ledger()
         .map_err(|e| Failure::Run(format!("{name}: {e}")))?;
     Ok(Ran {
-        reference: sim.reference(),
+        reference: sim.vectors("reference"),
         displacement: sim.displacements(),
         spacing: sim.info().spacing,
         time: sim.time(),

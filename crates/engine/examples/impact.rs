@@ -20,7 +20,10 @@ fn main() {
     }
     let e = |s: &str| Expression::parse(s, &[]).unwrap();
     let spec = Spec {
+        boltzmann: 1.0,
         thermal: None,
+        fields: None,
+        probes: vec![],
         title: "impact".into(),
         dimension: 3,
         plane: Plane::Stress,

@@ -123,16 +123,16 @@ fn a_block_comes_to_rest_and_stays() {
         sim.step().unwrap();
     }
     let ids = sim.members("block").unwrap();
-    let place = |sim: &dyn Simulation| {
+    let place = |sim: &mut dyn Simulation| {
         let u = sim.displacements();
         ids.iter().map(|i| u[*i as usize][0]).sum::<f64>() / ids.len() as f64
     };
-    let stopped = place(sim.as_ref());
+    let stopped = place(sim.as_mut());
     assert!(stopped > 0.5, "it slid before: {stopped}");
     while sim.time() < 160.0 {
         sim.step().unwrap();
     }
-    let crept = place(sim.as_ref()) - stopped;
+    let crept = place(sim.as_mut()) - stopped;
     assert!(
         crept.abs() < 0.02 * stopped,
         "crept {crept} after {stopped}"
@@ -164,7 +164,7 @@ fn friction_keeps_momentum_and_gives_no_energy() {
     let mut sim = build(&glancing(), Options::default()).unwrap();
     sim.start(true);
     let momentum = |sim: &mut dyn Simulation| {
-        let (v, m) = (sim.velocities(), sim.volumes());
+        let (v, m) = (sim.velocities(), sim.scalars("volume"));
         [0, 1].map(|a| v.iter().zip(&m).map(|(v, m)| v[a] * m).sum::<f64>())
     };
     let before = momentum(sim.as_mut());
@@ -287,7 +287,7 @@ fn peridigm_contact_friction() {
             "{what}: {found}, not {gold}"
         );
     };
-    let f = sim.force_densities()[0];
+    let f = sim.vectors("force_density")[0];
     close(f[0], -925939790.8002278, 1e-12, "friction");
     close(f[1], -3086465969.3340926, 1e-12, "repulsion");
     for _ in 0..10 {
@@ -296,7 +296,7 @@ fn peridigm_contact_friction() {
     let (u, v, f) = (
         sim.displacements()[0],
         sim.velocities()[0],
-        sim.force_densities()[0],
+        sim.vectors("force_density")[0],
     );
     close(u[0], 0.0005161390262286383, 1e-10, "u_x");
     close(u[1], -0.001627616851598227, 1e-10, "u_y");

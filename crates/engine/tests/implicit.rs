@@ -82,7 +82,7 @@ fn a_mode_of_a_free_bar_moves_as_the_method_says_and_to_second_order() {
         for n in 1..=steps {
             sim.step().unwrap();
             let amplitude = 0.01 * (f64::from(n) * turn).cos();
-            for (x, u) in sim.reference().iter().zip(sim.displacements()) {
+            for (x, u) in sim.vectors("reference").iter().zip(sim.displacements()) {
                 let exact = amplitude * (3.0 * PI * (x[0] + 0.5) / 20.0).cos();
                 assert!((u[0] - exact).abs() < 1e-13, "step {n}: {u:?}, not {exact}");
             }
@@ -339,7 +339,7 @@ fn met(spec: &Spec, gold: &[[f64; 3]]) {
         let found = [
             sim.displacements()[1][0],
             sim.velocities()[1][0],
-            sim.force_densities()[1][0],
+            sim.vectors("force_density")[1][0],
         ];
         assert!((found[0] - u).abs() < 1e-6);
         for (found, gold) in found.iter().zip([u, v, f]) {

@@ -80,8 +80,8 @@ fn collision(fraction: f64) -> Spec {
 }
 
 fn momentum(sim: &mut dyn Simulation) -> ([f64; 2], f64) {
-    let (v, m) = (sim.velocities(), sim.volumes());
-    let rho = sim.densities();
+    let (v, m) = (sim.velocities(), sim.scalars("volume"));
+    let rho = sim.scalars("density");
     let mut p = [0.0; 2];
     let mut size = 0.0;
     for ((v, m), rho) in v.iter().zip(&m).zip(&rho) {
@@ -124,7 +124,7 @@ fn colliding_bodies_keep_momentum_and_energy() {
         }
         assert!(touched > 1e-2 * initial, "they hardly touched: {touched}");
         assert_eq!(sim.fragments(), 2);
-        assert!(sim.damage().iter().all(|d| *d == 0.0));
+        assert!(sim.scalars("damage").iter().all(|d| *d == 0.0));
         worst.push(most);
     }
     // second order in the step, up to pairs that come and go
@@ -175,7 +175,7 @@ fn one_of_several_is_the_body_itself() {
                 let energy = sim.ledger().unwrap();
                 (
                     sim.displacements(),
-                    sim.damage(),
+                    sim.scalars("damage"),
                     energy.strain,
                     sim.broken(),
                 )
@@ -227,7 +227,7 @@ fn bodies_a_spacing_apart_are_not_bonded() {
     // lift the upper one: nothing pulls
     let mut sim = build(&several(2.0), Options::default()).unwrap();
     let lift: Vec<_> = sim
-        .reference()
+        .vectors("reference")
         .iter()
         .map(|x| [0.0, if x[1] > 5.0 { 0.3 } else { 0.0 }, 0.0])
         .collect();
@@ -522,8 +522,8 @@ fn traction_takes_the_faces_of_the_body_it_acts_on() {
     }];
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
-    let total: f64 = (sim.force_densities().iter())
-        .zip(sim.volumes())
+    let total: f64 = (sim.vectors("force_density").iter())
+        .zip(sim.scalars("volume"))
         .map(|(f, v)| f[0] * v)
         .sum();
     // twelve points, a spacing of 1 each

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peridyne::error::{RunError, SolveError};
-use peridyne::observe::{Ledger, Snapshot};
-use peridyne::run::{Simulation, SnapshotOptions};
+use peridyne::observe::{Ledger, Snapshot, Values, temperature_of};
+use peridyne::run::Simulation;
 use peridyne::spec::AnyLinearBody;
 
 use crate::balance::BalanceWatch;
@@ -40,7 +40,8 @@ pub struct Plan {
     /// Write `linear_body.npz` about the last state.
     pub linear_body: bool,
     pub series: SeriesOptions,
-    pub snapshot: SnapshotOptions,
+    /// Columns of a frame.
+    pub fields: Vec<String>,
     /// Units of time and energy, for headers.
     pub time_unit: String,
     pub energy_unit: String,
@@ -50,6 +51,16 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// What a frame shows.
+    fn look(&self, sim: &mut dyn Simulation) -> Snapshot {
+        let mut fields: Vec<&str> = self.fields.iter().map(String::as_str).collect();
+        // the picture shows it
+        if self.series.picture.is_some() && !fields.contains(&"damage") {
+            fields.push("damage");
+        }
+        sim.snapshot(&fields, self.series.bonds)
+    }
+
     /// Do the files that the deck names lie inside the folder, links included, or may they be anywhere?
     fn stays_inside(&self) -> Result<(), WriteError> {
         let named = self.atoms.iter().flat_map(|a| {
@@ -93,7 +104,7 @@ pub struct AtomsPlan {
 }
 
 impl AtomsPlan {
-    /// Temperature (D N − D degrees of freedom) and pressure: `(2 E_kin + Σ r·f) / (D V)`.
+    /// Temperature and pressure: `(2 E_kin + Σ r·f) / (D V)`.
     fn thermo(&self, sim: &mut dyn Simulation, kinetic: f64) -> [f64; 2] {
         let (d, n, mut volume) = {
             let info = sim.info();
@@ -104,26 +115,20 @@ impl AtomsPlan {
             volume = periods.iter().product::<f64>() * sim.info().section;
         }
         let virial: f64 = sim.virial()[..d].iter().sum();
-        let free = (d as u64 * n.saturating_sub(1).max(1)) as f64;
         [
-            2.0 * kinetic / (free * self.boltzmann),
+            temperature_of(kinetic, d, n, self.boltzmann),
             (2.0 * kinetic + virial) / (d as f64 * volume) * self.pressure_scale,
         ]
     }
 
     fn frame(&self, sim: &mut dyn Simulation) -> Atoms {
         let n = sim.info().points as usize;
-        let (x, u) = (sim.reference(), sim.displacements());
-        let volume = sim.volumes();
+        let position = sim.vectors("position");
+        let volume = sim.scalars("volume");
         let mass = volume
             .first()
             .map(|v| rounded(self.density * v * self.mass_scale));
-        let position: Vec<[f64; 3]> = x
-            .iter()
-            .zip(&u)
-            .map(|(x, u)| std::array::from_fn(|a| x[a] + u[a]))
-            .collect();
-        let force = sim.force_densities();
+        let force = sim.vectors("force_density");
         let force = force.iter().zip(&volume).map(|(f, v)| f.map(|f| f * v));
         let [mut low, mut high] = Atoms::bounds(&position);
         for a in 0..3 {
@@ -140,7 +145,7 @@ impl AtomsPlan {
             velocity: Some(sim.velocities()),
             force: Some(force.collect()),
             energy: Some(
-                sim.energy_density()
+                sim.scalars("energy_density")
                     .iter()
                     .zip(&volume)
                     .map(|(e, v)| e * v)
@@ -312,13 +317,13 @@ pub fn drive(
             && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
             && (plan.series.points || plan.series.bonds || plan.series.dump.is_some())
         {
-            series.write(&sim.snapshot(plan.snapshot))?;
+            series.write(&plan.look(sim))?;
         }
         if last {
             break;
         }
     }
-    let snapshot = sim.snapshot(plan.snapshot);
+    let snapshot = plan.look(sim);
     series.write(&snapshot)?;
     series.finish(&snapshot)?;
     history.finish()?;
@@ -426,7 +431,13 @@ fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Resul
         let mut shape = state.clone();
         shape.step = n as u64 + 1;
         shape.time = mode.frequency;
-        shape.displacement = mode.shape;
+        let displacement = shape
+            .columns
+            .iter_mut()
+            .find(|c| c.name() == "displacement");
+        if let Some(column) = displacement {
+            column.values = Values::Vectors(mode.shape);
+        }
         series.write(&shape)?;
     }
     Ok(())

@@ -57,7 +57,7 @@ fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
         first[0]
     );
     // kinetic part and virial, over the box
-    let (v, volumes) = (sim.velocities(), sim.volumes());
+    let (v, volumes) = (sim.velocities(), sim.scalars("volume"));
     let box_volume: f64 = volumes.iter().sum();
     let virial = sim.virial();
     for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
@@ -73,7 +73,7 @@ fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
             first[1 + k]
         );
     }
-    let forces = sim.force_densities();
+    let forces = sim.vectors("force_density");
     let largest = golden[1]
         .iter()
         .flatten()
@@ -101,7 +101,7 @@ fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
             "{name}: {what} after 100 steps: {found} is not {exact}"
         );
     }
-    let (x, u) = (sim.reference(), sim.displacements());
+    let (x, u) = (sim.vectors("reference"), sim.displacements());
     for (i, exact) in golden[3].iter().enumerate() {
         for a in 0..3 {
             let y = x[i][a] + u[i][a];

@@ -114,8 +114,8 @@ fn densities_come_from_the_data_file_or_from_the_materials() {
     let text = std::fs::read_to_string(&path).unwrap();
     let densities = |overrides: &[(String, String)]| {
         let deck = Deck::parse(&text, path.to_str().unwrap(), overrides).unwrap();
-        let sim = build(&deck.spec, Options::default()).unwrap();
-        (sim.densities(), sim.families().material)
+        let mut sim = build(&deck.spec, Options::default()).unwrap();
+        (sim.scalars("density"), sim.families().material)
     };
     let (density, material) = densities(&[]);
     assert_eq!(density.len(), 128);

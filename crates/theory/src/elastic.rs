@@ -143,10 +143,10 @@ struct Sorted {
     weight: Vec<f64>,
 }
 
-fn classes(sim: &dyn Simulation, info: &Info) -> Sorted {
+fn classes(sim: &mut dyn Simulation, info: &Info) -> Sorted {
     let d = info.dimension;
     let families = sim.families();
-    let volume = sim.volumes();
+    let volume = sim.scalars("volume");
     let full = full_family(sim, &families.volume);
     let cell = info.volume / info.points.max(1) as f64 / info.section;
     let m = info.horizon / cell.powf(1.0 / d as f64);

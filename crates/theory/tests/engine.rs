@@ -62,7 +62,10 @@ fn case(
         periodic[a] = Some(H * kind.edges()[a] * cells[a] as f64);
     }
     let spec = Spec {
+        boltzmann: 1.0,
         thermal: None,
+        fields: None,
+        probes: vec![],
         title: String::new(),
         dimension: d,
         plane: Plane::Stress,
@@ -150,7 +153,7 @@ fn forces<const D: usize>(
     let modes = crystal.modes(k);
     let top = modes[modes.len() - 1].squared;
     let amplitude = 1e-8 * H;
-    let reference = sim.reference();
+    let reference = sim.vectors("reference");
     for mode in &modes {
         let u: Vec<[f64; 3]> = reference
             .iter()
@@ -168,7 +171,7 @@ fn forces<const D: usize>(
             .collect();
         sim.set_displacements(&u);
         sim.start(true);
-        for (f, u) in sim.force_densities().iter().zip(&u) {
+        for (f, u) in sim.vectors("force_density").iter().zip(&u) {
             for a in 0..D {
                 let expected = -RHO * mode.squared * u[a];
                 let scale = RHO * top * amplitude;

@@ -135,8 +135,8 @@ fn stress(spec: &Spec, m: u32, strain: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     sigma
 }
 
-fn displaced(sim: &dyn Simulation, e: &[[f64; 3]; 3], by: f64) -> Vec<Point> {
-    sim.reference()
+fn displaced(sim: &mut dyn Simulation, e: &[[f64; 3]; 3], by: f64) -> Vec<Point> {
+    sim.vectors("reference")
         .iter()
         .map(|x| std::array::from_fn(|a| by * (0..3).map(|b| e[a][b] * x[b]).sum::<f64>()))
         .collect()
@@ -146,14 +146,15 @@ fn displaced(sim: &dyn Simulation, e: &[[f64; 3]; 3], by: f64) -> Vec<Point> {
 fn misfit(spec: &Spec, m: u32, n: [i32; 3]) -> f64 {
     let d = spec.dimension;
     let mut sim = at_rest(spec, None);
-    let volumes = sim.volumes();
+    let volumes = sim.scalars("volume");
     let face = H.powi(d as i32 - 1) * spec.section;
     let mut worst = 0.0f64;
     for e in strains(d) {
         let sigma = stress(spec, m, &e);
-        let f = sim.forces_under(&displaced(sim.as_ref(), &e, STRAIN));
+        let u = displaced(sim.as_mut(), &e, STRAIN);
+        let f = sim.forces_under(&u);
         let (mut difference, mut largest) = (0.0f64, 0.0f64);
-        for ((f, v), x) in f.iter().zip(&volumes).zip(sim.reference()) {
+        for ((f, v), x) in f.iter().zip(&volumes).zip(sim.vectors("reference")) {
             let c = x.map(|x| (x / H).round() as i32);
             let half = |a: usize| c[a] == 0 || c[a] == n[a] - 1;
             // outward area: that of the faces through the point, halved at their edges, quartered at corners
@@ -239,11 +240,12 @@ fn state_based_solids_are_exact_in_every_strain() {
 /// Residual at inner points and resultants of the surface, for bodies whose areas are not written out here.
 fn residual_inside(spec: &Spec) -> f64 {
     let mut sim = at_rest(spec, None);
-    let (v, x) = (sim.volumes(), sim.reference());
+    let (v, x) = (sim.scalars("volume"), sim.vectors("reference"));
     let whole = H.powi(spec.dimension as i32) * spec.section;
     let mut worst = 0.0f64;
     for e in strains(spec.dimension) {
-        let f = sim.forces_under(&displaced(sim.as_ref(), &e, STRAIN));
+        let u = displaced(sim.as_mut(), &e, STRAIN);
+        let f = sim.forces_under(&u);
         let size = |f: &Point| f.iter().fold(0.0f64, |m, c| m.max(c.abs()));
         let largest = f
             .iter()
@@ -340,7 +342,7 @@ fn worn() -> Vec<(Spec, Vec<Point>)> {
 fn force_is_the_derivative_of_energy_and_momentum_is_kept() {
     for (spec, mut u) in worn() {
         let mut sim = at_rest(&spec, None);
-        let volumes = sim.volumes();
+        let volumes = sim.scalars("volume");
         let f = sim.forces_under(&u);
         let size = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
         let sum: Point =
@@ -352,7 +354,7 @@ fn force_is_the_derivative_of_energy_and_momentum_is_kept() {
         );
         let mut energy = |u: &[Point]| {
             sim.set_displacements(u);
-            let density = sim.energy_density();
+            let density = sim.scalars("energy_density");
             density
                 .iter()
                 .zip(&volumes)

@@ -19,7 +19,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let plate = Plate::new(context, 2, Step::Hundred);
     let mut sim = plate.model(false)?;
     sim.start(false);
-    let (x, u): (Vec<f64>, Vec<f64>) = (sim.reference().iter())
+    let (x, u): (Vec<f64>, Vec<f64>) = (sim.vectors("reference").iter())
         .zip(sim.displacements())
         .filter(|(x, _)| x[1].abs() < 0.5 * plate.spacing() && x[0] >= 0.0)
         .map(|(x, u)| (x[0], u[0]))

@@ -102,7 +102,7 @@ impl Level {
             points: info.points,
             steps,
             seconds: began.elapsed().as_secs_f64(),
-            reference: sim.reference(),
+            reference: sim.vectors("reference"),
             displacement: sim.displacements(),
             error: None,
             difference: None,

@@ -38,7 +38,17 @@ impl Shape {
         }
     }
 
-    /// Numbers of a value in `d` dimensions.
+    /// Names of the numbers of a value; none of a scalar.
+    pub const fn components(self) -> &'static [&'static str] {
+        match self {
+            Shape::Scalar => &[],
+            Shape::Vector => &["x", "y", "z"],
+            Shape::Symmetric => &["xx", "yy", "zz", "xy", "xz", "yz"],
+            Shape::Tensor => &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"],
+        }
+    }
+
+    /// Numbers of a value in `d` dimensions, in the order of their names without those of axes that are not there.
     pub const fn stored(self, d: usize) -> usize {
         match self {
             Shape::Scalar => 1,

@@ -75,6 +75,24 @@ impl<const D: usize> Constraint<D> {
         self.slots.iter().map(move |s| (*s as usize, held))
     }
 
+    /// Every component that is held: place in the list of points, slot, axis.
+    pub fn each(&self, mut visit: impl FnMut(usize, usize, usize)) {
+        for (k, &s) in self.slots.iter().enumerate() {
+            (0..D)
+                .filter(|a| self.program.acts(*a))
+                .for_each(|a| visit(k, s as usize, a));
+        }
+    }
+
+    /// Acceleration as prescribed at `t`, between the middles of the steps before and after (length / time²).
+    pub fn acceleration(&self, a: usize, k: usize, t: f64, dt: f64) -> f64 {
+        let at = |t: f64| self.program.at(a, k, &self.points[k], t);
+        match self.kind {
+            Prescribed::Displacement => (at(t + dt) - 2.0 * at(t) + at(t - dt)) / (dt * dt),
+            Prescribed::Velocity => (at(t + 0.5 * dt) - at(t - 0.5 * dt)) / dt,
+        }
+    }
+
     pub fn is_velocity(&self) -> bool {
         self.kind == Prescribed::Velocity
     }

@@ -44,6 +44,11 @@ pub struct Load<const D: usize> {
 }
 
 impl<const D: usize> Load<D> {
+    /// The slots that it acts on.
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
     pub fn new(kind: LoadKind<D>, slots: Vec<u32>, points: Vec<Point>) -> Self {
         let last = vec![[0.0; D]; slots.len()];
         Load {

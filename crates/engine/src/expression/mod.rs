@@ -24,6 +24,7 @@ mod tests;
 
 pub use measure::{Measure, Misfit, Rule};
 use op::{Binary, Op};
+pub(crate) use parse::nearest;
 use std::fmt;
 use std::ops::Range;
 

@@ -450,7 +450,10 @@ fn number_length(text: &str) -> usize {
 }
 
 /// The candidate within an edit distance of 2 (1 for short names), if any.
-fn nearest<'b>(name: &str, candidates: impl Iterator<Item = &'b str>) -> Option<&'b str> {
+pub(crate) fn nearest<'b>(
+    name: &str,
+    candidates: impl Iterator<Item = &'b str>,
+) -> Option<&'b str> {
     let limit = if name.len() <= 3 { 1 } else { 2 };
     candidates
         .map(|candidate| (edits(name.as_bytes(), candidate.as_bytes()), candidate))

@@ -1,8 +1,64 @@
 //! What bonds remember: the next critical stretch, and the energy of those that just broke.
 
 use super::Toughness;
+use super::bond::critical_stretch;
+use crate::body::Body;
+use crate::columns::{Declaration, Dimension, Shape};
 use crate::execute::lane::{Lane, TILE};
 use crate::law::Law;
+
+/// Name of the column of whole bonds.
+pub const WHOLE: &str = "whole";
+/// Name of the column of critical stretches.
+const CRITICAL: &str = "critical_stretch";
+
+/// What peridynamic laws of bits remember; `breaks`: do bonds break?
+pub fn columns(breaks: bool) -> Vec<Declaration> {
+    let whole = Declaration::of_bonds(WHOLE, Dimension::NUMBER, "1: the bond is whole, 0: broken.");
+    let critical = Declaration::of_points(
+        CRITICAL,
+        Shape::Scalar,
+        Dimension::NUMBER,
+        "Stretch s0 = s00 − α s_min beyond which a bond of the point breaks (Silling, Askari 2005); ∞: not known yet, or no bond is left.",
+    );
+    let mut all = vec![whole];
+    all.extend(breaks.then_some(critical));
+    all
+}
+
+/// [`read_column`](super::Interaction::read_column) of critical stretches, of critical values of `e` for each slot.
+pub fn read_critical<const D: usize>(
+    body: &Body<D>,
+    critical: &[f64],
+    name: &str,
+    out: &mut Vec<f64>,
+) -> bool {
+    out.clear();
+    if name != CRITICAL || critical.is_empty() {
+        return false;
+    }
+    out.resize(body.len, 0.0);
+    for &s in &body.slots {
+        out[s as usize] = critical_stretch(critical[s as usize]);
+    }
+    true
+}
+
+/// [`write_column`](super::Interaction::write_column) of the same.
+pub fn write_critical<const D: usize>(
+    body: &Body<D>,
+    critical_e: &mut [f64],
+    name: &str,
+    values: &[f64],
+) -> bool {
+    if name != CRITICAL || critical_e.is_empty() || values.len() != body.len {
+        return false;
+    }
+    for &s in &body.slots {
+        critical_e[s as usize] = critical(values[s as usize]);
+    }
+    true
+}
 
 /// `s` of `e`.
 #[inline(always)]

@@ -4,7 +4,7 @@
 //! along their reference direction and may go through each other.
 
 use super::scale::{Scale, TileFactors};
-use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Grid, Identity, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -248,26 +248,20 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         });
     }
 
+    /// Of the linear forces, along the reference distances.
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.tangents(body, u, &mut |bond| visit(bond.linear_force(u)));
+        true
+    }
+
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         self.links
             .each(body, &mut |i, j, xi| visit(i, j, xi, BondState::Whole));
-    }
-
-    /// Of the linear forces, along the reference distances.
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        self.check(body, &[u]);
-        let Layout::Grid(grid) = &body.layout else {
-            return None;
-        };
-        let mut sum = [0.0; 6];
-        self.links.each_directed(grid, |i, j, sub, k| {
-            let c = &self.stiffness[sub][k];
-            let pull: [f64; D] =
-                std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
-            let factor = -0.5 * body.volume.at(i) * self.factor(grid, i, k);
-            super::add_virial(&mut sum, &pull, &self.links.links[sub][k].xi, factor);
-        });
-        Some(sum)
     }
 
     fn scale_bonds(

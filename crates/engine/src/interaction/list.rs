@@ -4,14 +4,15 @@
 mod images;
 mod kernel;
 
-use super::bond::critical_stretch;
+use super::history;
 use super::pairs::BondTable;
 use super::weight::BondWeight;
 use super::{
-    BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
-    Repulsion, Sweep, Tally, Toughness, add_virial, along, laws_fields,
+    BondForce, BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
+    PointEnergies, Repulsion, Sweep, Tally, Toughness, along, laws_fields,
 };
 use crate::body::{Body, Field, Identity, zeros};
+use crate::columns::Declaration;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
@@ -395,12 +396,13 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         }
     }
 
-    /// With constants of pairs: their directed bonds need not pull with opposite forces.
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
         self.check(body, &[u]);
-        if self.pairs.materials() == 0 {
-            return None;
-        }
         let mut moved = std::mem::take(&mut self.moved);
         self.pack(u, &mut moved);
         self.moved = moved;
@@ -408,16 +410,18 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
             self.share();
         }
         let view = self.view(&self.moved);
-        let mut virial = [0.0; 6];
         for (row, &i) in self.list.rows.iter().enumerate() {
+            let i = i as usize;
             for (line, j) in self.list.partners(row) {
                 let alive = self.alive[line] >> (row % TILE) & 1 == 1;
-                let (pull, y) = view.pull_of(i as usize, j, alive);
-                let force = y.map(|c| pull * c);
-                add_virial(&mut virial, &force, &y, -0.5 * body.volume.at(i as usize));
+                let (pull, y) = view.pull_of(i, j, alive);
+                if pull != 0.0 {
+                    let force = y.map(|c| pull * c);
+                    visit(BondForce { i, j, y, force });
+                }
             }
         }
-        Some(virial)
+        true
     }
 
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
@@ -530,18 +534,53 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.list.near_horizon
     }
 
-    fn critical_stretch(&self, slot: usize) -> f64 {
-        self.critical
-            .get(slot)
-            .map_or(f64::INFINITY, |e| critical_stretch(*e))
-    }
-
     fn point_field(&self, field: usize, slot: usize) -> f64 {
         self.fields.get(2 * slot + field).copied().unwrap_or(0.0)
     }
 
     fn in_family(&self, _: &Body<D>, i: usize, j: usize) -> bool {
         self.list.partners(self.list.row(i)).any(|(_, k)| k == j)
+    }
+
+    fn columns(&self) -> Vec<Declaration> {
+        history::columns(!self.critical.is_empty())
+    }
+
+    fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        match name {
+            history::WHOLE => {
+                out.clear();
+                for row in 0..self.list.rows.len() {
+                    let bit = |line: usize| f64::from(self.alive[line] >> (row % TILE) & 1);
+                    out.extend(self.list.partners(row).map(|(line, _)| bit(line)));
+                }
+                true
+            }
+            _ => history::read_critical(body, &self.critical, name, out),
+        }
+    }
+
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        if name != history::WHOLE {
+            return history::write_critical(body, &mut self.critical, name, values);
+        }
+        let bonds = (0..self.list.rows.len()).flat_map(|row| {
+            self.list
+                .partners(row)
+                .map(move |(line, _)| (line, row % TILE))
+        });
+        let bonds: Vec<_> = bonds.collect();
+        if bonds.len() != values.len() {
+            return false;
+        }
+        for ((line, lane), value) in bonds.into_iter().zip(values) {
+            let bit = 1 << lane;
+            match *value != 0.0 && self.list.present[line] & bit != 0 {
+                true => self.alive[line] |= bit,
+                false => self.alive[line] &= !bit,
+            }
+        }
+        true
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {

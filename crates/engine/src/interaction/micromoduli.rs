@@ -1,6 +1,6 @@
 //! Given micromoduli: `f_i = Σ_j C_ij (u_j − u_i)`, a block for every directed bond. Coarsened bodies, composites, defects.
 
-use super::{BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, add_virial};
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::{Body, Field, Identity};
 use crate::execute::blocks::{Shared, for_each_block};
 use crate::execute::lane::Lane;
@@ -240,18 +240,14 @@ impl<const D: usize> Interaction<D> for MicromoduliInteraction<D> {
     }
 
     /// Of the linear forces, along the reference distances.
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        self.check(body, &[u]);
-        let mut sum = [0.0; 6];
-        for (row, &slot) in self.slots.iter().enumerate() {
-            let i = slot as usize;
-            for (j, c, xi) in self.bonds(row) {
-                let pull: [f64; D] =
-                    std::array::from_fn(|a| (0..D).map(|b| c[a][b] * (u[b][j] - u[b][i])).sum());
-                add_virial(&mut sum, &pull, xi, -0.5 * body.volume.at(i));
-            }
-        }
-        Some(sum)
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.tangents(body, u, &mut |bond| visit(bond.linear_force(u)));
+        true
     }
 
     fn asymmetry(&self) -> f64 {

@@ -227,7 +227,12 @@ fn laws_fields<W: Law>() {
 const VIRIAL: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
 /// Add `factor · y ⊗ pull` to a virial.
-fn add_virial<const D: usize>(sum: &mut [f64; 6], pull: &[f64; D], y: &[f64; D], factor: f64) {
+pub(crate) fn add_virial<const D: usize>(
+    sum: &mut [f64; 6],
+    pull: &[f64; D],
+    y: &[f64; D],
+    factor: f64,
+) {
     for (sum, (m, n)) in sum.iter_mut().zip(VIRIAL) {
         if n < D {
             *sum += factor * y[m] * pull[n];
@@ -399,10 +404,15 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// What enumerates the bonds: `"stencil"`, `"list"` or `"neighbours"`.
     fn family(&self) -> &'static str;
 
-    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the model
-    /// knows better.
-    fn virial(&mut self, _body: &Body<D>, _u: &Field<D>) -> Option<[f64; 6]> {
-        None
+    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces
+    /// of single bonds.
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        let mut virial = [0.0; 6];
+        let known = self.each_force(body, u, &mut |bond| {
+            let factor = -0.5 * body.volume.at(bond.i);
+            add_virial(&mut virial, &bond.force, &bond.y, factor);
+        });
+        known.then_some(virial)
     }
 
     /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot; 0 for points without a family.
@@ -462,11 +472,6 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Directed pairs whose distance is within round-off of the horizon, in or out, where that was counted.
     fn near_horizon(&self) -> u64 {
         0
-    }
-
-    /// Critical stretch s0 of a slot (∞ before the first sweep).
-    fn critical_stretch(&self, _slot: usize) -> f64 {
-        f64::INFINITY
     }
 
     /// Point field of the law at a slot; 0 where the law has none.

@@ -90,6 +90,23 @@ impl Repulsion {
         self.stiffness.at(a, b)
     }
 
+    /// Coefficient of the way `y` from one point to another, away from each other: `K V (r − d)/r` below the distance d, else 0;
+    /// `xi` is that way in the reference, `volume` that of the other.
+    pub fn pull<const D: usize>(
+        &self,
+        xi: &[f64; D],
+        y: &[f64; D],
+        materials: [usize; 2],
+        volume: f64,
+    ) -> f64 {
+        let length = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let (r, d) = (length(y), self.distance(length(xi), materials));
+        match r < d && r > 0.0 {
+            true => self.of(materials) * volume * (r - d) / r,
+            false => 0.0,
+        }
+    }
+
     /// K of eight pairs, by the materials of their ends.
     #[inline(always)]
     pub fn lanes<L: Lane>(&self, a: [u8; TILE], b: [u8; TILE]) -> L {

@@ -2,9 +2,10 @@
 //!
 //! Sweeps want the columns of their own body, so displacements, velocities and forces are copied in and out.
 
-use super::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
+use super::{BondForce, BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::several::Piece;
 use crate::body::{Body, Field, Identity, Layout, zeros};
+use crate::columns::{Declaration, On};
 use crate::error::BuildError;
 use crate::law::BondFactors;
 use crate::spec::CrackKind;
@@ -225,6 +226,101 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        let mut all = true;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                take(u, p, &mut own.u);
+                all &= bonds.each_force(&p.body, &own.u, &mut |bond| {
+                    visit(BondForce {
+                        i: bond.i + p.first,
+                        j: bond.j + p.first,
+                        ..bond
+                    });
+                });
+            }
+        }
+        all
+    }
+
+    fn columns(&self) -> Vec<Declaration> {
+        let mut all: Vec<Declaration> = vec![];
+        for own in self.own.iter().filter_map(|o| o.bonds.as_ref()) {
+            for column in own.columns() {
+                if !all.iter().any(|c| c.name == column.name) {
+                    all.push(column);
+                }
+            }
+        }
+        all
+    }
+
+    /// Bodies that have no such column have 0 at their points, and no bonds in it.
+    fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        out.clear();
+        let Some(column) = self.columns().into_iter().find(|c| c.name == name) else {
+            return false;
+        };
+        let numbers = column.shape.stored(D);
+        let mut own = vec![];
+        if column.on == On::Points {
+            out.resize(numbers * body.len, 0.0);
+        }
+        for (p, bonds) in self.each(body) {
+            if bonds.read_column(&p.body, &part(u, p), name, &mut own) {
+                match column.on {
+                    On::Points => {
+                        out[numbers * p.first..][..own.len()].copy_from_slice(&own);
+                    }
+                    On::Bonds => out.extend_from_slice(&own),
+                }
+            }
+        }
+        true
+    }
+
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        let Some(column) = self.columns().into_iter().find(|c| c.name == name) else {
+            return false;
+        };
+        let numbers = column.shape.stored(D);
+        let mut first = 0;
+        let mut parts = vec![];
+        for (n, (p, own)) in pieces(body).iter().zip(&self.own).enumerate() {
+            let Some(bonds) = &own.bonds else { continue };
+            if !bonds.columns().iter().any(|c| c.name == name) {
+                continue;
+            }
+            let range = match column.on {
+                On::Points => numbers * p.first..numbers * (p.first + p.body.len),
+                On::Bonds => {
+                    let (begin, mut own) = (first, vec![]);
+                    bonds.read_column(&p.body, &p.body.at_rest(), name, &mut own);
+                    first += own.len();
+                    begin..first
+                }
+            };
+            parts.push((n, range));
+        }
+        let length = match column.on {
+            On::Points => numbers * body.len,
+            On::Bonds => first,
+        };
+        if values.len() != length {
+            return false;
+        }
+        let pieces = pieces(body);
+        parts.into_iter().all(|(n, range)| {
+            let bonds = self.own[n].bonds.as_mut().expect("it has the column");
+            bonds.write_column(&pieces[n].body, name, &values[range])
+        })
+    }
+
     fn gain(&self, slot: usize) -> f64 {
         self.at(slot, |bonds, _, s| bonds.gain(s)).unwrap_or(0.0)
     }
@@ -296,11 +392,6 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn near_horizon(&self) -> u64 {
         let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
         all.map(|b| b.near_horizon()).sum()
-    }
-
-    fn critical_stretch(&self, slot: usize) -> f64 {
-        self.at(slot, |bonds, _, s| bonds.critical_stretch(s))
-            .unwrap_or(f64::INFINITY)
     }
 
     fn point_field(&self, field: usize, slot: usize) -> f64 {

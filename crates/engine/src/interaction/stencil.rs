@@ -4,13 +4,14 @@
 mod assemble;
 mod kernel;
 
-use super::bond::critical_stretch;
+use super::history;
 use super::scale::Scale;
 use super::{
-    BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants, PointEnergies,
-    Repulsion, Sweep, Tally, Toughness,
+    BondForce, BondState, BondTangent, EnergyFields, Interaction, Motion, PointConstants,
+    PointEnergies, Repulsion, Sweep, Tally, Toughness,
 };
 use crate::body::{Body, Column, Field, Identity, Layout, field, zeros};
+use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
@@ -147,6 +148,29 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             }
             PointConstants::None | PointConstants::PerMaterial(_) => [0.0; 2],
         }
+    }
+
+    /// Where the bits of all directed bonds are between points that there are, in order of slots: byte and lane.
+    fn bits<'a>(&'a self, body: &'a Body<D>) -> impl Iterator<Item = (usize, usize)> + 'a {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        let tiles = self.tiles.iter().enumerate();
+        tiles.flat_map(move |(n, &t)| {
+            let slot = grid.tile_slot(t as usize);
+            let partners = &self.partners[grid.tile_sublattice(t as usize)];
+            let owned = (0..TILE).filter(move |l| grid.is_owned(slot + l));
+            owned.flat_map(move |l| {
+                let there = move |k: &usize| {
+                    grid.neighbour(slot + l, partners[*k].cell, partners[*k].to)
+                        .is_some()
+                };
+                let first = n * self.width;
+                (0..partners.len())
+                    .filter(there)
+                    .map(move |k| (first + k, l))
+            })
+        })
     }
 
     fn row(&self, n: usize) -> &[u8] {
@@ -288,6 +312,61 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
                 }
             }
         }
+    }
+
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        if W::SHARES {
+            // the pressures of this state
+            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+        }
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        let original = body.originals();
+        let field = |n: usize, slot: usize| self.fields[n].get(slot).copied().unwrap_or(0.0);
+        for (n, &t) in self.tiles.iter().enumerate() {
+            let first = grid.tile_slot(t as usize);
+            let bonds = &self.bonds[grid.tile_sublattice(t as usize)];
+            for i in (first..first + TILE).filter(|i| grid.is_owned(*i)) {
+                for (b, bits) in bonds.iter().zip(self.row(n)) {
+                    let alive = bits >> (i - first) & 1 == 1;
+                    if !alive && self.repulsion.is_none() {
+                        continue;
+                    }
+                    let j = b.to(i);
+                    let eta: [f64; D] = std::array::from_fn(|a| u[a][j] - u[a][i]);
+                    let xi = b.back.map(|x| -x);
+                    let ends = [i, original(j)];
+                    let mut pull = 0.0;
+                    let y = std::array::from_fn(|a| xi[a] + eta[a]);
+                    if alive {
+                        let fields = [i, j].map(|s| [field(0, s), field(1, s)]);
+                        let factors = self.scale.of(n, b.number as usize, i - first);
+                        pull = BondTangent::of_law(self.law, ends, b.k, factors, xi, eta, fields)
+                            .tension;
+                    }
+                    if let Some(repulsion) = &self.repulsion {
+                        let materials = ends.map(|s| body.material_of(s));
+                        pull += repulsion.pull(&xi, &y, materials, self.volume);
+                    }
+                    if pull != 0.0 {
+                        let force = y.map(|c| pull * c);
+                        visit(BondForce {
+                            i,
+                            j: ends[1],
+                            y,
+                            force,
+                        });
+                    }
+                }
+            }
+        }
+        true
     }
 
     fn gain(&self, slot: usize) -> f64 {
@@ -514,12 +593,6 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
             .map_or(0, |f| *f as usize)
     }
 
-    fn critical_stretch(&self, slot: usize) -> f64 {
-        self.critical
-            .get(slot)
-            .map_or(f64::INFINITY, |e| critical_stretch(*e))
-    }
-
     fn point_field(&self, field: usize, slot: usize) -> f64 {
         self.fields[field].get(slot).copied().unwrap_or(0.0)
     }
@@ -531,6 +604,51 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let ((ci, bi), (cj, bj)) = (grid.cell(i), grid.cell(j));
         self.offsets
             .contains(std::array::from_fn(|a| cj[a] - ci[a]), bi, bj)
+    }
+
+    fn columns(&self) -> Vec<Declaration> {
+        history::columns(!self.critical.is_empty())
+    }
+
+    fn read_column(&self, body: &Body<D>, _: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        match name {
+            history::WHOLE => {
+                out.clear();
+                let bit = |(at, l): (usize, usize)| f64::from(self.alive[at] >> l & 1);
+                out.extend(self.bits(body).map(bit));
+                true
+            }
+            _ => history::read_critical(body, &self.critical, name, out),
+        }
+    }
+
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        let Layout::Grid(grid) = &body.layout else {
+            unreachable!("stencils live on grids")
+        };
+        if name != history::WHOLE {
+            if !history::write_critical(body, &mut self.critical, name, values) {
+                return false;
+            }
+            body.fill_images(&mut self.critical);
+            let known = body.slots.iter().map(|s| self.critical[*s as usize]);
+            self.least_critical = known.fold(f64::INFINITY, f64::min);
+            self.settled = false;
+            return true;
+        }
+        let bits: Vec<_> = self.bits(body).collect();
+        if bits.len() != values.len() {
+            return false;
+        }
+        for ((at, l), value) in bits.into_iter().zip(values) {
+            match *value != 0.0 {
+                true => self.alive[at] |= 1 << l,
+                false => self.alive[at] &= !(1 << l),
+            }
+        }
+        self.settled = false;
+        self.look(grid);
+        true
     }
 
     fn memory(&self) -> (&[u8], &[f64]) {

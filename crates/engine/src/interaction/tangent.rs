@@ -4,6 +4,8 @@
 //! The scalar p is the pressure of state-based solids, F′ of embedded atoms; pair laws have none. Laws whose points make more than one
 //! number of their sums have a [`Channel`] for each sum.
 
+use super::BondForce;
+use crate::body::Field;
 use crate::law::jet::{self, Jet};
 use crate::law::potential::Potential;
 use crate::law::{BondFactors, Law};
@@ -49,6 +51,29 @@ impl<const D: usize> BondTangent<D> {
             share: [0.0; D],
             pull: [[0.0; D]; 2],
             channels: vec![],
+        }
+    }
+
+    /// What the point i of a central law gets from it.
+    pub(super) fn force(&self) -> BondForce<D> {
+        BondForce {
+            i: self.i,
+            j: self.j,
+            y: self.y,
+            force: self.y.map(|y| self.tension * y),
+        }
+    }
+
+    /// The same of a linear law.
+    pub(super) fn linear_force(&self, u: &Field<D>) -> BondForce<D> {
+        let eta: [f64; D] = std::array::from_fn(|a| u[a][self.j] - u[a][self.i]);
+        BondForce {
+            i: self.i,
+            j: self.j,
+            y: self.y,
+            force: self
+                .stiffness
+                .map(|row| row.iter().zip(&eta).map(|(c, e)| c * e).sum()),
         }
     }
 

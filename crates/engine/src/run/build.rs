@@ -366,6 +366,7 @@ pub fn build_in<const D: usize>(
             r.contact(&parts, &body, pairs.map_or(horizon, |p| p.shortest()))
         }),
         friction: friction(spec, &body)?,
+        boltzmann: spec.boltzmann,
         release: spec.release,
         stop: || false,
         constitutive,
@@ -384,6 +385,7 @@ pub fn build_in<const D: usize>(
         watch_virials: false,
         virials: None,
         indenters: vec![],
+        probes: vec![],
         sets,
         carriers,
         carrier_sets,
@@ -411,6 +413,7 @@ pub fn build_in<const D: usize>(
         model.dt = model.dt.min(model.step_of_speeds(potential));
         model.info.time_step = model.dt;
     }
+    model.check_fields(spec.fields.as_deref().unwrap_or_default())?;
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.sets = sets;
@@ -433,6 +436,7 @@ pub fn build_in<const D: usize>(
             model.statics = Some(StaticState::new(statics));
         }
     }
+    model.probes = model.probes_of(&spec.probes)?;
     Ok(model)
 }
 

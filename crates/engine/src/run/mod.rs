@@ -15,8 +15,10 @@ mod gaps;
 mod implicit;
 mod model;
 mod motion;
+mod observation;
 mod parts;
 mod probe;
+mod probes;
 mod record;
 mod reference;
 mod sets;
@@ -27,11 +29,12 @@ pub use build::{Options, build, build_in, build_with};
 pub use constitutive::Shelf;
 pub use model::Model;
 
+use crate::columns::Declaration;
 use crate::condition::carried::Motion;
 use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
-use crate::observe::{Ledger, Snapshot};
+use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot, Values};
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, Stepper};
 use crate::statics::Solved;
@@ -87,28 +90,6 @@ pub struct Gap {
     pub contact: f64,
 }
 
-/// What to fill into a snapshot beyond positions, velocities and damage.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct SnapshotOptions {
-    pub energies: bool,
-    pub fragments: bool,
-    pub bonds: bool,
-}
-
-/// A number per point that can be read in blocks; axes are 0, 1, 2.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PointField {
-    /// Reference position (length).
-    Reference(usize),
-    Displacement(usize),
-    Velocity(usize),
-    /// Force density of the last sweep with all that acts (force / volume).
-    Force(usize),
-    Volume,
-    Density,
-    CriticalStretch,
-}
-
 /// What surrounds every point in the reference, in order of point id.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Families {
@@ -120,19 +101,6 @@ pub struct Families {
     pub material: Vec<u8>,
     /// `[N]` is there a partner of another material?
     pub foreign: Vec<bool>,
-}
-
-/// What a force evaluation sees of every point, in order of point id.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Observed {
-    /// `[N]` strain energy densities of bonds (energy / volume).
-    pub strain: Vec<f64>,
-    /// `[N]` energy densities of repulsion, half of a pair's at either end (energy / volume).
-    pub repulsion: Vec<f64>,
-    /// `[N]` dilatations θ (–).
-    pub dilatation: Vec<f64>,
-    /// `[N]` weighted volume of whole bonds over that of the family, of state-based laws (–).
-    pub whole: Vec<f64>,
 }
 
 /// A directed bond between atoms about the state of now, with `V = φ + (F′ + F′) f`.
@@ -217,7 +185,25 @@ pub trait Simulation: Send {
     /// Energies now; an error if the balance shows that the run has gone unstable.
     fn ledger(&mut self) -> Result<Ledger, RunError>;
 
-    fn snapshot(&mut self, options: SnapshotOptions) -> Snapshot;
+    /// Everything that points and bonds have a value of: observables, and what laws declare.
+    fn columns(&mut self) -> Vec<Declaration>;
+    /// The values of a column, by point id; of one over bonds in the order of [`Interaction::read_column`](crate::interaction::Interaction::read_column). `None`: there is none of this name.
+    fn column(&mut self, name: &str) -> Option<Column>;
+    /// Displacements and these columns, of what exists; unbroken bonds if asked for. Nothing else is computed.
+    fn snapshot(&mut self, fields: &[&str], bonds: bool) -> Snapshot;
+    /// Sets a persistent column of the law to numbers as [`Simulation::column`] gives them, those of the dimension's components
+    /// only. False: there is no such column of the law, it follows from others, or the number of values is another.
+    fn set_column(&mut self, name: &str, values: &[f64]) -> bool;
+    /// Columns of all probes of the specification.
+    fn probe_columns(&self) -> Vec<ProbeColumn>;
+    /// What the probes measure now, in the order of their columns.
+    fn measure(&mut self) -> Vec<f64>;
+    /// Values of points `first..first + out.len()` of a component of `reference`, `displacement`, `velocity` or `force_density`, or of `volume` or `density`, without a copy
+    /// of the others; 0 on axes beyond the dimension. False: no such column can be read so.
+    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool;
+    /// Sets a component of `displacement` or `velocity` of points `first..first + values.len()`; axes beyond the dimension do not
+    /// exist and are left alone. Call [`Simulation::start`] afterwards. False: the column cannot be set.
+    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool;
 
     /// Directed bonds broken since the start.
     fn broken(&self) -> u64;
@@ -225,23 +211,10 @@ pub trait Simulation: Send {
     /// Number of fragments (connected by whole bonds) now.
     fn fragments(&self) -> u64;
 
-    fn displacements(&self) -> Vec<Point>;
     fn set_displacements(&mut self, u: &[Point]);
-    fn velocities(&mut self) -> Vec<Point>;
     fn set_velocities(&mut self, v: &[Point]);
-    /// Force densities of the last sweep.
-    fn force_densities(&self) -> Vec<Point>;
-    fn reference(&self) -> Vec<Point>;
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
-    fn volumes(&self) -> Vec<f64>;
-    fn densities(&self) -> Vec<f64>;
-    fn damage(&self) -> Vec<f64>;
-    fn dilatation(&self) -> Vec<f64>;
-    /// Strain and contact energy density (energy / volume), half of a pair's energy at each end.
-    fn energy_density(&mut self) -> Vec<f64>;
-    /// Critical stretch s0 of every point.
-    fn critical_stretch(&self) -> Vec<f64>;
 
     /// Sizes, volumes and materials of all families now.
     fn families(&self) -> Families;
@@ -260,12 +233,6 @@ pub trait Simulation: Send {
         sets: &[(String, Vec<u32>)],
         indenters: &[crate::spec::IndenterSpec],
     ) -> Result<(), BuildError>;
-
-    /// Values of points `first..first + out.len()`; 0 on axes beyond the dimension.
-    fn read(&mut self, field: PointField, first: usize, out: &mut [f64]);
-    /// Sets displacements or velocities of points `first..first + values.len()`; other fields cannot be set, axes
-    /// beyond the dimension do not exist: both are left alone. Call [`Simulation::start`] afterwards.
-    fn write(&mut self, field: PointField, first: usize, values: &[f64]);
 
     /// Keep energies and dilatations of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its
     /// forces see them: with the bonds that break in it. LAMMPS prints these.
@@ -313,4 +280,30 @@ pub trait Simulation: Send {
 
     /// Points that no step moves; they keep their velocity. Replaces those of the last call.
     fn set_still(&mut self, ids: &[u32]);
+}
+
+impl dyn Simulation + '_ {
+    /// Values of a column of vectors by point id; none if there is no such column.
+    pub fn vectors(&mut self, name: &str) -> Vec<Point> {
+        match self.column(name).map(|c| c.values) {
+            Some(Values::Vectors(v)) => v,
+            _ => vec![],
+        }
+    }
+
+    /// Values of a column of numbers by point id; none if there is no such column.
+    pub fn scalars(&mut self, name: &str) -> Vec<f64> {
+        match self.column(name).map(|c| c.values) {
+            Some(Values::Scalars(v)) => v,
+            _ => vec![],
+        }
+    }
+
+    pub fn displacements(&mut self) -> Vec<Point> {
+        self.vectors("displacement")
+    }
+
+    pub fn velocities(&mut self) -> Vec<Point> {
+        self.vectors("velocity")
+    }
 }

@@ -3,10 +3,10 @@
 use super::constitutive::ConstitutiveModels;
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
-use super::{
-    AtomBond, Families, Info, ModeShape, Observed, PointField, Simulation, SnapshotOptions, Wall,
-};
+use super::probes::state::Probe;
+use super::{AtomBond, Families, Info, ModeShape, Simulation, Wall};
 use crate::body::{Body, Field};
+use crate::columns::Declaration;
 use crate::condition::carried::{Carried, Motion};
 use crate::condition::constraint::Constraint;
 use crate::condition::driven::{Drive, Driven};
@@ -20,7 +20,7 @@ use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
 use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
-use crate::observe::{Ledger, Snapshot};
+use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot};
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, Carriers, ConditionSpec, IndenterSpec, Release};
 use crate::statics::Solved;
@@ -55,8 +55,11 @@ pub struct Model<const D: usize> {
     /// The same for the virial of each slot.
     pub(super) watch_virials: bool,
     pub(super) virials: Option<Vec<[f64; 6]>>,
+    /// Boltzmann's constant (energy / temperature).
+    pub(super) boltzmann: f64,
     /// Laws and constants, for what is computed pair by pair.
     pub(super) constitutive: ConstitutiveModels,
+    pub(super) probes: Vec<Probe>,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,
     /// Of a condensed body: where its loads act, and the named sets there.
@@ -237,8 +240,28 @@ impl<const D: usize> Simulation for Model<D> {
         self.balance()
     }
 
-    fn snapshot(&mut self, options: SnapshotOptions) -> Snapshot {
-        self.record(options)
+    fn columns(&mut self) -> Vec<Declaration> {
+        self.declared()
+    }
+
+    fn column(&mut self, name: &str) -> Option<Column> {
+        self.columns_of([name].into_iter()).pop()
+    }
+
+    fn set_column(&mut self, name: &str, values: &[f64]) -> bool {
+        self.store(name, values)
+    }
+
+    fn probe_columns(&self) -> Vec<ProbeColumn> {
+        Model::probe_columns(self)
+    }
+
+    fn measure(&mut self) -> Vec<f64> {
+        Model::measure(self)
+    }
+
+    fn snapshot(&mut self, fields: &[&str], bonds: bool) -> Snapshot {
+        self.record(fields, bonds)
     }
 
     fn broken(&self) -> u64 {
@@ -247,10 +270,6 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn fragments(&self) -> u64 {
         Fragments::of(&self.body, self.interaction.as_ref()).count() as u64
-    }
-
-    fn displacements(&self) -> Vec<Point> {
-        self.vectors(&self.u)
     }
 
     fn set_displacements(&mut self, u: &[Point]) {
@@ -262,22 +281,9 @@ impl<const D: usize> Simulation for Model<D> {
         self.look_again();
     }
 
-    fn velocities(&mut self) -> Vec<Point> {
-        self.finish();
-        self.vectors(&self.v)
-    }
-
     fn set_velocities(&mut self, v: &[Point]) {
         self.finish();
         Self::scatter(&self.body, &mut self.v, v);
-    }
-
-    fn force_densities(&self) -> Vec<Point> {
-        self.vectors(&self.f)
-    }
-
-    fn reference(&self) -> Vec<Point> {
-        self.by_id(|i| self.body.position(i))
     }
 
     fn members(&self, set: &str) -> Option<Vec<u32>> {
@@ -286,35 +292,6 @@ impl<const D: usize> Simulation for Model<D> {
         }
         let named = self.sets.iter().find(|(name, _)| name == set);
         named.map(|(_, ids)| ids.clone())
-    }
-
-    fn volumes(&self) -> Vec<f64> {
-        self.by_id(|i| self.body.volume.at(i))
-    }
-
-    fn densities(&self) -> Vec<f64> {
-        self.by_id(|i| self.body.density.at(i))
-    }
-
-    fn damage(&self) -> Vec<f64> {
-        let mut damage = vec![0.0; self.body.len];
-        self.interaction.damage(&self.body, &mut damage);
-        self.by_id(|i| damage[i])
-    }
-
-    fn dilatation(&self) -> Vec<f64> {
-        let out = self.seen_now();
-        self.by_id(|i| out.dilatation[i])
-    }
-
-    fn energy_density(&mut self) -> Vec<f64> {
-        let seen = self.observed();
-        let both = seen.strain.iter().zip(&seen.repulsion);
-        both.map(|(a, b)| a + b).collect()
-    }
-
-    fn critical_stretch(&self) -> Vec<f64> {
-        self.by_id(|i| self.interaction.critical_stretch(i))
     }
 
     fn families(&self) -> Families {
@@ -358,56 +335,57 @@ impl<const D: usize> Simulation for Model<D> {
         Ok(())
     }
 
-    fn read(&mut self, field: PointField, first: usize, out: &mut [f64]) {
-        if matches!(field, PointField::Velocity(_)) {
-            self.finish();
-        }
-        let body = &self.body;
-        let vector = match field {
-            PointField::Reference(a) => return body.coordinates(first, a, out),
-            PointField::Displacement(a) => self.u.get(a),
-            PointField::Velocity(a) => self.v.get(a),
-            PointField::Force(a) => self.f.get(a),
-            PointField::Volume | PointField::Density | PointField::CriticalStretch => None,
+    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
+        let vector = match name {
+            "reference" => {
+                self.body.coordinates(first, component, out);
+                return true;
+            }
+            "displacement" => &self.u,
+            "velocity" => {
+                self.finish();
+                &self.v
+            }
+            "force_density" => &self.f,
+            "volume" | "density" => {
+                let (volume, density) = (&self.body.volume, &self.body.density);
+                let values = if name == "volume" { volume } else { density };
+                for (x, &s) in out.iter_mut().zip(&self.body.slots[first..]) {
+                    *x = values.at(s as usize);
+                }
+                return true;
+            }
+            _ => return false,
         };
-        let points = out.iter_mut().zip(&body.slots[first..]);
-        if let Some(component) = vector {
-            return points.for_each(|(x, &s)| *x = component[s as usize]);
+        match vector.get(component) {
+            Some(values) => {
+                for (x, &s) in out.iter_mut().zip(&self.body.slots[first..]) {
+                    *x = values[s as usize];
+                }
+            }
+            None => out.fill(0.0),
         }
-        for (x, &s) in points {
-            *x = match field {
-                PointField::Volume => body.volume.at(s as usize),
-                PointField::Density => body.density.at(s as usize),
-                PointField::CriticalStretch => self.interaction.critical_stretch(s as usize),
-                // of an axis that the body does not have
-                PointField::Reference(_)
-                | PointField::Displacement(_)
-                | PointField::Velocity(_)
-                | PointField::Force(_) => 0.0,
-            };
-        }
+        true
     }
 
-    fn write(&mut self, field: PointField, first: usize, values: &[f64]) {
+    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool {
         self.finish();
-        if matches!(field, PointField::Displacement(_)) {
-            self.look_again();
-            self.virial = None;
-            self.virials = None;
-        }
-        let component = match field {
-            PointField::Displacement(a) => self.u.get_mut(a),
-            PointField::Velocity(a) => self.v.get_mut(a),
-            PointField::Reference(_)
-            | PointField::Force(_)
-            | PointField::Volume
-            | PointField::Density
-            | PointField::CriticalStretch => None,
+        let vector = match name {
+            "displacement" => {
+                self.look_again();
+                self.virial = None;
+                self.virials = None;
+                &mut self.u
+            }
+            "velocity" => &mut self.v,
+            _ => return false,
         };
-        let Some(component) = component else { return };
-        for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
-            component[s as usize] = *value;
+        if let Some(component) = vector.get_mut(component) {
+            for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
+                component[s as usize] = *value;
+            }
         }
+        true
     }
 
     fn watch_next(&mut self) {

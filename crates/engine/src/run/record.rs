@@ -1,61 +1,10 @@
-//! What is written down of a model: snapshots, families, energies under strain.
+//! What is written down of a model: families, energies under strain, bonds of atoms.
 
 use super::model::Model;
-use super::{AtomBond, Families, Simulation, SnapshotOptions};
-use crate::fracture::fragments::Fragments;
+use super::{AtomBond, Families};
 use crate::interaction::{BondState, PointEnergies};
-use crate::observe::Snapshot;
 
 impl<const D: usize> Model<D> {
-    pub(super) fn record(&mut self, options: SnapshotOptions) -> Snapshot {
-        self.finish();
-        let mut snapshot = Snapshot {
-            step: self.step,
-            time: self.time(),
-            dimension: D,
-            spacing: self.body.spacing,
-            reference: self.reference(),
-            displacement: self.displacements(),
-            velocity: self.vectors(&self.v),
-            damage: self.damage(),
-            mark: if self.body.mark.is_empty() {
-                vec![0; self.body.points()]
-            } else {
-                self.body.mark.clone()
-            },
-            body: match self.body.pieces() {
-                [] => vec![],
-                _ => self.by_id(|i| self.body.piece_of(i) as u32),
-            },
-            ..Snapshot::default()
-        };
-        if options.energies {
-            self.refresh_images();
-            let energies = self.seen_now();
-            snapshot.energy_density = self.by_id(|i| energies.strain[i] + energies.repulsion[i]);
-            snapshot.dilatation = self.by_id(|i| energies.dilatation[i]);
-        }
-        if options.fragments {
-            snapshot.fragment = Some(Fragments::of(&self.body, self.interaction.as_ref()).label);
-        }
-        if options.bonds {
-            let mut id = vec![0u32; self.body.len];
-            for (k, &s) in self.body.slots.iter().enumerate() {
-                id[s as usize] = k as u32;
-            }
-            let mut bonds = vec![];
-            self.interaction
-                .each_bond(&self.body, &mut |i, j, _, state| {
-                    if state == BondState::Whole {
-                        let (a, b) = (id[i], id[j]);
-                        bonds.push((a.min(b), a.max(b)));
-                    }
-                });
-            snapshot.bonds = Some(bonds);
-        }
-        snapshot
-    }
-
     pub(super) fn count_families(&self) -> Families {
         let mut volume = vec![0.0; self.body.len];
         let mut foreign = vec![false; self.body.len];
@@ -94,10 +43,7 @@ impl<const D: usize> Model<D> {
             return None;
         }
         self.refresh_images();
-        let mut id = vec![0u32; self.body.len];
-        for (n, &s) in self.body.slots.iter().enumerate() {
-            id[s as usize] = n as u32;
-        }
+        let id = self.ids();
         let body = &self.body;
         self.interaction.tangents(body, &self.u, &mut |bond| {
             let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();

@@ -11,6 +11,7 @@ mod family;
 mod law;
 mod linear_body;
 mod potential;
+mod probe;
 mod schedule;
 mod surface;
 
@@ -31,6 +32,7 @@ pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{
     Buckingham, End, Form, LennardJones, MeiSpec, Morse, PotentialSpec, TableSpec,
 };
+pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
 pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};
@@ -74,6 +76,8 @@ pub struct Spec {
     pub precracks: Vec<PrecrackSpec>,
     pub contact: Option<ContactSpec>,
     pub initial: Vec<InitialSpec>,
+    /// Boltzmann's constant in these units (energy / temperature); 1 where temperatures are energies.
+    pub boltzmann: f64,
     /// Maxwellian velocities, given before those of `initial`.
     pub thermal: Option<ThermalSpec>,
     pub conditions: Vec<ConditionSpec>,
@@ -81,6 +85,10 @@ pub struct Spec {
     /// Which family enumerates the bonds; `Auto` takes the stencil for lattice bodies, the list otherwise.
     pub family: FamilyChoice,
     pub schedule: Schedule,
+    /// Columns of points that the caller will ask for, by name; a name that does not exist is an error. `None`: what is usual.
+    pub fields: Option<Vec<String>>,
+    /// What is measured over time.
+    pub probes: Vec<ProbeSpec>,
 }
 
 impl Spec {
@@ -114,6 +122,7 @@ impl Spec {
             precracks: vec![],
             contact: None,
             initial: vec![],
+            boltzmann: 1.0,
             thermal: None,
             conditions: vec![],
             indenters: vec![],
@@ -124,6 +133,8 @@ impl Spec {
                 force_unstable: false,
                 stepper: Stepper::Verlet,
             },
+            fields: None,
+            probes: vec![],
         }
     }
 }

@@ -76,7 +76,11 @@ fn springs_conserve_the_energy_of_the_scheme() {
     let (mut first, mut wobble) = (None, 0.0f64);
     for _ in 0..300 {
         let ledger = sim.ledger().unwrap();
-        let a2: f64 = sim.force_densities().iter().map(|f| f[0] * f[0]).sum();
+        let a2: f64 = sim
+            .vectors("force_density")
+            .iter()
+            .map(|f| f[0] * f[0])
+            .sum();
         let exact = ledger.kinetic + ledger.strain - dt * dt / 8.0 * a2;
         let first = *first.get_or_insert(exact);
         assert!((exact / first - 1.0).abs() < 1e-12, "{exact} {first}");

@@ -46,7 +46,7 @@ fn force_is_the_derivative_of_energy() {
                     let d = sim.info().dimension;
                     let u = shaken(sim.as_mut(), 0.06);
                     sim.start(true);
-                    let (f, v) = (sim.force_densities(), sim.volumes());
+                    let (f, v) = (sim.vectors("force_density"), sim.scalars("volume"));
                     let size = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
                     let total: [f64; 3] =
                         std::array::from_fn(|a| f.iter().zip(&v).map(|(f, v)| f[a] * v).sum());
@@ -92,8 +92,8 @@ fn fixed_and_current_neighbours_say_the_same_near_the_lattice() {
                 let [a, b] = sims.each_mut().map(|sim| {
                     shaken(sim.as_mut(), 0.02);
                     sim.start(true);
-                    let energies = sim.energy_density();
-                    (sim.force_densities(), energies, sim.virial())
+                    let energies = sim.scalars("energy_density");
+                    (sim.vectors("force_density"), energies, sim.virial())
                 });
                 let scale = a.0.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));
                 for (x, y) in a.0.iter().flatten().zip(b.0.iter().flatten()) {
@@ -123,7 +123,7 @@ fn the_virial_is_the_derivative_with_respect_to_strain() {
             let spec = atoms(kind, cells, &potential, FamilyChoice::Neighbours, false);
             let mut sim = build(&spec, Options::default()).unwrap();
             let u = shaken(sim.as_mut(), 0.05);
-            let x = sim.reference();
+            let x = sim.vectors("reference");
             let d = sim.info().dimension;
             sim.start(true);
             let virial = sim.virial();
@@ -208,11 +208,11 @@ fn watched_energies_are_the_observed_ones() {
             let spec = atoms(LatticeKind::Fcc, 3, &potential, family, true);
             let mut sim = build(&spec, Options::default()).unwrap();
             let u = shaken(sim.as_mut(), 0.06);
-            let fresh = sim.energy_density();
+            let fresh = sim.scalars("energy_density");
             sim.watch_next();
             sim.start(true);
             let seen = sim.watched().unwrap().strain;
-            assert_eq!(seen, sim.energy_density(), "{name}, {family:?}");
+            assert_eq!(seen, sim.scalars("energy_density"), "{name}, {family:?}");
             let scale = seen.iter().fold(0.0f64, |m, e| m.max(e.abs()));
             for (x, y) in seen.iter().zip(&fresh) {
                 assert!((x - y).abs() < 1e-12 * scale, "{name}, {family:?}");
@@ -220,9 +220,9 @@ fn watched_energies_are_the_observed_ones() {
             // far away and back: what was looked at leaves no trace
             let far: Vec<_> = u.iter().map(|u| [u[0] + 0.4, -3.0 * u[1], u[2]]).collect();
             sim.set_displacements(&far);
-            assert_ne!(sim.energy_density(), seen, "{name}, {family:?}");
+            assert_ne!(sim.scalars("energy_density"), seen, "{name}, {family:?}");
             sim.set_displacements(&u);
-            assert_eq!(sim.energy_density(), seen, "{name}, {family:?}");
+            assert_eq!(sim.scalars("energy_density"), seen, "{name}, {family:?}");
         }
     }
 }
@@ -255,7 +255,7 @@ fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
                             for _ in 0..25 {
                                 sim.step().unwrap();
                             }
-                            (sim.displacements(), sim.energy_density())
+                            (sim.displacements(), sim.scalars("energy_density"))
                         }));
                     }
                 }
@@ -284,7 +284,7 @@ fn velocities_have_their_temperature_and_no_momentum() {
     });
     let mut sim = build(&spec, Options::default()).unwrap();
     let v = sim.velocities();
-    let mass = sim.volumes()[0] * sim.densities()[0];
+    let mass = sim.scalars("volume")[0] * sim.scalars("density")[0];
     let n = v.len() as f64;
     let kinetic: f64 = v.iter().flatten().map(|v| 0.5 * mass * v * v).sum();
     assert!((kinetic / (1.5 * (n - 1.0) * 0.7) - 1.0).abs() < 1e-12);

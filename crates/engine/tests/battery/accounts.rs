@@ -288,7 +288,7 @@ fn a_thrown_mass_gives_what_it_loses() {
 
 /// Linear momentum of the body.
 fn momentum(sim: &mut dyn Simulation) -> [f64; 3] {
-    let (volume, density) = (sim.volumes(), sim.densities());
+    let (volume, density) = (sim.scalars("volume"), sim.scalars("density"));
     let mut sum = [0.0; 3];
     for (i, v) in sim.velocities().iter().enumerate() {
         for a in 0..3 {

@@ -289,10 +289,10 @@ fn continuum_constants_converge_with_the_family() {
 fn a_cloud_says_that_its_constants_are_those_of_the_continuum() {
     let case = Case::of("pmb", bulk(LatticeKind::Square, Plane::Stress, 4));
     let mut spec = case.spec();
-    let sim = at_rest(&spec);
+    let mut sim = at_rest(&spec);
     spec.body = BodySpec::Cloud(Cloud {
-        position: sim.reference(),
-        volume: sim.volumes(),
+        position: sim.vectors("reference"),
+        volume: sim.scalars("volume"),
         spacing: Some(H),
         ..Cloud::default()
     });

@@ -50,7 +50,7 @@ fn a_body_cut_in_two_has_two_fragments_and_damage_where_bonds_broke() {
                 let info = sim.info().clone();
                 assert_eq!(sim.fragments(), 2, "{}", case.name());
                 assert!(info.cut > 0 && info.cut.is_multiple_of(2));
-                let damage = sim.damage();
+                let damage = sim.scalars("damage");
                 let left = if kind == CrackKind::Absent {
                     whole - info.cut
                 } else {
@@ -61,7 +61,7 @@ fn a_body_cut_in_two_has_two_fragments_and_damage_where_bonds_broke() {
                     assert!(damage.iter().all(|d| *d == 0.0), "{}", case.name());
                 } else {
                     // far away nothing is damaged, and bonds lost are bonds cut
-                    for (x0, d) in sim.reference().iter().zip(&damage) {
+                    for (x0, d) in sim.vectors("reference").iter().zip(&damage) {
                         assert!(*d == 0.0 || (x0[0] - x).abs() < reach, "{}", case.name());
                         assert!((0.0..=1.0).contains(d));
                     }
@@ -70,7 +70,7 @@ fn a_body_cut_in_two_has_two_fragments_and_damage_where_bonds_broke() {
                 // the halves do not feel each other
                 let d = case.d();
                 let u: Vec<_> = sim
-                    .reference()
+                    .vectors("reference")
                     .iter()
                     .map(|p| [if p[0] > x { 3.0 * H } else { 0.0 }, 0.0, 0.0])
                     .collect();
@@ -96,7 +96,7 @@ fn damage_is_the_fraction_of_lost_bonds() {
         kind: CrackKind::Broken,
     }];
     // families 2 3 4 4 3 2; cut: 1-3, 2-3, 2-4
-    let damage = at_rest(&spec).damage();
+    let damage = at_rest(&spec).scalars("damage");
     let expected = [0.0, 1.0 / 3.0, 0.5, 0.5, 1.0 / 3.0, 0.0];
     for (d, e) in damage.iter().zip(expected) {
         assert!((d - e).abs() < 1e-15, "{damage:?}");
@@ -121,9 +121,9 @@ fn a_body_cut_by_an_absent_crack_is_two_bodies() {
         let mut half = case.clone();
         half.place.cells[0] = cut_at;
         let mut half = at_rest(&half.spec());
-        let u = Random(53).vectors(cut.reference().len(), case.d(), 0.05 * H);
+        let u = Random(53).vectors(cut.vectors("reference").len(), case.d(), 0.05 * H);
         let left: Vec<usize> = (0..u.len())
-            .filter(|i| cut.reference()[*i][0] < (cut_at as f64 - 0.5) * H)
+            .filter(|i| cut.vectors("reference")[*i][0] < (cut_at as f64 - 0.5) * H)
             .collect();
         let pick = |v: Vec<[f64; 3]>| -> Vec<[f64; 3]> { left.iter().map(|i| v[*i]).collect() };
         let f = pick(cut.forces_under(&u));
@@ -157,7 +157,7 @@ fn cracks_on_periodic_faces_cut_both_directions() {
                     }];
                     let mut sim = at_rest(&spec);
                     assert!(sim.info().cut > 0 && sim.info().cut.is_multiple_of(2));
-                    let u = Random(59).vectors(sim.reference().len(), case.d(), 0.05 * H);
+                    let u = Random(59).vectors(sim.vectors("reference").len(), case.d(), 0.05 * H);
                     let f = sim.forces_under(&u);
                     let total: [f64; 3] = std::array::from_fn(|a| f.iter().map(|f| f[a]).sum());
                     assert!(
@@ -165,7 +165,7 @@ fn cracks_on_periodic_faces_cut_both_directions() {
                         "{}: {total:?}",
                         case.name()
                     );
-                    cuts.push((sim.info().cut, sim.damage()));
+                    cuts.push((sim.info().cut, sim.scalars("damage")));
                 }
                 assert_eq!(cuts[0].0, cuts[1].0, "{}", case.name());
                 for (a, b) in cuts[0].1.iter().zip(&cuts[1].1) {
@@ -251,7 +251,7 @@ fn a_seed_gives_the_same_body_again() {
                     seed,
                 }),
             };
-            at_rest(&spec).reference()
+            at_rest(&spec).vectors("reference")
         };
         let (a, b, c, straight) = (body(Some(1)), body(Some(1)), body(Some(2)), body(None));
         assert_eq!(a, b);
@@ -287,17 +287,17 @@ fn a_bond_lets_go_at_once_or_after_its_force() {
                 sim.start(true);
                 let mut last = 0.0;
                 while sim.broken() == 0 {
-                    last = largest(&sim.force_densities());
+                    last = largest(&sim.vectors("force_density"));
                     sim.step().unwrap();
                     assert!(sim.step_number() < 100, "{name}: nothing breaks");
                 }
-                let now = largest(&sim.force_densities());
+                let now = largest(&sim.vectors("force_density"));
                 match release {
                     Release::AtOnce => assert_eq!(now, 0.0, "{name} {family:?}"),
                     Release::AfterForce => assert!(now > last, "{name} {family:?}: {now}"),
                 }
                 sim.step().unwrap();
-                assert_eq!(largest(&sim.force_densities()), 0.0);
+                assert_eq!(largest(&sim.vectors("force_density")), 0.0);
                 held.push((sim.step_number(), sim.velocities()[1][0]));
             }
             // in the same step; what pulled once more is slower

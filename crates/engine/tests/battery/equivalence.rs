@@ -16,7 +16,7 @@ fn a_stencil_is_a_list() {
             spec.family = family;
             spec.schedule.time_step = TimeStep::Fixed(0.05 * H);
             let mut sim = made(&spec);
-            let v = Random(13).vectors(sim.reference().len(), case.d(), 0.15);
+            let v = Random(13).vectors(sim.vectors("reference").len(), case.d(), 0.15);
             sim.set_velocities(&v);
             sim.start(true);
             steps(sim.as_mut(), 50);
@@ -24,10 +24,10 @@ fn a_stencil_is_a_list() {
             runs.push((
                 sim.displacements(),
                 sim.broken(),
-                sim.damage(),
+                sim.scalars("damage"),
                 sim.info().clone(),
                 ledger,
-                sim.energy_density(),
+                sim.scalars("energy_density"),
             ));
         }
         let [a, b] = &runs[..] else {
@@ -90,7 +90,7 @@ fn lps_is_pmb_where_poissons_ratio_is_that_of_bonds() {
         spec.materials[0].law = LawSpec::Lps(Moduli { young, poisson });
         spec.influence = Influence::Inverse;
         let mut lps = at_rest(&spec);
-        let n = pmb.reference().len();
+        let n = pmb.vectors("reference").len();
         let u = Random(17).vectors(n, d, 0.1 * H);
         let (f, g) = (pmb.forces_under(&u), lps.forces_under(&u));
         let off = distance(&f, &g) / largest(&f);
@@ -132,7 +132,7 @@ fn lps_is_eam_like() {
             .map(|law| {
                 spec.materials[0].law = law;
                 let mut sim = at_rest(&spec);
-                let u = Random(19).vectors(sim.reference().len(), case.d(), 0.1 * H);
+                let u = Random(19).vectors(sim.vectors("reference").len(), case.d(), 0.1 * H);
                 sim.forces_under(&u)
             })
             .collect();
@@ -157,7 +157,7 @@ fn two_equal_materials_are_one() {
             let mut one = Case::of(name, place).spec();
             one.influence = spec.influence;
             let (mut a, mut b) = (at_rest(&spec), at_rest(&one));
-            let u = Random(23).vectors(a.reference().len(), case.d(), 0.1 * H);
+            let u = Random(23).vectors(a.vectors("reference").len(), case.d(), 0.1 * H);
             let (f, g) = (a.forces_under(&u), b.forces_under(&u));
             assert!(distance(&f, &g) < 1e-13 * largest(&f), "{place:?} {name}");
         }

@@ -14,7 +14,7 @@ fn rigid_translation_gives_exactly_no_force() {
         for mut spec in [case.spec(), case.periodic()] {
             spec.contact = Some(CONTACT);
             let mut sim = at_rest(&spec);
-            let n = sim.reference().len();
+            let n = sim.vectors("reference").len();
             for shift in [0.0, 1e-3, 17.3] {
                 let u = vec![std::array::from_fn(|a| if a < case.d() { shift } else { 0.0 }); n];
                 let f = sim.forces_under(&u);
@@ -36,7 +36,7 @@ fn rigid_rotation_gives_no_force() {
         let mut sim = at_rest(&case.spec());
         let r = rotation(case.d());
         let u: Vec<Point> = sim
-            .reference()
+            .vectors("reference")
             .iter()
             .map(|x| {
                 let y = times(&r, x);
@@ -60,7 +60,7 @@ fn worn(case: &Case) -> (Box<dyn Simulation>, Vec<Point>) {
     breaking(&mut spec, 0.06);
     spec.contact = Some(CONTACT);
     let mut sim = at_rest(&spec);
-    let n = sim.reference().len();
+    let n = sim.vectors("reference").len();
     let mut random = Random(7);
     sim.set_displacements(&random.vectors(n, case.d(), LARGE));
     // the first sweep learns the critical stretches, the second breaks
@@ -85,7 +85,7 @@ fn forces_turn_with_the_body() {
         let f = sim.forces_under(&u);
         let r = rotation(case.d());
         let turned: Vec<Point> = sim
-            .reference()
+            .vectors("reference")
             .iter()
             .zip(&u)
             .map(|(x, u)| {
@@ -107,7 +107,7 @@ fn momentum_and_angular_momentum_are_kept() {
     for case in cases() {
         let (mut sim, u) = worn(&case);
         let f = sim.forces_under(&u);
-        let (x, v) = (sim.reference(), sim.volumes());
+        let (x, v) = (sim.vectors("reference"), sim.scalars("volume"));
         let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
         let (mut force, mut moment) = (0.0, 0.0);
         for i in 0..f.len() {
@@ -161,10 +161,10 @@ fn power(f: &[Point], volumes: &[f64], way: &[Point]) -> f64 {
 fn force_is_the_derivative_of_energy() {
     let mut worst: f64 = 0.0;
     for case in cases() {
-        let n = at_rest(&case.spec()).reference().len();
+        let n = at_rest(&case.spec()).vectors("reference").len();
         let whole = (at_rest(&case.spec()), Random(5).vectors(n, case.d(), LARGE));
         for (mut sim, u) in [whole, worn(&case)] {
-            let v = sim.volumes();
+            let v = sim.scalars("volume");
             let f = sim.forces_under(&u);
             let top = largest(&f);
             // against the force and across it: along it alone, errors across would not show
@@ -176,7 +176,7 @@ fn force_is_the_derivative_of_energy() {
                 .collect();
             let falls = -slope(&u, &along, |u| {
                 sim.set_displacements(u);
-                sim.energy_density()
+                sim.scalars("energy_density")
                     .iter()
                     .zip(&v)
                     .map(|(w, v)| w * v)
@@ -206,10 +206,13 @@ fn energies_see_displacements_that_were_just_set() {
             spec.family = family;
             at_rest(&spec)
         });
-        let u = Random(61).vectors(sims[0].reference().len(), case.d(), 0.05 * H);
+        let u = Random(61).vectors(sims[0].vectors("reference").len(), case.d(), 0.05 * H);
         let [a, b] = [0, 1].map(|k| {
             sims[k].set_displacements(&u);
-            (sims[k].dilatation(), sims[k].energy_density())
+            (
+                sims[k].scalars("dilatation"),
+                sims[k].scalars("energy_density"),
+            )
         });
         let close = |a: &[f64], b: &[f64]| {
             let top = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -248,7 +251,7 @@ fn contact_force_is_the_derivative_of_contact_energy() {
                 sim.set_displacements(&u);
                 assert!(sim.ledger().unwrap().contact > 0.0, "{}", case.name());
                 sim.start(true);
-                let (f, v) = (sim.force_densities(), sim.volumes());
+                let (f, v) = (sim.vectors("force_density"), sim.scalars("volume"));
                 assert!(sim.ledger().unwrap().contact > 0.0, "{}", case.name());
                 let scale = largest(&f);
                 let way: Vec<Point> = f.iter().map(|f| f.map(|c| c / scale)).collect();

@@ -40,7 +40,7 @@ fn energy_does_not_drift() {
                 let mut spec = case.spec();
                 spec.schedule.time_step = TimeStep::Fraction(fraction);
                 let mut sim = made(&spec);
-                let n = sim.reference().len();
+                let n = sim.vectors("reference").len();
                 sim.set_displacements(&Random(29).vectors(n, case.d(), 0.004 * H));
                 sim.start(true);
                 let start = sim.ledger().unwrap();
@@ -110,7 +110,7 @@ fn the_error_is_of_second_order_in_the_step() {
             let mut run = |n: usize| {
                 spec.schedule.time_step = TimeStep::Fixed(end / n as f64);
                 let mut sim = made(&spec);
-                let count = sim.reference().len();
+                let count = sim.vectors("reference").len();
                 sim.set_velocities(&Random(31).vectors(count, case.d(), 0.02));
                 sim.start(true);
                 steps(sim.as_mut(), n);
@@ -146,7 +146,7 @@ fn the_error_is_of_second_order_in_the_step() {
 fn motion_is_reversible() {
     let case = Case::of("lps", small(LatticeKind::Bcc, [3, 3, 2]));
     let mut sim = made(&case.spec());
-    let n = sim.reference().len();
+    let n = sim.vectors("reference").len();
     let u0 = Random(37).vectors(n, 3, 0.02 * H);
     sim.set_displacements(&u0);
     sim.start(true);
@@ -177,7 +177,7 @@ fn damping_is_of_second_order_and_may_change_in_time() {
                 }];
                 spec.schedule.time_step = TimeStep::Fixed(2.0 / n as f64);
                 let mut sim = made(&spec);
-                let count = sim.reference().len();
+                let count = sim.vectors("reference").len();
                 sim.set_velocities(&vec![[0.3, 0.0, 0.0]; count]);
                 sim.start(true);
                 steps(sim.as_mut(), n);

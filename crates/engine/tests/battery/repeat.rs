@@ -70,10 +70,18 @@ fn state(sim: &mut dyn Simulation) -> Vec<u64> {
         l.work_indenter,
     ];
     let mut bits: Vec<u64> = numbers.iter().map(|x| x.to_bits()).collect();
-    for field in [sim.displacements(), sim.velocities(), sim.force_densities()] {
+    for field in [
+        sim.displacements(),
+        sim.velocities(),
+        sim.vectors("force_density"),
+    ] {
         bits.extend(field.iter().flatten().map(|c| c.to_bits()));
     }
-    for field in [sim.damage(), sim.critical_stretch(), sim.energy_density()] {
+    for field in [
+        sim.scalars("damage"),
+        sim.scalars("critical_stretch"),
+        sim.scalars("energy_density"),
+    ] {
         bits.extend(field.iter().map(|c| c.to_bits()));
     }
     bits.extend([sim.broken(), sim.fragments()]);
@@ -97,7 +105,7 @@ fn the_same_bits_on_any_number_of_threads_and_in_every_width() {
                             trust_time_step: true,
                         };
                         let mut sim = build(&spec, options).unwrap();
-                        let n = sim.reference().len();
+                        let n = sim.vectors("reference").len();
                         // waves on a line come together less
                         let speed = if spec.dimension == 1 { 0.4 } else { 0.1 };
                         let v = Random(47).vectors(n, spec.dimension, speed);
@@ -149,7 +157,7 @@ fn a_step_allocates_nothing() {
                 pool.install(|| {
                     let mut sim = at_rest(&spec);
                     sim.set_time_step(0.05 * H);
-                    let n = sim.reference().len();
+                    let n = sim.vectors("reference").len();
                     let v = Random(47).vectors(n, spec.dimension, 0.05);
                     sim.set_velocities(&v);
                     sim.start(true);

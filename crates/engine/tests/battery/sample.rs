@@ -240,7 +240,10 @@ impl Case {
             vec![]
         };
         Spec {
+            boltzmann: 1.0,
             thermal: None,
+            fields: None,
+            probes: vec![],
             title: self.name(),
             dimension: d,
             plane,

@@ -90,12 +90,20 @@ fn run(spec: &Spec, simd: Simd) -> HashMap<Site, Vec<u64>> {
     steps(sim.as_mut(), STEPS);
     assert!(sim.broken() > 0 && sim.broken() < sim.info().directed_bonds);
     let mut state: Vec<Vec<u64>> = vec![vec![]; sites.len()];
-    for field in [sim.displacements(), sim.velocities(), sim.force_densities()] {
+    for field in [
+        sim.displacements(),
+        sim.velocities(),
+        sim.vectors("force_density"),
+    ] {
         for (bits, x) in state.iter_mut().zip(&field) {
             bits.extend(x.map(f64::to_bits));
         }
     }
-    for field in [sim.damage(), sim.critical_stretch(), sim.energy_density()] {
+    for field in [
+        sim.scalars("damage"),
+        sim.scalars("critical_stretch"),
+        sim.scalars("energy_density"),
+    ] {
         for (bits, x) in state.iter_mut().zip(&field) {
             bits.push(x.to_bits());
         }

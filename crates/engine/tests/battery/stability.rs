@@ -3,15 +3,15 @@
 use crate::sample::*;
 use crate::waves::{chain, chain_omega2};
 use peridyne::error::RunError;
-use peridyne::run::{Options, PointField, build};
+use peridyne::run::{Options, build};
 use peridyne::spec::*;
 
 /// The true limit of the step of a chain of 60 points.
 fn limit(name: &str) -> f64 {
     let spec = chain(name, 60);
-    let sim = at_rest(&spec);
+    let mut sim = at_rest(&spec);
     let largest = (0..=30)
-        .map(|k| chain_omega2(&spec, sim.as_ref(), k as f64 / 30.0 * std::f64::consts::PI))
+        .map(|k| chain_omega2(&spec, sim.as_mut(), k as f64 / 30.0 * std::f64::consts::PI))
         .fold(0.0, f64::max);
     2.0 / largest.sqrt()
 }
@@ -62,7 +62,11 @@ fn above_the_limit_a_run_stops_with_a_finite_state() {
             "{error}"
         );
         assert_eq!(sim.step_number(), n);
-        for field in [sim.displacements(), sim.velocities(), sim.force_densities()] {
+        for field in [
+            sim.displacements(),
+            sim.velocities(),
+            sim.vectors("force_density"),
+        ] {
             assert!(field.iter().flatten().all(|c| c.is_finite()));
         }
         assert!(sim.ledger().is_err(), "the balance shows it too");
@@ -78,7 +82,7 @@ fn the_ledger_sees_an_unstable_run_before_it_bursts() {
         let mut spec = case.spec();
         spec.schedule.time_step = TimeStep::Fraction(1.1);
         let mut sim = made(&spec);
-        let n = sim.reference().len();
+        let n = sim.vectors("reference").len();
         sim.set_displacements(&Random(43).vectors(n, case.d(), 1e-8 * H));
         sim.start(true);
         let seen = (0..500).find_map(|_| {
@@ -148,7 +152,7 @@ fn a_displacement_that_is_not_a_number_stops_the_run() {
     for case in cases() {
         for place in [f64::NAN, f64::INFINITY] {
             let mut sim = made(&case.spec());
-            sim.write(PointField::Displacement(0), 3, &[place]);
+            assert!(sim.write("displacement", 0, 3, &[place]));
             sim.start(true);
             let error = sim.step().expect_err("a point is nowhere").to_string();
             assert!(error.contains("point 4"), "{}: {error}", case.name());

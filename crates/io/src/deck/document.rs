@@ -496,8 +496,9 @@ pub struct Output {
     pub dir: Option<String>,
     /// Steps between frames; only the first and the last state when left out.
     pub every: Option<At<u64>>,
-    /// Point fields of a frame; all but fragment when left out.
-    pub fields: Option<Vec<FieldName>>,
+    /// Point fields of a frame, by name (`peridyne laws` lists them), displacements always; displacement, velocity, damage,
+    /// energy_density, dilatation, mark when left out.
+    pub fields: Option<Vec<At<String>>>,
     /// VTU series for ParaView; true when left out.
     pub vtu: Option<bool>,
     /// Unbroken bonds as lines, too.
@@ -593,6 +594,4 @@ names! {
         /// Bonds that count as damage.
         Broken,
     }
-    /// Point fields that can be written.
-    FieldName { Displacement, Velocity, Damage, EnergyDensity, Dilatation, Mark, Id, Fragment }
 }

@@ -21,7 +21,6 @@ mod value;
 mod tests;
 
 pub use describe::describe;
-pub use document::FieldName;
 pub use error::DeckError;
 pub use schema::schema;
 pub use source::Flag;
@@ -69,8 +68,6 @@ pub struct OutputSpec {
     pub dir: Option<PathBuf>,
     /// Steps between frames; `None`: first and last state.
     pub every: Option<u64>,
-    /// Point fields of a frame.
-    pub fields: Vec<FieldName>,
     /// VTU series with PVD.
     pub vtu: bool,
     /// Unbroken bonds in the VTU.

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use peridyne::observe::Snapshot;
+use peridyne::observe::{Snapshot, Values};
 
 use super::extxyz::check;
-use super::fields::{Field, fields, positions};
+use super::fields::{fields, positions};
 use crate::read::Atoms;
 
 /// The box of a dump: along a periodic axis one period (length), along others as far as the points go and half a spacing
@@ -25,7 +25,8 @@ impl DumpBox {
     }
 }
 
-/// Writes one frame: `id type x y z`, velocities as `vx vy vz`, and every scalar of the snapshot by its name.
+/// Writes one frame: `id type x y z`, velocities as `vx vy vz`, and every other column of the snapshot by
+/// its name, with the names of its components (`stress_xx`).
 ///
 /// Types count from 1: the mark, less the smallest mark, plus 1. Numbers read back to the same f64. A trajectory
 /// is frames one after another in one file.
@@ -35,28 +36,38 @@ impl DumpBox {
 pub fn write_frame<W: Write>(w: &mut W, s: &Snapshot, cell: &DumpBox) -> io::Result<()> {
     let mut columns = fields(s)?;
     // x, y, z say it already
-    columns.retain(|(name, _)| *name != "displacement");
+    columns.retain(|c| c.name() != "displacement");
     let flags = cell.periods.map(|p| if p.is_some() { "pp" } else { "ss" });
     let shrunk = shrunk(s);
     let bounds = std::array::from_fn(|a| cell.periods[a].unwrap_or(shrunk[a]));
     head(w, s.step, s.reference.len(), flags, bounds)?;
-    for (name, _) in &columns {
-        match *name {
-            "velocity" => write!(w, " vx vy vz")?,
-            name => write!(w, " {name}")?,
+    for column in &columns {
+        match (column.name(), column.values.shape().components()) {
+            ("velocity", _) => write!(w, " vx vy vz")?,
+            (name, []) => write!(w, " {name}")?,
+            (name, components) => components
+                .iter()
+                .try_for_each(|c| write!(w, " {name}_{c}"))?,
         }
     }
     writeln!(w)?;
-    let first = i64::from(s.mark.iter().copied().min().unwrap_or(0));
+    let mark: &[i32] = match s.column("mark").map(|c| &c.values) {
+        Some(Values::Integers(mark)) => mark,
+        _ => &[],
+    };
+    let first = i64::from(mark.iter().copied().min().unwrap_or(0));
     for (i, [x, y, z]) in positions(s).enumerate() {
-        let kind = s.mark.get(i).map_or(1, |&mark| i64::from(mark) - first + 1);
+        let kind = mark.get(i).map_or(1, |&mark| i64::from(mark) - first + 1);
         write!(w, "{} {kind} {x:?} {y:?} {z:?}", i + 1)?;
-        for (_, field) in &columns {
-            match field {
-                Field::Vector(v) => v[i].iter().try_for_each(|c| write!(w, " {c:?}"))?,
-                Field::Scalar(v) => write!(w, " {:?}", v[i])?,
-                Field::Integer(v) => write!(w, " {}", v[i])?,
-                Field::Count(v) => write!(w, " {}", v[i])?,
+        for column in &columns {
+            let mut row = |v: &[f64]| v.iter().try_for_each(|c| write!(w, " {c:?}"));
+            match &column.values {
+                Values::Scalars(v) => row(&v[i..=i])?,
+                Values::Vectors(v) => row(&v[i])?,
+                Values::Symmetric(v) => row(&v[i])?,
+                Values::Tensors(v) => row(&v[i])?,
+                Values::Integers(v) => write!(w, " {}", v[i])?,
+                Values::Counts(v) => write!(w, " {}", v[i])?,
             }
         }
         writeln!(w)?;
@@ -141,7 +152,7 @@ fn shrunk(s: &Snapshot) -> [[f64; 2]; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fields::tests::small;
+    use super::super::fields::tests::{small, with};
     use super::*;
 
     #[test]
@@ -167,13 +178,12 @@ mod tests {
         for (i, row) in rows.iter().enumerate() {
             assert_eq!(row[0], i as f64 + 1.0);
             assert_eq!(row[2..5], x[i]);
-            assert_eq!(row[5..8], s.velocity[i]);
-            assert_eq!(
-                row[8..11],
-                [s.damage[i], s.energy_density[i], s.dilatation[i]]
-            );
-            assert_eq!(row[11], f64::from(s.mark[i]));
-            assert_eq!(row[12], f64::from(s.body[i]));
+            assert_eq!(row[5..8], s.vectors("velocity").unwrap()[i]);
+            let others = &s.columns[2..];
+            assert_eq!(row.len(), 8 + others.len());
+            for (value, column) in row[8..].iter().zip(others) {
+                assert_eq!(*value, column.values.at(i, 0), "{}", column.name());
+            }
         }
         assert_eq!(
             rows.iter().map(|r| r[1]).collect::<Vec<_>>(),
@@ -193,8 +203,9 @@ mod tests {
 
     #[test]
     fn a_point_gone_to_infinity_does_not_take_the_box_along() {
-        let mut s = small();
-        s.displacement[2][0] = f64::INFINITY;
+        let mut u = small().displacement().to_vec();
+        u[2][0] = f64::INFINITY;
+        let s = with(small(), "displacement", Values::Vectors(u));
         assert_eq!(shrunk(&s)[0], [-0.15, 0.75]);
     }
 }

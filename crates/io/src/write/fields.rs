@@ -2,55 +2,30 @@
 
 use std::io;
 
-use peridyne::observe::Snapshot;
+use peridyne::observe::{Column, Snapshot};
 
-/// One array over the points.
-#[derive(Debug, Clone, Copy)]
-pub enum Field<'a> {
-    Vector(&'a [[f64; 3]]),
-    Scalar(&'a [f64]),
-    Integer(&'a [i32]),
-    Count(&'a [u32]),
-}
-
-impl Field<'_> {
-    fn len(&self) -> usize {
-        match self {
-            Field::Vector(v) => v.len(),
-            Field::Scalar(v) => v.len(),
-            Field::Integer(v) => v.len(),
-            Field::Count(v) => v.len(),
-        }
-    }
-}
-
-/// All arrays that a snapshot carries beside the reference positions, with their names in files. An empty
-/// array was not asked for and is left out.
+/// All columns that a snapshot carries beside the reference positions. An empty one was not asked for and is left out.
 ///
 /// # Errors
-/// `InvalidInput` when an array has another length than the reference positions, or a bond names a point
-/// that is not there.
-pub fn fields(s: &Snapshot) -> io::Result<Vec<(&'static str, Field<'_>)>> {
+/// `InvalidInput` when a column has another length than the reference positions, displacements are missing, or a bond names a
+/// point that is not there.
+pub fn fields(s: &Snapshot) -> io::Result<Vec<&Column>> {
     let n = s.reference.len();
-    let mut all = vec![
-        ("displacement", Field::Vector(&s.displacement)),
-        ("velocity", Field::Vector(&s.velocity)),
-        ("damage", Field::Scalar(&s.damage)),
-        ("energy_density", Field::Scalar(&s.energy_density)),
-        ("dilatation", Field::Scalar(&s.dilatation)),
-        ("mark", Field::Integer(&s.mark)),
-        ("body", Field::Count(&s.body)),
-    ];
-    if let Some(fragment) = &s.fragment {
-        all.push(("fragment", Field::Count(fragment)));
+    // without displacements there are no current positions
+    if s.displacement().len() != n {
+        let m = s.displacement().len();
+        return Err(invalid(format!(
+            "the snapshot has {n} points, but {m} values of displacement"
+        )));
     }
-    // without displacements there are no current positions: never optional
-    all.retain(|(name, field)| field.len() > 0 || *name == "displacement");
-    for (name, field) in &all {
-        if field.len() != n {
+    let there = |c: &&Column| !c.values.is_empty();
+    let all: Vec<&Column> = s.columns.iter().filter(there).collect();
+    for column in &all {
+        if column.values.len() != n {
             return Err(invalid(format!(
-                "the snapshot has {n} points, but {} values of {name}",
-                field.len()
+                "the snapshot has {n} points, but {} values of {}",
+                column.values.len(),
+                column.name()
             )));
         }
     }
@@ -71,7 +46,7 @@ pub(super) fn invalid(message: String) -> io::Error {
 pub fn positions(s: &Snapshot) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
     s.reference
         .iter()
-        .zip(&s.displacement)
+        .zip(s.displacement())
         .map(|(x, u)| std::array::from_fn(|a| x[a] + u[a]))
 }
 
@@ -79,40 +54,74 @@ pub fn positions(s: &Snapshot) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
 pub(super) mod tests {
     use super::*;
 
+    use peridyne::columns::{Declaration, Dimension};
+    use peridyne::observe::Values;
+
+    /// A snapshot of these columns.
+    pub fn of_columns(reference: Vec<[f64; 3]>, columns: Vec<(&'static str, Values)>) -> Snapshot {
+        let mut s = Snapshot {
+            dimension: 3,
+            reference,
+            ..Snapshot::default()
+        };
+        for (name, values) in columns {
+            put(&mut s, name, values);
+        }
+        s
+    }
+
+    /// Replaces the values of a column, or adds it.
+    pub fn put(s: &mut Snapshot, name: &'static str, values: Values) {
+        s.columns.retain(|c| c.name() != name);
+        let declaration = Declaration::of_points(name, values.shape(), Dimension::NUMBER, "");
+        s.columns.push(Column {
+            declaration,
+            values,
+        });
+    }
+
+    /// The same with other values of a column, in its place.
+    pub fn with(mut s: Snapshot, name: &str, values: Values) -> Snapshot {
+        s.columns
+            .iter_mut()
+            .find(|c| c.name() == name)
+            .unwrap()
+            .values = values;
+        s
+    }
+
     /// Three points with distinct values everywhere and two bonds.
     pub fn small() -> Snapshot {
+        let displacement = vec![[0.1, 0.0, -0.1], [0.0, 1.0 / 3.0, 0.0], [0.0, 0.0, 1e-17]];
+        let velocity = vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [-7.0, 8e300, 9e-300]];
+        let columns = vec![
+            ("displacement", Values::Vectors(displacement)),
+            ("velocity", Values::Vectors(velocity)),
+            ("damage", Values::Scalars(vec![0.0, 0.25, 1.0])),
+            ("energy_density", Values::Scalars(vec![10.0, 20.0, 30.0])),
+            ("dilatation", Values::Scalars(vec![0.01, -0.02, 0.03])),
+            ("mark", Values::Integers(vec![-1, 0, 4])),
+            ("body", Values::Counts(vec![0, 1, 1])),
+            ("fragment", Values::Counts(vec![0, 0, 1])),
+        ];
+        let reference = vec![[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.25]];
         Snapshot {
             step: 7,
             time: 1.5e-7,
-            dimension: 3,
             spacing: 0.5,
-            reference: vec![[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.25]],
-            displacement: vec![[0.1, 0.0, -0.1], [0.0, 1.0 / 3.0, 0.0], [0.0, 0.0, 1e-17]],
-            velocity: vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [-7.0, 8e300, 9e-300]],
-            damage: vec![0.0, 0.25, 1.0],
-            dilatation: vec![0.01, -0.02, 0.03],
-            energy_density: vec![10.0, 20.0, 30.0],
-            mark: vec![-1, 0, 4],
-            body: vec![0, 1, 1],
-            fragment: Some(vec![0, 0, 1]),
             bonds: Some(vec![(0, 1), (1, 2)]),
+            ..of_columns(reference, columns)
         }
     }
 
     #[test]
     fn a_field_of_wrong_length_is_named() {
-        let mut s = small();
-        s.damage.pop();
+        let s = with(small(), "damage", Values::Scalars(vec![0.0; 2]));
         let text = fields(&s).unwrap_err().to_string();
         assert_eq!(text, "the snapshot has 3 points, but 2 values of damage");
-        s.damage.clear();
-        assert!(
-            fields(&s)
-                .unwrap()
-                .iter()
-                .all(|(name, _)| *name != "damage")
-        );
-        s.displacement.clear();
+        let s = with(s, "damage", Values::Scalars(vec![]));
+        assert!(fields(&s).unwrap().iter().all(|c| c.name() != "damage"));
+        let s = with(s, "displacement", Values::Vectors(vec![]));
         assert!(fields(&s).is_err());
     }
 

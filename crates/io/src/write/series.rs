@@ -111,9 +111,10 @@ impl Series {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fields::tests::small;
+    use super::super::fields::tests::{small, with};
     use super::super::vtu::tests::floats;
     use super::*;
+    use peridyne::observe::Values;
 
     fn names(dir: &Path) -> Vec<String> {
         let entries = std::fs::read_dir(dir).unwrap();
@@ -138,8 +139,7 @@ mod tests {
         let later = Snapshot {
             step: 12,
             time: 2e-7,
-            damage: vec![0.5; 3],
-            ..small()
+            ..with(small(), "damage", Values::Scalars(vec![0.5; 3]))
         };
         series.write(&later).unwrap();
         series.write(&later).unwrap();
@@ -175,8 +175,7 @@ mod tests {
         series.write(&small()).unwrap();
         let bad = Snapshot {
             step: 8,
-            velocity: vec![[0.0; 3]],
-            ..small()
+            ..with(small(), "velocity", Values::Vectors(vec![[0.0; 3]]))
         };
         let text = series.write(&bad).unwrap_err().to_string();
         assert!(

@@ -5,17 +5,19 @@
 
 use std::io::{self, Write};
 
-use peridyne::observe::Snapshot;
+use peridyne::observe::{Snapshot, Values};
 
-use super::fields::{Field, fields, invalid, positions};
+use super::fields::{fields, invalid, positions};
 
 const VERTEX: u8 = 1;
 const LINE: u8 = 3;
+/// The components of symmetric tensors in VTK's order, XX YY ZZ XY YZ XZ.
+const SYMMETRIC: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 /// What one block of appended data holds.
 enum Block<'a> {
     Positions,
-    Field(Field<'a>),
+    Field(&'a Values),
     /// 1-based numbers of the points.
     Ids(usize),
     /// Point numbers of cells with one point each: 0, 1, 2, …
@@ -35,7 +37,7 @@ enum Block<'a> {
 /// An array of the file: where it goes, name, and contents. Blocks follow in the order of the header.
 struct Array<'a> {
     section: &'static str,
-    name: &'static str,
+    name: &'a str,
     block: Block<'a>,
 }
 
@@ -86,11 +88,11 @@ fn write_grid<W: Write>(
 ) -> io::Result<()> {
     let n = s.reference.len();
     let mut arrays = Vec::new();
-    for (name, field) in fields(s)? {
+    for column in fields(s)? {
         arrays.push(Array {
             section: "PointData",
-            name,
-            block: Block::Field(field),
+            name: column.name(),
+            block: Block::Field(&column.values),
         });
     }
     arrays.push(Array {
@@ -158,7 +160,10 @@ fn write_header<W: Write>(
             }
             section = a.section;
             let active = match section {
-                "PointData" => r#" Scalars="damage" Vectors="displacement""#,
+                "PointData" if s.column("damage").is_some() => {
+                    r#" Scalars="damage" Vectors="displacement""#
+                }
+                "PointData" => r#" Vectors="displacement""#,
                 _ => "",
             };
             writeln!(w, "<{section}{active}>")?;
@@ -166,8 +171,9 @@ fn write_header<W: Write>(
         let (kind, components) = a.block.kind();
         writeln!(
             w,
-            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}" format="appended" offset="{offset}"/>"#,
-            a.name
+            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}"{} format="appended" offset="{offset}"/>"#,
+            a.name,
+            a.block.names()
         )?;
         offset += 8 + a.block.bytes(n);
     }
@@ -181,10 +187,15 @@ impl Block<'_> {
     /// VTK's name of the number type, and the number of components.
     fn kind(&self) -> (&'static str, usize) {
         match self {
-            Block::Positions | Block::Field(Field::Vector(_)) => ("Float64", 3),
-            Block::Field(Field::Scalar(_)) => ("Float64", 1),
-            Block::Field(Field::Integer(_)) => ("Int32", 1),
-            Block::Field(Field::Count(_)) => ("UInt32", 1),
+            Block::Positions => ("Float64", 3),
+            Block::Field(values) => match values {
+                Values::Scalars(_) => ("Float64", 1),
+                Values::Vectors(_) => ("Float64", 3),
+                Values::Symmetric(_) => ("Float64", 6),
+                Values::Tensors(_) => ("Float64", 9),
+                Values::Integers(_) => ("Int32", 1),
+                Values::Counts(_) => ("UInt32", 1),
+            },
             Block::Ids(_) | Block::Vertices(_) | Block::Lines(_) | Block::Offsets { .. } => {
                 ("Int64", 1)
             }
@@ -192,12 +203,35 @@ impl Block<'_> {
         }
     }
 
+    /// What the components of tensors are called.
+    fn names(&self) -> String {
+        let Block::Field(values) = self else {
+            return String::new();
+        };
+        let names = values.shape().components();
+        let order: Vec<usize> = match values {
+            Values::Symmetric(_) => SYMMETRIC.to_vec(),
+            Values::Tensors(_) => (0..names.len()).collect(),
+            Values::Scalars(_) | Values::Vectors(_) | Values::Integers(_) | Values::Counts(_) => {
+                vec![]
+            }
+        };
+        let named = order.iter().enumerate();
+        let of = |(k, c): (usize, &usize)| format!(r#" ComponentName{k}="{}""#, names[*c]);
+        named.map(of).collect()
+    }
+
     /// Length in bytes, for `n` points.
     fn bytes(&self, n: usize) -> u64 {
         let bytes = match self {
-            Block::Positions | Block::Field(Field::Vector(_)) => 24 * n,
-            Block::Field(Field::Scalar(_)) => 8 * n,
-            Block::Field(Field::Integer(_) | Field::Count(_)) => 4 * n,
+            Block::Positions => 24 * n,
+            Block::Field(values) => match values {
+                Values::Scalars(_) => 8 * n,
+                Values::Vectors(_) => 24 * n,
+                Values::Symmetric(_) => 48 * n,
+                Values::Tensors(_) => 72 * n,
+                Values::Integers(_) | Values::Counts(_) => 4 * n,
+            },
             Block::Ids(n) | Block::Vertices(n) => 8 * n,
             Block::Lines(bonds) => 16 * bonds.len(),
             Block::Offsets { cells, .. } => 8 * cells,
@@ -209,17 +243,15 @@ impl Block<'_> {
     fn write<W: Write>(&self, w: &mut W, s: &Snapshot) -> io::Result<()> {
         w.write_all(&self.bytes(s.reference.len()).to_le_bytes())?;
         match *self {
-            Block::Positions => vectors(w, positions(s)),
-            Block::Field(Field::Vector(v)) => vectors(w, v.iter().copied()),
-            Block::Field(Field::Scalar(v)) => {
-                v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes()))
-            }
-            Block::Field(Field::Integer(v)) => {
-                v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes()))
-            }
-            Block::Field(Field::Count(v)) => {
-                v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes()))
-            }
+            Block::Positions => rows(w, positions(s)),
+            Block::Field(values) => match values {
+                Values::Scalars(v) => rows(w, v.iter().map(|x| [*x])),
+                Values::Vectors(v) => rows(w, v.iter().copied()),
+                Values::Symmetric(v) => rows(w, v.iter().map(|t| SYMMETRIC.map(|c| t[c]))),
+                Values::Tensors(v) => rows(w, v.iter().copied()),
+                Values::Integers(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
+                Values::Counts(v) => v.iter().try_for_each(|x| w.write_all(&x.to_le_bytes())),
+            },
             Block::Ids(n) => integers(w, 1..n as i64 + 1),
             Block::Vertices(n) => integers(w, 0..n as i64),
             Block::Lines(bonds) => {
@@ -231,7 +263,10 @@ impl Block<'_> {
     }
 }
 
-fn vectors<W: Write>(w: &mut W, values: impl Iterator<Item = [f64; 3]>) -> io::Result<()> {
+fn rows<W: Write, const N: usize>(
+    w: &mut W,
+    values: impl Iterator<Item = [f64; N]>,
+) -> io::Result<()> {
     for v in values {
         for c in v {
             w.write_all(&c.to_le_bytes())?;
@@ -249,7 +284,7 @@ fn integers<W: Write>(w: &mut W, values: impl Iterator<Item = i64>) -> io::Resul
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::fields::tests::small;
+    use super::super::fields::tests::{put, small};
     use super::*;
 
     /// Reads an attribute of the `<DataArray>` with this name.
@@ -298,11 +333,12 @@ pub(super) mod tests {
             floats(&file, "position"),
             positions(&s).flatten().collect::<Vec<_>>()
         );
-        assert_eq!(floats(&file, "displacement"), s.displacement.concat());
-        assert_eq!(floats(&file, "velocity"), s.velocity.concat());
-        assert_eq!(floats(&file, "damage"), s.damage);
-        assert_eq!(floats(&file, "energy_density"), s.energy_density);
-        assert_eq!(floats(&file, "dilatation"), s.dilatation);
+        for name in ["displacement", "velocity"] {
+            assert_eq!(floats(&file, name), s.vectors(name).unwrap().concat());
+        }
+        for name in ["damage", "energy_density", "dilatation"] {
+            assert_eq!(floats(&file, name), s.scalars(name).unwrap());
+        }
         assert_eq!(
             appended(&file, "mark"),
             [[255; 4], [0; 4], [4, 0, 0, 0]].concat()
@@ -320,6 +356,25 @@ pub(super) mod tests {
         assert_eq!(integers(&file, "offsets"), [1, 2, 3]);
         assert_eq!(appended(&file, "types"), [1, 1, 1]);
         assert!(file.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+    }
+
+    #[test]
+    fn tensors_stand_in_the_order_of_vtk() {
+        let mut s = small();
+        put(
+            &mut s,
+            "stress",
+            Values::Symmetric(vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3]),
+        );
+        let rows = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+        put(&mut s, "gradient", Values::Tensors(vec![rows; 3]));
+        let mut file = Vec::new();
+        write_points(&mut file, &s).unwrap();
+        assert_eq!(floats(&file, "stress")[..6], [1.0, 2.0, 3.0, 4.0, 6.0, 5.0]);
+        assert_eq!(floats(&file, "gradient")[9..18], rows);
+        let header = String::from_utf8_lossy(&file);
+        assert_eq!(attribute(&header, "stress", "ComponentName4"), "yz");
+        assert_eq!(attribute(&header, "gradient", "ComponentName3"), "yx");
     }
 
     #[test]

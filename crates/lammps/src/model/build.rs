@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use peridyne::error::BuildError;
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, PointField, Simulation, build};
+use peridyne::run::{Options, Simulation, build};
 use peridyne::spec::Spec;
 
 use super::types::Types;
@@ -167,7 +167,7 @@ fn write_velocities(
         for a in 0..3 {
             atoms.read(Quantity::Velocity(a), first, block)?;
             if a < dimension {
-                sim.write(PointField::Velocity(a), first, block);
+                sim.write("velocity", a, first, block);
             } else {
                 in_plane("velocity", block, 0.0)?;
             }

@@ -15,8 +15,9 @@ use std::cell::RefCell;
 
 use peridyne::condition::driven::Drive;
 use peridyne::error::RunError;
+use peridyne::observe::Observed;
 use peridyne::observe::Snapshot;
-use peridyne::run::{Observed, PointField, Simulation, SnapshotOptions};
+use peridyne::run::Simulation;
 
 use super::atoms::{Column, Members};
 use super::domain::SimBox;
@@ -41,6 +42,7 @@ fn in_plane(what: &str, values: &[f64], expected: f64) -> Result<(), HostError> 
 #[derive(Debug, Default)]
 struct Derived {
     damage: Option<Vec<f64>>,
+    critical_stretch: Option<Vec<f64>>,
     dilatation: Option<Vec<f64>>,
     energy: Option<Vec<f64>>,
     virials: Option<Vec<[f64; 6]>>,
@@ -160,8 +162,8 @@ impl Particles for ModelEngine {
             out.copy_from_slice(&all[first..first + out.len()]);
         };
         match quantity {
-            Quantity::Damage => copy(&mut kept.damage, &|s| s.damage()),
-            Quantity::Dilatation => copy(&mut kept.dilatation, &|s| s.dilatation()),
+            Quantity::Damage => copy(&mut kept.damage, &|s| s.scalars("damage")),
+            Quantity::Dilatation => copy(&mut kept.dilatation, &|s| s.scalars("dilatation")),
             Quantity::Energy => copy(&mut kept.energy, &|s| self.energy_of(&s.observed())),
             Quantity::Type => {
                 for (k, x) in out.iter_mut().enumerate() {
@@ -172,29 +174,40 @@ impl Particles for ModelEngine {
                 out.fill(self.height);
             }
             Quantity::Position(a) => {
-                sim.read(PointField::Reference(a), first, out);
+                sim.read("reference", a, first, out);
                 let mut u = [0.0; BLOCK];
                 for (b, part) in out.chunks_mut(BLOCK).enumerate() {
                     let u = &mut u[..part.len()];
-                    sim.read(PointField::Displacement(a), first + b * BLOCK, u);
+                    sim.read("displacement", a, first + b * BLOCK, u);
                     part.iter_mut().zip(u).for_each(|(x, u)| *x += *u);
                 }
             }
-            Quantity::Reference(a) => sim.read(PointField::Reference(a), first, out),
-            Quantity::Velocity(a) => sim.read(PointField::Velocity(a), first, out),
-            Quantity::Force(a) => sim.read(PointField::Force(a), first, out),
-            Quantity::Volume => sim.read(PointField::Volume, first, out),
+            Quantity::Reference(a) => {
+                sim.read("reference", a, first, out);
+            }
+            Quantity::Velocity(a) => {
+                sim.read("velocity", a, first, out);
+            }
+            Quantity::Force(a) => {
+                sim.read("force_density", a, first, out);
+            }
+            Quantity::Volume => {
+                sim.read("volume", 0, first, out);
+            }
             Quantity::Density => {
                 for (k, x) in out.iter_mut().enumerate() {
                     *x = self.density.get(first + k);
                 }
             }
+            // nothing to break: LAMMPS has the largest number
             Quantity::CriticalStretch => {
-                sim.read(PointField::CriticalStretch, first, out);
-                // nothing to break: LAMMPS has the largest number
-                out.iter_mut()
-                    .filter(|s0| **s0 == f64::INFINITY)
-                    .for_each(|s0| *s0 = f64::MAX);
+                copy(&mut kept.critical_stretch, &|s| {
+                    let known = s.scalars("critical_stretch");
+                    match known.is_empty() {
+                        true => vec![f64::MAX; s.info().points as usize],
+                        false => known.iter().map(|s0| s0.min(f64::MAX)).collect(),
+                    }
+                });
             }
             Quantity::Virial(_) => {}
         }
@@ -220,8 +233,8 @@ impl Particles for ModelEngine {
                     let mut x = [0.0; BLOCK];
                     let mut u = [0.0; BLOCK];
                     let (x, u) = (&mut x[..values.len()], &mut u[..values.len()]);
-                    sim.read(PointField::Reference(a), first, x);
-                    sim.read(PointField::Displacement(a), first, u);
+                    sim.read("reference", a, first, x);
+                    sim.read("displacement", a, first, u);
                     for k in (0..values.len()).filter(|k| values[*k] != before[*k]) {
                         // bonds are whole: of all images of the new place the one near the old
                         let around = if self.domain.periodic(a) {
@@ -232,10 +245,10 @@ impl Particles for ModelEngine {
                         };
                         u[k] = values[k] - x[k] + around;
                     }
-                    sim.write(PointField::Displacement(a), first, u);
+                    sim.write("displacement", a, first, u);
                 }
                 Quantity::Velocity(a) if a < self.dimension => {
-                    sim.write(PointField::Velocity(a), first, values);
+                    sim.write("velocity", a, first, values);
                 }
                 Quantity::Position(_) => in_plane("position", values, self.height)?,
                 Quantity::Velocity(_) => in_plane("velocity", values, 0.0)?,
@@ -371,7 +384,11 @@ impl Engine for ModelEngine {
     }
 
     fn snapshot(&mut self) -> Option<Snapshot> {
-        Some(self.sim.get_mut().snapshot(SnapshotOptions::default()))
+        Some(
+            self.sim
+                .get_mut()
+                .snapshot(&["velocity", "damage", "mark", "body"], false),
+        )
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -54,7 +54,10 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         members: Members::Mark(*kind as i32),
     };
     Ok(Spec {
+        boltzmann: 1.0,
         thermal: None,
+        fields: None,
+        probes: vec![],
         title: setup.title.clone(),
         dimension: setup.dimension,
         plane: Plane::Stress,

@@ -101,8 +101,8 @@ impl Plate {
                     (a.min(x[0]).min(x[1]), b.max(x[0]).max(x[1]))
                 }),
         };
-        let sim = build(&spec, Options::default()).expect("the plate is sound");
-        let moduli = moduli(sim.as_ref(), &law, m);
+        let mut sim = build(&spec, Options::default()).expect("the plate is sound");
+        let moduli = moduli(sim.as_mut(), &law, m);
         let whole_cells = method != Some(SurfaceMethod::Exact);
         let box_area: f64 = size
             .iter()
@@ -197,7 +197,7 @@ impl Plate {
 }
 
 /// Stiffness of a full family.
-fn moduli(sim: &dyn Simulation, law: &LawSpec, m: u32) -> Moduli {
+fn moduli(sim: &mut dyn Simulation, law: &LawSpec, m: u32) -> Moduli {
     let m = m as i32;
     let family = (-m..=m).flat_map(|y| (-m..=m).map(move |x| (f64::from(x), f64::from(y))));
     let within = |(x, y): &(f64, f64)| *x * x + y * y > 0.0 && *x * x + y * y <= f64::from(m * m);
@@ -253,7 +253,7 @@ pub fn frequency_error(n: i32, m: u32, law: LawSpec, method: Option<SurfaceMetho
     let points: Vec<[i32; 2]> = (0..8).flat_map(|y| (0..n).map(move |x| [x, y])).collect();
     let spec = spec(&points, m, [None, Some(8.0), None], law.clone(), method);
     let mut sim = build(&spec, Options::default()).expect("the strip is sound");
-    let (volumes, densities) = (sim.volumes(), sim.densities());
+    let (volumes, densities) = (sim.scalars("volume"), sim.scalars("density"));
     let mass: Vec<f64> = volumes.iter().zip(&densities).map(|(v, d)| v * d).collect();
     let total: f64 = mass.iter().sum();
     let length = if method == Some(SurfaceMethod::Exact) {
@@ -262,7 +262,7 @@ pub fn frequency_error(n: i32, m: u32, law: LawSpec, method: Option<SurfaceMetho
         f64::from(n)
     };
     let middle = 0.5 * f64::from(n - 1);
-    let x = sim.reference();
+    let x = sim.vectors("reference");
     let mut u: Vec<Point> = x
         .iter()
         .map(|x| {
@@ -291,7 +291,7 @@ pub fn frequency_error(n: i32, m: u32, law: LawSpec, method: Option<SurfaceMetho
         let size = u.iter().fold(0.0f64, |s, u| s.max(u[0].abs()));
         u.iter_mut().for_each(|u| u[0] /= size);
     }
-    let c11 = moduli(sim.as_ref(), &law, m).c11;
+    let c11 = moduli(sim.as_mut(), &law, m).c11;
     let classical = std::f64::consts::PI * c11.sqrt() / length;
     (square.sqrt() / classical - 1.0).abs()
 }

@@ -8,7 +8,9 @@ use crate::execute::simd::{Kernel, Simd};
 use crate::family::neighbours::near::NearList;
 use crate::interaction::along;
 use crate::interaction::tangent::curvature;
-use crate::interaction::{BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
+use crate::interaction::{
+    BondForce, BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally,
+};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 
@@ -370,6 +372,16 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
             }
         }
         self.see(body, &list, &position, out);
+    }
+
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.tangents(body, u, &mut |bond| visit(bond.force()));
+        true
     }
 
     fn is_potential(&self) -> bool {

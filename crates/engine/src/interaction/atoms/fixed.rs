@@ -9,7 +9,7 @@ use crate::execute::simd::{Kernel, Simd};
 use crate::family::links::{Link, Links, Tile, Tiles};
 use crate::interaction::tangent::curvature;
 use crate::interaction::{
-    BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally, add_virial,
+    BondForce, BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
@@ -366,6 +366,16 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
             .collect();
     }
 
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.tangents(body, u, &mut |bond| visit(bond.force()));
+        true
+    }
+
     fn is_potential(&self) -> bool {
         true
     }
@@ -377,32 +387,6 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         self.links
             .each(body, &mut |i, j, xi| visit(i, j, xi, BondState::Whole));
-    }
-
-    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
-        self.check(body, &[u]);
-        if P::EMBEDDED {
-            self.embed(body, u);
-        }
-        let Layout::Grid(grid) = &body.layout else {
-            return None;
-        };
-        let mut sum = [0.0; 6];
-        self.links.each_directed(grid, |i, j, sub, k| {
-            let xi = &self.links.links[sub][k].xi;
-            let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
-            let q: f64 = y.iter().map(|c| c * c).sum();
-            if q >= self.limit * self.limit {
-                return;
-            }
-            let mut pull = self.potential.pair(Dual::variable(q)).slope;
-            if P::EMBEDDED {
-                let f = self.potential.density(Dual::variable(q)).slope;
-                pull += f * (self.slope[i] + self.slope[j]);
-            }
-            add_virial(&mut sum, &y, &y, -pull);
-        });
-        Some(sum)
     }
 
     fn directed_bonds(&self) -> u64 {

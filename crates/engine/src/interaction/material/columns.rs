@@ -6,6 +6,7 @@ use super::store::Store;
 use crate::body::{Body, Field};
 use crate::columns::{Declaration, On};
 use crate::execute::lane::TILE;
+use crate::interaction::history;
 use crate::law::material::{Columns, Material, Numbers};
 
 /// Where a column lies among the numbers of a law.
@@ -22,7 +23,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             past,
             point,
         } = self.law.columns();
-        [memory, past, point].concat()
+        let breaks = history::columns(!self.critical.is_empty());
+        [breaks, memory, past, point].concat()
     }
 
     /// A column by its name, and its first number.
@@ -56,8 +58,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         out: &mut Vec<f64>,
     ) -> bool {
         out.clear();
+        if name == history::WHOLE {
+            let bit = |(at, l): (usize, usize)| f64::from(self.alive[at] >> l & 1);
+            out.extend(self.bits().into_iter().map(bit));
+            return true;
+        }
         let Some((declaration, place)) = self.place(name) else {
-            return false;
+            return history::read_critical(body, &self.critical, name, out);
         };
         let numbers = declaration.shape.stored(D);
         let of = |store: &Store, first: usize, out: &mut Vec<f64>| {
@@ -81,8 +88,25 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     pub(super) fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        if name == history::WHOLE {
+            let bits = self.bits();
+            if bits.len() != values.len() {
+                return false;
+            }
+            for ((at, l), value) in bits.into_iter().zip(values) {
+                match *value != 0.0 {
+                    true => self.alive[at] |= 1 << l,
+                    false => self.alive[at] &= !(1 << l),
+                }
+            }
+            return true;
+        }
         let Some((declaration, place)) = self.place(name) else {
-            return false;
+            let known = history::write_critical(body, &mut self.critical, name, values);
+            if known {
+                body.fill_images(&mut self.critical);
+            }
+            return known;
         };
         let numbers = declaration.shape.stored(D);
         match (place, declaration.on) {
@@ -112,9 +136,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
     }
 
-    /// Places of what the directed bonds of the reference family remember, in order of slots.
-    fn memory_of(&self, first: usize, numbers: usize) -> Vec<usize> {
-        let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
+    /// Directed bonds of the reference family, in order of slots: group, bond and lane.
+    fn directed(&self) -> Vec<(usize, usize, usize)> {
         let mut rows = vec![];
         for group in 0..self.family.groups() {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
@@ -122,15 +145,27 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
         }
         rows.sort_unstable();
-        let mut all = vec![];
-        for (_, group, l) in rows {
-            for k in 0..self.family.bonds(group) {
-                if self.counted[self.family.byte(group, k)] >> l & 1 == 1 {
-                    let at = |n| self.family.own(group, k, first + n, count) + l;
-                    all.extend((0..numbers).map(at));
-                }
-            }
-        }
-        all
+        let bonds = |(_, group, l): (usize, usize, usize)| {
+            let there = move |k: &usize| self.counted[self.family.byte(group, *k)] >> l & 1 == 1;
+            (0..self.family.bonds(group))
+                .filter(there)
+                .map(move |k| (group, k, l))
+        };
+        rows.into_iter().flat_map(bonds).collect()
+    }
+
+    /// Where their bits are: byte and lane.
+    fn bits(&self) -> Vec<(usize, usize)> {
+        let at = |(group, k, l): (usize, usize, usize)| (self.family.byte(group, k), l);
+        self.directed().into_iter().map(at).collect()
+    }
+
+    /// Places of what they remember.
+    fn memory_of(&self, first: usize, numbers: usize) -> Vec<usize> {
+        let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
+        let of = |(group, k, l): (usize, usize, usize)| {
+            (0..numbers).map(move |n| self.family.own(group, k, first + n, count) + l)
+        };
+        self.directed().into_iter().flat_map(of).collect()
     }
 }

@@ -25,7 +25,6 @@ use crate::columns::Declaration;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
-use crate::interaction::bond::critical_stretch;
 use crate::law::material::{Material, Numbers};
 use crate::spec::{CrackKind, Release};
 use breaking::{Tear, Test};
@@ -577,12 +576,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
 
     fn near_horizon(&self) -> u64 {
         self.near_horizon
-    }
-
-    fn critical_stretch(&self, slot: usize) -> f64 {
-        self.critical
-            .get(slot)
-            .map_or(f64::INFINITY, |e| critical_stretch(*e))
     }
 
     fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {

@@ -21,7 +21,7 @@ impl<const D: usize> Model<D> {
 
     /// The displacements of now made so small that laws without forces at rest are linear to the last digit, as in
     /// [`Swept`](crate::statics::Swept), and by which factor: a power of two, which rounds nothing.
-    fn made_small(&self) -> (Field<D>, f64) {
+    pub(in crate::run) fn made_small(&self) -> (Field<D>, f64) {
         let slots = || self.body.slots.iter().map(|s| *s as usize);
         let peak = (0..D).flat_map(|a| slots().map(move |i| (a, i)));
         let peak = peak.fold(0.0f64, |m, (a, i)| m.max(self.u[a][i].abs()));

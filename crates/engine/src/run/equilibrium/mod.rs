@@ -27,10 +27,7 @@ const ROUNDS: usize = 10_000;
 impl<const D: usize> Model<D> {
     /// Which components the conditions leave free.
     pub(super) fn support(&self) -> Support<D> {
-        let mut id = vec![0u32; self.body.len];
-        for (n, &s) in self.body.slots.iter().enumerate() {
-            id[s as usize] = n as u32;
-        }
+        let id = self.ids();
         let mut support = Support::none(self.body.points());
         for c in &self.constraints {
             for (slot, held) in c.holds() {

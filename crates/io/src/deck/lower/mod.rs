@@ -202,6 +202,9 @@ pub(super) fn lower(
             Some(FamilyName::Auto) | None => FamilyChoice::Auto,
         },
         schedule: run.schedule,
+        fields: written_fields(document),
+        probes: vec![],
+        boltzmann: atoms::boltzmann(units),
         body,
         sets,
         materials,
@@ -227,6 +230,14 @@ pub(super) fn lower(
         notes: context.notes,
         condition_entries,
     })
+}
+
+/// Columns that the deck asks for.
+fn written_fields(document: &Document) -> Option<Vec<String>> {
+    let written = document.output.fields.as_ref()?;
+    // numbers of points are always written
+    let asked = written.iter().filter(|f| f.value != "id");
+    Some(asked.map(|f| f.value.clone()).collect())
 }
 
 fn section(context: &Context, document: &Document) -> Result<f64> {

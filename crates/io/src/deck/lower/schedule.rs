@@ -3,7 +3,7 @@
 use super::context::{Context, Result};
 use crate::deck::OutputSpec;
 use crate::deck::document::{
-    Document, FieldName, IntegratorName, MethodName, Output, Run, Safety, SolverName, Statics,
+    Document, IntegratorName, MethodName, Output, Run, Safety, SolverName, Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
@@ -236,15 +236,6 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         )),
         other => Ok(other.as_ref().map(|n| n.value)),
     };
-    let all = [
-        FieldName::Displacement,
-        FieldName::Velocity,
-        FieldName::Damage,
-        FieldName::EnergyDensity,
-        FieldName::Dilatation,
-        FieldName::Mark,
-        FieldName::Id,
-    ];
     let mut trajectories: Vec<(PathBuf, Format)> = Vec::new();
     trajectories.extend(match &written.trajectory {
         None => None,
@@ -305,7 +296,6 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         outside,
         dir: written.dir.clone().map(Into::into),
         every: positive(&written.every, "every")?,
-        fields: written.fields.clone().unwrap_or(all.to_vec()),
         vtu: written.vtu.unwrap_or(true),
         bonds: written.bonds,
         linear_body: written.linear_body,

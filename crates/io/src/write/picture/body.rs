@@ -51,16 +51,13 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
         let reach = REACH * longest(&bounds) + spacing;
         (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)
     };
-    let shown = |cut: Option<Cut>| {
-        let points =
-            positions(s)
-                .zip(&s.reference)
-                .zip(&s.damage)
-                .filter(move |((x, reference), _)| {
-                    near(x) && cut.is_none_or(|cut| cut.keeps(reference))
-                });
-        points.map(|((x, _), damage)| (x, *damage))
-    };
+    let shown =
+        |cut: Option<Cut>| {
+            let points = positions(s).zip(&s.reference).zip(s.damage()).filter(
+                move |((x, reference), _)| near(x) && cut.is_none_or(|cut| cut.keeps(reference)),
+            );
+            points.map(|((x, _), damage)| (x, *damage))
+        };
     let panels: Vec<Panel> = cameras(s, &bounds)
         .into_iter()
         .filter_map(|(camera, caption, cut)| {

@@ -42,12 +42,15 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
     );
     head(&mut image, s, options);
     let mut order: Vec<usize> = (0..s.reference.len())
-        .filter(|&i| s.reference[i][0].is_finite() && s.displacement[i][0].is_finite())
+        .filter(|&i| s.reference[i][0].is_finite() && s.displacement()[i][0].is_finite())
         .collect();
     order.sort_by(|&a, &b| s.reference[a][0].total_cmp(&s.reference[b][0]));
     let x: Vec<f64> = order.iter().map(|&i| s.reference[i][0]).collect();
-    let u: Vec<f64> = order.iter().map(|&i| s.displacement[i][0]).collect();
-    let damage: Vec<f64> = order.iter().map(|&i| s.damage[i].clamp(0.0, 1.0)).collect();
+    let u: Vec<f64> = order.iter().map(|&i| s.displacement()[i][0]).collect();
+    let damage: Vec<f64> = order
+        .iter()
+        .map(|&i| s.damage()[i].clamp(0.0, 1.0))
+        .collect();
 
     let unit = options.length_unit.as_str();
     let at = |top: f64, y: [f64; 2]| Axes {

@@ -53,7 +53,7 @@ impl Default for PictureOptions {
 /// `InvalidInput` for arrays of unequal lengths, or without damage.
 pub fn damage(s: &Snapshot, options: &PictureOptions) -> std::io::Result<Image> {
     fields(s)?;
-    if s.damage.len() != s.reference.len() {
+    if s.damage().len() != s.reference.len() {
         return Err(super::fields::invalid(
             "the snapshot carries no damage".to_string(),
         ));

@@ -1,6 +1,7 @@
 use super::image::{Color, WHITE};
 use super::*;
-use peridyne::observe::Snapshot;
+use crate::write::fields::tests::{of_columns, with};
+use peridyne::observe::{Snapshot, Values};
 
 /// A lattice of nx × ny × nz points, spacing 1, all arrays zero.
 fn block(n: [usize; 3], dimension: usize) -> Snapshot {
@@ -11,14 +12,22 @@ fn block(n: [usize; 3], dimension: usize) -> Snapshot {
         }
     }
     let count = reference.len();
+    let columns = vec![
+        ("displacement", Values::Vectors(vec![[0.0; 3]; count])),
+        ("damage", Values::Scalars(vec![0.0; count])),
+    ];
     Snapshot {
         dimension,
         spacing: 1.0,
-        displacement: vec![[0.0; 3]; count],
-        damage: vec![0.0; count],
-        reference,
-        ..Snapshot::default()
+        ..of_columns(reference, columns)
     }
+}
+
+/// Damaged where the reference position says so.
+fn damaged(s: Snapshot, at: impl Fn(&[f64; 3]) -> bool) -> Snapshot {
+    let damage = s.reference.iter().map(|x| f64::from(u8::from(at(x))));
+    let damage = Values::Scalars(damage.collect());
+    with(s, "damage", damage)
 }
 
 fn draw(s: &Snapshot) -> Image {
@@ -42,10 +51,7 @@ fn views(image: &Image) -> Image {
 
 #[test]
 fn a_plate_shows_damage_where_it_is() {
-    let mut s = block([20, 10, 1], 2);
-    for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
-        *damage = if x[0] > 9.5 { 1.0 } else { 0.0 };
-    }
+    let s = damaged(block([20, 10, 1], 2), |x| x[0] > 9.5);
     let image = draw(&s);
     let row = (HEAD as usize + image.height - FOOT as usize) / 2;
     let at = |x: usize| image.pixels[row * image.width + x];
@@ -56,10 +62,7 @@ fn a_plate_shows_damage_where_it_is() {
 
 #[test]
 fn up_is_up() {
-    let mut s = block([10, 10, 1], 2);
-    for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
-        *damage = if x[1] > 4.5 { 1.0 } else { 0.0 };
-    }
+    let s = damaged(block([10, 10, 1], 2), |x| x[1] > 4.5);
     let image = views(&draw(&s));
     let at = |part: f64| {
         image.pixels[(part * image.height as f64) as usize * image.width + image.width / 2]
@@ -73,13 +76,10 @@ fn the_layer_nearest_to_the_viewer_wins() {
     // thin along y: seen from +y; the order of the points must not matter
     for flip in [false, true] {
         let mut s = block([30, 3, 30], 3);
-        for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
-            *damage = if x[1] == 2.0 { 1.0 } else { 0.0 };
-        }
         if flip {
             s.reference.reverse();
-            s.damage.reverse();
         }
+        let s = damaged(s, |x| x[1] == 2.0);
         let image = views(&draw(&s));
         // the left view is the one from above
         let left: Vec<Color> = image
@@ -94,13 +94,10 @@ fn the_layer_nearest_to_the_viewer_wins() {
 
 #[test]
 fn the_section_shows_the_inside() {
-    let mut s = block([31, 31, 5], 3);
-    for (damage, x) in s.damage.iter_mut().zip(&s.reference) {
-        // a core that no view of the whole body could show
-        let core =
-            (x[0] - 15.0).abs() < 5.0 && (x[1] - 15.0).abs() < 5.0 && (x[2] - 2.0).abs() < 1.5;
-        *damage = if core { 1.0 } else { 0.0 };
-    }
+    // a core that no view of the whole body could show
+    let s = damaged(block([31, 31, 5], 3), |x| {
+        (x[0] - 15.0).abs() < 5.0 && (x[1] - 15.0).abs() < 5.0 && (x[2] - 2.0).abs() < 1.5
+    });
     let image = views(&draw(&s));
     let bright = |p: &&Color| p[0] > 200 && p[1] > 200 && p[2] < 200;
     let part = |range: std::ops::Range<usize>| {
@@ -116,11 +113,12 @@ fn the_section_shows_the_inside() {
 
 #[test]
 fn debris_far_away_is_counted_and_does_not_shrink_the_picture() {
-    let mut s = block([40, 40, 1], 2);
+    let s = block([40, 40, 1], 2);
     let whole = draw(&s);
-    s.displacement[0] = [1e9, 0.0, 0.0];
-    s.displacement[1] = [f64::NAN, 0.0, 0.0];
-    let broken = draw(&s);
+    let mut u = s.displacement().to_vec();
+    u[0] = [1e9, 0.0, 0.0];
+    u[1] = [f64::NAN, 0.0, 0.0];
+    let broken = draw(&with(s, "displacement", Values::Vectors(u)));
     assert_eq!((whole.width, whole.height), (broken.width, broken.height));
     // two points of 1,600 are missing from the views, nothing else moved
     let lost = number_of(&views(&broken), WHITE) - number_of(&views(&whole), WHITE);
@@ -168,11 +166,10 @@ fn bodies_without_extent_are_drawn() {
 
 #[test]
 fn a_chain_is_two_curves() {
-    let mut s = block([50, 1, 1], 1);
-    for (u, x) in s.displacement.iter_mut().zip(&s.reference) {
-        u[0] = 0.01 * x[0];
-    }
-    s.damage[25] = 1.0;
+    let s = damaged(block([50, 1, 1], 1), |x| x[0] == 25.0);
+    let u = s.reference.iter().map(|x| [0.01 * x[0], 0.0, 0.0]);
+    let u = Values::Vectors(u.collect());
+    let s = with(s, "displacement", u);
     let image = draw(&s);
     // the damaged point, in both plots, in the colour of damage 1
     let hot: Vec<usize> = (0..image.pixels.len())
@@ -187,10 +184,7 @@ fn a_chain_is_two_curves() {
 
 #[test]
 fn damage_must_be_there() {
-    let s = Snapshot {
-        damage: Vec::new(),
-        ..block([3, 3, 1], 2)
-    };
+    let s = with(block([3, 3, 1], 2), "damage", Values::Scalars(vec![]));
     let text = damage(&s, &PictureOptions::default())
         .unwrap_err()
         .to_string();

@@ -1,0 +1,23 @@
+//! `reference`
+
+use super::by_id;
+use super::{Needs, Observable};
+use crate::columns::{Declaration, Dimension, Shape};
+use crate::observe::{State, Values};
+
+pub static OBSERVABLE: Observable = Observable {
+    declaration: Declaration::of_points(
+        "reference",
+        Shape::Vector,
+        Dimension::LENGTH,
+        "Position in the reference configuration.",
+    ),
+    equation: "x",
+    source: "",
+    needs: Needs::Nothing,
+    of,
+};
+
+fn of(state: &mut dyn State) -> Option<Values> {
+    Some(Values::Vectors(by_id(state, |s, i| s.reference(i))))
+}

@@ -1,0 +1,358 @@
+//! What may be seen of a model: its columns by name, and the state that observables look at.
+
+use super::Simulation;
+use super::model::Model;
+use crate::columns::{Declaration, Life, On};
+use crate::error::BuildError;
+use crate::expression::nearest;
+use crate::fracture::fragments::Fragments;
+use crate::interaction::{BondForce, BondState};
+use crate::observe::observables::{self, Needs, Observable};
+use crate::observe::{Column, FamilyBond, Observed, PointForce, Snapshot, State, Values};
+use crate::space::Point;
+
+/// The state of a model, and what was computed of it already.
+struct View<'a, const D: usize> {
+    model: &'a mut Model<D>,
+    /// Id of every slot of a point.
+    id: Vec<u32>,
+    seen: Option<Observed>,
+}
+
+fn padded<const D: usize>(x: &[f64; D]) -> Point {
+    std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0))
+}
+
+impl<const D: usize> View<'_, D> {
+    fn slot(&self, id: usize) -> usize {
+        self.model.body.slots[id] as usize
+    }
+
+    fn ids(&mut self) {
+        if self.id.is_empty() {
+            self.id = self.model.ids();
+        }
+    }
+}
+
+impl<const D: usize> State for View<'_, D> {
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn points(&self) -> usize {
+        self.model.body.points()
+    }
+
+    fn reference(&self, id: usize) -> Point {
+        self.model.body.position(self.slot(id))
+    }
+
+    fn displacement(&self, id: usize) -> Point {
+        let s = self.slot(id);
+        padded(&std::array::from_fn::<_, D, _>(|a| self.model.u[a][s]))
+    }
+
+    fn velocity(&self, id: usize) -> Point {
+        let s = self.slot(id);
+        padded(&std::array::from_fn::<_, D, _>(|a| self.model.v[a][s]))
+    }
+
+    fn force_density(&self, id: usize) -> Point {
+        let s = self.slot(id);
+        padded(&std::array::from_fn::<_, D, _>(|a| self.model.f[a][s]))
+    }
+
+    fn volume(&self, id: usize) -> f64 {
+        self.model.body.volume.at(self.slot(id))
+    }
+
+    fn density(&self, id: usize) -> f64 {
+        self.model.body.density.at(self.slot(id))
+    }
+
+    fn material(&self, id: usize) -> usize {
+        self.model.body.material_of(self.slot(id))
+    }
+
+    fn mark(&self, id: usize) -> i32 {
+        self.model.body.mark.get(id).copied().unwrap_or(0)
+    }
+
+    fn bodies(&self) -> usize {
+        self.model.body.pieces().len().max(1)
+    }
+
+    fn body(&self, id: usize) -> usize {
+        match self.model.body.pieces() {
+            [] => 0,
+            _ => self.model.body.piece_of(self.slot(id)),
+        }
+    }
+
+    fn is_atomic(&self) -> bool {
+        self.model.interaction.is_potential()
+    }
+
+    fn boltzmann(&self) -> f64 {
+        self.model.boltzmann
+    }
+
+    fn energies(&mut self) -> &Observed {
+        let model = &mut *self.model;
+        self.seen.get_or_insert_with(|| model.observed())
+    }
+
+    fn damage(&mut self) -> Vec<f64> {
+        let mut damage = vec![0.0; self.model.body.len];
+        self.model.interaction.damage(&self.model.body, &mut damage);
+        self.model.by_id(|i| damage[i])
+    }
+
+    fn fragments(&mut self) -> Vec<u32> {
+        Fragments::of(&self.model.body, self.model.interaction.as_ref()).label
+    }
+
+    fn each_bond(&mut self, visit: &mut dyn FnMut(FamilyBond)) {
+        self.ids();
+        let (model, id) = (&*self.model, &self.id);
+        model
+            .interaction
+            .each_bond(&model.body, &mut |i, j, xi, state| {
+                let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+                visit(FamilyBond {
+                    ends: [i, j].map(|s| id[s] as usize),
+                    xi: padded(&xi),
+                    weight: model.constitutive.at(i).0.weight(r0),
+                    whole: state == BondState::Whole,
+                });
+            });
+    }
+
+    fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
+        self.ids();
+        let id = &self.id;
+        self.model.each_pair_force(&mut |bond| {
+            visit(PointForce {
+                id: id[bond.i] as usize,
+                y: padded(&bond.y),
+                force: padded(&bond.force),
+            });
+        })
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// Id of every slot of a point.
+    pub(super) fn ids(&self) -> Vec<u32> {
+        let mut id = vec![0u32; self.body.len];
+        for (n, &s) in self.body.slots.iter().enumerate() {
+            id[s as usize] = n as u32;
+        }
+        id
+    }
+
+    /// Brings velocities and images up to date.
+    fn view(&mut self) -> View<'_, D> {
+        self.finish();
+        self.refresh_images();
+        View {
+            model: self,
+            id: vec![],
+            seen: None,
+        }
+    }
+
+    /// Forces of bonds, of repulsion inside families and of contact, from each of their points. Those of the linear body where that
+    /// is what the state stands for. False: a law has no forces of single bonds.
+    pub(super) fn each_pair_force(&mut self, visit: &mut dyn FnMut(BondForce<D>)) -> bool {
+        if self.is_linear() {
+            let (u, small) = self.made_small();
+            return self.interaction.each_force(&self.body, &u, &mut |bond| {
+                visit(BondForce {
+                    force: bond.force.map(|f| f / small),
+                    ..bond
+                });
+            });
+        }
+        let body = &self.body;
+        let known = self.interaction.each_force(body, &self.u, visit);
+        if let Some(contact) = &mut self.contact {
+            let interaction = &self.interaction;
+            contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            contact.each_contact(&self.u, |touch| {
+                let Some(pull) = touch.pull() else { return };
+                for (i, j, sign) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
+                    let y = touch.y.map(|y| sign * y);
+                    let force = y.map(|y| pull * body.volume.at(j) * y);
+                    visit(BondForce { i, j, y, force });
+                }
+            });
+        }
+        known
+    }
+
+    /// Why there is no column of this observable here; `None`: there is one.
+    pub(super) fn lacking(&mut self, of: &Observable) -> Option<&'static str> {
+        let atomic = self.interaction.is_potential();
+        let there = match of.needs {
+            Needs::Nothing => true,
+            Needs::Bodies => self.body.pieces().len() > 1,
+            Needs::Atoms => atomic,
+            Needs::Family => !atomic,
+            Needs::Forces => {
+                let rest = self.body.at_rest();
+                self.interaction.each_force(&self.body, &rest, &mut |_| {})
+            }
+        };
+        (!there).then(|| of.needs.missing())
+    }
+
+    /// Is there a column of each of these names?
+    pub(super) fn check_fields(&mut self, names: &[String]) -> Result<(), BuildError> {
+        for (n, name) in names.iter().enumerate() {
+            let path = format!("output.fields[{n}]");
+            self.check_column(name, &path)?;
+        }
+        Ok(())
+    }
+
+    /// The declaration of a column of points; `path` is what asks for it.
+    pub(super) fn check_column(
+        &mut self,
+        name: &str,
+        path: &str,
+    ) -> Result<Declaration, BuildError> {
+        if let Some(observable) = observables::named(name) {
+            return match self.lacking(observable) {
+                None => Ok(observable.declaration.clone()),
+                Some(why) => Err(BuildError::new(
+                    path,
+                    format!("there is no {name} here: {why}"),
+                )),
+            };
+        }
+        let known = self.declared();
+        match known.iter().find(|c| c.name == name) {
+            Some(column) if column.on == On::Points => Ok(column.clone()),
+            Some(_) => Err(BuildError::new(
+                path,
+                format!("`{name}` is a column of bonds, not of points"),
+            )),
+            None => {
+                let of_points = known.iter().filter(|c| c.on == On::Points);
+                let names: Vec<&str> = of_points.map(|c| &*c.name).collect();
+                let help = match nearest(name, names.iter().copied()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("known are {}", names.join(", ")),
+                };
+                Err(BuildError::new(path, format!("unknown field `{name}`")).help(help))
+            }
+        }
+    }
+
+    /// Everything that has a name and values.
+    pub(super) fn declared(&mut self) -> Vec<Declaration> {
+        let mut all = vec![];
+        for observable in observables::ALL {
+            if self.lacking(observable).is_none() {
+                all.push(observable.declaration.clone());
+            }
+        }
+        for column in self.interaction.columns() {
+            if !all.iter().any(|c| c.name == column.name) {
+                all.push(column);
+            }
+        }
+        all
+    }
+
+    /// Columns by name, in this order; what does not exist is left out.
+    pub(super) fn columns_of<'a>(&mut self, names: impl Iterator<Item = &'a str>) -> Vec<Column> {
+        let mut view = self.view();
+        names.filter_map(|name| view.column(name)).collect()
+    }
+
+    /// Sets a persistent column of the law, by point id or in the order of its bonds.
+    pub(super) fn store(&mut self, name: &str, values: &[f64]) -> bool {
+        let mut declared = self.interaction.columns().into_iter();
+        let Some(column) = declared.find(|c| c.name == name && c.life == Life::Persistent) else {
+            return false;
+        };
+        if column.on == On::Bonds {
+            return self.interaction.write_column(&self.body, name, values);
+        }
+        let n = column.shape.stored(D);
+        if values.len() != n * self.body.points() {
+            return false;
+        }
+        let mut stored = vec![0.0; n * self.body.len];
+        for (value, &s) in values.chunks_exact(n).zip(&self.body.slots) {
+            stored[n * s as usize..n * (s as usize + 1)].copy_from_slice(value);
+        }
+        self.interaction.write_column(&self.body, name, &stored)
+    }
+
+    pub(super) fn record(&mut self, fields: &[&str], bonds: bool) -> Snapshot {
+        let first = ["displacement"].into_iter();
+        let others = fields.iter().copied().filter(|f| *f != "displacement");
+        let columns = self.columns_of(first.chain(others));
+        Snapshot {
+            step: self.step,
+            time: self.time(),
+            dimension: D,
+            spacing: self.body.spacing,
+            reference: self.by_id(|i| self.body.position(i)),
+            columns,
+            bonds: bonds.then(|| self.whole_bonds()),
+        }
+    }
+
+    /// Ids of the ends of whole bonds, the lower first.
+    fn whole_bonds(&self) -> Vec<(u32, u32)> {
+        let (id, mut bonds) = (self.ids(), vec![]);
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, _, state| {
+                if state == BondState::Whole {
+                    let (a, b) = (id[i], id[j]);
+                    bonds.push((a.min(b), a.max(b)));
+                }
+            });
+        bonds
+    }
+}
+
+impl<const D: usize> View<'_, D> {
+    fn column(&mut self, name: &str) -> Option<Column> {
+        match observables::named(name) {
+            Some(observable) => Some(Column {
+                declaration: observable.declaration.clone(),
+                values: (observable.of)(self)?,
+            }),
+            None => self.of_law(name),
+        }
+    }
+
+    /// A column that the law declares.
+    fn of_law(&self, name: &str) -> Option<Column> {
+        let model = &*self.model;
+        let mut declared = model.interaction.columns().into_iter();
+        let declaration = declared.find(|c| c.name == name)?;
+        let (body, mut stored) = (&model.body, vec![]);
+        if !model
+            .interaction
+            .read_column(body, &model.u, name, &mut stored)
+        {
+            return None;
+        }
+        if declaration.on == On::Points {
+            let n = declaration.shape.stored(D);
+            let of = |s: &u32| &stored[n * *s as usize..n * (*s as usize + 1)];
+            stored = body.slots.iter().flat_map(of).copied().collect();
+        }
+        Some(Column {
+            values: Values::unpacked(declaration.shape, D, &stored),
+            declaration,
+        })
+    }
+}

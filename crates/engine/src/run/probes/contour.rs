@@ -1,0 +1,166 @@
+//! The J-integral of a peridynamic body in two dimensions, and the stress intensity that follows.
+//!
+//! Energy that flows into a region R that moves with the crack in direction n, per advance and thickness h (Hu, Ha, Bobaru,
+//! Silling 2012, *The formulation and computation of the nonlocal J-integral in bond-based peridynamics*; Silling, Lehoucq 2010):
+//!
+//! `J h = ∮ W n·ds − ½ Σ_{i∈R} Σ_{j∉R} V_i V_j f_ij · (g_i + g_j)`,
+//!
+//! with `f_ij` the force density per volume on i from j and `g = ∂u/∂x · n`. It does not depend on R as long as the tip is in it,
+//! the crack runs along n through it, and it is in equilibrium without loads. Averaged over the regions between two rectangles,
+//! with q from 1 inside the inner to 0 outside the outer one, it becomes a sum over the points in between,
+//!
+//! `J h = −Σ_i V_i W_i ∂q/∂n − ¼ Σ_i Σ_j V_i V_j (q_i − q_j) f_ij · (g_i + g_j)`,
+//!
+//! in which no quantity at the tip is needed (as in the equivalent domain integral of classical mechanics: Li, Shih, Needleman
+//! 1985). State-based laws give a bond's energy to its ends in unequal halves; what that changes is of the order of the gradient
+//! of pressure over the horizon, and is left out. `g` is the [displacement gradient](crate::observe::observables) of each point.
+
+use super::rectangle::Contour;
+use crate::error::BuildError;
+use crate::observe::Values;
+use crate::run::model::Model;
+use crate::spec::ContourSpec;
+
+/// Strain at which stiffness is measured: small enough to be linear, and computed without cancellation.
+const SMALL: f64 = 1e-8;
+/// A rectangle reaches so many horizons from its middle, at least.
+const REACH: f64 = 3.0;
+
+impl<const D: usize> Model<D> {
+    /// A contour that can be integrated.
+    pub(in crate::run) fn contour_of(
+        &mut self,
+        spec: &ContourSpec,
+        path: &str,
+    ) -> Result<Contour, BuildError> {
+        let at = |key: &str| format!("{path}.{key}");
+        if D != 2 {
+            return Err(BuildError::new(
+                path,
+                format!("a contour is one in two dimensions, this body has {D}"),
+            ));
+        }
+        if self.interaction.is_potential() {
+            return Err(BuildError::new(
+                path,
+                "a contour goes through a solid, these are atoms",
+            ));
+        }
+        if self.statics.is_none() {
+            return Err(BuildError::new(
+                path,
+                "a contour integral needs equilibrium: in motion the inertia inside it counts, too",
+            )
+            .help("write [statics] instead of [run]"));
+        }
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for &s in &self.body.slots {
+            let x = self.body.position(s as usize);
+            for (b, x) in bounds.iter_mut().zip(x) {
+                *b = [b[0].min(x), b[1].max(x)];
+            }
+        }
+        let (horizon, half_cell) = (self.info.horizon, 0.5 * self.body.spacing);
+        for a in 0..2 {
+            let (low, high) = (spec.low[a], spec.high[a]);
+            if !(high - low >= 2.0 * REACH * horizon) {
+                let message = format!(
+                    "the rectangle is {:.3e} wide and needs {REACH} horizons on either side of the tip: {:.3e}",
+                    high - low,
+                    2.0 * REACH * horizon
+                );
+                return Err(BuildError::new(at("corners"), message).help("move the corners apart"));
+            }
+            if low < bounds[a][0] - half_cell || high > bounds[a][1] + half_cell {
+                let message = "the rectangle leaves the body, whose surface would have to be part of the contour";
+                return Err(
+                    BuildError::new(at("corners"), message).help("move the corners into the body")
+                );
+            }
+        }
+        let inside = |s: usize| {
+            let x = self.body.position(s);
+            (0..2).all(|a| x[a] > spec.low[a] && x[a] < spec.high[a])
+        };
+        let held = self.constraints.iter().flat_map(|c| c.holds());
+        let loaded = self
+            .loads
+            .iter()
+            .flat_map(|l| l.slots().iter().map(|s| *s as usize));
+        if held.map(|(s, _)| s).chain(loaded).any(inside) {
+            let message = "points inside the rectangle are held or loaded, and what that does would count as energy of the crack";
+            return Err(
+                BuildError::new(at("corners"), message).help("move the corners away from them")
+            );
+        }
+        Ok(Contour {
+            modulus: self.plane_modulus(spec),
+            spec: *spec,
+            section: self.info.section,
+        })
+    }
+
+    /// `E′` of the points in a rectangle: the median, which a crack and surfaces do not change.
+    fn plane_modulus(&self, spec: &ContourSpec) -> f64 {
+        let strained = |xx: f64, yy: f64| {
+            let mut strain = [[0.0; 3]; 3];
+            (strain[0][0], strain[1][1]) = (SMALL * xx, SMALL * yy);
+            let energy = self.strained(strain);
+            energy
+                .into_iter()
+                .map(|w| w / (SMALL * SMALL))
+                .collect::<Vec<f64>>()
+        };
+        let (along, both) = (strained(1.0, 0.0), strained(1.0, 1.0));
+        let mut moduli: Vec<f64> = vec![];
+        for (id, &s) in self.body.slots.iter().enumerate() {
+            let x = self.body.position(s as usize);
+            if (0..2).all(|a| x[a] > spec.low[a] && x[a] < spec.high[a]) {
+                // W = ½ C₁₁ and C₁₁ + C₁₂
+                let c11 = 2.0 * along[id];
+                let c12 = both[id] - c11;
+                moduli.push(c11 - c12 * c12 / c11);
+            }
+        }
+        moduli.sort_by(f64::total_cmp);
+        moduli.get(moduli.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// J and K now.
+    pub(in crate::run) fn integral(&mut self, contour: &Contour) -> [f64; 2] {
+        let n = contour.spec.direction;
+        let columns =
+            self.columns_of(["strain_energy_density", "displacement_gradient"].into_iter());
+        let [energy, gradient] = &columns[..] else {
+            unreachable!("solids have both")
+        };
+        let (Values::Scalars(energy), Values::Tensors(gradient)) =
+            (&energy.values, &gradient.values)
+        else {
+            unreachable!("by their declarations")
+        };
+        let q: Vec<(f64, [f64; 2])> = self.by_id(|s| {
+            let x = self.body.position(s);
+            contour.q([x[0], x[1]])
+        });
+        let g: Vec<[f64; 2]> = gradient
+            .iter()
+            .map(|h| [h[0] * n[0] + h[1] * n[1], h[3] * n[0] + h[4] * n[1]])
+            .collect();
+        let mut sum = 0.0;
+        for (id, (_, slope)) in q.iter().enumerate() {
+            let volume = self.body.volume.at(self.body.slots[id] as usize);
+            sum -= volume * energy[id] * (slope[0] * n[0] + slope[1] * n[1]);
+        }
+        let (id, volume) = (self.ids(), self.body.volume.clone());
+        self.each_pair_force(&mut |bond| {
+            let (i, j) = (id[bond.i] as usize, id[bond.j] as usize);
+            let across = q[i].0 - q[j].0;
+            let power: f64 = (0..2).map(|a| bond.force[a] * (g[i][a] + g[j][a])).sum();
+            sum -= 0.25 * volume.at(bond.i) * across * power;
+        });
+        let j = sum / contour.section;
+        // closed by pressure: no intensity
+        [j, (j.max(0.0) * contour.modulus).sqrt()]
+    }
+}

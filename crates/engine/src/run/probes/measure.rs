@@ -1,0 +1,318 @@
+//! Probes: what is measured of a set of points, as columns of a history.
+
+use super::state::{Kind, Probe};
+use crate::columns::{Dimension, Shape};
+use crate::error::BuildError;
+use crate::observe::{Column, ProbeColumn};
+use crate::run::Simulation;
+use crate::run::model::Model;
+use crate::space::Point;
+use crate::spec::{Fold, Measure, Part, ProbeSpec};
+
+/// Pairs of axes of the moments about z, and in 3-D about x and y before it.
+const TURNS: [(&str, [usize; 2]); 3] = [("x", [1, 2]), ("y", [2, 0]), ("z", [0, 1])];
+
+impl<const D: usize> Model<D> {
+    /// Probes of a specification.
+    ///
+    /// # Errors
+    /// What they ask for does not exist.
+    pub(in crate::run) fn probes_of(
+        &mut self,
+        specs: &[ProbeSpec],
+    ) -> Result<Vec<Probe>, BuildError> {
+        let mut all = Vec::with_capacity(specs.len());
+        for (n, spec) in specs.iter().enumerate() {
+            let probe = self.probe_of(spec, &format!("probes[{n}]"))?;
+            let taken = |p: &Probe, c: &ProbeColumn| p.columns.iter().any(|o| o.name == c.name);
+            let twice = probe
+                .columns
+                .iter()
+                .find(|c| all.iter().any(|p| taken(p, c)));
+            if let Some(column) = twice {
+                let message = format!("two probes write the column `{}`", column.name);
+                return Err(BuildError::new(format!("probes[{n}].name"), message)
+                    .help("give them different names"));
+            }
+            all.push(probe);
+        }
+        Ok(all)
+    }
+
+    fn probe_of(&mut self, spec: &ProbeSpec, path: &str) -> Result<Probe, BuildError> {
+        let at = |key: &str| format!("{path}.{key}");
+        let Some(mut ids) = self.ids_of(&spec.set) else {
+            let known: Vec<&str> = self.sets.iter().map(|(name, _)| name.as_str()).collect();
+            let message = format!("there is no set `{}`", spec.set);
+            let help = format!(
+                "known are all{}{}",
+                if known.is_empty() { "" } else { ", " },
+                known.join(", ")
+            );
+            return Err(BuildError::new(at("set"), message).help(help));
+        };
+        if ids.is_empty() {
+            return Err(BuildError::new(
+                at("set"),
+                format!("the set `{}` has no points", spec.set),
+            ));
+        }
+        let name = |part: &str| match part {
+            "" => spec.name.clone(),
+            part => format!("{}_{part}", spec.name),
+        };
+        let column = |part: &str, dimension| ProbeColumn::new(name(part), dimension);
+        let (kind, columns) = match &spec.measure {
+            Measure::Reaction => {
+                let axes = &Shape::Vector.components()[..D];
+                let columns = axes.iter().map(|a| column(a, Dimension::FORCE));
+                (Kind::Reaction, columns.collect())
+            }
+            Measure::Moment { about } => {
+                if D == 1 {
+                    let message = "there are no moments in one dimension";
+                    return Err(BuildError::new(at("about"), message));
+                }
+                let turns = TURNS.iter().filter(|(_, axes)| axes.iter().all(|a| *a < D));
+                // a moment is no energy, though it has the dimension of one
+                let columns = turns.map(|(a, _)| column(a, Dimension::ENERGY).moment());
+                (Kind::Moment(*about), columns.collect())
+            }
+            Measure::Energy => {
+                let parts = ["kinetic", "strain", "repulsion"];
+                let columns = parts.map(|p| column(p, Dimension::ENERGY));
+                (Kind::Energy, columns.to_vec())
+            }
+            Measure::Over { fold, of, part } => {
+                let (parts, columns) = self.parts(of, part, path, &column)?;
+                (Kind::Over(*fold, of.clone(), parts), columns)
+            }
+            Measure::Value { at, of, part } => {
+                ids = vec![self.nearest_of(&ids, at)];
+                let (parts, columns) = self.parts(of, part, path, &column)?;
+                (Kind::Over(Fold::Sum, of.clone(), parts), columns)
+            }
+            Measure::Contour(contour) => {
+                let contour = self.contour_of(contour, path)?;
+                let columns = vec![
+                    column("J", Dimension::FRACTURE_ENERGY),
+                    // K² = J E′
+                    column("K", Dimension::FRACTURE_ENERGY * Dimension::PRESSURE).rooted(),
+                ];
+                (Kind::Contour(Box::new(contour)), columns)
+            }
+        };
+        Ok(Probe { ids, kind, columns })
+    }
+
+    fn ids_of(&self, set: &str) -> Option<Vec<u32>> {
+        if set == "all" {
+            return Some((0..self.body.points() as u32).collect());
+        }
+        let named = self.sets.iter().find(|(name, _)| name == set);
+        named.map(|(_, ids)| ids.clone())
+    }
+
+    /// The point of these that is nearest to a place in the reference.
+    fn nearest_of(&self, ids: &[u32], at: &Point) -> u32 {
+        let far = |id: &u32| -> f64 {
+            let x = self.body.position(self.body.slots[*id as usize] as usize);
+            (0..D).map(|a| (x[a] - at[a]).powi(2)).sum()
+        };
+        let nearest = ids.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        nearest.copied().unwrap_or(0)
+    }
+
+    /// Which components of a column are asked for, and what they are called.
+    #[allow(clippy::type_complexity)] // two lists side by side
+    fn parts(
+        &mut self,
+        of: &str,
+        part: &Part,
+        path: &str,
+        column: &dyn Fn(&str, Dimension) -> ProbeColumn,
+    ) -> Result<(Vec<Option<usize>>, Vec<ProbeColumn>), BuildError> {
+        let declared = self.check_column(of, &format!("{path}.of"))?;
+        let names = declared.shape.components();
+        // components of axes that are not there are 0
+        let there = |name: &&&str| name.bytes().all(|b| usize::from(b - b'x') < D);
+        let whole: Vec<usize> = match names {
+            [] => vec![0],
+            names => (0..names.len()).filter(|n| there(&&names[*n])).collect(),
+        };
+        let titled = |n: usize| column(names.get(n).copied().unwrap_or(""), declared.dimension);
+        Ok(match part {
+            Part::All => {
+                let columns = whole.iter().map(|n| titled(*n)).collect();
+                (whole.into_iter().map(Some).collect(), columns)
+            }
+            Part::Magnitude => {
+                let part = if names.is_empty() { "" } else { "magnitude" };
+                (vec![None], vec![column(part, declared.dimension)])
+            }
+            Part::Component(name) => {
+                let Some(n) = whole
+                    .iter()
+                    .find(|n| names.get(**n) == Some(&name.as_str()))
+                else {
+                    let known: Vec<&str> = whole
+                        .iter()
+                        .filter_map(|n| names.get(*n).copied())
+                        .collect();
+                    let message = format!("`{of}` has no component `{name}`");
+                    let help = match known.is_empty() {
+                        true => format!("`{of}` is one number: leave component out"),
+                        false => format!("components are {}, and magnitude", known.join(", ")),
+                    };
+                    return Err(BuildError::new(format!("{path}.component"), message).help(help));
+                };
+                (vec![Some(*n)], vec![titled(*n)])
+            }
+        })
+    }
+
+    /// What all probes write.
+    pub(in crate::run) fn probe_columns(&self) -> Vec<ProbeColumn> {
+        self.probes
+            .iter()
+            .flat_map(|p| p.columns.iter().cloned())
+            .collect()
+    }
+
+    /// Their values now, in that order.
+    pub(in crate::run) fn measure(&mut self) -> Vec<f64> {
+        let probes = std::mem::take(&mut self.probes);
+        // columns that several probes look at are computed once
+        let mut wanted: Vec<&str> = vec![];
+        for probe in &probes {
+            let of: &[&str] = match &probe.kind {
+                Kind::Over(_, of, _) => &[of.as_str()],
+                Kind::Energy => &ENERGIES,
+                Kind::Contour(_) | Kind::Reaction | Kind::Moment(_) => &[],
+            };
+            wanted.extend(
+                of.iter()
+                    .filter(|name| !wanted.contains(name))
+                    .collect::<Vec<_>>(),
+            );
+        }
+        let columns = self.columns_of(wanted.into_iter());
+        let mut values = vec![];
+        for probe in &probes {
+            match &probe.kind {
+                Kind::Reaction => values.extend(self.reaction_of(&probe.ids)),
+                Kind::Moment(about) => values.extend(self.moment_of(&probe.ids, about)),
+                Kind::Energy => {
+                    let energy = |name: &str| {
+                        let of_point = |id: &u32| {
+                            let volume =
+                                self.body.volume.at(self.body.slots[*id as usize] as usize);
+                            volume * named(&columns, name).values.at(*id as usize, 0)
+                        };
+                        probe.ids.iter().map(of_point).sum::<f64>()
+                    };
+                    values.extend(ENERGIES.map(energy));
+                }
+                Kind::Over(fold, of, parts) => {
+                    let column = &named(&columns, of).values;
+                    values.extend(parts.iter().map(|part| {
+                        let each = probe.ids.iter().map(|id| match part {
+                            Some(c) => column.at(*id as usize, *c),
+                            None => column.size(*id as usize),
+                        });
+                        folded(*fold, each)
+                    }));
+                }
+                Kind::Contour(contour) => values.extend(self.integral(contour)),
+            }
+        }
+        self.probes = probes;
+        values
+    }
+
+    /// Force of the constraints on each point that they hold: ids' slots and forces.
+    fn reactions(&self, ids: &[u32]) -> Vec<(usize, [f64; D])> {
+        let wanted: std::collections::HashMap<usize, usize> = ids
+            .iter()
+            .enumerate()
+            .map(|(n, id)| (self.body.slots[*id as usize] as usize, n))
+            .collect();
+        // a component that two constraints hold is held once
+        let mut held: Vec<[Option<f64>; D]> = vec![[None; D]; ids.len()];
+        let t = self.time();
+        for constraint in &self.constraints {
+            constraint.each(|k, slot, a| {
+                let Some(n) = wanted.get(&slot) else { return };
+                let acceleration = match self.statics.is_some() {
+                    true => 0.0,
+                    false => constraint.acceleration(a, k, t, self.dt),
+                };
+                held[*n][a] = Some(acceleration);
+            });
+        }
+        let mut forces = vec![];
+        for (id, held) in ids.iter().zip(held) {
+            let s = self.body.slots[*id as usize] as usize;
+            let (rho, volume) = (self.body.density.at(s), self.body.volume.at(s));
+            let of = |a: usize| {
+                held[a].map_or(0.0, |acceleration| {
+                    volume * (rho * acceleration - self.f[a][s])
+                })
+            };
+            if held.iter().any(Option::is_some) {
+                forces.push((s, std::array::from_fn(of)));
+            }
+        }
+        forces
+    }
+
+    fn reaction_of(&self, ids: &[u32]) -> Vec<f64> {
+        let mut sum = [0.0; D];
+        for (_, force) in self.reactions(ids) {
+            for a in 0..D {
+                sum[a] += force[a];
+            }
+        }
+        sum.to_vec()
+    }
+
+    fn moment_of(&self, ids: &[u32], about: &Point) -> Vec<f64> {
+        let reactions = self.reactions(ids);
+        let turns = TURNS.iter().filter(|(_, axes)| axes.iter().all(|a| *a < D));
+        let moment = |(_, [a, b]): &(&str, [usize; 2])| {
+            let of = |(s, force): &(usize, [f64; D])| {
+                let x = self.body.position(*s);
+                // in a linear solution the body stays where it was
+                let moved = |c: usize| match self.is_linear() {
+                    true => 0.0,
+                    false => self.u[c][*s],
+                };
+                let arm = |c: usize| x[c] + moved(c) - about[c];
+                arm(*a) * force[*b] - arm(*b) * force[*a]
+            };
+            reactions.iter().map(of).sum()
+        };
+        turns.map(moment).collect()
+    }
+}
+
+const ENERGIES: [&str; 3] = [
+    "kinetic_energy_density",
+    "strain_energy_density",
+    "repulsion_energy_density",
+];
+
+fn named<'a>(columns: &'a [Column], name: &str) -> &'a Column {
+    let found = columns.iter().find(|c| c.name() == name);
+    found.expect("looked at when the probe was made")
+}
+
+fn folded(fold: Fold, values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    match fold {
+        Fold::Mean => values.sum::<f64>() / count,
+        Fold::Sum => values.sum(),
+        Fold::Min => values.fold(f64::INFINITY, f64::min),
+        Fold::Max => values.fold(f64::NEG_INFINITY, f64::max),
+    }
+}

@@ -1,0 +1,6 @@
+//! Probes: what is measured of sets of points over time.
+
+mod contour;
+mod measure;
+mod rectangle;
+pub(super) mod state;

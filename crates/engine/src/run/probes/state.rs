@@ -1,0 +1,23 @@
+//! Probes as a model keeps them.
+
+use super::rectangle::Contour;
+use crate::observe::ProbeColumn;
+use crate::space::Point;
+use crate::spec::Fold;
+
+/// A probe that knows its points.
+pub(in crate::run) struct Probe {
+    /// Ids.
+    pub(super) ids: Vec<u32>,
+    pub(super) kind: Kind,
+    pub(super) columns: Vec<ProbeColumn>,
+}
+
+pub(super) enum Kind {
+    Reaction,
+    Moment(Point),
+    Energy,
+    /// Components by number; `None`: the magnitude.
+    Over(Fold, String, Vec<Option<usize>>),
+    Contour(Box<Contour>),
+}

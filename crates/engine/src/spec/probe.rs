@@ -1,0 +1,59 @@
+//! What is measured over time: columns of a history.
+
+use crate::space::Point;
+
+/// A measurement of a set of points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeSpec {
+    /// Its columns begin with it.
+    pub name: String,
+    /// Of which points; `"all"` always exists.
+    pub set: String,
+    pub measure: Measure,
+}
+
+/// What a probe measures.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Measure {
+    /// Sum of the forces that constraints exert on the set (force), per axis.
+    Reaction,
+    /// Their moment about a fixed point, with points where they are now (force · length), about every axis that the dimension has.
+    Moment { about: Point },
+    /// Kinetic energy of the set, and strain and repulsion energy with half of each bond that leaves it.
+    Energy,
+    /// A number of the values of a column over the set.
+    Over { fold: Fold, of: String, part: Part },
+    /// A column at the point of the set that is nearest to a place in the reference (of equal ones the first).
+    Value { at: Point, of: String, part: Part },
+    /// J-integral around a crack tip in two dimensions, and the stress intensity `K = √(J E′)`.
+    Contour(ContourSpec),
+}
+
+/// A rectangle around the tip of a straight crack.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContourSpec {
+    pub low: [f64; 2],
+    pub high: [f64; 2],
+    /// Where the crack grows to; a unit vector.
+    pub direction: [f64; 2],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fold {
+    /// Of points, each counts once.
+    Mean,
+    Min,
+    Max,
+    Sum,
+}
+
+/// Which part of a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Part {
+    /// Each component by itself.
+    All,
+    /// One, by name: `x`, `xy`.
+    Component(String),
+    /// Length of a vector, `√(T:T)` of a tensor.
+    Magnitude,
+}

@@ -1,0 +1,7 @@
+//! What is seen of a run: observables against closed forms, probes against the laws of mechanics.
+
+mod columns;
+mod contour;
+mod fields;
+mod probes;
+mod sample;
