@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::fmt::Write;
 
 /// Tables of names in this order, with where they stand; others follow.
-const ORDER: [(&str, &str); 14] = [
+const ORDER: [(&str, &str); 15] = [
     ("Law", "laws (material.law)"),
     ("EndName", "ends of pair potentials at their cut-off (end)"),
     ("Fracture", "fracture (material.fracture)"),
@@ -29,6 +29,7 @@ const ORDER: [(&str, &str); 14] = [
     ),
     ("FamilyName", "families (family)"),
     ("Shape", "regions (region)"),
+    ("MeasureName", "measures of probes (probe.measure)"),
     ("CrackName", "kinds of pre-crack (precrack.kind)"),
     ("MethodName", "methods of statics (statics.method)"),
     ("SolverName", "solvers of linear systems (statics.solver)"),

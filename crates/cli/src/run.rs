@@ -209,6 +209,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
             }),
         },
         fields: fields(deck),
+        units: deck.units,
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),
         atoms: deck.spec.potential().map(|_| {

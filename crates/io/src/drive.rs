@@ -10,6 +10,7 @@ use peridyne::run::Simulation;
 use peridyne::spec::AnyLinearBody;
 
 use crate::balance::BalanceWatch;
+use crate::deck::UnitSystem;
 use crate::read::{Atoms, Species};
 use crate::write::data::write_data;
 use crate::write::folder::{Folder, is_inside};
@@ -42,6 +43,8 @@ pub struct Plan {
     pub series: SeriesOptions,
     /// Columns of a frame.
     pub fields: Vec<String>,
+    /// Of the numbers that are computed, for headers of probes.
+    pub units: UnitSystem,
     /// Units of time and energy, for headers.
     pub time_unit: String,
     pub energy_unit: String,
@@ -234,6 +237,14 @@ pub fn drive(
         columns.push(Column::new("temperature", &atoms.temperature_unit));
         columns.push(Column::new("pressure", &atoms.pressure_unit));
     }
+    columns.extend(sim.probe_columns().into_iter().map(|c| {
+        let unit = match (c.rooted, c.moment, plan.units) {
+            (true, _, units) => units.root_unit(c.dimension),
+            (false, true, UnitSystem::Si) => "N m".into(),
+            (false, _, units) => units.unit(c.dimension),
+        };
+        Column::new(c.name, &unit)
+    }));
     let mut trajectories = Vec::new();
     if let Some(atoms) = &plan.atoms {
         for (path, format) in &atoms.trajectories {
@@ -297,6 +308,7 @@ pub fn drive(
             if let Some(atoms) = &plan.atoms {
                 row.extend(atoms.thermo(sim, ledger.kinetic));
             }
+            row.extend(sim.measure());
             history.push(sim.step_number(), &row)?;
             told = Some(sim.step_number());
             progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());

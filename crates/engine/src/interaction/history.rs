@@ -9,21 +9,28 @@ use crate::law::Law;
 
 /// Name of the column of whole bonds.
 pub const WHOLE: &str = "whole";
-/// Name of the column of critical stretches.
+const ELONGATION: &str = "critical_elongation";
 const CRITICAL: &str = "critical_stretch";
 
 /// What peridynamic laws of bits remember; `breaks`: do bonds break?
 pub fn columns(breaks: bool) -> Vec<Declaration> {
     let whole = Declaration::of_bonds(WHOLE, Dimension::NUMBER, "1: the bond is whole, 0: broken.");
+    let elongation = Declaration::of_points(
+        ELONGATION,
+        Shape::Scalar,
+        Dimension::NUMBER,
+        "e0 = s0 (2 + s0) of the critical stretch s0: what bonds are compared with, (r² − r0²)/r0².",
+    );
     let critical = Declaration::of_points(
         CRITICAL,
         Shape::Scalar,
         Dimension::NUMBER,
         "Stretch s0 = s00 − α s_min beyond which a bond of the point breaks (Silling, Askari 2005); ∞: not known yet, or no bond is left.",
     );
-    let mut all = vec![whole];
-    all.extend(breaks.then_some(critical));
-    all
+    match breaks {
+        true => vec![whole, elongation, critical.derived()],
+        false => vec![whole],
+    }
 }
 
 /// [`read_column`](super::Interaction::read_column) of critical stretches, of critical values of `e` for each slot.
@@ -34,12 +41,17 @@ pub fn read_critical<const D: usize>(
     out: &mut Vec<f64>,
 ) -> bool {
     out.clear();
-    if name != CRITICAL || critical.is_empty() {
+    let of: fn(f64) -> f64 = match name {
+        ELONGATION => |e| e,
+        CRITICAL => critical_stretch,
+        _ => return false,
+    };
+    if critical.is_empty() {
         return false;
     }
     out.resize(body.len, 0.0);
     for &s in &body.slots {
-        out[s as usize] = critical_stretch(critical[s as usize]);
+        out[s as usize] = of(critical[s as usize]);
     }
     true
 }
@@ -47,15 +59,15 @@ pub fn read_critical<const D: usize>(
 /// [`write_column`](super::Interaction::write_column) of the same.
 pub fn write_critical<const D: usize>(
     body: &Body<D>,
-    critical_e: &mut [f64],
+    critical: &mut [f64],
     name: &str,
     values: &[f64],
 ) -> bool {
-    if name != CRITICAL || critical_e.is_empty() || values.len() != body.len {
+    if name != ELONGATION || critical.is_empty() || values.len() != body.len {
         return false;
     }
     for &s in &body.slots {
-        critical_e[s as usize] = critical(values[s as usize]);
+        critical[s as usize] = values[s as usize];
     }
     true
 }

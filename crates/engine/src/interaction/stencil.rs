@@ -331,11 +331,14 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         let field = |n: usize, slot: usize| self.fields[n].get(slot).copied().unwrap_or(0.0);
         for (n, &t) in self.tiles.iter().enumerate() {
             let first = grid.tile_slot(t as usize);
-            let bonds = &self.bonds[grid.tile_sublattice(t as usize)];
+            let sub = grid.tile_sublattice(t as usize);
+            let bonds = self.bonds[sub].iter().zip(&self.partners[sub]);
             for i in (first..first + TILE).filter(|i| grid.is_owned(*i)) {
-                for (b, bits) in bonds.iter().zip(self.row(n)) {
+                for ((b, to), bits) in bonds.clone().zip(self.row(n)) {
                     let alive = bits >> (i - first) & 1 == 1;
-                    if !alive && self.repulsion.is_none() {
+                    // beside the body another row of it lies in memory
+                    let there = || grid.neighbour(i, to.cell, to.to).is_some();
+                    if !alive && (self.repulsion.is_none() || !there()) {
                         continue;
                     }
                     let j = b.to(i);

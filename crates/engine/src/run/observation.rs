@@ -192,19 +192,24 @@ impl<const D: usize> Model<D> {
         known
     }
 
-    /// Why there is no column of this observable here; `None`: there is one.
-    pub(super) fn lacking(&mut self, of: &Observable) -> Option<&'static str> {
+    /// Has the model what an observable needs, as far as that can be said without a look at its forces?
+    fn may(&self, of: &Observable) -> bool {
         let atomic = self.interaction.is_potential();
-        let there = match of.needs {
-            Needs::Nothing => true,
+        match of.needs {
+            Needs::Nothing | Needs::Forces => true,
             Needs::Bodies => self.body.pieces().len() > 1,
             Needs::Atoms => atomic,
             Needs::Family => !atomic,
-            Needs::Forces => {
-                let rest = self.body.at_rest();
-                self.interaction.each_force(&self.body, &rest, &mut |_| {})
-            }
-        };
+        }
+    }
+
+    /// Why there is no column of this observable here; `None`: there is one.
+    fn lacking(&mut self, of: &Observable) -> Option<&'static str> {
+        let mut there = self.may(of);
+        if there && of.needs == Needs::Forces {
+            let rest = self.body.at_rest();
+            there = self.interaction.each_force(&self.body, &rest, &mut |_| {});
+        }
         (!there).then(|| of.needs.missing())
     }
 
@@ -325,6 +330,7 @@ impl<const D: usize> Model<D> {
 impl<const D: usize> View<'_, D> {
     fn column(&mut self, name: &str) -> Option<Column> {
         match observables::named(name) {
+            Some(observable) if !self.model.may(observable) => None,
             Some(observable) => Some(Column {
                 declaration: observable.declaration.clone(),
                 values: (observable.of)(self)?,

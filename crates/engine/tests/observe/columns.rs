@@ -109,7 +109,10 @@ fn memory_goes_from_one_model_to_another() {
             .collect();
         broken.set_displacements(&u);
         broken.start(true);
-        let (whole, critical) = (broken.scalars("whole"), broken.scalars("critical_stretch"));
+        let (whole, critical) = (
+            broken.scalars("whole"),
+            broken.scalars("critical_elongation"),
+        );
         assert!(whole.contains(&0.0) && whole.contains(&1.0));
         let broken_bonds = whole.iter().filter(|w| **w == 0.0).count();
         assert_eq!(broken_bonds as u64, broken.broken());
@@ -117,7 +120,7 @@ fn memory_goes_from_one_model_to_another() {
         assert!(!fresh.set_column("damage", &vec![0.0; whole.len()]));
         assert!(!fresh.set_column("whole", &whole[1..]));
         assert!(
-            fresh.set_column("whole", &whole) && fresh.set_column("critical_stretch", &critical)
+            fresh.set_column("whole", &whole) && fresh.set_column("critical_elongation", &critical)
         );
         fresh.set_displacements(&u);
         for name in ["damage", "critical_stretch", "strain_energy_density"] {

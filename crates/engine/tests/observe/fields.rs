@@ -107,7 +107,7 @@ fn stress_is_the_slope_of_the_energy() {
     for d in 1..=3 {
         for law in [PMB, LPS] {
             // two horizons from every side: families of families are whole
-            let n = [[30, 14, 14], [16, 15, 0], [10, 9, 10]][d - 1];
+            let n = [[30, 14, 14], [16, 15, 0], [10, 10, 10]][d - 1];
             let mut spec = block(n, d, 0.5, law.clone());
             spec.schedule.time_step = TimeStep::Fixed(1e-3);
             let mut sim = made(&spec);

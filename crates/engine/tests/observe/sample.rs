@@ -81,7 +81,7 @@ pub fn probe(spec: &mut Spec, name: &str, set: &str, measure: Measure) {
 
 pub fn made(spec: &Spec) -> Box<dyn Simulation> {
     let options = Options {
-        trust_time_step: true,
+        trust_time_step: matches!(spec.schedule.time_step, TimeStep::Fixed(_)),
         ..Options::default()
     };
     let mut sim = build(spec, options).unwrap();

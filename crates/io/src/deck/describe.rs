@@ -5,9 +5,9 @@ use peridyne::law::descriptor::Value;
 use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, BondFactorSpec, Criterion, FamilyChoice, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Method, NamedLaw, Parameter, Plane, PmbStiffness, Release, Spec, Stepper,
-    TimeStep,
+    BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion, LawSpec,
+    MaterialSpec, Measure, Method, NamedLaw, Parameter, Part, Plane, PmbStiffness, ProbeSpec,
+    Release, Spec, Stepper, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -158,6 +158,13 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         spec.conditions.len(),
         spec.precracks.len()
     ));
+    for probe in &spec.probes {
+        let ProbeSpec { name, set, measure } = probe;
+        lines.push(format!(
+            "probe      {name}: {}",
+            measured(measure, set, units, spec.dimension)
+        ));
+    }
     if let Some(statics) = &spec.schedule.statics() {
         let method = match statics.method {
             Method::Linear => "linear equations about the reference",
@@ -191,6 +198,49 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     };
     lines.push(format!("run        {steps} of {step}{how}"));
     lines.join("\n")
+}
+
+fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -> String {
+    let place = |x: &[f64]| {
+        let each = x
+            .iter()
+            .take(dimension)
+            .map(|x| units.write(*x, Dim::LENGTH));
+        format!("({})", each.collect::<Vec<_>>().join(", "))
+    };
+    let part = |part: &Part| match part {
+        Part::All => String::new(),
+        Part::Component(name) => format!(", {name}"),
+        Part::Magnitude => ", magnitude".into(),
+    };
+    match measure {
+        Measure::Reaction => format!("force of the constraints on {set}"),
+        Measure::Moment { about } => {
+            format!("moment of the constraints on {set} about {}", place(about))
+        }
+        Measure::Energy => format!("energies of {set}"),
+        Measure::Over { fold, of, part: p } => {
+            let fold = match fold {
+                Fold::Mean => "mean",
+                Fold::Min => "smallest",
+                Fold::Max => "largest",
+                Fold::Sum => "sum",
+            };
+            format!("{fold} {of}{} of {set}", part(p))
+        }
+        Measure::Value { at, of, part: p } => {
+            format!(
+                "{of}{} of the point of {set} nearest to {}",
+                part(p),
+                place(at)
+            )
+        }
+        Measure::Contour(c) => format!(
+            "J and K by the rectangle {} to {}",
+            place(&c.low),
+            place(&c.high)
+        ),
+    }
 }
 
 fn body(body: &BodySpec, units: UnitSystem, dimension: usize) -> String {

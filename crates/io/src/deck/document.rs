@@ -79,6 +79,9 @@ pub struct Document {
     pub condition: Vec<At<Condition>>,
     #[serde(default)]
     pub indenter: Vec<At<Indenter>>,
+    /// Measurements over time: columns of history.csv.
+    #[serde(default)]
+    pub probe: Vec<At<Probe>>,
     /// Motion in time; instead of statics.
     pub run: Option<At<Run>>,
     /// Equilibrium under conditions that grow with t; instead of run.
@@ -423,6 +426,28 @@ pub struct Indenter {
     pub mass: Option<Number>,
 }
 
+/// A measurement of a set of points; its columns of history.csv begin with its name.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    pub name: At<String>,
+    /// All points when left out.
+    pub set: Option<At<String>>,
+    pub measure: At<MeasureName>,
+    /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value.
+    pub of: Option<At<String>>,
+    /// x, xy, … or magnitude; all components when left out.
+    pub component: Option<At<String>>,
+    /// Fixed point of a moment.
+    pub about: Option<Vector>,
+    /// Place in the reference; of value.
+    pub at: Option<Vector>,
+    /// Two opposite corners of a rectangle around the tip of a crack, three horizons to every side at least; of contour.
+    pub corners: Option<At<Vec<Vector>>>,
+    /// Where the crack grows to; of contour, [1, 0] when left out.
+    pub direction: Option<Vector>,
+}
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
@@ -588,10 +613,47 @@ names! {
         /// Newmark's method: implicit, stable at any step.
         Newmark,
     }
+    MeasureName {
+        /// Force that constraints exert on the set, per axis.
+        Reaction,
+        /// Moment of that force about a fixed point.
+        Moment,
+        /// Kinetic, strain and repulsion energy of the set.
+        Energy,
+        /// Mean of a field over the points of the set.
+        Mean,
+        /// Smallest value.
+        Min,
+        /// Largest value.
+        Max,
+        /// Sum over the points.
+        Sum,
+        /// A field at the point of the set that is nearest to a place.
+        Value,
+        /// J-integral and stress intensity K of a crack tip (2-D statics), by a rectangle around it.
+        Contour,
+    }
     CrackName {
         /// Bonds that never were.
         Absent,
         /// Bonds that count as damage.
         Broken,
+    }
+}
+
+impl MeasureName {
+    /// As it is written.
+    pub fn title(self) -> &'static str {
+        match self {
+            MeasureName::Reaction => "reaction",
+            MeasureName::Moment => "moment",
+            MeasureName::Energy => "energy",
+            MeasureName::Mean => "mean",
+            MeasureName::Min => "min",
+            MeasureName::Max => "max",
+            MeasureName::Sum => "sum",
+            MeasureName::Value => "value",
+            MeasureName::Contour => "contour",
+        }
     }
 }

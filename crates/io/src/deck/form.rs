@@ -6,7 +6,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Tables that a deck has several of.
-const SEVERAL: [&str; 5] = [
+const SEVERAL: [&str; 6] = [
+    "probe",
     "condition",
     "initial",
     "precrack",

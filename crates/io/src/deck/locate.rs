@@ -91,6 +91,7 @@ fn deck_key(spec_key: &str) -> &str {
         "bonds" => "bond_factor",
         "conditions" => "condition",
         "indenters" => "indenter",
+        "probes" => "probe",
         "schedule" => "run",
         other => other,
     }

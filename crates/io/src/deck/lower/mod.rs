@@ -7,6 +7,7 @@ mod context;
 mod material;
 mod motion;
 mod pieces;
+mod probes;
 mod schedule;
 mod warnings;
 
@@ -132,6 +133,10 @@ pub(super) fn lower(
         conditions.extend(motion::condition(&context, index, at, &mut sets)?);
         condition_entries.resize(conditions.len(), index);
     }
+    let probes = document.probe.iter();
+    let probes = probes
+        .map(|at| probes::probe(&context, at, &sets))
+        .collect::<Result<Vec<_>>>()?;
     let section = section(&context, document)?;
     let run = schedule::schedule(&context, document)?;
     let mut spec = Spec {
@@ -203,7 +208,7 @@ pub(super) fn lower(
         },
         schedule: run.schedule,
         fields: written_fields(document),
-        probes: vec![],
+        probes,
         boltzmann: atoms::boltzmann(units),
         body,
         sets,

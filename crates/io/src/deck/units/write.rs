@@ -36,6 +36,65 @@ impl UnitSystem {
     }
 }
 
+/// Units in which quantities of SI are written.
+const SI: &[(Dim, &str)] = &[
+    (Dim::NUMBER, ""),
+    (Dim::VELOCITY, "m/s"),
+    (Dim::ACCELERATION, "m/s^2"),
+    (Dim::DENSITY, "kg/m^3"),
+    (Dim::FORCE, "N"),
+    (Dim::ENERGY, "J"),
+    (Dim::POWER, "W"),
+    (Dim::PRESSURE, "Pa"),
+    (Dim::FRACTURE_ENERGY, "J/m^2"),
+    (Dim::FORCE_DENSITY, "N/m^3"),
+];
+
+impl UnitSystem {
+    /// The unit of a computed number of this dimension; empty where numbers carry none.
+    pub fn unit(self, dim: Dim) -> String {
+        self.unit_of(dim.0.map(f64::from))
+    }
+
+    /// The unit of a computed number whose square has this dimension.
+    pub fn root_unit(self, dim: Dim) -> String {
+        self.unit_of(dim.0.map(|e| 0.5 * f64::from(e)))
+    }
+
+    fn unit_of(self, [length, mass, time, temperature]: [f64; 4]) -> String {
+        let product = |factors: &[(&str, f64)]| {
+            let there = factors.iter().filter(|(_, e)| *e != 0.0);
+            let power = |(name, e): &(&str, f64)| match *e == 1.0 {
+                true => name.to_string(),
+                false => format!("{name}^{e}"),
+            };
+            there.map(power).collect::<Vec<_>>().join(" ")
+        };
+        match self {
+            UnitSystem::Lj | UnitSystem::None => String::new(),
+            // one eV is Å² ps⁻² of a mass
+            UnitSystem::Metal(_) => product(&[
+                ("eV", mass),
+                ("Å", length - 2.0 * mass),
+                ("ps", time + 2.0 * mass),
+                ("K", temperature),
+            ]),
+            UnitSystem::Si => {
+                let exponents = [length, mass, time, temperature];
+                let named = SI.iter().find(|(dim, _)| dim.0.map(f64::from) == exponents);
+                match (named, mass, time, temperature) {
+                    (Some((_, name)), _, _, _) => name.to_string(),
+                    // what is left of a pressure: Pa m^0.5
+                    (None, 1.0, -2.0, 0.0) => product(&[("Pa", 1.0), ("m", length + 1.0)]),
+                    (None, _, _, _) => {
+                        product(&[("kg", mass), ("m", length), ("s", time), ("K", temperature)])
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// A number in six digits, without trailing zeros.
 pub(in crate::deck) fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -69,4 +128,33 @@ fn engineering(si: f64, unit: &'static str) -> (f64, &'static str) {
         .find(|(s, _)| si.abs() >= s * 0.0999)
         .unwrap_or(&table[table.len() - 1]);
     (si / scale, name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::deck::units::Constants;
+
+    #[test]
+    fn units_of_columns() {
+        let metal = UnitSystem::Metal(Constants::Codata2018);
+        for (dim, si, other) in [
+            (Dim::NUMBER, "", ""),
+            (Dim::LENGTH, "m", "Å"),
+            (Dim::FORCE, "N", "eV Å^-1"),
+            (Dim::PRESSURE, "Pa", "eV Å^-3"),
+            (Dim::FRACTURE_ENERGY, "J/m^2", "eV Å^-2"),
+            (Dim::VELOCITY, "m/s", "Å ps^-1"),
+            (Dim::TEMPERATURE, "K", "K"),
+            (Dim::MASS, "kg", "eV Å^-2 ps^2"),
+            (Dim::CONTACT_STIFFNESS, "Pa m^-5", "eV Å^-8"),
+        ] {
+            assert_eq!(UnitSystem::Si.unit(dim), si);
+            assert_eq!(metal.unit(dim), other);
+            assert_eq!(UnitSystem::None.unit(dim), "");
+        }
+        let squared = Dim::FRACTURE_ENERGY * Dim::PRESSURE;
+        assert_eq!(UnitSystem::Si.root_unit(squared), "Pa m^0.5");
+        assert_eq!(metal.root_unit(squared), "eV Å^-2.5");
+    }
 }

@@ -1,0 +1,163 @@
+//! Probes: what is measured over time.
+
+use super::context::{Context, Result};
+use crate::deck::document::{MeasureName, Probe};
+use crate::deck::units::Dim;
+use crate::deck::value::At;
+use peridyne::spec::{ContourSpec, Fold, Measure, Part, ProbeSpec, SetSpec};
+
+/// Keys that not all measures have, and which of them a measure needs and may have.
+fn keys(measure: MeasureName) -> (&'static [&'static str], &'static [&'static str]) {
+    match measure {
+        MeasureName::Reaction | MeasureName::Energy => (&[], &[]),
+        MeasureName::Moment => (&["about"], &[]),
+        MeasureName::Mean | MeasureName::Min | MeasureName::Max | MeasureName::Sum => {
+            (&["of"], &["component"])
+        }
+        MeasureName::Value => (&["of", "at"], &["component"]),
+        MeasureName::Contour => (&["corners"], &["direction"]),
+    }
+}
+
+pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Result<ProbeSpec> {
+    let written = &at.value;
+    if written.name.value.trim().is_empty() {
+        return Err(context.error_with(
+            &written.name.span,
+            "a probe needs a name",
+            "the columns of history.csv begin with it",
+        ));
+    }
+    let measure = written.measure.value;
+    let title = measure.title();
+    let (must, may) = keys(measure);
+    let given = [
+        ("of", written.of.as_ref().map(|k| &k.span)),
+        ("component", written.component.as_ref().map(|k| &k.span)),
+        ("about", written.about.as_ref().map(|k| &k.span)),
+        ("at", written.at.as_ref().map(|k| &k.span)),
+        ("corners", written.corners.as_ref().map(|k| &k.span)),
+        ("direction", written.direction.as_ref().map(|k| &k.span)),
+    ];
+    for (key, span) in given {
+        match span {
+            None if must.contains(&key) => {
+                return Err(context.error_with(
+                    &at.span,
+                    format!("the probe `{}` needs the key `{key}`", written.name.value),
+                    example(key),
+                ));
+            }
+            Some(span) if !must.contains(&key) && !may.contains(&key) => {
+                return Err(context.error_with(
+                    span,
+                    format!("the measure {title} has no key `{key}`"),
+                    "remove it, or choose another measure",
+                ));
+            }
+            None | Some(_) => {}
+        }
+    }
+    if let (MeasureName::Contour, Some(set)) = (measure, &written.set) {
+        return Err(context.error_with(
+            &set.span,
+            "a contour goes through all points of its rectangle",
+            "remove `set`",
+        ));
+    }
+    let set = match &written.set {
+        None => "all".into(),
+        Some(set) => context.known_set(set, sets)?,
+    };
+    let of = written
+        .of
+        .as_ref()
+        .map_or(String::new(), |o| o.value.clone());
+    let part = match written.component.as_ref().map(|c| c.value.as_str()) {
+        None => Part::All,
+        Some("magnitude") => Part::Magnitude,
+        Some(name) => Part::Component(name.into()),
+    };
+    let over = |fold| Measure::Over {
+        fold,
+        of: of.clone(),
+        part: part.clone(),
+    };
+    let place = |key: &Option<_>| match key {
+        Some(vector) => context.finite_vector(vector, Dim::LENGTH),
+        None => Ok([0.0; 3]),
+    };
+    let measure = match measure {
+        MeasureName::Reaction => Measure::Reaction,
+        MeasureName::Energy => Measure::Energy,
+        MeasureName::Moment => Measure::Moment {
+            about: place(&written.about)?,
+        },
+        MeasureName::Mean => over(Fold::Mean),
+        MeasureName::Min => over(Fold::Min),
+        MeasureName::Max => over(Fold::Max),
+        MeasureName::Sum => over(Fold::Sum),
+        MeasureName::Value => Measure::Value {
+            at: place(&written.at)?,
+            of,
+            part,
+        },
+        MeasureName::Contour => Measure::Contour(contour(context, written)?),
+    };
+    Ok(ProbeSpec {
+        name: written.name.value.clone(),
+        set,
+        measure,
+    })
+}
+
+/// What to write for a key.
+fn example(key: &str) -> &'static str {
+    match key {
+        "of" => "write for example of = \"displacement\"; `peridyne laws` lists the fields",
+        "about" => "write for example about = [0, 0, 0]",
+        "at" => "write for example at = [\"5 mm\", 0, 0]: the nearest point counts",
+        _ => {
+            "write two opposite corners of a rectangle around the tip: corners = [[\"10 mm\", \"-5 mm\"], [\"20 mm\", \"5 mm\"]]"
+        }
+    }
+}
+
+fn contour(context: &Context, written: &Probe) -> Result<ContourSpec> {
+    let corners = written.corners.as_ref().map_or(&[][..], |c| &c.value);
+    let span = written.corners.as_ref().map_or(0..0, |c| c.span.clone());
+    if context.dimension != 2 {
+        return Err(context.error(
+            &span,
+            format!(
+                "a contour is one in two dimensions, this body has {}",
+                context.dimension
+            ),
+        ));
+    }
+    let [a, b] = corners else {
+        return Err(context.error_with(&span, "a rectangle has two opposite corners", example("")));
+    };
+    let [a, b] = [
+        context.finite_vector(a, Dim::LENGTH)?,
+        context.finite_vector(b, Dim::LENGTH)?,
+    ];
+    let direction = match &written.direction {
+        None => [1.0, 0.0, 0.0],
+        Some(vector) => context.finite_vector(vector, Dim::NUMBER)?,
+    };
+    let length = direction[0].hypot(direction[1]);
+    if length == 0.0 {
+        let span = written.direction.as_ref().map_or(0..0, |d| d.span.clone());
+        return Err(context.error_with(
+            &span,
+            "this is no direction",
+            "write where the crack grows to: direction = [1, 0]",
+        ));
+    }
+    Ok(ContourSpec {
+        low: [a[0].min(b[0]), a[1].min(b[1])],
+        high: [a[0].max(b[0]), a[1].max(b[1])],
+        direction: [direction[0] / length, direction[1] / length],
+    })
+}
