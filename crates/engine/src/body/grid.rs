@@ -85,6 +85,11 @@ impl<const D: usize> Grid<D> {
         s + db * self.stride as i64
     }
 
+    /// Does a bond that spans so many cells stay between the guards, wherever it begins?
+    pub fn holds(&self, cell: [i32; D]) -> bool {
+        self.shift(cell.map(i64::from), 0).unsigned_abs() <= self.guard as u64
+    }
+
     fn bit(set: &[u8], i: usize) -> bool {
         set[i / TILE] >> (i % TILE) & 1 == 1
     }

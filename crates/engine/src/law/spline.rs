@@ -75,10 +75,17 @@ pub struct Spline {
 impl Spline {
     /// From values at `first + m step`, m = 0…n−1, n ≥ 5. Beyond the last knot the function goes on as a straight line if
     /// `linear`, else it keeps its last value; before the first it keeps the first.
+    ///
+    /// # Panics
+    /// If there are fewer values, or the step is no positive number, or the first knot is nowhere.
     pub fn new(first: f64, step: f64, values: &[f64], linear: bool) -> Spline {
         let n = values.len();
         assert!(n >= 5, "a table needs five values");
         assert!(n < 1 << 30, "indices count with 32 bits");
+        assert!(
+            step > 0.0 && step.is_finite() && first.is_finite(),
+            "a table needs a positive step and a first knot"
+        );
         let f = |m: usize| values[m];
         let mut slope = vec![0.0; n];
         slope[0] = f(1) - f(0);

@@ -26,7 +26,7 @@ use crate::interaction::friction::Friction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
 use crate::space::ball_volume;
-use crate::spec::{BodySpec, Cloud, CrackKind, Spec, Stepper, TimeStep};
+use crate::spec::{BodySpec, Cloud, CrackKind, Form, LawSpec, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
@@ -117,6 +117,29 @@ fn enough_memory<const D: usize>(
     memory::afford(path, &what, slots * 24.0 * D as f64 + bonds * each, &help)
 }
 
+/// Do lists that the spec gives belong to each other?
+fn consistent(spec: &Spec) -> Result<(), BuildError> {
+    for (n, m) in spec.materials.iter().enumerate() {
+        let fits = match &m.law {
+            LawSpec::Micromoduli(body) => body.check(),
+            LawSpec::Atoms(potential) => match &potential.form {
+                Form::Tabulated(table) => table.check(),
+                Form::LennardJones(_) | Form::Morse(_) | Form::Buckingham(_) | Form::Mei(_) => {
+                    Ok(())
+                }
+            },
+            LawSpec::Pmb(_)
+            | LawSpec::Lps(_)
+            | LawSpec::LpsAsTyped { .. }
+            | LawSpec::EamLike { .. }
+            | LawSpec::Springs(_)
+            | LawSpec::Named(_) => Ok(()),
+        };
+        fits.map_err(|message| BuildError::new(format!("materials[{n}].law"), message))?;
+    }
+    Ok(())
+}
+
 /// Build the model of a spec in D dimensions.
 pub fn build_in<const D: usize>(
     spec: &Spec,
@@ -126,6 +149,7 @@ pub fn build_in<const D: usize>(
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
     let spec = &resolved;
+    consistent(spec)?;
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = vec![];
     let (mut parts, mut body) = parts::<D>(spec)?;

@@ -1,5 +1,7 @@
 //! Points of the body that a coarse one was condensed from: loads act on them, and the condensation passes their forces on.
 
+use super::linear_body::rows;
+
 /// `F_q = Σ_p T_qp F_p`: forces on points q of the body from those on the points p that carry loads. The condensed load of an
 /// exact elimination is the Schur complement's, `T = −K_qe K_ee⁻¹`: the transposed resolvent of silling2010 (6) where action is
 /// reaction.
@@ -48,6 +50,23 @@ impl<const D: usize> Carriers<D> {
 
     pub fn points(&self) -> usize {
         self.position.len()
+    }
+
+    /// Do the lists belong to each other, and to a body of so many points?
+    ///
+    /// # Errors
+    /// What does not fit.
+    pub fn check(&self, points: usize) -> Result<(), String> {
+        let n = self.points();
+        if self.volume.len() != n {
+            return Err(format!("{} volumes of {n} carriers", self.volume.len()));
+        }
+        rows(&self.start, n, &self.target, points)?;
+        if self.target.len() != self.block.len() {
+            let (blocks, targets) = (self.block.len(), self.target.len());
+            return Err(format!("{blocks} blocks of {targets} targets"));
+        }
+        Ok(())
     }
 
     /// Targets of a point and their blocks.

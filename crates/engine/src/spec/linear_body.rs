@@ -56,6 +56,18 @@ impl AnyLinearBody {
         Some(made)
     }
 
+    /// Do the lists belong to each other?
+    ///
+    /// # Errors
+    /// What does not fit.
+    pub fn check(&self) -> Result<(), String> {
+        match self {
+            Self::One(b) => b.check(),
+            Self::Two(b) => b.check(),
+            Self::Three(b) => b.check(),
+        }
+    }
+
     /// Longest bond that acts (length).
     pub fn range(&self) -> f64 {
         match self {
@@ -94,6 +106,21 @@ impl AnyLinearBody {
     }
 }
 
+/// Are `start` the beginnings of `n` rows in `all`, whose entries are below `most`?
+pub(super) fn rows(start: &[usize], n: usize, all: &[u32], most: usize) -> Result<(), String> {
+    let rises = start.is_sorted() && start.first() == Some(&0) && start.last() == Some(&all.len());
+    if start.len() != n + 1 || !rises {
+        return Err(format!(
+            "the beginnings of {n} rows do not rise from 0 to their {} entries",
+            all.len()
+        ));
+    }
+    match all.iter().find(|j| **j as usize >= most) {
+        Some(j) => Err(format!("there is no point {j} among {most}")),
+        None => Ok(()),
+    }
+}
+
 impl<const D: usize> LinearBody<D> {
     /// Without points.
     pub fn nothing() -> Self {
@@ -111,6 +138,31 @@ impl<const D: usize> LinearBody<D> {
 
     pub fn points(&self) -> usize {
         self.position.len()
+    }
+
+    /// Do the lists belong to each other: one volume and density for each point, rows within the partners, partners that exist?
+    ///
+    /// # Errors
+    /// What does not fit.
+    pub fn check(&self) -> Result<(), String> {
+        let n = self.points();
+        for (what, count) in [
+            ("volumes", self.volume.len()),
+            ("densities", self.density.len()),
+        ] {
+            if count != n {
+                return Err(format!("{count} {what} of {n} points"));
+            }
+        }
+        rows(&self.start, n, &self.partner, n)?;
+        if self.partner.len() != self.block.len() {
+            let (blocks, partners) = (self.block.len(), self.partner.len());
+            return Err(format!("{blocks} micromoduli of {partners} partners"));
+        }
+        match &self.carriers {
+            Some(carriers) => carriers.check(n),
+            None => Ok(()),
+        }
     }
 
     /// Partners and micromoduli of point `i`.

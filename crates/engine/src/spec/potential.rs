@@ -117,6 +117,35 @@ pub struct TableSpec {
 }
 
 impl TableSpec {
+    /// Can splines be laid through it?
+    ///
+    /// # Errors
+    /// What cannot.
+    pub fn check(&self) -> Result<(), String> {
+        for (name, values) in [
+            ("the embedding energy", &self.embedding),
+            ("the density", &self.density),
+            ("the pair term", &self.pair),
+        ] {
+            if values.len() < 5 || values.iter().any(|v| !v.is_finite()) {
+                return Err(format!(
+                    "{name} needs a table of five or more finite values"
+                ));
+            }
+        }
+        if self.density.len() != self.pair.len() {
+            return Err("density and pair term need tables of one length".into());
+        }
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        match [self.density_step, self.step, self.cutoff]
+            .into_iter()
+            .all(positive)
+        {
+            true => Ok(()),
+            false => Err("steps and cut-off must be positive".into()),
+        }
+    }
+
     /// The same model with lengths times `length` and energies times `energy`.
     pub fn scaled(&self, length: f64, energy: f64) -> TableSpec {
         let times = |values: &[f64], x: f64| values.iter().map(|v| v * x).collect();

@@ -63,13 +63,11 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
             let d = repulsion.as_ref().map_or(0.0, |c| c.distance(r0, [0, 0]));
             let cell: [i32; D] = std::array::from_fn(|a| o.cell[a]);
             let k = law.constant(r0, 1.0 / r0, weight(r0) * volume);
-            let shift = grid.shift(cell.map(i64::from), o.to as i64 - from as i64);
-            // other sublattices lie inside the arrays
-            let cells = grid.shift(cell.map(i64::from), 0);
             assert!(
-                cells.unsigned_abs() as usize <= grid.guard,
+                grid.holds(cell),
                 "the body was made for shorter bonds: give `on_lattice` the reach of this stencil"
             );
+            let shift = grid.shift(cell.map(i64::from), o.to as i64 - from as i64);
             let bond = Bond {
                 shift: i32::try_from(shift).expect("bonds span fewer than 2^31 slots"),
                 number: number as u32,
