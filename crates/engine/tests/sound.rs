@@ -15,7 +15,7 @@ use peridyne::law::Law;
 use peridyne::law::solid::bond_based::BondBased;
 use peridyne::law::solid::eam_like::{EamLike, Solid};
 use peridyne::law::spline::{Spline, Twin};
-use peridyne::run::{Options, PointField, build};
+use peridyne::run::{Options, build};
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::*;
 use proptest::prelude::*;
@@ -231,13 +231,13 @@ proptest! {
         let mut sim = build(&spec, Options::default()).unwrap();
         let n = sim.info().points as usize;
         let mut out = vec![0.0; count];
-        let fields = [PointField::Displacement(0), PointField::Reference(1), PointField::Volume];
-        for field in fields {
-            let read = catch_unwind(AssertUnwindSafe(|| sim.read(field, first, &mut out)));
+        for (field, component) in [("displacement", 0), ("reference", 1), ("volume", 0)] {
+            let read =
+                catch_unwind(AssertUnwindSafe(|| sim.read(field, component, first, &mut out)));
             prop_assert!(read.is_ok() || first + count > n);
         }
         let wrote = catch_unwind(AssertUnwindSafe(|| {
-            sim.write(PointField::Displacement(0), first, &out);
+            sim.write("displacement", 0, first, &out);
         }));
         prop_assert!(wrote.is_ok() || first + count > n);
         let _ = catch_unwind(AssertUnwindSafe(|| sim.forces_under(&vec![[0.0; 3]; count])));
