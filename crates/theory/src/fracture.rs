@@ -1,8 +1,8 @@
 //! Critical stretch and fracture energy of one material, each from the other.
 
-use peridyne::law::micromodulus::Moments;
-use peridyne::spec::{LawSpec, Plane};
-use std::f64::consts::{FRAC_2_PI, PI};
+use peridyne::law::fracture_energy;
+use peridyne::law::micromodulus::{Moments, micromodulus};
+use peridyne::spec::{LawSpec, Plane, PmbStiffness};
 
 /// What of a body the conversion depends on.
 #[derive(Debug, Clone, Copy)]
@@ -16,9 +16,7 @@ pub struct Body {
 }
 
 /// `G0 / s0²` (energy / area) of a material; `None` where no formula is known.
-///
-/// Bond-based, of micromodulus `c`: all bonds across a plane hold `¼ c s0² ⟨|n|⟩ M2` (Silling & Askari 2005 is the
-/// full ball). State-based: Madenci & Oterkus 2014 (6.19), (6.20).
+/// See [`fracture_energy`].
 pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> Option<f64> {
     let Body {
         dimension: d,
@@ -26,30 +24,13 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
         horizon,
         moments,
     } = body;
-    let mean = match d {
-        1 => 1.0,
-        2 => FRAC_2_PI,
-        _ => 0.5,
-    };
     match law {
-        LawSpec::Pmb(_) => Some(0.25 * c? * mean * moments.second),
-        // E = 3 G of the chain's two sums: c = 2 E / M1
+        LawSpec::Pmb(_) => Some(fracture_energy::bond_based(d, c?, moments)),
         LawSpec::Lps(m) if d == 1 => {
-            Some(0.25 * 2.0 * m.young / moments.first * mean * moments.second)
+            let c = micromodulus(d, plane, PmbStiffness::Young(m.young), moments);
+            Some(fracture_energy::bond_based(d, c, moments))
         }
-        LawSpec::Lps(m) => {
-            let (k, g, l) = (m.bulk(), m.shear(), m.lame());
-            let stiffness = if d == 3 {
-                3.0 * g + 0.75f64.powi(4) * (k - 5.0 * g / 3.0)
-            } else {
-                let in_plane = match plane {
-                    Plane::Strain => l + g,
-                    Plane::Stress => 2.0 * l * g / (l + 2.0 * g) + g,
-                };
-                6.0 * g / PI + 16.0 * (in_plane - 2.0 * g) / (9.0 * PI * PI)
-            };
-            Some(stiffness * horizon)
-        }
+        LawSpec::Lps(m) => Some(fracture_energy::state_based(d, plane, m, horizon)),
         LawSpec::LpsAsTyped { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
@@ -62,7 +43,8 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::spec::{Influence, Moduli, PmbStiffness};
+    use peridyne::spec::{Influence, Moduli};
+    use std::f64::consts::PI;
 
     fn body(dimension: usize) -> Body {
         Body {

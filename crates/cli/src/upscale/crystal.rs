@@ -4,7 +4,7 @@
 
 use crate::failure::Failure;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{FamilyChoice, Horizon, Spec};
+use peridyne::spec::{FamilyChoice, Spec};
 use peridyne_io::deck::{Deck, Dim, Flag};
 use peridyne_theory::crystal::Crystal;
 use peridyne_theory::upscale::{self, REACH, lattice, rest_spacing};
@@ -326,10 +326,11 @@ fn block(spec: &Spec, factors: &[u32]) -> [u32; 3] {
         .iter()
         .fold(1u32, |l, f| (l / gcd(l, *f)).saturating_mul(*f))
         .max(1);
-    let reach = match (spec.potential(), spec.family, spec.horizon) {
-        (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours, _) => REACH * p.cut_off(),
-        (_, _, Horizon::Ratio(m)) => f64::from(m) * spacing,
-        (_, _, Horizon::Length(d)) => d,
+    let reach = match (spec.potential(), spec.family) {
+        (Some(p), FamilyChoice::Auto | FamilyChoice::Neighbours) => REACH * p.cut_off(),
+        (Some(_), FamilyChoice::Stencil | FamilyChoice::List) | (None, _) => {
+            spec.horizon.length(spacing)
+        }
     };
     let reach = reach * f64::from(most);
     let edges = kind.edges();

@@ -1,4 +1,4 @@
-//! Stiffness constants of the bond-based solid from moduli, and critical stretch from fracture energy.
+//! Stiffness constants of the bond-based solid from moduli.
 //!
 //! All follow from three sums over a full family in the bulk, continuum integrals or discrete:
 //! `M1 = Σ ω ν V r0`, `M2 = Σ ω ν V r0²`, `m = Σ ω ν V r0²` with the law's own weights.
@@ -80,24 +80,15 @@ pub fn micromodulus(
     2.0 * d * (d + 2.0) * shear / moments.first
 }
 
-/// Critical stretch from a fracture energy G0 (energy / area): all bonds across a plane, at stretch s0, hold G0.
-///
-/// A unit area is crossed by bonds of energy `½ Σ |ξ_n| w dV` (each once), `w = ½ c ω s0² r0`, and
-/// `⟨|n_z|⟩ = 1, 2/π, ½` in 1, 2, 3 dimensions: `G0 = ¼ c s0² ⟨|n_z|⟩ M2`.
-/// Full-ball values: √(5G0/(9Kδ)) (3-D), √(4πG0/(9Eδ)) (plane stress); Silling & Askari 2005, Ha & Bobaru 2010.
-pub fn critical_stretch(dimension: usize, energy: f64, c: f64, moments: Moments) -> f64 {
-    let mean = match dimension {
-        1 => 1.0,
-        2 => std::f64::consts::FRAC_2_PI,
-        _ => 0.5,
-    };
-    (4.0 * energy / (c * mean * moments.second)).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::fracture_energy::bond_based;
     use std::f64::consts::PI;
+
+    fn critical_stretch(dimension: usize, energy: f64, c: f64, moments: Moments) -> f64 {
+        (energy / bond_based(dimension, c, moments)).sqrt()
+    }
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() <= 1e-13 * b.abs(), "{a} is not {b}");

@@ -5,6 +5,7 @@
 //! `s = (r − r0)/r0`.
 
 pub mod descriptor;
+pub mod fracture_energy;
 pub mod influence;
 pub mod jet;
 pub mod material;

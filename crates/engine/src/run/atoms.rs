@@ -49,10 +49,7 @@ pub(super) fn crystal(
         (true, _) => Horizon::Length(potential.cut_off()),
         (false, h) => h,
     };
-    let length = match horizon {
-        Horizon::Ratio(m) => m as f64 * spacing,
-        Horizon::Length(d) => d,
-    };
+    let length = horizon.length(spacing);
     // someone else says what is wrong with these
     if !(length.is_finite() && spacing > 0.0 && length < 100.0 * spacing) {
         return Ok(None);

@@ -5,6 +5,7 @@ use crate::error::BuildError;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
 use crate::law::BondFactors;
+use crate::law::solid::bond_based::between;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::{BondFactorSpec, InterfaceRule, MaterialSpec, Spec};
 use std::cell::Cell;
@@ -92,9 +93,9 @@ fn pair(factor: f64) -> BondFactors<f64> {
 /// The same for both ends gives the same; 0 in series gives 0.
 fn mean(rule: InterfaceRule, a: f64, b: f64) -> f64 {
     match rule {
-        InterfaceRule::Parallel => 0.5 * (a + b),
         InterfaceRule::Series if a * b == 0.0 => 0.0,
-        InterfaceRule::Series => 2.0 * a * b / (a + b),
-        InterfaceRule::Minimum => a.min(b),
+        InterfaceRule::Series | InterfaceRule::Parallel | InterfaceRule::Minimum => {
+            between(rule, a, b)
+        }
     }
 }

@@ -46,13 +46,6 @@ pub(super) fn current_neighbours(spec: &Spec) -> bool {
         && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
 }
 
-fn horizon_length(spec: &Spec, spacing: f64) -> f64 {
-    match spec.horizon {
-        Horizon::Ratio(m) => m as f64 * spacing,
-        Horizon::Length(d) => d,
-    }
-}
-
 /// Sums over a full family of the lattice, averaged over the sublattices.
 fn stencil_moments<const D: usize>(
     spec: &Spec,
@@ -108,10 +101,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         let stencil = Stencil::new(kind, spacing, horizon);
         let periodic: [bool; D] = std::array::from_fn(|a| spec.periodic[a].is_some());
         let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
-        let horizon = match horizon {
-            Horizon::Ratio(m) => m as f64 * spacing,
-            Horizon::Length(d) => d,
-        };
+        let horizon = horizon.length(spacing);
         if horizon < spacing * kind.nearest() {
             return Err(BuildError::new(
                 "horizon",
@@ -235,7 +225,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 body,
                 stencil: None,
                 bulk: None,
-                horizon: horizon_length(spec, spacing),
+                horizon: spec.horizon.length(spacing),
             })
         }
         BodySpec::Several(_) => Err(BuildError::new(

@@ -8,6 +8,16 @@ pub enum Horizon {
     Length(f64),
 }
 
+impl Horizon {
+    /// δ (length) where points are `spacing` apart.
+    pub fn length(self, spacing: f64) -> f64 {
+        match self {
+            Horizon::Ratio(m) => f64::from(m) * spacing,
+            Horizon::Length(d) => d,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Calibration {
     /// Constants from the integrals over the full ball (disk, segment) of radius δ.

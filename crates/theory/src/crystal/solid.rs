@@ -42,10 +42,7 @@ impl LatticeSolid {
 
     /// δ (length).
     pub fn delta(&self) -> f64 {
-        match self.horizon {
-            Horizon::Ratio(m) => m as f64 * self.spacing,
-            Horizon::Length(d) => d,
-        }
+        self.horizon.length(self.spacing)
     }
 
     /// Volume of a point.

@@ -121,16 +121,13 @@ impl Stiffness {
 /// Stiffness of the isotropic continuum of these moduli in `dimension` dimensions (per thickness in 2-D): what LPS and PMB
 /// stand for, to compare with a lattice's.
 pub fn continuum(dimension: usize, plane: Plane, moduli: Moduli) -> Stiffness {
-    let (g, l) = (moduli.shear(), moduli.lame());
+    let g = moduli.shear();
     let mut c = [[0.0; 6]; 6];
     if dimension == 1 {
         c[0][0] = moduli.young;
         return Stiffness { dimension, c };
     }
-    let lambda = match (dimension, plane) {
-        (2, Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
-        _ => l,
-    };
+    let lambda = moduli.lame_of(dimension, plane);
     for i in 0..dimension {
         for j in 0..dimension {
             c[i][j] = lambda + if i == j { 2.0 * g } else { 0.0 };

@@ -324,10 +324,7 @@ fn block(spec: &Spec) -> Option<Spec> {
         }
         _ => spec.horizon,
     };
-    let length = match horizon {
-        Horizon::Ratio(m) => f64::from(m) * spacing,
-        Horizon::Length(d) => d,
-    };
+    let length = horizon.length(spacing);
     let cells = (length / spacing).ceil() as usize + 1;
     let count = cells.pow(d as u32) * kind.basis().len();
     if count > 200_000 {

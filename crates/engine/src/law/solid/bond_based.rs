@@ -43,14 +43,13 @@ pub struct BondBasedMixed {
     pub rule: InterfaceRule,
 }
 
-impl BondBasedMixed {
-    #[inline(always)]
-    fn c<L: Lane>(self, a: L, b: L) -> L {
-        match self.rule {
-            InterfaceRule::Parallel => L::splat(0.5) * (a + b),
-            InterfaceRule::Series => (L::splat(2.0) * a * b).div(a + b),
-            InterfaceRule::Minimum => a.min(b),
-        }
+/// What a bond between unlike ends has of their two numbers.
+#[inline(always)]
+pub fn between<L: Lane>(rule: InterfaceRule, a: L, b: L) -> L {
+    match rule {
+        InterfaceRule::Parallel => L::splat(0.5) * (a + b),
+        InterfaceRule::Series => (L::splat(2.0) * a * b).div(a + b),
+        InterfaceRule::Minimum => a.min(b),
     }
 }
 
@@ -64,11 +63,11 @@ impl Law for BondBasedMixed {
     }
     #[inline(always)]
     fn pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2]) -> L {
-        self.c(i[0], j[0]) * k * g
+        between(self.rule, i[0], j[0]) * k * g
     }
     #[inline(always)]
     fn pair_energy<L: Lane>(self, x: L, i: [L; 2], j: [L; 2]) -> L {
-        L::splat(0.25) * self.c(i[0], j[0]) * x
+        L::splat(0.25) * between(self.rule, i[0], j[0]) * x
     }
     #[inline(always)]
     fn pressure_factor<L: Lane>(self, _: L) -> L {

@@ -76,15 +76,7 @@ impl Solid {
     /// Of a state-based law of a spec; `None`: it is none.
     pub fn of_law(d: usize, plane: Plane, law: &LawSpec) -> Option<Solid> {
         match law {
-            LawSpec::Lps(moduli) => {
-                let (g, l) = (moduli.shear(), moduli.lame());
-                let lambda = match (d, plane) {
-                    (1, _) => moduli.young - 2.0 * g,
-                    (2, Plane::Stress) => 2.0 * l * g / (l + 2.0 * g),
-                    _ => l,
-                };
-                Some(Solid::lps(d, lambda, g))
-            }
+            LawSpec::Lps(moduli) => Some(Solid::lps(d, moduli.lame_of(d, plane), moduli.shear())),
             LawSpec::LpsAsTyped { bulk, shear } => Some(Solid {
                 n: 3.0,
                 kappa: bulk - 5.0 / 3.0 * shear,

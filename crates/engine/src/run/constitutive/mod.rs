@@ -129,7 +129,7 @@ impl ConstitutiveModel {
             .enumerate()
             .map(|(n, m)| {
                 let path = format!("materials[{n}].fracture");
-                toughness::<D>(spec, m, moments, shelf, &path)
+                toughness::<D>(spec, m, horizon, moments, shelf, &path)
             })
             .collect::<Result<Vec<_>, _>>()?;
         let repulsion = match &spec.contact {

@@ -24,7 +24,7 @@ use peridyne::law::solid::eam_like::Solid;
 use peridyne::space::fill::fill;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{
-    BodySpec, FamilyChoice, Horizon, LawSpec, MaterialSpec, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, FamilyChoice, LawSpec, MaterialSpec, Spec, SurfaceFactors, SurfaceMethod,
 };
 use sites::Sites;
 
@@ -165,10 +165,7 @@ impl LatticeBody {
             return Err(SurfaceError::Lattice);
         }
         let h = lattice.spacing;
-        let horizon = match spec.horizon {
-            Horizon::Ratio(m) => f64::from(m) * h,
-            Horizon::Length(d) => d,
-        };
+        let horizon = spec.horizon.length(h);
         let stencil = Stencil::new(lattice.kind, h, spec.horizon);
         let bonds = stencil.offsets[0]
             .iter()
