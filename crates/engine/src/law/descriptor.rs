@@ -298,6 +298,8 @@ pub struct Given<'a> {
     pub micromodulus: Option<f64>,
     /// ∞: bonds never break.
     pub critical_stretch: f64,
+    /// Of the full ball, where constants are those of the continuum (length² volume).
+    pub weighted_volume: Option<f64>,
 }
 
 /// A law that can stand on a shelf.

@@ -5,8 +5,8 @@
 //! `W = ½κθ² + (α/2) Σ ω (e − e^p)²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`. The deviatoric force state of a bond is
 //! `t = α ω (e^d − e^p)` with `e^d = e − θ|ξ|/n`; it yields where `½ Σ t²/ω = ψ0`, and flows along it, `ė^p = λ t/ω`.
 //! With the stress that this norm stands for in shear, `σ = ‖t‖ √(3m/(n(n+2)))`, the return is the classical one:
-//! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`.
-//! Perfect plasticity is H = 0. Step by step the energy is the incremental potential, whose derivative is the force.
+//! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`,
+//! which points near a surface have, too, where constants are those of the continuum. Perfect plasticity is H = 0. Step by step the energy is the incremental potential, whose derivative is the force.
 
 use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
@@ -19,8 +19,8 @@ use crate::spec::{Influence, LawSpec, Parameters, Plane};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElasticPlasticConstants {
     pub solid: Solid,
-    /// Shear modulus G.
-    pub shear: f64,
+    /// Weighted volume of the family that the yield surface is that of; `None`: of each point's own.
+    pub weighted_volume: Option<f64>,
     /// Yield stress σ_y in tension.
     pub yield_stress: f64,
     /// Hardening modulus `H = dσ_y/dε̄`, 0 or positive.
@@ -40,7 +40,7 @@ const BETA: usize = 1;
 const RADIUS: usize = 2; // n(n+2)/3
 const YIELD: usize = 3;
 const HARDENING: usize = 4;
-const SHEAR: usize = 5; // 3G
+const BALL: usize = 5; // 1/m that the yield surface has; 0: the point's own
 
 /// Numbers of a point.
 const P: usize = 0; // nκθ/m = n²κ (θ/n)/m
@@ -106,7 +106,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
             n * (n + 2.0) / 3.0,
             m.yield_stress,
             m.hardening,
-            3.0 * m.shear,
+            m.weighted_volume.map_or(0.0, f64::recip),
         ]
     }
 
@@ -146,11 +146,14 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         let zero = N::constant(0.0);
         let norm = point[ALPHA] * sum.sqrt();
         // ‖t‖ per stress
-        let scale = (c[RADIUS] * per_m).sqrt();
+        let per_ball = zero.choose(c[BALL], c[BALL], per_m);
+        let scale = (c[RADIUS] * per_ball).sqrt();
         let limit = scale * c[HARDENING].fma(site.past[0], c[YIELD]);
         let beyond = norm - limit;
-        let rest = (beyond * c[SHEAR]).div((c[SHEAR] + c[HARDENING]) * norm);
-        let flow = beyond.div((c[SHEAR] + c[HARDENING]) * scale);
+        // α/scale², 3G in a family of that weighted volume
+        let shear = point[ALPHA].div(c[RADIUS] * per_ball);
+        let rest = (beyond * shear).div((shear + c[HARDENING]) * norm);
+        let flow = beyond.div((shear + c[HARDENING]) * scale);
         point[REST] = limit.choose(norm, rest, zero);
         point[FLOW] = limit.choose(norm, flow, zero);
     }
@@ -250,13 +253,13 @@ impl Shelved for ElasticPlastic {
                     "in the plane an ordinary solid flows without a change of thickness, which is plane strain: write plane = \"strain\"",
                 );
             }
-            let (Some(solid), Ok(moduli)) = (m.solid, descriptor::moduli(m.parameters)) else {
+            let Some(solid) = m.solid else {
                 return refused("an elastic-plastic solid needs its moduli");
             };
             let number = |key| m.parameters.number(key).unwrap_or(0.0);
             made.push(ElasticPlasticConstants {
                 solid,
-                shear: moduli.shear(),
+                weighted_volume: m.weighted_volume,
                 yield_stress: number("yield_stress"),
                 hardening: number("hardening"),
             });

@@ -18,7 +18,7 @@ use crate::law::material::viscoelastic::Viscoelastic;
 use crate::law::material::{Material, Numbers};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{LawSpec, NamedLaw, Parameters, Plane, Spec};
+use crate::spec::{Calibration, LawSpec, NamedLaw, Parameters, Plane, Spec};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -176,6 +176,8 @@ pub(crate) struct Chosen {
     entry: Arc<Entry>,
     materials: Vec<Made>,
     plane: Plane,
+    /// Of the full ball, where constants are those of the continuum.
+    weighted_volume: Option<f64>,
 }
 
 #[derive(Clone)]
@@ -234,6 +236,10 @@ pub(super) fn chosen<const D: usize>(
         entry: entry.clone(),
         materials,
         plane: spec.plane,
+        weighted_volume: match spec.calibration {
+            Calibration::Continuum => Some(moments.second),
+            Calibration::Discrete => None,
+        },
     };
     Ok(Some(chosen))
 }
@@ -268,6 +274,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 solid: made.solid,
                 micromodulus: made.micromodulus,
                 critical_stretch: made.critical_stretch,
+                weighted_volume: chosen.weighted_volume,
             }
         })
         .collect();
