@@ -39,7 +39,11 @@ fn an_elastic_plastic_cube_is_peridigms() {
     }
     let law = LawSpec::named(
         "elastic_plastic",
-        Parameters::numbers(&[("bulk", 67549.0), ("shear", 25902.2), ("yield_stress", 351.79)]),
+        Parameters::numbers(&[
+            ("bulk", 67549.0),
+            ("shear", 25902.2),
+            ("yield_stress", 351.79),
+        ]),
     );
     let mut spec = cells(&at, 0.125, 0.0027, 1.75, law);
     spec.schedule.time_step = TimeStep::Fixed(1e-6);
@@ -59,7 +63,10 @@ fn an_elastic_plastic_cube_is_peridigms() {
             found.push(u[0]);
         }
     }
-    for (found, stored) in found.iter().zip([0.221_156_656_074_491_14, 0.224_021_735_783_144_55]) {
+    for (found, stored) in found
+        .iter()
+        .zip([0.221_156_656_074_491_14, 0.224_021_735_783_144_55])
+    {
         assert!((found - stored).abs() < 1e-9, "{found} is not {stored}");
     }
 }

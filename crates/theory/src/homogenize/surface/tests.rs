@@ -1,6 +1,6 @@
 use super::*;
 use peridyne::space::region::Region;
-use peridyne::spec::{End, Form, LennardJones, PmbStiffness, PotentialSpec};
+use peridyne::spec::{End, Form, Horizon, LennardJones, PmbStiffness, PotentialSpec};
 
 fn block(d: usize, n: [i32; 3], m: u32) -> Spec {
     let kind = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][d - 1];
