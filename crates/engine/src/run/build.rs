@@ -9,7 +9,7 @@ use super::parts::{Part, parts};
 use super::probe;
 use super::reference::current_neighbours;
 use super::sets::{assign_materials, initial, sets};
-use super::{Info, Simulation};
+use super::{Info, Simulation, Steered};
 use super::{bonds, surface};
 use super::{contact, gaps};
 use crate::body::{Body, Layout, Values, zeros};

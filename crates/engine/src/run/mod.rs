@@ -141,50 +141,20 @@ pub struct Wall {
 }
 
 /// A running model of any dimension, law and family. All arrays are in order of point id.
-pub trait Simulation: Send {
+pub trait Simulation: Steered + Examined + Send {
     fn info(&self) -> &Info;
-
     /// Forces at the current state. Call once before the first step, and after changing the state from outside.
     /// `bonds = false` leaves the bonds out, as LAMMPS does in the first set-up of a run.
     fn start(&mut self, bonds: bool);
-
     /// One step. On an error the state is that of the step before (up to round-off).
     fn step(&mut self) -> Result<(), RunError>;
     /// A question that a long search for an equilibrium asks in every iteration: has somebody had enough? It then ends with
     /// [`SolveError::Stopped`], and the state is that of the increment before.
     fn stop_when(&mut self, asked: fn() -> bool);
-
-    /// The first half of a step of a model in time: displacements of its end. Until [`Simulation::arrive`] the
-    /// velocities are those of the step's middle, forces those of its start; values of driven conditions may be set.
-    /// Answers a bound on the path of any point (length).
-    ///
-    /// # Errors
-    /// As for [`Simulation::step`], whose state is left behind then; implicit steps have no halves.
-    fn depart(&mut self) -> Result<f64, RunError>;
-    /// The second half of a step: the forces at its end.
-    ///
-    /// # Errors
-    /// As for [`Simulation::step`].
-    fn arrive(&mut self) -> Result<(), RunError>;
-    /// Mirrors points (`None`: all) that are behind the wall, with their velocity across it; between
-    /// [`Simulation::depart`] and [`Simulation::arrive`].
-    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
-    /// Points that go where [`Simulation::carry`] says before every step. Replaces those of the last call.
-    fn set_carried(&mut self, ids: &[u32]);
-    /// Where the carried points are at the end of the next step, in their order.
-    fn carry(&mut self, next: &[Motion]);
-    /// Takes points away for ever: their bonds break without a force, all ids above theirs move down. Driven values must
-    /// be set anew before the next forces.
-    fn remove(&mut self, ids: &[u32]);
-
     fn step_number(&self) -> u64;
     fn time(&self) -> f64;
-    fn set_time(&mut self, step: u64, time: f64);
-    fn set_time_step(&mut self, dt: f64);
-
     /// Energies now; an error if the balance shows that the run has gone unstable.
     fn ledger(&mut self) -> Result<Ledger, RunError>;
-
     /// Everything that points and bonds have a value of: observables, and what laws declare.
     fn columns(&mut self) -> Vec<Declaration>;
     /// The values of a column, by point id; of one over bonds in the order of [`Interaction::read_column`](crate::interaction::Interaction::read_column). `None`: there is none of this name.
@@ -198,24 +168,84 @@ pub trait Simulation: Send {
     fn probe_columns(&self) -> Vec<ProbeColumn>;
     /// What the probes measure now, in the order of their columns.
     fn measure(&mut self) -> Vec<f64>;
+    /// Directed bonds broken since the start.
+    fn broken(&self) -> u64;
+    /// Number of fragments (connected by whole bonds) now.
+    fn fragments(&self) -> u64;
+    fn set_displacements(&mut self, u: &[Point]);
+    fn set_velocities(&mut self, v: &[Point]);
+    /// Ids of the points of a named set; `"all"` always exists.
+    fn members(&self, set: &str) -> Option<Vec<u32>>;
+    /// What the solver did in the last increment; `None`: steps are steps in time.
+    fn solved(&self) -> Option<Solved>;
+}
+
+/// What somebody asks who leads a model step by step: halves of steps, values from outside, blocks of numbers, and what a force
+/// evaluation saw.
+pub trait Steered {
+    /// The first half of a step of a model in time: displacements of its end. Until [`Steered::arrive`] the
+    /// velocities are those of the step's middle, forces those of its start; values of driven conditions may be set.
+    /// Answers a bound on the path of any point (length).
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`], whose state is left behind then; implicit steps have no halves.
+    fn depart(&mut self) -> Result<f64, RunError>;
+    /// The second half of a step: the forces at its end.
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`].
+    fn arrive(&mut self) -> Result<(), RunError>;
+    /// Mirrors points (`None`: all) that are behind the wall, with their velocity across it; between
+    /// [`Steered::depart`] and [`Steered::arrive`].
+    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>);
+    /// Points that go where [`Steered::carry`] says before every step. Replaces those of the last call.
+    fn set_carried(&mut self, ids: &[u32]);
+    /// Where the carried points are at the end of the next step, in their order.
+    fn carry(&mut self, next: &[Motion]);
+    /// Takes points away for ever: their bonds break without a force, all ids above theirs move down. Driven values must
+    /// be set anew before the next forces.
+    fn remove(&mut self, ids: &[u32]);
+    fn set_time(&mut self, step: u64, time: f64);
+    fn set_time_step(&mut self, dt: f64);
     /// Values of points `first..first + out.len()` of a component of `reference`, `displacement`, `velocity` or `force_density`, or of `volume` or `density`, without a copy
     /// of the others; 0 on axes beyond the dimension. False: no such column can be read so.
     fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool;
     /// Sets a component of `displacement` or `velocity` of points `first..first + values.len()`; axes beyond the dimension do not
     /// exist and are left alone. Call [`Simulation::start`] afterwards. False: the column cannot be set.
     fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool;
+    /// Replace loads, constraints and indenters; driven conditions go.
+    fn set_conditions(
+        &mut self,
+        conditions: &[crate::spec::ConditionSpec],
+        sets: &[(String, Vec<u32>)],
+        indenters: &[crate::spec::IndenterSpec],
+    ) -> Result<(), BuildError>;
+    /// Keep energies and dilatations of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its
+    /// forces see them: with the bonds that break in it. LAMMPS prints these.
+    fn watch_next(&mut self);
+    /// What the last force evaluation saw, if it was watched.
+    fn watched(&self) -> Option<Observed>;
+    /// Keep the virial of the next force evaluation, with the bonds that break in it.
+    fn watch_virial_next(&mut self);
+    /// Keep the virials of points of the next force evaluation, with the bonds that break in it.
+    fn watch_virials_next(&mut self);
+    /// Half of the virial of its pairs for each point, xx yy zz xy xz yz (energy), as [`Examined::virial`]; their sum
+    /// is that.
+    fn virials(&mut self) -> Vec<[f64; 6]>;
+    /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
+    /// order in which they act, after all other forces. Replaces those of the last call.
+    fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);
+    /// Values of driven condition `index` for the next force evaluation ([`Simulation::start`] or
+    /// [`Simulation::step`]); false if there is no such condition or it is of another kind.
+    fn drive(&mut self, index: usize, value: &Drive) -> bool;
+    /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
+    fn reaction(&self, index: usize) -> Reaction;
+    /// Points that no step moves; they keep their velocity. Replaces those of the last call.
+    fn set_still(&mut self, ids: &[u32]);
+}
 
-    /// Directed bonds broken since the start.
-    fn broken(&self) -> u64;
-
-    /// Number of fragments (connected by whole bonds) now.
-    fn fragments(&self) -> u64;
-
-    fn set_displacements(&mut self, u: &[Point]);
-    fn set_velocities(&mut self, v: &[Point]);
-    /// Ids of the points of a named set; `"all"` always exists.
-    fn members(&self, set: &str) -> Option<Vec<u32>>;
-
+/// What somebody asks who examines a model: its families, its answers to strains and displacements, equilibria and vibrations.
+pub trait Examined {
     /// Sizes, volumes and materials of all families now.
     fn families(&self) -> Families;
     /// Strain energy density of every point under the homogeneous strain ε (`[3][3]`, no contact, whole bonds).
@@ -225,43 +255,11 @@ pub trait Simulation: Send {
     fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>>;
     /// Force densities under a given displacement (bonds and repulsion in the family, no breaking).
     fn forces_under(&mut self, u: &[Point]) -> Vec<Point>;
-
-    /// Replace loads, constraints and indenters; driven conditions go.
-    fn set_conditions(
-        &mut self,
-        conditions: &[crate::spec::ConditionSpec],
-        sets: &[(String, Vec<u32>)],
-        indenters: &[crate::spec::IndenterSpec],
-    ) -> Result<(), BuildError>;
-
-    /// Keep energies and dilatations of the next force evaluation ([`Simulation::start`] or [`Simulation::step`]) as its
-    /// forces see them: with the bonds that break in it. LAMMPS prints these.
-    fn watch_next(&mut self);
-    /// What the last force evaluation saw, if it was watched.
-    fn watched(&self) -> Option<Observed>;
     /// The same of the current state.
     fn observed(&mut self) -> Observed;
-
-    /// Keep the virial of the next force evaluation, with the bonds that break in it.
-    fn watch_virial_next(&mut self);
     /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion, positive where pairs
     /// repel: of the last force evaluation if that was watched, else of the current state with the bonds that are whole.
     fn virial(&mut self) -> [f64; 6];
-
-    /// Keep the virials of points of the next force evaluation, with the bonds that break in it.
-    fn watch_virials_next(&mut self);
-    /// Half of the virial of its pairs for each point, xx yy zz xy xz yz (energy), as [`Simulation::virial`]; their sum
-    /// is that.
-    fn virials(&mut self) -> Vec<[f64; 6]>;
-
-    /// Conditions whose values come from outside, with the ids of the points they act on (`None`: all), in the
-    /// order in which they act, after all other forces. Replaces those of the last call.
-    fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]);
-    /// Values of driven condition `index` for the next force evaluation ([`Simulation::start`] or
-    /// [`Simulation::step`]); false if there is no such condition or it is of another kind.
-    fn drive(&mut self, index: usize, value: &Drive) -> bool;
-    /// What driven condition `index` had at the last force evaluation; 0 if it is no indenter.
-    fn reaction(&self, index: usize) -> Reaction;
     /// Brings the bodies into equilibrium without loads and constraints, from the displacements of now: residual forces fall to
     /// `tolerance` of those at the lattice sites. Velocities stay. Afterwards displacements are those of the relaxed state.
     ///
@@ -270,16 +268,11 @@ pub trait Simulation: Send {
     fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError>;
     /// The linear body about the displacements of now: stiffness block by block, without contact and loads.
     fn linear_body(&mut self) -> AnyLinearBody;
-    /// What the solver did in the last increment; `None`: steps are steps in time.
-    fn solved(&self) -> Option<Solved>;
     /// The lowest modes of vibration about the state of now, held where displacements are prescribed, lowest first.
     ///
     /// # Errors
     /// Those of the factorisation.
     fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError>;
-
-    /// Points that no step moves; they keep their velocity. Replaces those of the last call.
-    fn set_still(&mut self, ids: &[u32]);
 }
 
 impl dyn Simulation + '_ {

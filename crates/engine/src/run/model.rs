@@ -4,7 +4,7 @@ use super::constitutive::ConstitutiveModels;
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
 use super::probes::state::Probe;
-use super::{AtomBond, Families, Info, ModeShape, Simulation, Wall};
+use super::{AtomBond, Examined, Families, Info, ModeShape, Simulation, Steered, Wall};
 use crate::body::{Body, Field};
 use crate::columns::Declaration;
 use crate::condition::carried::{Carried, Motion};
@@ -180,60 +180,12 @@ impl<const D: usize> Simulation for Model<D> {
         self.stop = asked;
     }
 
-    fn depart(&mut self) -> Result<f64, RunError> {
-        if self.implicit.is_some() {
-            return Err(RunError::Implicit {
-                step: self.step + 1,
-                position: None,
-                error: SolveError::NoTangent {
-                    what: "what acts between the halves of a step",
-                },
-            });
-        }
-        Model::depart(self)?;
-        Ok(self.fastest)
-    }
-
-    fn arrive(&mut self) -> Result<(), RunError> {
-        Model::arrive(self)
-    }
-
-    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
-        self.bounce(wall, ids);
-    }
-
-    fn set_carried(&mut self, ids: &[u32]) {
-        self.finish();
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.carried = Carried::new(slots.collect());
-    }
-
-    fn carry(&mut self, next: &[Motion]) {
-        self.carried.tell(next);
-    }
-
-    fn remove(&mut self, ids: &[u32]) {
-        self.take_away(ids);
-    }
-
     fn step_number(&self) -> u64 {
         self.step
     }
 
     fn time(&self) -> f64 {
         self.origin.1 + (self.step - self.origin.0) as f64 * self.dt
-    }
-
-    fn set_time(&mut self, step: u64, time: f64) {
-        self.step = step;
-        self.origin = (step, time);
-    }
-
-    fn set_time_step(&mut self, dt: f64) {
-        self.finish();
-        self.origin = (self.step, self.time());
-        self.dt = dt;
-        self.info.time_step = dt;
     }
 
     fn ledger(&mut self) -> Result<Ledger, RunError> {
@@ -294,28 +246,59 @@ impl<const D: usize> Simulation for Model<D> {
         named.map(|(_, ids)| ids.clone())
     }
 
-    fn families(&self) -> Families {
-        self.count_families()
+    fn solved(&self) -> Option<Solved> {
+        let implicit = self.implicit.as_ref().map(|i| &i.equations);
+        self.statics.as_ref().or(implicit).map(|s| s.solved)
     }
+}
 
-    fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
-        self.strained(strain)
-    }
-
-    fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
-        Model::bonds_of_atoms(self, visit)
-    }
-
-    fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {
-        let mut u = self.body.at_rest();
-        Self::scatter(&self.body, &mut u, displacement);
-        for c in &mut u {
-            self.body.fill_images(c);
+impl<const D: usize> Steered for Model<D> {
+    fn depart(&mut self) -> Result<f64, RunError> {
+        if self.implicit.is_some() {
+            return Err(RunError::Implicit {
+                step: self.step + 1,
+                position: None,
+                error: SolveError::NoTangent {
+                    what: "what acts between the halves of a step",
+                },
+            });
         }
-        let mut f = crate::body::zeros(self.body.len);
-        self.interaction
-            .forces(&self.body, &u, &mut f, Sweep::Hold, None);
-        self.vectors(&f)
+        Model::depart(self)?;
+        Ok(self.fastest)
+    }
+
+    fn arrive(&mut self) -> Result<(), RunError> {
+        Model::arrive(self)
+    }
+
+    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
+        self.bounce(wall, ids);
+    }
+
+    fn set_carried(&mut self, ids: &[u32]) {
+        self.finish();
+        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
+        self.carried = Carried::new(slots.collect());
+    }
+
+    fn carry(&mut self, next: &[Motion]) {
+        self.carried.tell(next);
+    }
+
+    fn remove(&mut self, ids: &[u32]) {
+        self.take_away(ids);
+    }
+
+    fn set_time(&mut self, step: u64, time: f64) {
+        self.step = step;
+        self.origin = (step, time);
+    }
+
+    fn set_time_step(&mut self, dt: f64) {
+        self.finish();
+        self.origin = (self.step, self.time());
+        self.dt = dt;
+        self.info.time_step = dt;
     }
 
     fn set_conditions(
@@ -396,17 +379,6 @@ impl<const D: usize> Simulation for Model<D> {
         self.watched.as_ref().map(|w| self.observed_of(w))
     }
 
-    fn observed(&mut self) -> Observed {
-        self.refresh_images();
-        let mut out = self.seen_now();
-        if let Some(pairs) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
-        }
-        self.observed_of(&out)
-    }
-
     fn watch_virial_next(&mut self) {
         self.watch_virial = true;
     }
@@ -430,13 +402,6 @@ impl<const D: usize> Simulation for Model<D> {
             }
         };
         self.by_id(|i| points[i])
-    }
-
-    fn virial(&mut self) -> [f64; 6] {
-        match self.virial {
-            Some(virial) => virial,
-            None => self.virial_now(),
-        }
     }
 
     fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
@@ -470,6 +435,56 @@ impl<const D: usize> Simulation for Model<D> {
             .map_or_else(Reaction::default, Driven::reaction)
     }
 
+    fn set_still(&mut self, ids: &[u32]) {
+        self.finish();
+        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
+        self.still = Still::new(slots.collect());
+    }
+}
+
+impl<const D: usize> Examined for Model<D> {
+    fn families(&self) -> Families {
+        self.count_families()
+    }
+
+    fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
+        self.strained(strain)
+    }
+
+    fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
+        Model::bonds_of_atoms(self, visit)
+    }
+
+    fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {
+        let mut u = self.body.at_rest();
+        Self::scatter(&self.body, &mut u, displacement);
+        for c in &mut u {
+            self.body.fill_images(c);
+        }
+        let mut f = crate::body::zeros(self.body.len);
+        self.interaction
+            .forces(&self.body, &u, &mut f, Sweep::Hold, None);
+        self.vectors(&f)
+    }
+
+    fn observed(&mut self) -> Observed {
+        self.refresh_images();
+        let mut out = self.seen_now();
+        if let Some(pairs) = &mut self.contact {
+            let (body, interaction) = (&self.body, &self.interaction);
+            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
+            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
+        }
+        self.observed_of(&out)
+    }
+
+    fn virial(&mut self) -> [f64; 6] {
+        match self.virial {
+            Some(virial) => virial,
+            None => self.virial_now(),
+        }
+    }
+
     fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError> {
         self.finish();
         self.settle_free(tolerance)
@@ -483,11 +498,6 @@ impl<const D: usize> Simulation for Model<D> {
         AnyLinearBody::new(body).expect("there are three dimensions")
     }
 
-    fn solved(&self) -> Option<Solved> {
-        let implicit = self.implicit.as_ref().map(|i| &i.equations);
-        self.statics.as_ref().or(implicit).map(|s| s.solved)
-    }
-
     fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
         let found = self.lowest_modes(count)?;
         Ok(found
@@ -498,11 +508,5 @@ impl<const D: usize> Simulation for Model<D> {
                 shape: Self::padded(&m.shape),
             })
             .collect())
-    }
-
-    fn set_still(&mut self, ids: &[u32]) {
-        self.finish();
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.still = Still::new(slots.collect());
     }
 }

@@ -1,7 +1,7 @@
 //! What may be seen of a model: its columns by name, and the state that observables look at.
 
-use super::Simulation;
 use super::model::Model;
+use super::{Examined, Simulation};
 use crate::columns::{Declaration, Life, On};
 use crate::error::BuildError;
 use crate::expression::nearest;

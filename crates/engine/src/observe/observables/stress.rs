@@ -10,7 +10,7 @@ pub static OBSERVABLE: Observable = Observable {
         "stress",
         Shape::Symmetric,
         Dimension::PRESSURE,
-        "Stress from the forces of bonds, tension positive: half of the virial of the point per volume, in the reference volume and along the bonds as they are now (Kirchhoff stress); its symmetric part. Forces through the surface of a body are not in it, and points near a surface have less of it than the continuum.",
+        "Stress from the forces of bonds, tension positive: half of the virial of the point per volume, in the reference volume and along the bonds as they are now (Kirchhoff stress); its symmetric part. Loads and friction are not in it, and points near a surface have less of it than the continuum.",
     ).derived(),
     equation: "σ = ½ Σ_j f_ij ⊗ y_ij, f_ij the force density from partner j at y_ij",
     source: "Lehoucq, Silling 2008; Lehoucq, Sears 2011 (sandia2010, ch. 4): the flux of force, collapsed onto the point",

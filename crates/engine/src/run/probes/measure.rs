@@ -181,6 +181,9 @@ impl<const D: usize> Model<D> {
 
     /// Their values now, in that order.
     pub(in crate::run) fn measure(&mut self) -> Vec<f64> {
+        if self.probes.is_empty() {
+            return vec![];
+        }
         let probes = std::mem::take(&mut self.probes);
         // columns that several probes look at are computed once
         let mut wanted: Vec<&str> = vec![];
