@@ -234,14 +234,16 @@ fn materials(
 ) -> Vec<Material> {
     let info = sim.info();
     let d = info.dimension;
-    let moments = Moments::continuum(d, info.horizon, spec.section, spec.influence);
-    let body = Body {
-        dimension: d,
-        plane: spec.plane,
-        horizon: info.horizon,
-        moments,
-    };
     let each = spec.materials.iter().enumerate().map(|(n, m)| {
+        let of_all = (info.horizon, spec.influence);
+        let (horizon, influence) = info.families.get(n).copied().unwrap_or(of_all);
+        let moments = Moments::continuum(d, horizon, spec.section, influence);
+        let body = Body {
+            dimension: d,
+            plane: spec.plane,
+            horizon,
+            moments,
+        };
         let asked = asked(&m.law, d, spec.plane, moments);
         let s00 = info.critical_stretch.get(n).copied();
         let (pressure, shear) = match patch.and_then(|p| p.best(n)) {

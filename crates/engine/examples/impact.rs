@@ -54,6 +54,7 @@ fn main() {
             }),
         }],
         interface: InterfaceRule::Series,
+        interfaces: vec![],
         pairs: vec![],
         release: Release::AfterForce,
         horizon: Horizon::Length(0.0015001),

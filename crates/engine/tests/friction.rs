@@ -13,9 +13,8 @@ fn text(e: &str) -> Option<Expression> {
 
 fn piece(name: &str, body: BodySpec, bonded: bool) -> PieceSpec {
     PieceSpec {
-        name: name.into(),
-        body,
         bonded,
+        ..PieceSpec::new(name, body)
     }
 }
 

@@ -23,9 +23,8 @@ fn block(kind: LatticeKind, spacing: f64, low: [f64; 3], high: [f64; 3]) -> Body
 
 fn piece(name: &str, body: BodySpec, bonded: bool) -> PieceSpec {
     PieceSpec {
-        name: name.into(),
-        body,
         bonded,
+        ..PieceSpec::new(name, body)
     }
 }
 
@@ -466,22 +465,40 @@ fn steel_on_epoxy() -> Spec {
 }
 
 #[test]
-fn what_several_bodies_cannot_have_yet_is_refused() {
+fn what_several_bodies_cannot_have_is_refused() {
     let refused = |change: &dyn Fn(&mut Spec), what: &str| {
         let mut spec = collision(0.5);
         change(&mut spec);
         let error = build(&spec, Options::default()).err().expect(what);
         assert!(error.message.contains(what), "{error}");
     };
-    refused(&|s| s.horizon = Horizon::Ratio(3), "different spacings");
+    let linear = |s: &mut Spec| s.materials.iter_mut().for_each(|m| m.law = SPRINGS);
+    refused(&linear, "no contact of their own");
+    // of one body, where each may have its own
     refused(
         &|s| {
-            s.materials[1].law = LawSpec::EamLike {
+            let half = Members::Where(text("x > 5").unwrap());
+            s.sets.push(SetSpec {
+                name: "half".into(),
+                members: Members::Within {
+                    body: "plate".into(),
+                    members: Box::new(half.clone()),
+                },
+            });
+            s.sets[1].members = Members::Within {
+                body: "plate".into(),
+                members: Box::new(Members::Where(text("x <= 5").unwrap())),
+            };
+            let law = LawSpec::EamLike {
                 pair: 1.0,
                 volume: 1.0,
-            }
+            };
+            s.materials.push(MaterialSpec {
+                law,
+                ..material("half", 1.0, 1.0)
+            });
         },
-        "different kinds of law",
+        "different kinds of law in one body",
     );
     refused(
         &|s| {
@@ -491,14 +508,6 @@ fn what_several_bodies_cannot_have_yet_is_refused() {
             }
         },
         "`cat`, which does not exist",
-    );
-    refused(
-        &|s| {
-            s.materials
-                .iter_mut()
-                .for_each(|m| m.law = LawSpec::Springs(PmbStiffness::Young(1.0)))
-        },
-        "need a law with contact",
     );
 }
 

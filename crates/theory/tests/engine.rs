@@ -86,6 +86,7 @@ fn case(
             fracture: None,
         }],
         interface: InterfaceRule::Series,
+        interfaces: vec![],
         pairs: vec![],
         release: Release::AtOnce,
         horizon: Horizon::Ratio(ratio),

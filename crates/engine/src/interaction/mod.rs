@@ -6,6 +6,7 @@ pub(crate) mod bond;
 pub mod contact;
 pub mod friction;
 mod history;
+pub(crate) mod interface;
 pub(crate) mod linear;
 pub mod list;
 pub(crate) mod material;
@@ -53,6 +54,22 @@ pub enum Fault {
     Density { slot: usize, density: f64 },
     /// Neighbours of a chain went through each other (slots).
     Crossing { i: usize, j: usize },
+}
+
+impl Fault {
+    /// The same of other slots.
+    fn at(self, slot_of: impl Fn(usize) -> usize) -> Fault {
+        match self {
+            Fault::Density { slot, density } => Fault::Density {
+                slot: slot_of(slot),
+                density,
+            },
+            Fault::Crossing { i, j } => Fault::Crossing {
+                i: slot_of(i),
+                j: slot_of(j),
+            },
+        }
+    }
 }
 
 impl Default for Tally {

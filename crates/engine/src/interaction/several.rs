@@ -1,8 +1,9 @@
-//! Interactions of several bodies side by side: each sweeps over its own bonds, none reaches another.
+//! Interactions of several bodies side by side: each sweeps over its own bonds, and interfaces over those between two.
 //!
 //! Sweeps want the columns of their own body, so displacements, velocities and forces are copied in and out.
 
-use super::{BondForce, BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally};
+use super::interface::Interface;
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
 use crate::body::several::Piece;
 use crate::body::{Body, Field, Identity, Layout, zeros};
 use crate::columns::{Declaration, On};
@@ -26,13 +27,18 @@ struct Own<const D: usize> {
 pub struct SeveralInteraction<const D: usize> {
     body: Identity,
     own: Vec<Own<D>>,
+    interfaces: Vec<Interface<D>>,
     /// Family of those that have bonds.
     family: &'static str,
 }
 
 impl<const D: usize> SeveralInteraction<D> {
-    /// One interaction for each body that `body` is made of; `None` for loose points.
-    pub fn new(body: &Body<D>, bonds: Vec<Option<Box<dyn Interaction<D>>>>) -> Self {
+    /// One interaction for each body that `body` is made of, `None` for loose points, and those between two.
+    pub fn new(
+        body: &Body<D>,
+        bonds: Vec<Option<Box<dyn Interaction<D>>>>,
+        interfaces: Vec<Interface<D>>,
+    ) -> Self {
         let mut kinds = bonds.iter().flatten().map(|i| i.family());
         let family = match kinds.next() {
             None => "none",
@@ -50,6 +56,7 @@ impl<const D: usize> SeveralInteraction<D> {
         SeveralInteraction {
             body: body.identity,
             own: own.collect(),
+            interfaces,
             family,
         }
     }
@@ -108,19 +115,6 @@ fn put(seen: &PointEnergies, first: usize, out: &mut PointEnergies) {
     }
 }
 
-fn shifted(fault: Fault, first: usize) -> Fault {
-    match fault {
-        Fault::Density { slot, density } => Fault::Density {
-            slot: slot + first,
-            density,
-        },
-        Fault::Crossing { i, j } => Fault::Crossing {
-            i: i + first,
-            j: j + first,
-        },
-    }
-}
-
 impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
     fn made_for(&self) -> Identity {
         self.body
@@ -163,7 +157,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             };
             let watch = seen.is_some().then_some(&mut own.seen);
             let mut tally = bonds.forces(&p.body, &own.u, &mut own.f, sweep, watch);
-            tally.fault = tally.fault.map(|fault| shifted(fault, p.first));
+            tally.fault = tally.fault.map(|fault| fault.at(|s| s + p.first));
             total += tally;
             for a in 0..D {
                 f[a][p.range()].copy_from_slice(&own.f[a]);
@@ -171,6 +165,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             if let Some(seen) = &mut seen {
                 put(&own.seen, p.first, seen);
             }
+        }
+        for interface in &mut self.interfaces {
+            total += interface.forces(u, f, sweep, seen.as_deref_mut());
         }
         total
     }
@@ -184,6 +181,10 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 sum = [sum[0] + strain, sum[1] + repulsion];
             }
         }
+        for interface in &mut self.interfaces {
+            let [strain, repulsion] = interface.energy(u);
+            sum = [sum[0] + strain, sum[1] + repulsion];
+        }
         sum
     }
 
@@ -194,6 +195,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             bonds.observe(&p.body, &part(u, p), &mut seen);
             put(&seen, p.first, out);
         }
+        for interface in &self.interfaces {
+            interface.observe(u, out);
+        }
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
@@ -203,6 +207,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             let mut seen = PointEnergies::default();
             bonds.observe_gradient(&p.body, gradient, &mut seen);
             put(&seen, p.first, out);
+        }
+        for interface in &self.interfaces {
+            interface.observe_gradient(gradient, out);
         }
     }
 
@@ -224,6 +231,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 });
             }
         }
+        for interface in &mut self.interfaces {
+            interface.tangents(u, visit);
+        }
     }
 
     fn each_force(
@@ -244,6 +254,9 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                     });
                 });
             }
+        }
+        for interface in &mut self.interfaces {
+            all &= interface.each_force(u, visit);
         }
         all
     }
@@ -281,6 +294,13 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 }
             }
         }
+        if column.on == On::Bonds {
+            for interface in &self.interfaces {
+                if interface.read_bonds(name, &mut own) {
+                    out.extend_from_slice(&own);
+                }
+            }
+        }
         true
     }
 
@@ -307,6 +327,16 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             };
             parts.push((n, range));
         }
+        let mut ends = vec![];
+        if column.on == On::Bonds {
+            let mut own = vec![];
+            for (n, interface) in self.interfaces.iter().enumerate() {
+                if interface.read_bonds(name, &mut own) {
+                    ends.push((n, first..first + own.len()));
+                    first += own.len();
+                }
+            }
+        }
         let length = match column.on {
             On::Points => numbers * body.len,
             On::Bonds => first,
@@ -315,10 +345,12 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             return false;
         }
         let pieces = pieces(body);
-        parts.into_iter().all(|(n, range)| {
+        let inside = parts.into_iter().all(|(n, range)| {
             let bonds = self.own[n].bonds.as_mut().expect("it has the column");
             bonds.write_column(&pieces[n].body, name, &values[range])
-        })
+        });
+        let mut ends = ends.into_iter();
+        inside && ends.all(|(n, range)| self.interfaces[n].write_bonds(name, &values[range]))
     }
 
     fn gain(&self, slot: usize) -> f64 {
@@ -331,12 +363,37 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 visit(i + p.first, j + p.first, xi, state);
             });
         }
+        for interface in &self.interfaces {
+            interface.each_bond(visit);
+        }
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
         out.fill(0.0);
         for (p, bonds) in self.each(body) {
             bonds.damage(&p.body, &mut out[p.range()]);
+        }
+        if self.interfaces.is_empty() {
+            return;
+        }
+        // of points in interfaces, all bonds together
+        let mut joined = vec![false; body.len];
+        for interface in &self.interfaces {
+            interface.each_bond(&mut |i, j, _, _| (joined[i], joined[j]) = (true, true));
+        }
+        let mut family = vec![[0.0; 2]; body.len];
+        self.each_bond(body, &mut |i, j, _, state| {
+            for (s, volume) in [(i, body.volume.at(j)), (j, body.volume.at(i))] {
+                family[s][0] += volume;
+                if state == BondState::Broken {
+                    family[s][1] += volume;
+                }
+            }
+        });
+        for (s, [all, broken]) in family.into_iter().enumerate() {
+            if joined[s] {
+                out[s] = broken / all;
+            }
         }
     }
 
@@ -347,8 +404,11 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
     ) -> u64 {
         let all = pieces(body).iter().zip(&mut self.own);
-        all.filter_map(|(p, own)| Some(own.bonds.as_mut()?.cut(&p.body, kind, crosses)))
-            .sum()
+        let inside =
+            all.filter_map(|(p, own)| Some(own.bonds.as_mut()?.cut(&p.body, kind, crosses)));
+        let inside: u64 = inside.sum();
+        let between = self.interfaces.iter_mut().map(|i| i.cut(kind, crosses));
+        inside + between.sum::<u64>()
     }
 
     fn scale_bonds(
@@ -376,17 +436,20 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
                 bonds.prepare(&p.body);
             }
         }
+        self.interfaces.iter_mut().for_each(Interface::prepare);
     }
 
     fn directed_bonds(&self) -> u64 {
         let all = self.own.iter().filter_map(|o| o.bonds.as_ref());
-        all.map(|b| b.directed_bonds()).sum()
+        let between = self.interfaces.iter().map(Interface::directed_bonds);
+        all.map(|b| b.directed_bonds()).chain(between).sum()
     }
 
     fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
         let size =
             |bonds: &dyn Interaction<D>, n: usize, s| bonds.family_size(&pieces(body)[n].body, s);
-        self.at(slot, size).unwrap_or(0)
+        let between = self.interfaces.iter().map(|i| i.family_size(slot));
+        self.at(slot, size).unwrap_or(0) + between.sum::<usize>()
     }
 
     fn near_horizon(&self) -> u64 {
@@ -414,6 +477,7 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
             let columns: usize = [&o.u, &o.v, &o.f].iter().map(|f| 8 * D * f[0].len()).sum();
             columns + o.bonds.as_ref().map_or(0, |b| b.bytes())
         };
-        self.own.iter().map(own).sum()
+        let between = self.interfaces.iter().map(Interface::bytes);
+        self.own.iter().map(own).chain(between).sum()
     }
 }

@@ -187,20 +187,20 @@ impl<const D: usize> Model<D> {
     }
 
     fn crossed_chain(&self) -> Option<(u64, u64)> {
-        // linear springs may go through each other, atoms are looked at in every step
-        if D != 1
-            || !matches!(
-                self.constitutive.first().laws,
-                Laws::Bond(_) | Laws::Solid(_)
-            )
-        {
+        if D != 1 {
             return None;
         }
+        // linear springs may go through each other, atoms are looked at in every step
+        let counts = |slot: usize| match self.constitutive.at(slot).0.laws {
+            Laws::Bond(_) | Laws::Solid(_) => true,
+            Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => false,
+        };
         let mut crossed = None;
         self.interaction
             .each_bond(&self.body, &mut |i, j, xi, state| {
                 if crossed.is_none()
                     && state == BondState::Whole
+                    && counts(i)
                     && xi[0].abs() < 1.5 * self.body.spacing_at(i)
                     && (xi[0] + self.u[0][j] - self.u[0][i]) * xi[0] <= 0.0
                 {

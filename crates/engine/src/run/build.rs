@@ -4,6 +4,7 @@ use super::atoms;
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
+use super::interfaces::interfaces;
 use super::model::Model;
 use super::parts::{Part, parts};
 use super::probe;
@@ -26,7 +27,7 @@ use crate::interaction::friction::Friction;
 use crate::interaction::several::SeveralInteraction;
 use crate::space::Point;
 use crate::space::ball_volume;
-use crate::spec::{BodySpec, Cloud, CrackKind, Form, LawSpec, Spec, Stepper, TimeStep};
+use crate::spec::{BodySpec, Cloud, CrackKind, Form, Horizon, LawSpec, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
@@ -159,7 +160,12 @@ pub fn build_in<const D: usize>(
         atoms::check_box(potential, &body.period)?;
         parts[0].horizon = potential.cut_off();
     }
-    let horizon = parts[0].horizon;
+    let bonded_horizons = || parts.iter().filter(|p| p.bonded).map(|p| p.horizon);
+    let horizon = bonded_horizons()
+        .reduce(f64::max)
+        .unwrap_or(parts[0].horizon);
+    // within a body all pairs nearer than this are a family
+    let least_horizon = bonded_horizons().fold(horizon, f64::min);
     for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
         let own = body.pieces().get(n).map_or(&body, |p| &p.body);
         let atoms = current_neighbours(spec);
@@ -172,7 +178,8 @@ pub fn build_in<const D: usize>(
     let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
     assign_materials(spec, &mut body, &sets)?;
     own_densities(spec, &mut body);
-    let ends = parts.iter().flat_map(|p| &p.stencil);
+    let by_length = |p: &&Part| matches!(p.spec.horizon, Horizon::Length(_));
+    let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
     let ends: u64 = ends.map(|s| s.near_horizon as u64).sum();
     if let (Some(potential), BodySpec::Lattice { kind, spacing, .. }) =
         (spec.potential(), &spec.body)
@@ -188,10 +195,11 @@ pub fn build_in<const D: usize>(
     }
     warnings.extend(bonds::scale(spec, &body, interaction.as_mut())?);
     // a ratio is meant inclusively; only a length leaves the decision to round-off
-    let near_horizon = if constitutive.first().ratio {
-        0
-    } else {
-        ends.max(interaction.near_horizon())
+    let ratios = constitutive.all().filter(|m| m.ratio).count();
+    let near_horizon = match ratios {
+        0 => ends.max(interaction.near_horizon()),
+        // lists do not say whose bonds they count
+        _ => ends,
     };
     if near_horizon > 0 {
         let what = if ends > 0 {
@@ -370,6 +378,7 @@ pub fn build_in<const D: usize>(
             volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
             micromodulus: constitutive.micromoduli(spec.materials.len()),
             critical_stretch: constitutive.critical_stretches(spec.materials.len()),
+            families: constitutive.families(spec.materials.len()),
             time_step: dt,
             stepper: spec.schedule.stepper,
             stable_step,
@@ -387,7 +396,7 @@ pub fn build_in<const D: usize>(
         verlet: Verlet::new(simd, &body),
         contact: repulsion.map(|r| {
             let pairs = constitutive.first().pairs.as_ref();
-            r.contact(&parts, &body, pairs.map_or(horizon, |p| p.shortest()))
+            r.contact(&parts, &body, pairs.map_or(least_horizon, |p| p.shortest()))
         }),
         friction: friction(spec, &body)?,
         boltzmann: spec.boltzmann,
@@ -475,6 +484,14 @@ fn bind<const D: usize>(
     warnings: &mut Vec<String>,
 ) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
     let BodySpec::Several(named) = &spec.body else {
+        if let Some(interface) = spec.interfaces.first() {
+            let message = format!(
+                "interface `{}` joins two of several bodies, and there is one",
+                interface.name
+            );
+            return Err(BuildError::new("interface[0].bodies", message)
+                .help("write [[body]] for each of the two"));
+        }
         let model = parts[0].constitutive(body, shelf, simd, warnings)?;
         let interaction = model.interaction(body, None)?;
         return Ok((ConstitutiveModels::one(model), interaction));
@@ -504,11 +521,19 @@ fn bind<const D: usize>(
             pieces[n].body = own;
         }
     }
-    let interaction = SeveralInteraction::new(body, bonds);
-    Ok((
-        ConstitutiveModels::several(constitutive),
-        Box::new(interaction),
-    ))
+    let mut joined = vec![];
+    for made in interfaces(spec, named, body, shelf, simd)? {
+        let (count, horizon) = (made.interface.near_horizon(), made.model.horizon);
+        if count > 0 && !made.model.ratio {
+            warnings.push(format!(
+                "{count} directed bonds of an interface end within round-off of its horizon {horizon:e}: write it as a whole number of spacings (m_ratio), or well between two distances"
+            ));
+        }
+        joined.push(made.interface);
+    }
+    let interaction = SeveralInteraction::new(body, bonds, joined);
+    let constitutive = ConstitutiveModels::several(constitutive);
+    Ok((constitutive, Box::new(interaction)))
 }
 
 /// Friction of contact; `None`: points slide freely.

@@ -65,15 +65,22 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
     let BodySpec::Several(pieces) = &spec.body else {
         return vec![];
     };
-    let name = |n: usize| pieces.get(n).map_or("", |p: &PieceSpec| &p.name);
+    let name = |n: usize| pieces.get(n).map_or("", |p: &PieceSpec| p.name.as_str());
     let told = gaps.iter().filter_map(|gap| {
         let [a, b] = gap.bodies;
         let (own, distance) = (0.5 * (spacing(a) + spacing(b)), gap.distance);
         let bodies = format!("bodies `{}` and `{}`", name(a), name(b));
+        let joined = |a: usize, b: usize| {
+            let ends = [name(a), name(b)];
+            let mut joints = spec.interfaces.iter();
+            joints.any(|i| i.bodies.iter().all(|end| ends.contains(&end.as_str())))
+        };
         if distance < OVERLAP * own {
             Some(format!(
                 "{bodies} overlap: their nearest points are {distance:.4e} apart, their spacing is {own:.4e}"
             ))
+        } else if joined(a, b) {
+            None
         } else if spec.contact.is_none() {
             Some(format!(
                 "{bodies} are {distance:.4e} apart and there is no contact: they go through each other"

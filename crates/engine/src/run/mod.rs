@@ -13,6 +13,7 @@ mod equilibrium;
 mod free;
 mod gaps;
 mod implicit;
+mod interfaces;
 mod model;
 mod motion;
 mod observation;
@@ -36,7 +37,7 @@ use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot, Values};
 use crate::space::Point;
-use crate::spec::{AnyLinearBody, Stepper};
+use crate::spec::{AnyLinearBody, Influence, Stepper};
 use crate::statics::Solved;
 
 /// What a model is, for headers and reports.
@@ -51,6 +52,7 @@ pub struct Info {
     pub family_kind: &'static str,
     /// Directed bonds whose length is within round-off of the horizon.
     pub near_horizon: u64,
+    /// The longest of all bodies that have bonds.
     pub horizon: f64,
     pub spacing: f64,
     /// Thickness in 2-D, cross-section in 1-D, 1 in 3-D.
@@ -61,6 +63,8 @@ pub struct Info {
     pub micromodulus: Vec<f64>,
     /// Critical stretch s00 per material; ∞: never breaks.
     pub critical_stretch: Vec<f64>,
+    /// Horizon (length) and influence function per material; those of the first body that is made of it.
+    pub families: Vec<(f64, Influence)>,
     pub time_step: f64,
     pub stepper: Stepper,
     /// Stability limit of explicit steps: that of bonds, and of contact if that is lower.

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::accounts::ledger_base;
-use super::constitutive::Laws;
+use super::constitutive::{ConstitutiveModel, Laws};
 use super::model::Model;
 use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
@@ -152,9 +152,13 @@ impl<const D: usize> Model<D> {
         self.still.begin(&mut self.v, &mut self.f, !self.pending);
         self.carried.begin(&self.u, &mut self.v, &mut self.f, dt);
         // linear springs may go through each other: they know no distance that is too far for a step
-        let limit = match self.constitutive.first().laws {
-            Laws::Springs(_) | Laws::Micromoduli(_) => f64::INFINITY,
-            Laws::Bond(_) | Laws::Solid(_) | Laws::Atoms(_) => self.body.spacing,
+        let linear = |m: &ConstitutiveModel| match m.laws {
+            Laws::Springs(_) | Laws::Micromoduli(_) => true,
+            Laws::Bond(_) | Laws::Solid(_) | Laws::Atoms(_) => false,
+        };
+        let limit = match self.constitutive.all().all(linear) {
+            true => f64::INFINITY,
+            false => self.body.spacing,
         };
         let fastest = self.verlet.advance(
             &self.body,

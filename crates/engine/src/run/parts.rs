@@ -66,6 +66,9 @@ pub(super) fn parts<'a, const D: usize>(
     for (n, piece) in pieces.iter().enumerate() {
         let own = Spec {
             body: piece.body.clone(),
+            horizon: piece.horizon.unwrap_or(spec.horizon),
+            influence: piece.influence.unwrap_or(spec.influence),
+            family: piece.family.unwrap_or(spec.family),
             ..without.clone()
         };
         let (part, body) = part(Cow::Owned(own), piece.bonded).map_err(|e| BuildError {
@@ -95,30 +98,12 @@ fn several_can(spec: &Spec, pieces: &[PieceSpec]) -> Result<(), BuildError> {
             ));
         }
     }
-    let solid = |m: &MaterialSpec| {
-        matches!(
-            m.law,
-            LawSpec::Pmb(_)
-                | LawSpec::Lps(_)
-                | LawSpec::LpsAsTyped { .. }
-                | LawSpec::EamLike { .. }
-        )
-    };
-    if let Some(n) = spec.materials.iter().position(|m| !solid(m)) {
+    let alone = |m: &MaterialSpec| matches!(m.law, LawSpec::Atoms(_) | LawSpec::Micromoduli(_));
+    if let Some(n) = spec.materials.iter().position(alone) {
         return refused(
             &format!("materials[{n}].law"),
-            "several bodies, and loose points, need a law with contact",
-            "take pmb or lps; springs, micromoduli and atoms are bodies of their own",
-        );
-    }
-    let unlike = |m: &MaterialSpec| {
-        std::mem::discriminant(&m.law) != std::mem::discriminant(&spec.materials[0].law)
-    };
-    if let Some(n) = spec.materials.iter().position(unlike) {
-        return refused(
-            &format!("materials[{n}].law"),
-            "different kinds of law in several bodies are not supported yet",
-            "give all materials the same kind of law",
+            "atoms, and given micromoduli, are a body of their own and not one of several",
+            "take pmb, lps or springs",
         );
     }
     if !spec.pairs.is_empty() {
@@ -133,14 +118,6 @@ fn several_can(spec: &Spec, pieces: &[PieceSpec]) -> Result<(), BuildError> {
             "surface",
             "factors of bonds near the surface are for a single body",
             "leave surface out",
-        );
-    }
-    let ratio = matches!(spec.horizon, Horizon::Ratio(_));
-    if ratio && spec.body.spacing().is_none() {
-        return refused(
-            "horizon",
-            "the bodies have different spacings: the same number of spacings is a different horizon in each, which is not supported yet",
-            "write the horizon as a length, that of all bodies",
         );
     }
     Ok(())

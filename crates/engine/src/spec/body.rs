@@ -1,5 +1,6 @@
 //! Where points come from, and named sets of them.
 
+use super::{FamilyChoice, Horizon, Influence};
 use crate::expression::Expression;
 use crate::space::lattice::LatticeKind;
 use crate::space::region::Region;
@@ -43,6 +44,24 @@ pub struct PieceSpec {
     pub body: BodySpec,
     /// `false`: loose points (powder), which have contact only.
     pub bonded: bool,
+    /// `None`: those of the spec; a horizon in spacings counts its own.
+    pub horizon: Option<Horizon>,
+    pub influence: Option<Influence>,
+    pub family: Option<FamilyChoice>,
+}
+
+impl PieceSpec {
+    /// With bonds, and all else as the spec has it.
+    pub fn new(name: impl Into<String>, body: BodySpec) -> PieceSpec {
+        PieceSpec {
+            name: name.into(),
+            body,
+            bonded: true,
+            horizon: None,
+            influence: None,
+            family: None,
+        }
+    }
 }
 
 impl BodySpec {

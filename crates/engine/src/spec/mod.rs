@@ -8,6 +8,7 @@ mod bonds;
 mod carriers;
 mod condition;
 mod family;
+mod interface;
 mod law;
 mod linear_body;
 mod potential;
@@ -24,6 +25,7 @@ pub use condition::{
     ConditionKind, ConditionSpec, IndenterMotion, IndenterSpec, InitialSpec, ThermalSpec,
 };
 pub use family::{Calibration, FamilyChoice, Horizon, Influence};
+pub use interface::InterfaceSpec;
 pub use law::{
     Criterion, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw, PairSpec,
     Parameter, Parameters, PmbStiffness, Release,
@@ -55,6 +57,8 @@ pub struct Spec {
     pub materials: Vec<MaterialSpec>,
     /// How bonds between unlike materials get their stiffness.
     pub interface: InterfaceRule,
+    /// Bonds between bodies, where there are several; the others meet by contact alone.
+    pub interfaces: Vec<InterfaceSpec>,
     /// What pairs of materials have instead of what follows from the two, `[of][with]`; empty: nothing. Their bonds
     /// are in lists.
     pub pairs: Vec<PairSpec>,
@@ -110,6 +114,7 @@ impl Spec {
                 fracture: None,
             }],
             interface: InterfaceRule::Series,
+            interfaces: vec![],
             pairs: vec![],
             release: Release::AtOnce,
             horizon: Horizon::Ratio(1),

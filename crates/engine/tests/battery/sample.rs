@@ -279,6 +279,7 @@ impl Case {
                 })
                 .collect(),
             interface: InterfaceRule::Series,
+            interfaces: vec![],
             pairs: vec![],
             release: Release::AtOnce,
             horizon: Horizon::Ratio(ratio),

@@ -6,8 +6,8 @@ use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Measure, Method, NamedLaw, Parameter, Part, Plane, PmbStiffness, ProbeSpec,
-    Release, Spec, Stepper, TimeStep,
+    MaterialSpec, Measure, Method, NamedLaw, Parameter, Part, PieceSpec, Plane, PmbStiffness,
+    ProbeSpec, Release, Spec, Stepper, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -56,10 +56,11 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                 .into(),
         );
     }
-    let horizon = match spec.horizon {
+    let length = |horizon: Horizon| match horizon {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),
     };
+    let horizon = length(spec.horizon);
     lines.push(match spec.potential() {
         Some(potential) => {
             let cutoff = potential.cut_off();
@@ -86,6 +87,36 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             spec.calibration
         ),
     });
+    if let BodySpec::Several(pieces) = &spec.body {
+        let own = |p: &&PieceSpec| {
+            p.horizon.is_some_and(|h| h != spec.horizon)
+                || p.influence.is_some_and(|i| i != spec.influence)
+        };
+        lines.extend(pieces.iter().filter(own).map(|p| {
+            format!(
+                "           of {}: {}, influence {:?}",
+                p.name,
+                length(p.horizon.unwrap_or(spec.horizon)),
+                p.influence.unwrap_or(spec.influence)
+            )
+        }));
+    }
+    for i in &spec.interfaces {
+        let fracture = match i.fracture.map(|f| f.criterion) {
+            None => "never breaks".into(),
+            Some(Criterion::Stretch(s)) => format!("critical stretch {s}"),
+            Some(Criterion::Energy(e)) => {
+                format!("fracture energy {}", units.write(e, Dim::FRACTURE_ENERGY))
+            }
+        };
+        lines.push(format!(
+            "interface  {} bonds {} and {} within {}, {fracture}",
+            i.name,
+            i.bodies[0],
+            i.bodies[1],
+            length(i.horizon)
+        ));
+    }
     for (axis, period) in ["x", "y", "z"].iter().zip(spec.periodic) {
         if let Some(period) = period {
             lines.push(format!(

@@ -45,8 +45,13 @@ pub struct Document {
     /// `[material]`, or `[material.NAME]` for each of several.
     #[schemars(with = "Or<Material, Named<Material>>")]
     pub material: BTreeMap<String, At<Material>>,
-    /// Bonds between unlike materials; series when left out.
+    /// Bonds between unlike materials of one body; series when left out. Or `[[interface]]`, bonds between two of several bodies.
+    #[schemars(with = "Option<Or<Vec<Interface>, InterfaceName>>")]
     pub interface: Option<InterfaceName>,
+    /// `[[interface]]`, under the name that [`locate`](super::locate) gives them.
+    #[serde(default, rename = "[[interface]]")]
+    #[schemars(skip)]
+    pub interfaces: Vec<At<Interface>>,
     /// { m_ratio = 3 } in lattice spacings, or a length.
     /// Not needed by atoms that talk to their current neighbours.
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
@@ -100,6 +105,12 @@ pub struct Body {
     pub material: Option<At<String>>,
     /// false: points without bonds, which meet by contact only (powder, a single point); true when left out.
     pub bonded: Option<bool>,
+    /// Its own, instead of that of the deck, which counts spacings of each body; of several bodies only.
+    pub horizon: Option<At<Or<Written, HorizonRatio>>>,
+    /// Its own, instead of that of the deck; of several bodies only.
+    pub influence: Option<At<InfluenceName>>,
+    /// Its own, stencil or list, instead of that of the deck; of several bodies only.
+    pub family: Option<At<FamilyName>>,
     pub lattice: Option<At<LatticeName>>,
     /// Edge of the lattice cell; with a file, the typical distance of points.
     pub spacing: Option<Number>,
@@ -126,6 +137,24 @@ pub struct Body {
 pub struct Perturb {
     pub amplitude: Number,
     pub seed: u64,
+}
+
+/// Bonds between the points of two bodies that are within a horizon of each other in the reference. Without them bodies meet by
+/// contact alone.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Interface {
+    /// For messages.
+    pub name: Option<At<String>>,
+    /// Names of the two bodies.
+    pub bodies: At<Vec<At<String>>>,
+    /// pmb; moduli are those of a full family of the first body at this horizon.
+    pub law: At<AnyLaw>,
+    /// { m_ratio = 3 } in spacings of the first body, or a length; that of the first body when left out.
+    pub horizon: Option<At<Or<Written, HorizonRatio>>>,
+    /// constant when left out.
+    pub influence: Option<InfluenceName>,
+    pub fracture: Option<At<Fracture>>,
 }
 
 /// A region of space; its boundary belongs to it.

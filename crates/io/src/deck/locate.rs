@@ -68,6 +68,19 @@ pub(super) fn first_body<'a>(tree: &mut DeTable<'a>) {
     );
 }
 
+/// Where `[[interface]]` goes; `interface` alone is a word.
+const INTERFACES: &str = "[[interface]]";
+
+/// Puts interfaces between bodies under a key of their own.
+pub(super) fn interfaces(tree: &mut DeTable) {
+    let joins = |entry: &Spanned<DeValue>| matches!(entry.get_ref(), DeValue::Array(_));
+    if tree.get("interface").is_some_and(joins)
+        && let Some((key, value)) = tree.remove_entry("interface")
+    {
+        tree.insert(Spanned::new(key.span(), INTERFACES.into()), value);
+    }
+}
+
 /// A set that a region of the deck makes is called after its entry: `"condition 2"` is `condition[1].region`. Other
 /// sets that the deck does not write come with the body's file.
 fn made_set(tree: &DeTable, path: &str) -> Option<String> {

@@ -119,6 +119,7 @@ impl Deck {
         form::check(&source, tree.get_ref())?;
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
+        locate::interfaces(tree.get_mut());
         let document = Document::deserialize(toml::de::Deserializer::from(tree))
             .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));

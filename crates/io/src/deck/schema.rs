@@ -64,6 +64,7 @@ mod tests {
         let mut tree = source.tree().unwrap();
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
+        locate::interfaces(tree.get_mut());
         Document::deserialize(toml::de::Deserializer::from(tree)).is_ok()
     }
 

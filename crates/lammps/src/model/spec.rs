@@ -70,6 +70,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         },
         materials: types.materials().iter().map(material).collect(),
         interface: InterfaceRule::Series,
+        interfaces: vec![],
         pairs: types.table(),
         release: Release::AfterForce,
         horizon: Horizon::Length(types.horizon()),

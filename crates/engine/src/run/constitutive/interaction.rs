@@ -143,7 +143,7 @@ impl ConstitutiveModel {
     }
 
     /// Length up to which pairs are bonds: whole multiples of the spacing are meant inclusively.
-    fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         match self.ratio {
             true => self.horizon * (1.0 + 1e-9),
             false => self.horizon,
@@ -153,6 +153,33 @@ impl ConstitutiveModel {
     /// Length over which volumes fade at the horizon.
     fn scaling(&self) -> Option<f64> {
         self.scaling.then_some(self.spacing)
+    }
+
+    /// Bonds of a bond-based law between those slots of a cloud for which `across` holds; points repel by contact.
+    pub fn interaction_across<const D: usize>(
+        &self,
+        body: &Body<D>,
+        across: impl Fn(usize, usize) -> bool + Sync,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let Laws::Bond(c) = &self.laws else {
+            return Err(BuildError::new(
+                "law",
+                "an interface is made of bonds, and this law acts through its points",
+            )
+            .help("write law = { pmb = { ... } }"));
+        };
+        let reach = self.reach();
+        let of = |i: usize, j: usize| if across(i, j) { reach } else { 0.0 };
+        Ok(Box::new(ListInteraction::new(ListParts {
+            body,
+            list: HorizonList::within(body, reach, of)?,
+            law: BondBased { c: c[0] },
+            weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
+            point_constants: PointConstants::None,
+            toughness: self.toughness.clone(),
+            repulsion: None,
+            simd: self.simd,
+        })))
     }
 
     fn links<const D: usize>(&self, body: &Body<D>) -> Result<Links<D>, BuildError> {

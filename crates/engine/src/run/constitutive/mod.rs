@@ -83,7 +83,11 @@ impl ConstitutiveModels {
     }
 
     /// A number per material of the spec, from the first body that is made of it.
-    fn per_material(&self, count: usize, of: impl Fn(&ConstitutiveModel) -> Vec<f64>) -> Vec<f64> {
+    fn per_material<T: Clone>(
+        &self,
+        count: usize,
+        of: impl Fn(&ConstitutiveModel) -> Vec<T>,
+    ) -> Vec<T> {
         let mut all = vec![None; count];
         for (_, materials, model) in &self.of {
             for (m, x) in materials.iter().zip(of(model)) {
@@ -99,6 +103,11 @@ impl ConstitutiveModels {
             Laws::Bond(c) => c.clone(),
             Laws::Solid(_) | Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => vec![],
         })
+    }
+
+    /// Horizons (length) and influence functions.
+    pub fn families(&self, count: usize) -> Vec<(f64, Influence)> {
+        self.per_material(count, |r| vec![(r.horizon, r.influence); r.toughness.len()])
     }
 
     pub fn critical_stretches(&self, count: usize) -> Vec<f64> {

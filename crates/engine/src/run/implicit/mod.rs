@@ -54,6 +54,13 @@ impl<const D: usize> Model<D> {
             )
             .help(explicit));
         }
+        if let Some(n) = spec.interfaces.iter().position(|i| i.fracture.is_some()) {
+            return Err(BuildError::new(
+                format!("interface[{n}].fracture"),
+                "bonds that break within an implicit step are not supported",
+            )
+            .help(explicit));
+        }
         if spec.contact.is_some() {
             return Err(BuildError::new(
                 "contact",

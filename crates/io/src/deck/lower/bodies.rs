@@ -3,11 +3,11 @@
 use super::body;
 use super::context::{Context, Result};
 use super::pieces::within;
-use super::{Files, section};
-use crate::deck::document::{Body, Document};
+use super::{Files, horizon, influence, section};
+use crate::deck::document::{Body, Document, FamilyName};
 use crate::deck::error::nearest;
 use crate::deck::value::At;
-use peridyne::spec::{BodySpec, Members, PieceSpec, SetSpec};
+use peridyne::spec::{BodySpec, FamilyChoice, Horizon, MaterialSpec, Members, PieceSpec, SetSpec};
 
 /// All bodies of a deck, the first included.
 pub(super) fn written(document: &Document) -> impl Iterator<Item = &At<Body>> {
@@ -66,6 +66,9 @@ pub(super) fn bodies(
             name,
             body: spec,
             bonded: written.bonded.unwrap_or(true),
+            horizon: None,
+            influence: None,
+            family: None,
         });
     }
     Ok(BodySpec::Several(pieces))
@@ -137,9 +140,76 @@ pub(super) fn made_of<'a>(
     .map(|(p, _)| p.name.as_str())
 }
 
+/// Gives each of several bodies its own horizon, influence function and family; the horizon of the first.
+pub(super) fn own(
+    context: &Context,
+    document: &Document,
+    all: &mut BodySpec,
+    materials: &[MaterialSpec],
+    sets: &[SetSpec],
+) -> Result<Option<Horizon>> {
+    let BodySpec::Several(pieces) = all else {
+        return Ok(None);
+    };
+    for (piece, at) in pieces.iter_mut().zip(written(document)) {
+        let given = at.value.horizon.as_ref().or(document.horizon.as_ref());
+        let Some(given) = given else {
+            return Err(context.error_with(
+                &at.span,
+                format!("the body \"{}\" has no horizon", piece.name),
+                "write horizon = { m_ratio = 3 }, or a length, in it or for all bodies above them",
+            ));
+        };
+        piece.horizon = Some(horizon(context, given, &piece.body)?);
+        // customary is that of its law
+        let of_body = |m: &&MaterialSpec| {
+            m.set == piece.name
+                || sets.iter().any(|s| {
+                    s.name == m.set
+                        && matches!(&s.members, Members::Within { body, .. } if *body == piece.name)
+                })
+        };
+        let material = materials.iter().find(of_body).or(materials.first());
+        let asked = at.value.influence.as_ref().map(|i| i.value);
+        piece.influence = Some(influence(
+            asked.or(document.influence),
+            material.map_or(&[], std::slice::from_ref),
+        ));
+        piece.family = match &at.value.family {
+            None => None,
+            Some(family) => Some(match family.value {
+                FamilyName::Auto => FamilyChoice::Auto,
+                FamilyName::Stencil => FamilyChoice::Stencil,
+                FamilyName::List => FamilyChoice::List,
+                FamilyName::Neighbours => {
+                    return Err(context.error(
+                        &family.span,
+                        "current neighbours belong to atoms, which are a body of their own",
+                    ));
+                }
+            }),
+        };
+    }
+    Ok(pieces.first().and_then(|p| p.horizon))
+}
+
 /// Keys of a body that only have a meaning where there are several, and materials that do not exist.
 pub(super) fn check(context: &Context, document: &Document) -> Result<()> {
     for at in written(document) {
+        let own = [
+            ("horizon", at.value.horizon.as_ref().map(|h| &h.span)),
+            ("influence", at.value.influence.as_ref().map(|i| &i.span)),
+            ("family", at.value.family.as_ref().map(|f| &f.span)),
+        ];
+        if let Some((key, span)) = own.iter().find_map(|(key, span)| Some((key, (*span)?)))
+            && !several(document)
+        {
+            return Err(context.error_with(
+                span,
+                format!("a single body has the {key} of the deck"),
+                format!("write {key} above [body]; with several [[body]] each may have its own"),
+            ));
+        }
         let Some(material) = &at.value.material else {
             continue;
         };

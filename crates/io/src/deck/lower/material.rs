@@ -62,7 +62,9 @@ pub(super) fn materials(
             None => "all".to_string(),
         };
         let law = law(context, &given.law, potential)?;
+        // each of several bodies has one kind, which the engine sees to
         if let Some(first) = materials.first()
+            && !bodies::several(document)
             && std::mem::discriminant(&first.law) != std::mem::discriminant(&law)
         {
             let message = format!(
@@ -236,7 +238,11 @@ fn shelved(context: &Context, span: &Range<usize>, named: &NamedLaw) -> Result<L
     Ok(law)
 }
 
-fn law(context: &Context, law: &At<AnyLaw>, potential: Option<&AtomsPotential>) -> Result<LawSpec> {
+pub(super) fn law(
+    context: &Context,
+    law: &At<AnyLaw>,
+    potential: Option<&AtomsPotential>,
+) -> Result<LawSpec> {
     let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
     match &law.value.0 {
         Law::Pmb(e) => pmb(context, &law.span, e, "pmb").map(LawSpec::Pmb),
@@ -415,7 +421,7 @@ pub(super) fn release(
     })
 }
 
-fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<FractureSpec> {
+pub(super) fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<FractureSpec> {
     let f = &fracture.value;
     let given = [
         ("critical_stretch", f.critical_stretch.is_some()),

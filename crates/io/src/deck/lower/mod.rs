@@ -4,6 +4,7 @@ mod atoms;
 mod bodies;
 mod body;
 mod context;
+mod interface;
 mod material;
 mod motion;
 mod pieces;
@@ -137,6 +138,7 @@ pub(super) fn lower(
     let probes = probes
         .map(|at| probes::probe(&context, at, &sets))
         .collect::<Result<Vec<_>>>()?;
+    let first = bodies::own(&context, document, &mut body, &materials, &sets)?;
     let section = section(&context, document)?;
     let run = schedule::schedule(&context, document)?;
     let mut spec = Spec {
@@ -148,6 +150,7 @@ pub(super) fn lower(
         },
         section,
         horizon: match &document.horizon {
+            _ if let Some(first) = first => first,
             Some(written) => horizon(&context, written, &body)?,
             // the cut-off takes its place
             None if current => Horizon::Ratio(1),
@@ -172,6 +175,7 @@ pub(super) fn lower(
             Some(InterfaceName::Minimum) => InterfaceRule::Minimum,
             Some(InterfaceName::Series) | None => InterfaceRule::Series,
         },
+        interfaces: interface::interfaces(&context, document, &body)?,
         pairs: vec![],
         release: material::release(&context, &document.material)?,
         volume_scaling: document.volume_scaling.unwrap_or(true),
@@ -283,17 +287,12 @@ fn horizon(
         BodySpec::Lattice { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
         BodySpec::Cloud(cloud) => cloud.spacing.map(|s| (s, 0.0)),
         BodySpec::Sites { kind, spacing, .. } => Some((*spacing, spacing * kind.nearest())),
-        // each body says for itself what is too short
-        BodySpec::Several(_) => body.spacing().map(|s| (s, 0.0)),
+        // each has its own
+        BodySpec::Several(_) => None,
     };
-    let several = matches!(body, BodySpec::Several(_));
     let on_lattices = match body {
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } => true,
-        BodySpec::Cloud(_) => false,
-        BodySpec::Several(pieces) => pieces.iter().all(|p| match p.body {
-            BodySpec::Lattice { .. } | BodySpec::Sites { .. } => true,
-            BodySpec::Cloud(_) | BodySpec::Several(_) => false,
-        }),
+        BodySpec::Cloud(_) | BodySpec::Several(_) => false,
     };
     let below = |length: f64, shortest: f64| {
         let [length, shortest] = [length, shortest].map(|l| context.units.write(l, Dim::LENGTH));
@@ -316,17 +315,11 @@ fn horizon(
         Or::Table(HorizonRatio { m_ratio }) => {
             let ratio = context.positive(m_ratio, Dim::NUMBER, "m_ratio")?;
             let Some((spacing, shortest)) = lattice else {
-                let (message, help) = match several {
-                    false => (
-                        "m_ratio counts spacings, and these points have none",
-                        "give body.spacing, or the horizon as a length",
-                    ),
-                    true => (
-                        "m_ratio counts spacings, and these bodies have different ones: horizons that differ from body to body are not supported yet",
-                        "give the horizon as a length, that of all bodies",
-                    ),
-                };
-                return Err(context.error_with(&m_ratio.span, message, help));
+                return Err(context.error_with(
+                    &m_ratio.span,
+                    "m_ratio counts spacings, and these points have none",
+                    "give body.spacing, or the horizon as a length",
+                ));
             };
             let whole = ratio.fract() == 0.0 && ratio <= f64::from(u32::MAX);
             if ratio * spacing < shortest {

@@ -1,0 +1,224 @@
+//! Bonds between two of several bodies: an interaction on the points of both that are near to the other, as a cloud of its own.
+
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
+use crate::body::{Body, Field, zeros};
+use crate::spec::CrackKind;
+
+/// No slot.
+const NONE: u32 = u32::MAX;
+
+/// Which points of all an interface bonds, and where they are among its own.
+struct Points<const D: usize> {
+    /// In order of ids.
+    cloud: Body<D>,
+    /// Their slots in the body of all.
+    slots: Vec<u32>,
+    /// `[slots of all]`: their slots in the cloud.
+    place: Vec<u32>,
+    /// `[slots of the cloud]`: slots in the body of all.
+    whole: Vec<u32>,
+}
+
+impl<const D: usize> Points<D> {
+    fn take(&self, from: &Field<D>, to: &mut Field<D>) {
+        for (all, own) in self.slots.iter().zip(&self.cloud.slots) {
+            for a in 0..D {
+                to[a][*own as usize] = from[a][*all as usize];
+            }
+        }
+    }
+
+    fn add(&self, from: &[f64], to: &mut [f64]) {
+        for (all, own) in self.slots.iter().zip(&self.cloud.slots) {
+            to[*all as usize] += from[*own as usize];
+        }
+    }
+
+    /// Adds the energies; dilatations are those of the bodies alone.
+    fn add_energies(&self, seen: &PointEnergies, out: &mut PointEnergies) {
+        self.add(&seen.strain, &mut out.strain);
+        self.add(&seen.repulsion, &mut out.repulsion);
+    }
+
+    fn whole(&self, slot: usize) -> usize {
+        self.whole[slot] as usize
+    }
+}
+
+/// An interface and its own columns.
+pub struct Interface<const D: usize> {
+    bonds: Box<dyn Interaction<D>>,
+    points: Points<D>,
+    u: Field<D>,
+    v: Field<D>,
+    f: Field<D>,
+    seen: PointEnergies,
+}
+
+impl<const D: usize> Interface<D> {
+    /// `cloud` has the points of `slots`, in this order, and `bonds` are on it.
+    pub fn new(
+        body: &Body<D>,
+        cloud: Body<D>,
+        slots: Vec<u32>,
+        bonds: Box<dyn Interaction<D>>,
+    ) -> Self {
+        let mut place = vec![NONE; body.len];
+        let mut whole = vec![NONE; cloud.len];
+        for (all, own) in slots.iter().zip(&cloud.slots) {
+            place[*all as usize] = *own;
+            whole[*own as usize] = *all;
+        }
+        Interface {
+            bonds,
+            u: cloud.at_rest(),
+            v: zeros(cloud.len),
+            f: zeros(cloud.len),
+            seen: PointEnergies::default(),
+            points: Points {
+                cloud,
+                slots,
+                place,
+                whole,
+            },
+        }
+    }
+
+    /// Adds its forces to `f`.
+    pub fn forces(
+        &mut self,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        let points = &self.points;
+        points.take(u, &mut self.u);
+        let sweep = match sweep {
+            Sweep::Evolve { v, steps, release } => {
+                points.take(v, &mut self.v);
+                Sweep::Evolve {
+                    v: &self.v,
+                    steps,
+                    release,
+                }
+            }
+            Sweep::Hold => Sweep::Hold,
+        };
+        let watch = seen.is_some().then_some(&mut self.seen);
+        let mut tally = self
+            .bonds
+            .forces(&points.cloud, &self.u, &mut self.f, sweep, watch);
+        tally.fault = tally.fault.map(|fault| fault.at(|s| points.whole(s)));
+        for a in 0..D {
+            points.add(&self.f[a], &mut f[a]);
+        }
+        if let Some(seen) = seen {
+            points.add_energies(&self.seen, seen);
+        }
+        tally
+    }
+
+    pub fn energy(&mut self, u: &Field<D>) -> [f64; 2] {
+        self.points.take(u, &mut self.u);
+        self.bonds.energy(&self.points.cloud, &self.u)
+    }
+
+    pub fn observe(&self, u: &Field<D>, out: &mut PointEnergies) {
+        let mut own = self.points.cloud.at_rest();
+        self.points.take(u, &mut own);
+        let mut seen = PointEnergies::default();
+        self.bonds.observe(&self.points.cloud, &own, &mut seen);
+        self.points.add_energies(&seen, out);
+    }
+
+    pub fn observe_gradient(&self, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        let mut seen = PointEnergies::default();
+        self.bonds
+            .observe_gradient(&self.points.cloud, gradient, &mut seen);
+        self.points.add_energies(&seen, out);
+    }
+
+    pub fn tangents(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        let points = &self.points;
+        points.take(u, &mut self.u);
+        self.bonds.tangents(&points.cloud, &self.u, &mut |bond| {
+            visit(BondTangent {
+                i: points.whole(bond.i),
+                j: points.whole(bond.j),
+                ..bond
+            });
+        });
+    }
+
+    pub fn each_force(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondForce<D>)) -> bool {
+        let points = &self.points;
+        points.take(u, &mut self.u);
+        self.bonds.each_force(&points.cloud, &self.u, &mut |bond| {
+            visit(BondForce {
+                i: points.whole(bond.i),
+                j: points.whole(bond.j),
+                ..bond
+            });
+        })
+    }
+
+    /// A column of its bonds.
+    pub fn read_bonds(&self, name: &str, out: &mut Vec<f64>) -> bool {
+        let cloud = &self.points.cloud;
+        self.bonds.read_column(cloud, &cloud.at_rest(), name, out)
+    }
+
+    /// Sets a column of its bonds, in the order in which they are read.
+    pub fn write_bonds(&mut self, name: &str, values: &[f64]) -> bool {
+        self.bonds.write_column(&self.points.cloud, name, values)
+    }
+
+    pub fn each_bond(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let points = &self.points;
+        self.bonds.each_bond(&points.cloud, &mut |i, j, xi, state| {
+            let (i, j) = (points.whole(i), points.whole(j));
+            match i < j {
+                true => visit(i, j, xi, state),
+                false => visit(j, i, xi.map(|x| -x), state),
+            }
+        });
+    }
+
+    pub fn cut(
+        &mut self,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        self.bonds.cut(&self.points.cloud, kind, crosses)
+    }
+
+    pub fn prepare(&mut self) {
+        self.bonds.prepare(&self.points.cloud);
+    }
+
+    pub fn directed_bonds(&self) -> u64 {
+        self.bonds.directed_bonds()
+    }
+
+    pub fn family_size(&self, slot: usize) -> usize {
+        match self.points.place[slot] {
+            NONE => 0,
+            own => self.bonds.family_size(&self.points.cloud, own as usize),
+        }
+    }
+
+    pub fn near_horizon(&self) -> u64 {
+        self.bonds.near_horizon()
+    }
+
+    pub fn bytes(&self) -> usize {
+        let columns: usize = [&self.u, &self.v, &self.f]
+            .iter()
+            .map(|f| 8 * D * f[0].len())
+            .sum();
+        let p = &self.points;
+        let places = 4 * (p.slots.len() + p.place.len() + p.whole.len());
+        columns + places + p.cloud.bytes() + self.bonds.bytes()
+    }
+}

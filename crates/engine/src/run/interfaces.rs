@@ -1,0 +1,180 @@
+//! Interfaces of a spec: which points of two bodies they bond, and by which law.
+
+use super::calibration::cloud_moments;
+use super::constitutive::{ConstitutiveModel, Shelf};
+use super::reference::{cell, reference};
+use crate::body::Body;
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::family::cells::Cells;
+use crate::interaction::interface::Interface;
+use crate::law::micromodulus::Moments;
+use crate::spec::{Calibration, InterfaceSpec, MaterialSpec, PieceSpec, Spec};
+
+/// An interface with its law, and places of the two bodies.
+pub(super) struct Joined<const D: usize> {
+    pub bodies: [usize; 2],
+    pub model: ConstitutiveModel,
+    pub interface: Interface<D>,
+}
+
+/// All interfaces between the bodies of `all`.
+pub(super) fn interfaces<const D: usize>(
+    spec: &Spec,
+    pieces: &[PieceSpec],
+    all: &Body<D>,
+    shelf: &Shelf,
+    simd: Simd,
+) -> Result<Vec<Joined<D>>, BuildError> {
+    let mut made: Vec<Joined<D>> = vec![];
+    for (n, written) in spec.interfaces.iter().enumerate() {
+        let joined = join(spec, pieces, all, shelf, simd, written).map_err(|e| {
+            let path = e.path.strip_prefix("materials[0].").unwrap_or(&e.path);
+            BuildError {
+                path: format!("interface[{n}].{path}"),
+                message: format!("interface `{}`: {}", written.name, e.message),
+                ..e
+            }
+        })?;
+        let [a, b] = joined.bodies;
+        if made
+            .iter()
+            .any(|m| m.bodies == [a, b] || m.bodies == [b, a])
+        {
+            return Err(BuildError::new(
+                format!("interface[{n}].bodies"),
+                format!(
+                    "two interfaces join `{}` and `{}`",
+                    pieces[a].name, pieces[b].name
+                ),
+            )
+            .help("one interface joins two bodies"));
+        }
+        made.push(joined);
+    }
+    Ok(made)
+}
+
+fn join<const D: usize>(
+    spec: &Spec,
+    pieces: &[PieceSpec],
+    all: &Body<D>,
+    shelf: &Shelf,
+    simd: Simd,
+    written: &InterfaceSpec,
+) -> Result<Joined<D>, BuildError> {
+    let mut bodies = [0; 2];
+    for (place, name) in bodies.iter_mut().zip(&written.bodies) {
+        let Some(found) = pieces.iter().position(|p| p.name == *name) else {
+            return Err(BuildError::new(
+                "bodies",
+                format!("there is no body `{name}`"),
+            ));
+        };
+        *place = found;
+    }
+    if bodies[0] == bodies[1] {
+        return Err(
+            BuildError::new("bodies", "it joins a body with itself").help("name two bodies")
+        );
+    }
+    if !spec.bonds.is_empty() {
+        return Err(BuildError::new(
+            "",
+            "factors of bonds do not reach the bonds of an interface",
+        )
+        .help("give the interface the stiffness that it shall have"));
+    }
+    // its law on a full family of the first body
+    let first = &pieces[bodies[0]];
+    let own = Spec {
+        body: first.body.clone(),
+        horizon: written.horizon,
+        influence: written.influence,
+        materials: vec![MaterialSpec {
+            name: written.name.clone(),
+            set: "all".into(),
+            density: 1.0,
+            law: written.law.clone(),
+            fracture: written.fracture,
+        }],
+        contact: None,
+        precracks: vec![],
+        interfaces: vec![],
+        ..spec.clone()
+    };
+    let full = reference::<D>(&own)?;
+    let spacings = bodies.map(|b| {
+        let piece = &all.pieces()[b].body;
+        cell(
+            &Spec {
+                body: pieces[b].body.clone(),
+                ..own.clone()
+            },
+            piece,
+        )
+    });
+    let spacing = 0.5 * (spacings[0] + spacings[1]);
+    let mut moments = full.bulk;
+    if moments.is_none() && spec.calibration == Calibration::Discrete {
+        moments = cloud_moments(&own, &full.body, full.horizon, spacings[0])?;
+    }
+    let continuum = || Moments::continuum(D, full.horizon, spec.section, written.influence);
+    let moments = moments.unwrap_or_else(continuum);
+    let model =
+        ConstitutiveModel::new::<D>(&own, None, full.horizon, spacing, moments, shelf, simd)?;
+    let slots = near(all, bodies, model.reach());
+    if slots.is_empty() {
+        return Err(BuildError::new(
+            "horizon",
+            format!(
+                "no point of `{}` is within its horizon {:e} of `{}`",
+                written.bodies[0], full.horizon, written.bodies[1]
+            ),
+        )
+        .help("a longer horizon, or bodies that are nearer to each other"));
+    }
+    let position: Vec<[f64; 3]> = slots.iter().map(|s| all.position(*s as usize)).collect();
+    let volume: Vec<f64> = slots.iter().map(|s| all.volume.at(*s as usize)).collect();
+    let cloud = Body::from_cloud(&position, &volume, &[], spacing, all.period)?;
+    let mut side = vec![0; cloud.len];
+    for (all_slot, slot) in slots.iter().zip(&cloud.slots) {
+        side[*slot as usize] = all.piece_of(*all_slot as usize);
+    }
+    let bonds = model.interaction_across(&cloud, |i, j| side[i] != side[j])?;
+    Ok(Joined {
+        bodies,
+        interface: Interface::new(all, cloud, slots, bonds),
+        model,
+    })
+}
+
+/// Slots of the points of two bodies that are within `reach` (length) of the other, in order of ids.
+fn near<const D: usize>(all: &Body<D>, bodies: [usize; 2], reach: f64) -> Vec<u32> {
+    let of: Vec<(u32, usize)> = (all.slots.iter())
+        .map(|s| (*s, all.piece_of(*s as usize)))
+        .filter(|(_, piece)| bodies.contains(piece))
+        .collect();
+    let x: [Vec<f64>; D] = std::array::from_fn(|a| {
+        of.iter()
+            .map(|(s, _)| all.position(*s as usize)[a])
+            .collect()
+    });
+    let cells = Cells::new(
+        std::array::from_fn(|a| x[a].as_slice()),
+        of.len(),
+        all.period,
+        reach,
+    );
+    let joined = |i: usize| {
+        let mut found = false;
+        cells.candidates(i, |j, square| {
+            found |= of[j as usize].1 != of[i].1 && square <= reach * reach;
+        });
+        found
+    };
+    (0..of.len())
+        .filter(|i| joined(*i))
+        .map(|i| of[i].0)
+        .collect()
+}

@@ -1,0 +1,435 @@
+//! Bodies with laws and horizons of their own, and bonds between them by a law of an interface.
+
+use peridyne::expression::Expression;
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::spec::*;
+
+const PMB: LawSpec = LawSpec::Pmb(PmbStiffness::Young(100.0));
+
+fn text(e: &str) -> Option<Expression> {
+    Some(Expression::parse(e, &[]).unwrap())
+}
+
+fn block(d: usize, spacing: f64, low: [f64; 3], high: [f64; 3]) -> BodySpec {
+    let flat = |x: [f64; 3]| std::array::from_fn(|a| if a < d { x[a] } else { 0.0 });
+    BodySpec::Lattice {
+        kind: [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][d - 1],
+        spacing,
+        origin: flat(low),
+        region: Region::Block {
+            low: flat(low),
+            high: flat(high),
+        },
+        perturb: None,
+    }
+}
+
+fn within(name: &str) -> SetSpec {
+    SetSpec {
+        name: name.into(),
+        members: Members::Within {
+            body: name.into(),
+            members: Box::new(Members::All),
+        },
+    }
+}
+
+fn material(set: &str, density: f64, law: LawSpec) -> MaterialSpec {
+    MaterialSpec {
+        name: set.into(),
+        set: set.into(),
+        density,
+        law,
+        fracture: None,
+    }
+}
+
+fn glue(law: LawSpec, horizon: Horizon) -> InterfaceSpec {
+    InterfaceSpec {
+        name: "glue".into(),
+        bodies: ["left".into(), "right".into()],
+        law,
+        horizon,
+        influence: Influence::Constant,
+        fracture: None,
+    }
+}
+
+/// A bar of 12 by 4 by 4 points at most, and the same in two halves that are glued.
+fn bars(d: usize, law: &LawSpec) -> [Spec; 2] {
+    let common = |body: BodySpec| {
+        let mut spec = Spec::new(d, body, 2.0, law.clone());
+        spec.horizon = Horizon::Ratio(3);
+        spec.volume_scaling = true;
+        spec.schedule.time_step = TimeStep::Fraction(0.5);
+        spec
+    };
+    let whole = common(block(d, 0.5, [0.0; 3], [5.5, 1.5, 1.5]));
+    let left = block(d, 0.5, [0.0; 3], [2.5, 1.5, 1.5]);
+    let right = block(d, 0.5, [3.0, 0.0, 0.0], [5.5, 1.5, 1.5]);
+    let pieces = vec![PieceSpec::new("left", left), PieceSpec::new("right", right)];
+    let mut glued = common(BodySpec::Several(pieces));
+    glued.sets = vec![within("left"), within("right")];
+    glued.interfaces = vec![glue(law.clone(), Horizon::Ratio(3))];
+    [whole, glued]
+}
+
+fn at(x: &[f64; 3]) -> [f64; 3] {
+    [
+        0.02 * (3.0 * x[0] + x[1]).sin(),
+        0.03 * (2.0 * x[1] - x[0] * x[2]).cos(),
+        0.01 * (x[0] * x[1] + x[2]).sin(),
+    ]
+}
+
+/// Where each point of `a` is among those of `b`.
+fn places(a: &mut dyn Simulation, b: &mut dyn Simulation) -> Vec<usize> {
+    let b = b.vectors("reference");
+    let near = |x: &[f64; 3], y: &[f64; 3]| (0..3).all(|k| (x[k] - y[k]).abs() < 1e-9);
+    let place = |x: &[f64; 3]| b.iter().position(|y| near(x, y)).unwrap();
+    a.vectors("reference").iter().map(place).collect()
+}
+
+fn largest(f: &[[f64; 3]]) -> f64 {
+    f.iter().flatten().fold(0.0, |m, x| m.max(x.abs()))
+}
+
+#[test]
+fn two_halves_glued_are_the_whole_bar() {
+    for d in 1..=3 {
+        for law in [PMB, LawSpec::Pmb(PmbStiffness::Micromodulus(7.0))] {
+            let [whole, glued] = bars(d, &law);
+            let [mut whole, mut glued] =
+                [whole, glued].map(|s| build(&s, Options::default()).unwrap());
+            assert_eq!(whole.info().directed_bonds, glued.info().directed_bonds);
+            assert_eq!(glued.fragments(), 1);
+            let place = places(glued.as_mut(), whole.as_mut());
+            let moved = |sim: &mut dyn Simulation| -> Vec<[f64; 3]> {
+                let flat = |x: &[f64; 3]| {
+                    let u = at(x);
+                    std::array::from_fn(|a| if a < d { u[a] } else { 0.0 })
+                };
+                sim.vectors("reference").iter().map(flat).collect()
+            };
+            let (u, w) = (moved(whole.as_mut()), moved(glued.as_mut()));
+            let (f, g) = (whole.forces_under(&u), glued.forces_under(&w));
+            let size = largest(&f);
+            for (g, n) in g.iter().zip(&place) {
+                for a in 0..d {
+                    assert!(
+                        (g[a] - f[*n][a]).abs() < 1e-12 * size,
+                        "{d}-D: {g:?} {:?}",
+                        f[*n]
+                    );
+                }
+            }
+            // energies, stable steps, virials
+            whole.set_displacements(&u);
+            glued.set_displacements(&w);
+            let energy = |sim: &mut dyn Simulation| sim.ledger().unwrap().strain;
+            let (e, o) = (energy(whole.as_mut()), energy(glued.as_mut()));
+            assert!((e - o).abs() < 1e-12 * e, "{e} {o}");
+            let dt = whole.info().stable_step / glued.info().stable_step;
+            assert!((dt - 1.0).abs() < 0.02, "{dt}");
+            let (v, o) = (whole.virial(), glued.virial());
+            let size = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            for (v, o) in v.iter().zip(&o) {
+                assert!((v - o).abs() < 1e-11 * size, "{v} {o}");
+            }
+            let (e, o) = (
+                whole.scalars("energy_density"),
+                glued.scalars("energy_density"),
+            );
+            for (o, n) in o.iter().zip(&place) {
+                assert!((o - e[*n]).abs() < 1e-11 * e[*n].abs().max(1e-3));
+            }
+        }
+    }
+}
+
+#[test]
+fn glued_bodies_hang_in_equilibrium_like_the_whole() {
+    let mut found = vec![];
+    for solver in [Solver::Direct, Solver::ConjugateGradients] {
+        for mut spec in bars(2, &PMB) {
+            spec.sets.push(SetSpec {
+                name: "wall".into(),
+                members: Members::Where(text("x < 0.6").unwrap()),
+            });
+            spec.conditions = vec![
+                ConditionSpec {
+                    set: "wall".into(),
+                    kind: ConditionKind::Displacement([text("0"), text("0"), None]),
+                },
+                ConditionSpec {
+                    set: "all".into(),
+                    kind: ConditionKind::BodyForce([text("0.1*t"), text("-0.02*t"), None]),
+                },
+            ];
+            spec.schedule.steps = 1;
+            spec.schedule.time_step = TimeStep::Fixed(1.0);
+            spec.schedule.stepper = Stepper::Statics(Statics {
+                method: Method::Newton,
+                solver,
+                tolerance: 1e-11,
+                ..Statics::default()
+            });
+            let mut sim = build(&spec, Options::default()).unwrap();
+            sim.start(true);
+            sim.step().unwrap();
+            found.push(sim);
+        }
+    }
+    let [whole, glued, ..] = &mut found[..] else {
+        panic!("four were solved");
+    };
+    let place = places(glued.as_mut(), whole.as_mut());
+    let whole = whole.displacements();
+    let size = largest(&whole);
+    assert!(size > 1e-3);
+    for glued in [1, 3] {
+        for (u, n) in found[glued].displacements().iter().zip(&place) {
+            for a in 0..2 {
+                assert!((u[a] - whole[*n][a]).abs() < 1e-7 * size);
+            }
+        }
+    }
+}
+
+/// The glued bar, pulled apart; bodies bear ten times the stretch of the glue.
+fn pulled() -> Spec {
+    let [_, mut spec] = bars(2, &PMB);
+    let breaks = |s: f64| {
+        Some(FractureSpec {
+            criterion: Criterion::Stretch(s),
+            alpha: 0.0,
+        })
+    };
+    spec.materials[0].fracture = breaks(0.05);
+    spec.interfaces[0].fracture = breaks(0.005);
+    spec.contact = Some(ContactSpec {
+        bonded: 0.9,
+        free: 1.35,
+        stiffness: ContactStiffness::Laws,
+        friction: 0.0,
+    });
+    for (set, v) in [("left", "-0.02*(3-x)"), ("right", "0.02*(x-2.5)")] {
+        spec.initial.push(InitialSpec {
+            set: set.into(),
+            displacement: [None, None, None],
+            velocity: [text(v), None, None],
+        });
+    }
+    spec.schedule.time_step = TimeStep::Fraction(0.05);
+    spec
+}
+
+#[test]
+fn a_weaker_interface_breaks_first_and_the_energy_balances() {
+    let mut spec = pulled();
+    // no faster than what breaks the glue alone
+    for i in &mut spec.initial {
+        let v = i.velocity[0]
+            .as_ref()
+            .unwrap()
+            .source()
+            .replace("0.02", "0.08");
+        i.velocity[0] = text(&v);
+    }
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let initial = sim.ledger().unwrap().initial;
+    let bonds = sim.info().directed_bonds;
+    while sim.time() < 3.0 {
+        sim.step().unwrap();
+    }
+    assert_eq!(sim.fragments(), 2, "{} broken", sim.broken());
+    let l = sim.ledger().unwrap();
+    assert!(l.released > 0.01 * initial, "{l:?}");
+    assert!(l.residual().abs() < 0.01 * initial, "{l:?}");
+    // broken are the bonds of the interface, all of them
+    let [_, free] = bars(2, &PMB);
+    let mut apart = free.clone();
+    apart.interfaces.clear();
+    let own = build(&apart, Options::default()).unwrap();
+    assert_eq!(sim.broken(), bonds - own.info().directed_bonds);
+    // their volume over that of all
+    let joined = build(&free, Options::default()).unwrap();
+    let (all, own) = (joined.families(), own.families());
+    for (n, damage) in sim.scalars("damage").iter().enumerate() {
+        let expected = 1.0 - own.volume[n] / all.volume[n];
+        assert!(
+            (damage - expected).abs() < 1e-12,
+            "{n}: {damage}, not {expected}"
+        );
+    }
+    assert!(sim.scalars("damage").iter().any(|d| *d > 0.2));
+}
+
+#[test]
+fn an_interface_has_the_same_bits_on_any_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new();
+        let pool = pool.num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut sim = build(&pulled(), Options::default()).unwrap();
+            sim.start(true);
+            for _ in 0..200 {
+                sim.step().unwrap();
+            }
+            (sim.velocities(), sim.broken())
+        })
+    };
+    assert_eq!(run(1), run(3));
+}
+
+/// A fine ball of one law flies into a coarse plate of another.
+fn unlike() -> Spec {
+    let ball = block(2, 0.6, [3.1, 8.7, 0.0], [7.4, 12.4, 0.0]);
+    let plate = block(2, 1.0, [0.0; 3], [11.0, 7.0, 0.0]);
+    let pieces = vec![
+        PieceSpec {
+            horizon: Some(Horizon::Ratio(2)),
+            influence: Some(Influence::Inverse),
+            ..PieceSpec::new("ball", ball)
+        },
+        PieceSpec {
+            family: Some(FamilyChoice::List),
+            ..PieceSpec::new("plate", plate)
+        },
+    ];
+    let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, PMB);
+    spec.sets = vec![within("ball"), within("plate")];
+    let solid = LawSpec::Lps(Moduli {
+        young: 300.0,
+        poisson: 0.2,
+    });
+    spec.materials = vec![material("ball", 2.0, solid), material("plate", 1.0, PMB)];
+    spec.horizon = Horizon::Ratio(3);
+    spec.volume_scaling = true;
+    spec.contact = Some(ContactSpec {
+        bonded: 0.9,
+        free: 1.35,
+        stiffness: ContactStiffness::Laws,
+        friction: 0.0,
+    });
+    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    spec
+}
+
+#[test]
+fn bodies_of_unlike_laws_and_horizons_are_what_each_is_alone() {
+    let spec = unlike();
+    let BodySpec::Several(pieces) = &spec.body else {
+        panic!("there are two");
+    };
+    let mut both = build(&spec, Options::default()).unwrap();
+    assert_eq!(both.info().family_kind, "stencil and list");
+    let u: Vec<[f64; 3]> = both.vectors("reference").iter().map(at).collect();
+    let u: Vec<[f64; 3]> = u.iter().map(|u| [u[0], u[1], 0.0]).collect();
+    let f = both.forces_under(&u);
+    let mut first = 0;
+    let mut steps = vec![];
+    for (piece, m) in pieces.iter().zip(&spec.materials) {
+        let mut alone = Spec {
+            body: piece.body.clone(),
+            horizon: piece.horizon.unwrap_or(spec.horizon),
+            influence: piece.influence.unwrap_or(spec.influence),
+            family: piece.family.unwrap_or(spec.family),
+            sets: vec![],
+            ..spec.clone()
+        };
+        alone.materials = vec![MaterialSpec {
+            set: "all".into(),
+            ..m.clone()
+        }];
+        let mut sim = build(&alone, Options::default()).unwrap();
+        let n = sim.info().points as usize;
+        let own = sim.forces_under(&u[first..first + n]);
+        assert_eq!(own, f[first..first + n], "{}", piece.name);
+        assert!(largest(&own) > 0.0);
+        steps.push(sim.info().stable_step);
+        first += n;
+    }
+    let [ball, plate] = [steps[0], steps[1]];
+    assert!((ball / plate - 1.0).abs() > 0.1, "{ball} {plate}");
+    let stable = both.info().stable_step;
+    assert!(stable <= 1.02 * ball.min(plate), "{stable} {ball} {plate}");
+}
+
+#[test]
+fn unlike_bodies_collide_with_momentum_and_energy() {
+    let mut spec = unlike();
+    spec.initial = vec![InitialSpec {
+        set: "ball".into(),
+        displacement: [None, None, None],
+        velocity: [text("0.3"), text("-2"), None],
+    }];
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let momentum = |sim: &mut dyn Simulation| {
+        let (v, m) = (sim.velocities(), sim.scalars("volume"));
+        let rho = sim.scalars("density");
+        let of = |a: usize| (0..m.len()).map(|i| v[i][a] * m[i] * rho[i]).sum::<f64>();
+        [of(0), of(1)]
+    };
+    let before = momentum(sim.as_mut());
+    let initial = sim.ledger().unwrap().initial;
+    let mut touched = 0.0f64;
+    while sim.time() < 3.0 {
+        sim.step().unwrap();
+        let l = sim.ledger().unwrap();
+        touched = touched.max(l.contact);
+        assert!(l.residual().abs() < 3e-3 * initial, "{l:?}");
+    }
+    assert!(touched > 1e-3 * initial);
+    let after = momentum(sim.as_mut());
+    for a in 0..2 {
+        assert!((after[a] - before[a]).abs() < 1e-11 * before[1].abs());
+    }
+}
+
+#[test]
+fn what_joins_nothing_is_refused() {
+    let [_, glued] = bars(2, &PMB);
+    let refused = |change: &dyn Fn(&mut Spec), what: &str| {
+        let mut spec = glued.clone();
+        change(&mut spec);
+        let error = build(&spec, Options::default()).err().expect(what);
+        assert!(error.message.contains(what), "{error}");
+        assert!(error.path.starts_with("interface"), "{}", error.path);
+    };
+    let solid = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.2,
+    });
+    refused(
+        &|s| s.interfaces[0].law = solid.clone(),
+        "acts through its points",
+    );
+    refused(
+        &|s| s.interfaces[0].bodies[1] = "cat".into(),
+        "there is no body `cat`",
+    );
+    refused(
+        &|s| s.interfaces[0].bodies[1] = "left".into(),
+        "joins a body with itself",
+    );
+    refused(
+        &|s| s.interfaces.push(s.interfaces[0].clone()),
+        "two interfaces join",
+    );
+    let far = |s: &mut Spec| {
+        let BodySpec::Several(pieces) = &mut s.body else {
+            return;
+        };
+        pieces[1].body = block(2, 0.5, [9.0, 0.0, 0.0], [11.5, 1.5, 1.5]);
+    };
+    refused(&far, "no point of `left` is within");
+    // of one body there is nothing to join
+    let [mut whole, _] = bars(2, &PMB);
+    whole.interfaces = glued.interfaces.clone();
+    assert!(build(&whole, Options::default()).is_err());
+}
