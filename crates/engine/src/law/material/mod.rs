@@ -187,28 +187,39 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const FORM_OF_WHOLE: bool = false;
 
     /// Names of what the law remembers and makes.
-    fn columns(&self) -> Columns;
+    fn columns(&self) -> Columns {
+        Columns::default()
+    }
 
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
 
     /// From the shape tensor `K = Σ ω ν V_j ξ⊗ξ` of its family (length² volume); its trace is the weighted volume m.
-    fn form(&self, material: usize, shape: [[f64; D]; D]) -> Self::Form<f64>;
+    fn form(&self, _material: usize, _shape: [[f64; D]; D]) -> Self::Form<f64> {
+        <Self::Form<f64> as Numbers<f64>>::constant(0.0)
+    }
 
+    /// What a bond gives to its point.
+    #[inline(always)]
     fn share<N: Number>(
         &self,
-        pass: usize,
-        bond: &Bond<N, D>,
-        end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
-    ) -> Self::Sum<N>;
+        _pass: usize,
+        _bond: &Bond<N, D>,
+        _end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
+    ) -> Self::Sum<N> {
+        <Self::Sum<N> as Numbers<N>>::constant(0.0)
+    }
 
+    /// What the point makes of the sum.
+    #[inline(always)]
     fn settle<N: Number>(
         &self,
-        pass: usize,
-        site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
-        sum: Self::Sum<N>,
-        point: &mut Self::Point<N>,
-    );
+        _pass: usize,
+        _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        _sum: Self::Sum<N>,
+        _point: &mut Self::Point<N>,
+    ) {
+    }
 
     /// The force state of this end.
     fn answer<N: Number>(

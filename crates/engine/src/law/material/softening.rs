@@ -5,7 +5,7 @@
 //! law of cohesive zones, Petersson 1981, on bonds; Zaccariotto et al. 2015). At s_c the bond has dissipated `½ c ω s0 s_c |ξ|`:
 //! the fracture energy is s0/s_c times that of a brittle bond with the same critical stretch.
 
-use super::{Along, Bond, Columns, End, Material, Site};
+use super::{Along, Bond, Columns, End, Material};
 use crate::columns::{Declaration, Dimension};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Shelved};
 use crate::law::number::Number;
@@ -100,25 +100,6 @@ impl<const D: usize> Material<D> for Softening {
             m.critical,
             m.onset / (m.critical - m.onset),
         ]
-    }
-
-    fn form(&self, _: usize, _: [[f64; D]; D]) -> [f64; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn share<N: Number>(&self, _: usize, _: &Bond<N, D>, _: &Ends<N>) -> [N; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn settle<N: Number>(
-        &self,
-        _: usize,
-        _: &Site<[N; 4], [N; 0], [N; 0]>,
-        _: [N; 0],
-        _: &mut [N; 0],
-    ) {
     }
 
     #[inline(always)]
