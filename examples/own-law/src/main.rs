@@ -44,7 +44,12 @@ impl Shelved for Stiffening {
             example: "{ young = \"1 GPa\", cubic = 10 }".into(),
             influence: Influence::Constant,
             keys: vec![
-                number("young", Dimension::PRESSURE, Bounds::POSITIVE, "Young's modulus at rest."),
+                number(
+                    "young",
+                    Dimension::PRESSURE,
+                    Bounds::POSITIVE,
+                    "Young's modulus at rest.",
+                ),
                 number("cubic", Dimension::NUMBER, Bounds::NOT_NEGATIVE, "b").or(0.0),
             ],
         }
@@ -58,7 +63,10 @@ impl Shelved for Stiffening {
             return Err((1, "one material at a time".into()));
         };
         let c = one.micromodulus.ok_or((0, "no micromodulus".to_string()))?;
-        Ok(Stiffening([0.5 * c, one.parameters.number("cubic").unwrap_or(0.0)]))
+        Ok(Stiffening([
+            0.5 * c,
+            one.parameters.number("cubic").unwrap_or(0.0),
+        ]))
     }
 }
 
@@ -71,12 +79,17 @@ pub fn main() {
         quarters,
         volume: None,
     };
-    let law = LawSpec::named("stiffening", Parameters::numbers(&[("young", 1.0), ("cubic", 10.0)]));
+    let law = LawSpec::named(
+        "stiffening",
+        Parameters::numbers(&[("young", 1.0), ("cubic", 10.0)]),
+    );
     let mut spec = Spec::new(2, body, 1.0, law);
     spec.horizon = Horizon::Ratio(3);
     let shelf = Shelf::standard().with::<Stiffening>();
     let mut sim = build_with(&spec, Options::default(), &shelf).expect("a body of this law");
-    let stretched: Vec<[f64; 3]> = (0..64).map(|n| [0.05 * f64::from(n % 8), 0.0, 0.0]).collect();
+    let stretched: Vec<[f64; 3]> = (0..64)
+        .map(|n| [0.05 * f64::from(n % 8), 0.0, 0.0])
+        .collect();
     sim.set_displacements(&stretched);
     sim.start(true);
     let before = sim.ledger().expect("energies");
@@ -85,6 +98,11 @@ pub fn main() {
     }
     let after = sim.ledger().expect("energies");
     let kept = (after.kinetic + after.strain) / (before.kinetic + before.strain);
-    println!("kinetic {:.4e}, strain {:.4e}, energy kept to {:.1e}", after.kinetic, after.strain, kept - 1.0);
+    println!(
+        "kinetic {:.4e}, strain {:.4e}, energy kept to {:.1e}",
+        after.kinetic,
+        after.strain,
+        kept - 1.0
+    );
     assert!((kept - 1.0).abs() < 1e-3);
 }
