@@ -90,7 +90,7 @@ pub fn read_frame(
             columns: vec![Vec::new(); wanted.len()],
         };
         for k in 0..count {
-            let line = match lines.next()? {
+            let line = match lines.advance()? {
                 Some(line) => line.to_string(),
                 None => return Err(lines.fail(format!("the file ends after {k} of {count} atoms"))),
             };
@@ -117,7 +117,7 @@ pub fn read_frame(
 /// Step of the next snapshot.
 fn next_step<R: BufRead>(lines: &mut Lines<R>) -> Result<Option<u64>> {
     loop {
-        match lines.next()? {
+        match lines.advance()? {
             None => return Ok(None),
             Some("ITEM: TIMESTEP") => return number(lines).map(Some),
             Some("ITEM: UNITS" | "ITEM: TIME") => {
@@ -132,7 +132,7 @@ fn next_step<R: BufRead>(lines: &mut Lines<R>) -> Result<Option<u64>> {
 }
 
 fn take<R: BufRead>(lines: &mut Lines<R>) -> Result<String> {
-    match lines.next()? {
+    match lines.advance()? {
         Some(line) => Ok(line.to_string()),
         None => Err(lines.fail("the file ends within a snapshot")),
     }

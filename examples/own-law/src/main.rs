@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use peridyne::columns::Dimension;
-use peridyne::law::descriptor::{Bounds, Descriptor, Given, Shelved, number};
+use peridyne::law::descriptor::{Bounds, Descriptor, Given, Memory, Shelved, number};
 use peridyne::law::material::{Along, Bond, End, Material};
 use peridyne::law::number::Number;
 use peridyne::run::{Options, Shelf, build_with};
@@ -43,6 +43,7 @@ impl Shelved for Stiffening {
             source: "this file".into(),
             example: "{ young = \"1 GPa\", cubic = 10 }".into(),
             influence: Influence::Constant,
+            memory: Memory::Nothing,
             keys: vec![
                 number(
                     "young",

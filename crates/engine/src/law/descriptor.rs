@@ -18,7 +18,18 @@ pub struct Descriptor {
     pub example: Cow<'static, str>,
     /// The customary influence function.
     pub influence: Influence,
+    pub memory: Memory,
     pub keys: Vec<Key>,
+}
+
+/// What a law remembers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Memory {
+    Nothing,
+    /// The path of deformation, however fast it was gone.
+    Path,
+    /// And how fast: equilibrium in increments of load means nothing to it.
+    Time,
 }
 
 /// A constant of a law.

@@ -8,7 +8,9 @@
 use super::tensor::{self, Matrix};
 use super::{Bond, Columns, End, Free, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
+};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
@@ -285,6 +287,7 @@ impl Shelved for Correspondence {
             source: "Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017".into(),
             example: "{ young = \"1 GPa\", poisson = 0.45, stress = \"neo_hookean\" }".into(),
             influence: Influence::Constant,
+            memory: Memory::Nothing,
             keys,
         }
     }

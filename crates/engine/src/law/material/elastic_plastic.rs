@@ -10,7 +10,7 @@
 
 use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Shelved};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Memory, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
@@ -236,6 +236,7 @@ impl Shelved for ElasticPlastic {
             source: "Mitchell 2011, SAND2011-3166".into(),
             example: "{ young = \"200 GPa\", poisson = 0.3, yield_stress = \"250 MPa\", hardening = \"1 GPa\" }".into(),
             influence: Influence::Inverse,
+            memory: Memory::Path,
             keys,
         }
     }

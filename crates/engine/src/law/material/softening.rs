@@ -7,7 +7,7 @@
 
 use super::{Along, Bond, Columns, End, Material};
 use crate::columns::{Declaration, Dimension};
-use crate::law::descriptor::{self, Bounds, Descriptor, Given, Shelved};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Memory, Shelved};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane, PmbStiffness};
 
@@ -137,6 +137,7 @@ impl Shelved for Softening {
             source: "bilinear cohesive law, Petersson 1981; on bonds Zaccariotto, Luongo, Sarego & Galvanetto 2015".into(),
             example: "{ young = \"30 GPa\", onset = 0.1 }".into(),
             influence: Influence::Constant,
+            memory: Memory::Path,
             keys: vec![
                 descriptor::number(
                     "young",

@@ -232,6 +232,7 @@ impl Shelved for Viscoelastic {
             source: "Mitchell 2011, SAND2011-8064".into(),
             example: "{ young = \"3 GPa\", poisson = 0.35, branches = [[0.5, \"1 ms\"], [0.2, \"0.1 s\"]] }".into(),
             influence: Influence::Inverse,
+            memory: descriptor::Memory::Time,
             keys,
         }
     }

@@ -10,7 +10,7 @@ use crate::interaction::material::{
 };
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
-use crate::law::descriptor::{Descriptor, Given, Shelved};
+use crate::law::descriptor::{Descriptor, Given, Memory, Shelved};
 use crate::law::material::correspondence::Correspondence;
 use crate::law::material::elastic_plastic::ElasticPlastic;
 use crate::law::material::softening::Softening;
@@ -245,6 +245,12 @@ pub(super) fn chosen<const D: usize>(
 }
 
 impl Chosen {
+    /// What the law remembers, and its name.
+    pub fn memory(&self) -> (Memory, &str) {
+        let of = &self.entry.descriptor;
+        (of.memory, &of.name)
+    }
+
     /// The law on a body.
     pub fn bind<const D: usize>(&self, place: Place<D>) -> Bound<D> {
         let binder = self.entry.binders.get(D - 1);

@@ -14,6 +14,7 @@ use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
+use crate::law::descriptor::Memory;
 use crate::run::Simulation;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
@@ -52,6 +53,17 @@ impl<const D: usize> Model<D> {
 
     /// Can this be brought into equilibrium at all?
     pub(super) fn check_statics(&self, options: Statics) -> Result<(), BuildError> {
+        self.knows_no_time("statics")?;
+        let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        for (memory, name) in named.map(|n| n.memory()) {
+            if memory != Memory::Nothing && options.method == Method::Linear {
+                return Err(BuildError::new(
+                    "statics.method",
+                    format!("the law {name} is linear about the reference only, and remembers"),
+                )
+                .help("write method = \"newton\" or \"relaxation\""));
+            }
+        }
         let support = self.support();
         if support.unknowns() == 0 {
             return Err(BuildError::new(
@@ -127,6 +139,21 @@ impl<const D: usize> Model<D> {
                     format!("{wrong}, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
                 )
                 .help(help));
+            }
+        }
+        Ok(())
+    }
+
+    /// No law answers to the time that an increment or an implicit step takes.
+    pub(super) fn knows_no_time(&self, path: &str) -> Result<(), BuildError> {
+        let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        for (memory, name) in named.map(|n| n.memory()) {
+            if memory == Memory::Time {
+                return Err(BuildError::new(
+                    path,
+                    format!("the law {name} answers to how fast it is deformed: it moves in time, by explicit steps"),
+                )
+                .help("write [run] with a duration, without integrator"));
             }
         }
         Ok(())

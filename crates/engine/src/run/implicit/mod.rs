@@ -47,6 +47,7 @@ impl<const D: usize> Model<D> {
             .help("leave both out: 0.25 and 0.5 are of second order and lose no energy"));
         }
         let explicit = "integrator = \"verlet\" knows it; or leave it out";
+        self.knows_no_time("schedule.integrator")?;
         if let Some(n) = spec.materials.iter().position(|m| m.fracture.is_some()) {
             return Err(BuildError::new(
                 format!("materials[{n}].fracture"),

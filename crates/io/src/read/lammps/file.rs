@@ -82,9 +82,9 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
     let mut lines = Lines::new(reader, path);
     let (mut count, mut types) = (None, None);
     let mut bounds: [Option<[f64; 2]>; 3] = [None; 3];
-    lines.next()?; // the first line is a title
+    lines.advance()?; // the first line is a title
     let mut section = loop {
-        let Some(line) = lines.next()? else {
+        let Some(line) = lines.advance()? else {
             return Err(
                 lines.fail("the file ends within its header; the section `Atoms` is missing")
             );
@@ -237,7 +237,7 @@ fn whole<R: BufRead>(lines: &Lines<R>, word: &str) -> Result<usize> {
 
 fn next_filled<R: BufRead>(lines: &mut Lines<R>) -> Result<Option<String>> {
     loop {
-        match lines.next()? {
+        match lines.advance()? {
             None => return Ok(None),
             Some("") => {}
             Some(line) => return Ok(Some(line.to_string())),

@@ -46,7 +46,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// The next line without its comment; `None` at the end of the file.
-    pub fn next(&mut self) -> Result<Option<&str>> {
+    pub fn advance(&mut self) -> Result<Option<&str>> {
         self.text.clear();
         self.number += 1;
         let mut raw = Vec::new();
