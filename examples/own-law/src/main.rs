@@ -86,6 +86,7 @@ pub fn main() {
     );
     let mut spec = Spec::new(2, body, 1.0, law);
     spec.horizon = Horizon::Ratio(3);
+    spec.schedule.time_step = TimeStep::Fraction(0.05);
     let shelf = Shelf::standard().with::<Stiffening>();
     let mut sim = build_with(&spec, Options::default(), &shelf).expect("a body of this law");
     let stretched: Vec<[f64; 3]> = (0..64)

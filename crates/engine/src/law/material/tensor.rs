@@ -125,11 +125,16 @@ pub fn determinant<N: Number, const D: usize>(a: &Matrix<N, D>) -> N {
 /// `det(1 + H) − 1`, without cancellation.
 #[inline(always)]
 pub fn dilation<N: Number, const D: usize>(h: &Matrix<N, D>) -> N {
-    let first = trace(h);
+    trace(h) + dilation_beyond(h)
+}
+
+/// `det(1 + H) − 1 − tr H`
+#[inline(always)]
+pub fn dilation_beyond<N: Number, const D: usize>(h: &Matrix<N, D>) -> N {
     match D {
-        1 => first,
-        2 => first + determinant(h),
-        _ => first + trace(&cofactor(h)) + determinant(h),
+        1 => N::constant(0.0),
+        2 => determinant(h),
+        _ => trace(&cofactor(h)) + determinant(h),
     }
 }
 
