@@ -5,7 +5,7 @@ use crate::expression::Expression;
 /// A factor of the stiffness of bonds: heterogeneous bodies, weak planes.
 #[derive(Debug, Clone)]
 pub enum BondFactorSpec {
-    /// Every bond gets the mean, by [`Spec::interface`], of the factors at its ends' reference positions.
+    /// Every bond gets the mean, by [`Spec::interface`](super::Spec::interface), of the factors at its ends' reference positions.
     Field(Expression),
     /// Bonds that cross this shape.
     Crossing { shape: CrackShape, factor: f64 },
