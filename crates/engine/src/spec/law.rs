@@ -122,7 +122,8 @@ pub enum InterfaceRule {
 /// When a bond past its critical stretch lets go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Release {
-    /// In the force evaluation that finds it there (CabanaPD). The dilatation of that evaluation still has it.
+    /// In the force evaluation that finds it there (CabanaPD). The dilatation of that evaluation still has it; sums of laws of the
+    /// shelf do not.
     #[default]
     AtOnce,
     /// After the force of that evaluation: it pulls once more (LAMMPS).

@@ -107,7 +107,7 @@ fn work(l: &Ledger) -> f64 {
 #[test]
 fn the_ledger_of_intact_bodies_closes_to_second_order() {
     for kind in [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic] {
-        for name in ["pmb", "lps mixed"] {
+        for name in ["pmb", "lps mixed", "viscoelastic", "softening"] {
             for (what, conditions) in loads() {
                 let place = block(kind);
                 let case = Case::of(name, place);
@@ -198,7 +198,7 @@ fn what_breaking_bodies_lose_is_of_second_order() {
         (LatticeKind::Square, true),
         (LatticeKind::Cubic, false),
     ] {
-        for name in ["pmb", "lps", "lps mixed"] {
+        for name in ["pmb", "lps", "lps mixed", "correspondence"] {
             for (family, release) in WAYS {
                 let place = block(kind);
                 let case = Case::of(name, place);

@@ -91,7 +91,23 @@ fn state(sim: &mut dyn Simulation) -> Vec<u64> {
 #[test]
 fn the_same_bits_on_any_number_of_threads_and_in_every_width() {
     for kind in [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic] {
-        for name in ["pmb", "pmb mixed", "lps", "lps mixed"] {
+        let mut names = vec![
+            "pmb",
+            "pmb mixed",
+            "lps",
+            "lps mixed",
+            "viscoelastic mixed",
+            "softening",
+        ];
+        if kind != LatticeKind::Chain {
+            names.push("correspondence");
+            names.push("neo-hookean mixed");
+        }
+        if kind == LatticeKind::Cubic {
+            names.push("elastic-plastic");
+            names.push("plastic mixed");
+        }
+        for name in names {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 let spec = busy(name, kind, family);
                 let run = |threads: usize, simd: Simd| {

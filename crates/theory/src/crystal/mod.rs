@@ -104,6 +104,10 @@ pub enum CrystalError {
     Density { density: f64 },
     #[error("atoms have a potential: take `Crystal::of_potential`")]
     NotASolid,
+    #[error(
+        "waves, stability and upscaling are not known of the law {0}: they take pmb, lps, springs and potentials"
+    )]
+    Shelved(String),
     /// The horizon is in another unit, most likely.
     #[error("{0}")]
     TooManyBonds(String),

@@ -163,8 +163,8 @@ impl LatticeSolid {
             | LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Atoms(_)
-            | LawSpec::Micromoduli(_)
-            | LawSpec::Named(_) => Err(CrystalError::NotASolid),
+            | LawSpec::Micromoduli(_) => Err(CrystalError::NotASolid),
+            LawSpec::Named(law) => Err(CrystalError::Shelved(law.name.clone())),
         }
     }
 }

@@ -327,13 +327,16 @@ impl Shelved for Correspondence {
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let word = |m: &Given| match m.parameters.word("stress") {
-            Some("neo_hookean") => Stress::NeoHookean,
-            _ => Stress::Linear,
+            Some("linear") => Some(Stress::Linear),
+            Some("neo_hookean") => Some(Stress::NeoHookean),
+            Some(_) | None => None,
         };
         let mut made = vec![];
-        let stress = materials.first().map_or(Stress::Linear, word);
+        let Some(stress) = materials.first().and_then(word) else {
+            return Err((0, "the stress is linear or neo_hookean".into()));
+        };
         for (n, m) in materials.iter().enumerate() {
-            if word(m) != stress {
+            if word(m) != Some(stress) {
                 return Err((
                     n,
                     "all materials of a body have the same kind of stress".into(),
