@@ -191,10 +191,7 @@ impl<const D: usize> Body<D> {
             Body::from_cloud(&position, &volume, &self.mark, self.spacing, self.period)?;
         cloud.density = Values::from_points(&density, &cloud.slots, cloud.len, 1.0);
         if !self.material.is_empty() {
-            cloud.material = vec![0; cloud.len];
-            for (from, to) in points.zip(&cloud.slots) {
-                cloud.material[*to as usize] = self.material[from];
-            }
+            cloud.give_materials(points.map(|s| self.material[s]));
         }
         Ok(cloud)
     }

@@ -87,6 +87,17 @@ impl<const D: usize> Body<D> {
         self.len == 0
     }
 
+    /// Gives each point its material, and their periodic images theirs.
+    pub(crate) fn give_materials(&mut self, of_points: impl Iterator<Item = u8>) {
+        self.material = vec![0; self.len];
+        for (m, s) in of_points.zip(&self.slots) {
+            self.material[*s as usize] = m;
+        }
+        for &(copy, original) in &self.images {
+            self.material[copy as usize] = self.material[original as usize];
+        }
+    }
+
     /// Gives each slot its material.
     ///
     /// # Panics

@@ -141,11 +141,8 @@ impl Part<'_> {
             .collect();
         body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
         if used.len() > 1 {
-            body.material = vec![0; body.len];
-            for (m, s) in of.iter().zip(&body.slots) {
-                let place = used.binary_search(m).unwrap_or(0);
-                body.material[*s as usize] = place as u8;
-            }
+            let place = |m| used.binary_search(m).unwrap_or(0) as u8;
+            body.give_materials(of.iter().map(place));
         }
         let spec = self.spec.to_mut();
         spec.materials = used.iter().map(|m| spec.materials[*m].clone()).collect();

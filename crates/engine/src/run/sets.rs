@@ -169,13 +169,12 @@ pub(super) fn assign_materials<const D: usize>(
         )
         .help("make the materials' sets cover the body"));
     }
-    body.material = vec![0; body.len];
-    let mut density = vec![];
-    for (m, s) in of.iter().zip(&body.slots) {
-        let m = m.unwrap_or(0);
-        body.material[*s as usize] = m;
-        density.push(materials[m as usize].density);
-    }
+    let of_points = of.iter().map(|m| m.unwrap_or(0));
+    let density: Vec<f64> = of_points
+        .clone()
+        .map(|m| materials[m as usize].density)
+        .collect();
+    body.give_materials(of_points);
     body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
     if body.mark.is_empty() {
         body.mark = of.iter().map(|m| i32::from(m.unwrap_or(0))).collect();

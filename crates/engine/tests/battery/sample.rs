@@ -60,10 +60,10 @@ pub fn materials() -> Vec<Material> {
             elastic(young, 0.3).with("stress", Parameter::Word(stress.into())),
         )
     };
-    let softening = LawSpec::named(
-        "softening",
-        Parameters::numbers(&[("young", 3.0), ("onset", 0.1)]),
-    );
+    let softening = |young: f64| {
+        let all = Parameters::numbers(&[("young", young), ("onset", 0.1)]);
+        LawSpec::named("softening", all)
+    };
     let lps = |young, poisson| LawSpec::Lps(Moduli { young, poisson });
     let young = |e| LawSpec::Pmb(PmbStiffness::Young(e));
     vec![
@@ -100,14 +100,14 @@ pub fn materials() -> Vec<Material> {
         ),
         Material {
             lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
-            ..one("elastic-plastic", plastic(10.0, 0.3), Influence::Inverse)
+            ..one("elastic-plastic", plastic(0.2, 0.3), Influence::Inverse)
         },
         Material {
             lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
             ..two(
                 "plastic mixed",
-                plastic(20.0, 0.0),
-                plastic(30.0, 1.0),
+                plastic(0.3, 0.0),
+                plastic(0.2, 1.0),
                 Influence::Gaussian,
             )
         },
@@ -137,7 +137,16 @@ pub fn materials() -> Vec<Material> {
         },
         Material {
             fracture: Some(3.0),
-            ..one("softening", softening, Influence::Constant)
+            ..one("softening", softening(3.0), Influence::Constant)
+        },
+        Material {
+            fracture: Some(3.0),
+            ..two(
+                "softening mixed",
+                softening(3.0),
+                softening(1.0),
+                Influence::Gaussian,
+            )
         },
     ]
 }

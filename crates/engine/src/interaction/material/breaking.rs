@@ -11,6 +11,9 @@ use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::material::{Material, Numbers};
 
+/// Most numbers that a form has.
+const FORM: usize = 32;
+
 /// Which bonds are beyond their critical stretch; they break later. Knows nothing of laws.
 pub struct Test<'a, const D: usize, F> {
     pub family: &'a F,
@@ -80,9 +83,10 @@ pub struct Tear<'a, const D: usize, F, M> {
     /// Constants of a step of no length.
     pub still: &'a [f64],
     pub body: &'a Body<D>,
-    /// Groups with bonds that break.
-    pub groups: &'a [u32],
-    pub breaks: &'a [u8],
+    /// Marks of groups with bonds that break.
+    pub torn: &'a [u8],
+    /// Bits of bonds that break; then of those that are left.
+    pub breaks: Shared<u8>,
     pub v: &'a Field<D>,
     /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
     /// it), or will be (it pulls once more).
@@ -96,21 +100,24 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
     fn block<L: Lane>(&self, block: usize) -> Tally {
         let v = &self.view;
         let mut tally = Tally::default();
-        let mut after = vec![];
-        for &group in &self.groups[block * BLOCK..((block + 1) * BLOCK).min(self.groups.len())] {
-            let group = group as usize;
+        for group in v.block(block) {
+            if self.torn[group] == 0 {
+                continue;
+            }
             // SAFETY: groups of the family; each is written by one block
             unsafe {
                 let first = v.family.byte(group, 0);
                 let bonds = v.family.bonds(group);
                 let before = v.bits(group);
-                let breaks = &self.breaks[first..first + bonds];
-                after.clear();
-                after.extend(before.iter().zip(breaks).map(|(b, x)| b & !x));
+                let after = std::slice::from_raw_parts_mut(self.breaks.at(first), bonds);
+                for (left, whole) in after.iter_mut().zip(before) {
+                    *left = whole & !*left;
+                }
+                let after = &*after;
                 let mut at = v.group::<L>(group, 0);
                 let old = at.rows.load::<L, M::Form<L>>(v.form);
                 let new = if M::FORM_OF_WHOLE {
-                    v.forms::<L>(group, &after, self.body)
+                    v.forms::<L>(group, after, self.body)
                 } else {
                     old
                 };
@@ -126,7 +133,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
                 for (view, drift) in [(v, None), (&still, Some(away))] {
                     at.constants = view.constants_at::<L>(at.rows);
                     let mut part = L::splat(0.5);
-                    for (bits, form) in [(before, &old), (&after, &new)] {
+                    for (bits, form) in [(before, &old), (after, &new)] {
                         let energy = L::apart(EnergyOf::<L, D, F, M> {
                             view,
                             at: &at,
@@ -140,7 +147,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
                 }
                 let lost = lost.to_array();
                 for l in 0..TILE {
-                    let broken = breaks.iter().filter(|b| *b >> l & 1 == 1).count();
+                    let of = before.iter().zip(after);
+                    let broken = of.filter(|(b, a)| (*b ^ *a) >> l & 1 == 1).count();
                     if broken > 0 {
                         tally.broken += broken as u64;
                         tally.released += lost[l] * self.body.volume.at(at.rows.slot(l));
@@ -163,14 +171,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
     fn forms<L: Lane>(&self, group: usize, bits: &[u8], body: &Body<D>) -> M::Form<L> {
         let count = <M::Form<L> as Numbers<L>>::COUNT;
         let mut out = <M::Form<L> as Numbers<L>>::constant(0.0);
-        let mut all = vec![[0.0; TILE]; count];
+        const { assert!(<M::Form<f64> as Numbers<f64>>::COUNT <= FORM) };
+        let mut all = [[0.0; TILE]; FORM];
         for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
             let form = self.form_of(group, bits, l, body);
-            for (n, all) in all.iter_mut().enumerate() {
+            for (n, all) in all.iter_mut().enumerate().take(count) {
                 all[l] = form.get(n);
             }
         }
-        for (n, all) in all.iter().enumerate() {
+        for (n, all) in all.iter().enumerate().take(count) {
             // SAFETY: a number per lane
             out.set(n, unsafe { L::load(all.as_ptr()) });
         }

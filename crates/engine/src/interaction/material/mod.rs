@@ -54,8 +54,6 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     point: Store,
     past: Store,
     memory: Vec<f64>,
-    /// `[slots][4]`, where the family gathers.
-    records: Vec<f64>,
     toughness: Vec<Toughness>,
     repulsion: Option<Repulsion>,
     /// Critical `e` per slot, now and next; empty: nothing breaks.
@@ -67,8 +65,20 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     /// Length of the step that equilibrium is sought for; 0: memory stands still.
     step: f64,
     prepared: bool,
+    room: Room,
     tallies: PerBlock<Tally>,
     sums: PerBlock<[f64; 2]>,
+}
+
+/// What sweeps fill anew, kept so that a step allocates nothing.
+#[derive(Debug, Default)]
+struct Room {
+    /// Displacements `[slots][4]`, where the family gathers.
+    records: Vec<f64>,
+    /// `[materials][numbers]` for a step of some length.
+    constants: Vec<f64>,
+    /// The same for a step of no length.
+    still: Vec<f64>,
 }
 
 /// Everything such an interaction is made of.
@@ -136,13 +146,16 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             point: store(<M::Point<f64> as Numbers<f64>>::COUNT),
             past: store(<M::Past<f64> as Numbers<f64>>::COUNT),
             memory: vec![0.0; family.memory() * <M::Memory<f64> as Numbers<f64>>::COUNT],
-            records: vec![0.0; if gathers { 4 * body.len } else { 0 }],
             critical: critical(),
             next: critical(),
             breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
             torn: vec![0; if breaks { family.groups() } else { 0 }],
             step: 0.0,
             prepared: false,
+            room: Room {
+                records: vec![0.0; if gathers { 4 * body.len } else { 0 }],
+                ..Room::default()
+            },
             tallies: PerBlock::new(blocks, Tally::default()),
             sums: PerBlock::sums(blocks),
             law,
@@ -155,32 +168,52 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// `[materials][numbers]` for a step of this length.
-    fn constants(&self, dt: f64) -> Vec<f64> {
+    fn fill_constants(&self, dt: f64, all: &mut Vec<f64>) {
         let count = <M::Constants<f64> as Numbers<f64>>::COUNT;
-        let mut all = Vec::with_capacity(self.materials * count);
+        all.clear();
         for m in 0..self.materials {
             let of = self.law.constants(m, dt);
             all.extend((0..count).map(|n| of.get(n)));
         }
+    }
+
+    fn constants(&self, dt: f64) -> Vec<f64> {
+        let mut all = vec![];
+        self.fill_constants(dt, &mut all);
         all
     }
 
-    fn view<'a>(
-        &'a self,
-        u: &'a Field<D>,
-        records: &'a [f64],
-        constants: &'a [f64],
-    ) -> View<'a, D, F, M> {
+    /// The room, filled for these displacements and a step of this length; give it back.
+    fn take_room(&mut self, u: &Field<D>, dt: f64) -> Room {
+        let mut room = std::mem::take(&mut self.room);
+        self.pack(u, &mut room.records);
+        self.fill_constants(dt, &mut room.constants);
+        self.fill_constants(0.0, &mut room.still);
+        room
+    }
+
+    /// The same for those who only look.
+    fn look_room(&self, u: &Field<D>) -> Room {
+        let mut records = vec![0.0; self.room.records.len()];
+        self.pack(u, &mut records);
+        Room {
+            records,
+            constants: self.constants(self.step),
+            still: vec![],
+        }
+    }
+
+    fn view<'a>(&'a self, u: &'a Field<D>, room: &'a Room) -> View<'a, D, F, M> {
         View {
             law: &self.law,
             family: &self.family,
             moved: Moved {
                 columns: u,
-                records,
+                records: &room.records,
             },
             // sweeps that write were given these by `&mut self`
             alive: Shared(self.alive.as_ptr().cast_mut()),
-            constants,
+            constants: &room.constants,
             material: &self.material,
             form: self.form.view(),
             point: self.point.view(),
@@ -198,18 +231,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
     }
 
-    fn packed(&self, u: &Field<D>) -> Vec<f64> {
-        let mut records = vec![0.0; self.records.len()];
-        self.pack(u, &mut records);
-        records
-    }
-
     /// All passes: points as the bonds see them.
-    fn settle(&mut self, body: &Body<D>, u: &Field<D>, records: &[f64], constants: &[f64]) {
+    fn settle(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) {
         let mut point = std::mem::replace(&mut self.point, Store::zeros(self.family.layout(0)));
         for pass in 0..M::PASSES {
             let out = point.shared();
-            let mut view = self.view(u, records, constants);
+            let mut view = self.view(u, room);
             view.point = out;
             let kernel = Sums { view, pass, out };
             run_blocks(self.simd, &kernel, self.sums.blocks());
@@ -227,10 +254,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         &self,
         body: &Body<D>,
         u: &Field<D>,
-        records: &[f64],
+        room: &Room,
         out: Option<&mut PointEnergies>,
     ) -> [f64; 2] {
-        let constants = self.constants(self.step);
         let fields = out.map(|out| {
             out.zeros(body.len);
             EnergyFields {
@@ -241,7 +267,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
         });
         let kernel = Energies {
-            view: self.view(u, records, &constants),
+            view: self.view(u, room),
             pushed: self.pushed(body),
             volume: &body.volume,
             fields,
@@ -249,8 +275,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         self.sums.sum(self.simd, &kernel)
     }
 
-    fn seen(&self, body: &Body<D>, u: &Field<D>, records: &[f64], out: &mut PointEnergies) {
-        self.energies(body, u, records, Some(&mut *out));
+    fn seen(&self, body: &Body<D>, u: &Field<D>, room: &Room, out: &mut PointEnergies) {
+        self.energies(body, u, room, Some(&mut *out));
         for &s in &body.slots {
             let i = s as usize;
             if out.whole[i] > 0.0 {
@@ -264,70 +290,56 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         &mut self,
         body: &Body<D>,
         u: &Field<D>,
-        records: &[f64],
-        constants: &[f64],
+        room: &Room,
         v: &Field<D>,
         drift: f64,
     ) -> Tally {
-        let mut next = std::mem::take(&mut self.next);
-        let mut breaks = std::mem::take(&mut self.breaks);
-        let mut torn = std::mem::take(&mut self.torn);
+        let next = Shared(self.next.as_mut_ptr());
+        let breaks = Shared(self.breaks.as_mut_ptr());
+        let torn = Shared(self.torn.as_mut_ptr());
         let test = Test {
             family: &self.family,
             moved: Moved {
                 columns: u,
-                records,
+                records: &room.records,
             },
             body,
             alive: &self.alive,
             critical: &self.critical,
-            next: Shared(next.as_mut_ptr()),
+            next,
             toughness: &self.toughness,
             keeps: M::PASSES > 0,
-            breaks: Shared(breaks.as_mut_ptr()),
-            torn: Shared(torn.as_mut_ptr()),
+            breaks,
+            torn,
         };
         run_blocks(self.simd, &test, self.sums.blocks());
-        self.next = next;
-        let marked = torn.iter().enumerate().filter(|(_, t)| **t != 0);
-        let groups: Vec<u32> = marked.map(|(g, _)| g as u32).collect();
-        let mut tally = Tally::default();
-        if !groups.is_empty() {
-            let still = self.constants(0.0);
-            let form = self.form.shared();
-            let alive = Shared(self.alive.as_mut_ptr());
-            let mut view = self.view(u, records, constants);
-            (view.form, view.alive) = (form, alive);
-            let kernel = Tear {
-                view,
-                still: &still,
-                body,
-                groups: &groups,
-                breaks: &breaks,
-                v,
-                drift,
-            };
-            let blocks = PerBlock::new(groups.len().div_ceil(BLOCK), tally);
-            tally = blocks.fold(self.simd, &kernel, Tally::add_assign);
+        if self.torn.iter().all(|t| *t == 0) {
+            return Tally::default();
         }
-        (self.breaks, self.torn) = (breaks, torn);
-        tally
+        let form = self.form.shared();
+        let alive = Shared(self.alive.as_mut_ptr());
+        let mut view = self.view(u, room);
+        (view.form, view.alive) = (form, alive);
+        let kernel = Tear {
+            view,
+            still: &room.still,
+            body,
+            torn: &self.torn,
+            breaks,
+            v,
+            drift,
+        };
+        self.tallies.fold(self.simd, &kernel, Tally::add_assign)
     }
 
     /// Memory at the end of a step.
-    fn remember(
-        &mut self,
-        body: &Body<D>,
-        u: &Field<D>,
-        records: &[f64],
-        constants: &[f64],
-    ) -> Tally {
+    fn remember(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) -> Tally {
         if self.memory.is_empty() && self.past.data.is_empty() {
             return Tally::default();
         }
         let past = self.past.shared();
         let memory = Shared(self.memory.as_mut_ptr());
-        let mut view = self.view(u, records, constants);
+        let mut view = self.view(u, room);
         (view.past, view.memory) = (past, memory);
         let kernel = Remember {
             view,
@@ -355,7 +367,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             false => &self.counted,
         };
         let mut form = self.form.clone();
-        let view = self.view(&u, &[], &[]);
+        let room = Room::default();
+        let view = self.view(&u, &room);
         for group in 0..self.family.groups() {
             let first = self.family.byte(group, 0);
             let bits = match self.family.bonds(group) {
@@ -408,49 +421,48 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         sweep: Sweep<D>,
         seen: Option<&mut PointEnergies>,
     ) -> Tally {
-        let mut records = std::mem::take(&mut self.records);
-        self.pack(u, &mut records);
-        if let Some(seen) = seen {
-            self.seen(body, u, &records, seen);
-        }
         let motion = sweep.motion();
-        let constants = self.constants(motion.map_or(self.step, |m| m.steps[0]));
+        let dt = motion.map_or(self.step, |m| m.steps[0]);
+        let room = self.take_room(u, dt);
+        if let Some(seen) = seen {
+            // as an observer sees it: what is pending of the step is not done
+            self.seen(body, u, &self.look_room(u), seen);
+        }
         let breaks = motion.filter(|_| !self.critical.is_empty());
         let mut total = Tally::default();
         if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
-            total += self.tear(body, u, &records, &constants, m.v, -m.steps[0]);
+            total += self.tear(body, u, &room, m.v, -m.steps[0]);
         }
-        self.settle(body, u, &records, &constants);
+        self.settle(body, u, &room);
         let kernel = Forces {
-            view: self.view(u, &records, &constants),
+            view: self.view(u, &room),
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             pushed: self.pushed(body),
         };
         run_blocks(self.simd, &kernel, self.sums.blocks());
         if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
-            total += self.tear(body, u, &records, &constants, m.v, m.steps[1]);
+            total += self.tear(body, u, &room, m.v, m.steps[1]);
         }
         if motion.is_some() {
-            total += self.remember(body, u, &records, &constants);
+            total += self.remember(body, u, &room);
         }
         if breaks.is_some() {
             std::mem::swap(&mut self.critical, &mut self.next);
             body.fill_images(&mut self.critical);
         }
-        self.records = records;
+        self.room = room;
         total
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
-        let mut records = std::mem::take(&mut self.records);
-        self.pack(u, &mut records);
-        let sums = self.energies(body, u, &records, None);
-        self.records = records;
+        let room = self.take_room(u, self.step);
+        let sums = self.energies(body, u, &room, None);
+        self.room = room;
         sums
     }
 
     unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
-        self.seen(body, u, &self.packed(u), out);
+        self.seen(body, u, &self.look_room(u), out);
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
@@ -616,7 +628,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + self.form.bytes()
             + self.point.bytes()
             + self.past.bytes()
-            + 8 * (self.memory.len() + self.records.len())
+            + 8 * (self.memory.len() + self.room.records.len())
             + 8 * (self.critical.len() + self.next.len())
     }
 }

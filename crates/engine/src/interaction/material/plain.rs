@@ -1,8 +1,8 @@
 //! One bond after the other, in plain numbers: homogeneous strains, forces bond by bond.
 
-use super::MaterialInteraction;
 use super::family::{Family, Slots};
 use super::sweeps::pull;
+use super::{MaterialInteraction, Room};
 use crate::body::{Body, Field};
 use crate::execute::lane::TILE;
 use crate::interaction::{BondForce, PointEnergies, along};
@@ -36,8 +36,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     ) {
         out.zeros(body.len);
         let u = crate::body::zeros(0);
-        let constants = self.constants(self.step);
-        let view = self.view(&u, &[], &constants);
+        let room = Room {
+            constants: self.constants(self.step),
+            ..Room::default()
+        };
+        let view = self.view(&u, &room);
         for group in 0..self.family.groups() {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
                 let rows = self.family.rows(group).from(l);
@@ -105,10 +108,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         u: &Field<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) {
-        let records = self.packed(u);
-        let constants = self.constants(self.step);
-        self.settle(body, u, &records, &constants);
-        let view = self.view(u, &records, &constants);
+        let room = self.take_room(u, self.step);
+        self.settle(body, u, &room);
+        let view = self.view(u, &room);
         let original = body.originals();
         let pushed = self.pushed(body);
         for &s in &body.slots {
@@ -149,5 +151,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
             }
         }
+        self.room = room;
     }
 }

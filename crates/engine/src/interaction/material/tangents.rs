@@ -3,9 +3,9 @@
 //! With direct sums `d_p = Σ_k ν V share_p′(η_k) δη_k` of each pass, the point is changed by `δ(point) = Σ_p G_p d_p`: a pass adds
 //! `J (d_p + Q δ(point)) + M δ(point)`, J and M the derivatives of `settle` by sum and point, Q that of the sum by the point.
 
-use super::MaterialInteraction;
 use super::family::{Family, Slots};
 use super::view::mirrored;
+use super::{MaterialInteraction, Room};
 use crate::body::{Body, Field};
 use crate::interaction::{BondTangent, Channel};
 use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site};
@@ -72,8 +72,8 @@ struct Half<const D: usize, M: Material<D>> {
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
-    fn node(&self, u: &Field<D>, constants: &[f64], group: usize, l: usize) -> Node<D, M> {
-        let view = self.view(u, &[], constants);
+    fn node(&self, u: &Field<D>, room: &Room, group: usize, l: usize) -> Node<D, M> {
+        let view = self.view(u, room);
         let rows = self.family.rows(group).from(l);
         let slot = rows.slot(0);
         // SAFETY: rows of the family
@@ -245,15 +245,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         u: &Field<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
-        let constants = self.constants(self.step);
+        let room = Room {
+            constants: self.constants(self.step),
+            ..Room::default()
+        };
         let original = body.originals();
         let mut nodes: Vec<Option<Node<D, M>>> = (0..body.len).map(|_| None).collect();
         for &s in &body.slots {
             if let Some((group, l)) = self.family.find(s as usize) {
-                nodes[s as usize] = Some(self.node(u, &constants, group, l));
+                nodes[s as usize] = Some(self.node(u, &room, group, l));
             }
         }
-        let view = self.view(u, &[], &constants);
+        let view = self.view(u, &room);
         for &s in &body.slots {
             let i = s as usize;
             let (Some(node), Some((group, l))) = (&nodes[i], self.family.find(i)) else {

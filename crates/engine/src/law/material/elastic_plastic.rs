@@ -3,7 +3,9 @@
 //!
 //! The linear peridynamic solid of [`Solid`], whose bonds keep a plastic extension e^p:
 //! `W = ½κθ² + (α/2) Σ ω (e − e^p)²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`. The deviatoric force state of a bond is
-//! `t = α ω (e^d − e^p)` with `e^d = e − θ|ξ|/n`; it yields where `½ Σ t²/ω = ψ0`, and flows along it, `ė^p = λ t/ω`.
+//! `t = α ω e^d`, `e^d = e − e^p − μ|ξ|` with `μ = Σ ω |ξ| (e − e^p) / Σ ω |ξ|²` over the whole bonds. In an intact family e^p has no
+//! part along |ξ| and `μ = θ/n`, which is Mitchell's; in a torn one this deviator, and no other, is orthogonal to the pressure, so that
+//! flow dissipates what the energy loses. It yields where `½ Σ t²/ω = ψ0`, and flows along it, `ė^p = λ t/ω`.
 //! With the stress that this norm stands for in shear, `σ = ‖t‖ √(3m/(n(n+2)))`, the return is the classical one:
 //! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`,
 //! which points near a surface have, too, where constants are those of the continuum. Perfect plasticity is H = 0. Step by step the energy is the incremental potential, whose derivative is the force.
@@ -42,25 +44,26 @@ const YIELD: usize = 3;
 const HARDENING: usize = 4;
 const BALL: usize = 5; // 1/m that the yield surface has; 0: the point's own
 
-/// Numbers of a point.
+/// Numbers of a point; answers read the first four.
 const P: usize = 0; // nκθ/m = n²κ (θ/n)/m
 const ALPHA: usize = 1; // β/m
-const MEAN: usize = 2; // θ/n
+const MEAN: usize = 2; // μ
 const REST: usize = 3; // part of the trial deviator that flows
 const FLOW: usize = 4; // Δε̄
+const DILATED: usize = 5; // θ/n
 
 impl ElasticPlastic {
-    /// `e^d − e^p` before the step's flow.
+    /// `e^d` before the step's flow.
     #[inline(always)]
-    fn trial<N: Number, const D: usize>(bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> N {
-        bond.extension() - end.point[MEAN] * bond.length - end.memory[0]
+    fn trial<N: Number, const D: usize>(bond: &Bond<N, D>, end: &End<[N; 6], [N; 6], [N; 1]>) -> N {
+        bond.extension() - end.memory[0] - end.point[MEAN] * bond.length
     }
 
     /// `e − e^p` after it.
     #[inline(always)]
     fn elastic<N: Number, const D: usize>(
         bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 5], [N; 1]>,
+        end: &End<[N; 6], [N; 6], [N; 1]>,
     ) -> N {
         let flow = end.point[REST] * Self::trial(bond, end);
         bond.extension() - end.memory[0] - flow
@@ -71,8 +74,9 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     type Constants<N: Number> = [N; 6];
     /// 1/m
     type Form<N: Number> = N;
-    type Sum<N: Number> = N;
-    type Point<N: Number> = [N; 5];
+    /// `Σ ω|ξ|e`, `Σ ω|ξ|(e − e^p)`, `Σ ω|ξ|²`; then `Σ ω (e^d)²`.
+    type Sum<N: Number> = [N; 3];
+    type Point<N: Number> = [N; 6];
     /// ε̄
     type Past<N: Number> = [N; 1];
     /// e^p
@@ -119,13 +123,19 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         &self,
         pass: usize,
         bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 5], [N; 1]>,
-    ) -> N {
+        end: &End<[N; 6], [N; 6], [N; 1]>,
+    ) -> [N; 3] {
         if pass == 0 {
-            return bond.omega * bond.length * bond.extension();
+            let (weight, e) = (bond.omega * bond.length, bond.extension());
+            return [
+                weight * e,
+                weight * (e - end.memory[0]),
+                weight * bond.length,
+            ];
         }
         let trial = Self::trial(bond, end);
-        bond.omega * trial * trial
+        let zero = N::constant(0.0);
+        [bond.omega * trial * trial, zero, zero]
     }
 
     #[inline(always)]
@@ -133,17 +143,20 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         &self,
         pass: usize,
         site: &Site<[N; 6], N, [N; 1]>,
-        sum: N,
-        point: &mut [N; 5],
+        sum: [N; 3],
+        point: &mut [N; 6],
     ) {
         let (c, per_m) = (site.constants, *site.form);
+        let zero = N::constant(0.0);
         if pass == 0 {
-            point[MEAN] = per_m * sum;
-            point[P] = c[BULK] * per_m * point[MEAN];
+            let [dilated, elastic, whole] = sum;
+            point[MEAN] = zero.choose(whole, elastic.div(whole), zero);
+            point[DILATED] = per_m * dilated;
+            point[P] = c[BULK] * per_m * point[DILATED];
             point[ALPHA] = c[BETA] * per_m;
             return;
         }
-        let zero = N::constant(0.0);
+        let sum = sum[0];
         let norm = point[ALPHA] * sum.sqrt();
         // ‖t‖ per stress
         let per_ball = zero.choose(c[BALL], c[BALL], per_m);
@@ -159,25 +172,30 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> Along<N> {
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 6], [N; 1]>) -> Along<N> {
         let t = end.point[ALPHA].fma(Self::elastic(bond, end), end.point[P] * bond.length);
         Along(bond.omega * t * bond.inv_current)
     }
 
     #[inline(always)]
-    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 5], [N; 1]>) -> N {
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 6], [N; 1]>) -> N {
         let e = Self::elastic(bond, end);
         N::constant(0.5) * end.point[ALPHA] * bond.omega * e * e
     }
 
     #[inline(always)]
-    fn point_energy<N: Number>(&self, site: &Site<[N; 6], N, [N; 1]>, _: N, point: &[N; 5]) -> N {
-        let mean = point[MEAN];
-        (N::constant(0.5) * site.constants[BULK] * mean).fma(mean, work(site, point))
+    fn point_energy<N: Number>(
+        &self,
+        site: &Site<[N; 6], N, [N; 1]>,
+        _: [N; 3],
+        point: &[N; 6],
+    ) -> N {
+        let dilated = point[DILATED];
+        (N::constant(0.5) * site.constants[BULK] * dilated).fma(dilated, work(site, point))
     }
 
     #[inline(always)]
-    fn moves<N: Number>(&self, point: &[N; 5]) -> bool {
+    fn moves<N: Number>(&self, point: &[N; 6]) -> bool {
         (N::constant(0.0) - point[FLOW]).any_below(0.0)
     }
 
@@ -185,7 +203,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     fn advance<N: Number>(
         &self,
         bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 5], [N; 1]>,
+        end: &End<[N; 6], [N; 6], [N; 1]>,
         memory: &mut [N; 1],
     ) -> N {
         memory[0] = end.memory[0] + end.point[REST] * Self::trial(bond, end);
@@ -196,7 +214,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     fn remember<N: Number>(
         &self,
         site: &Site<[N; 6], N, [N; 1]>,
-        point: &[N; 5],
+        point: &[N; 6],
         past: &mut [N; 1],
     ) -> N {
         past[0] = site.past[0] + point[FLOW];
@@ -206,7 +224,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
 
 /// `∫σ_y dε̄` of the step's flow: what it dissipates, by the trapezoidal rule, which is exact for linear hardening.
 #[inline(always)]
-fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 5]) -> N {
+fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 6]) -> N {
     let c = site.constants;
     let middle = N::constant(0.5).fma(point[FLOW], site.past[0]);
     c[HARDENING].fma(middle, c[YIELD]) * point[FLOW]

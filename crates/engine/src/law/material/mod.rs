@@ -228,7 +228,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
     ) -> Self::State<N>;
 
-    /// What this end's half of the bond stores (energy / volume²).
+    /// What this end's half of the bond stores (energy / volume²), and dissipates in the step, if its constants know one and
+    /// [`Material::point_energy`] does not say it.
     fn energy<N: Number>(
         &self,
         bond: &Bond<N, D>,

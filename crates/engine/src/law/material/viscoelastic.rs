@@ -1,10 +1,12 @@
 //! The ordinary viscoelastic solid (Mitchell 2011, "A non-local, ordinary-state-based viscoelasticity model for peridynamics",
 //! SAND2011-8064), in D dimensions and with up to [`BRANCHES`] branches.
 //!
-//! The linear peridynamic solid of [`Solid`], whose shear relaxes: `G(t) = G (1 − Σ λ_b + Σ λ_b e^(−t/τ_b))`. A bond keeps the
-//! deviatoric extension e^d = e − θ|ξ|/n of the last step and a back extension of each branch,
-//! `q̇_b = (e^d − q_b)/τ_b`, integrated exactly for an e^d that is linear over the step.
-//! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`.
+//! The linear peridynamic solid of [`Solid`], whose shear relaxes: `G(t) = G (1 − Σ λ_b + Σ λ_b e^(−t/τ_b))`. A bond keeps its
+//! extension e of the last step and a back extension of each branch, `q̇_b = (e − q_b)^d/τ_b`, integrated exactly for an e that is
+//! linear over the step. The deviator `x^d = x − (Σ ω |ξ| x / Σ ω |ξ|²) |ξ|` is over the whole bonds. In an intact family it is Mitchell's
+//! e − θ|ξ|/n, and q is a deviator itself; in a torn one this deviator, and no other, is orthogonal to the pressure, so that no branch
+//! can gain energy.
+//! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`.
 
 use super::{Along, Bond, Columns, End, Material, Site};
 use crate::columns::{Declaration, Dimension};
@@ -36,33 +38,59 @@ pub struct Viscoelastic<const B: usize = BRANCHES> {
 const BULK: usize = 0;
 const BETA: usize = 1;
 
-/// Numbers of a point: nκθ/m, β/m, θ/n.
+/// Numbers of a point: nκθ/m, β/m, θ/n; and of each branch the part along |ξ| of what its back extension would grow by.
 const P: usize = 0;
 const ALPHA: usize = 1;
-const MEAN: usize = 2;
+const DILATED: usize = 2;
+type Point<N, const B: usize> = ([N; 3], [N; B]);
 
-/// A branch: part λ; what a back extension keeps over the step, `d = e^(−Δt/τ)`; and its growth per growth of e^d,
-/// `1 − (1 − d) τ/Δt`.
+/// A branch: part λ; what a back extension approaches over the step, `1 − e^(−Δt/τ)`; and its growth per growth of e,
+/// `1 − (1 − e^(−Δt/τ)) τ/Δt`.
 type Branch<N> = [N; 3];
 type Constants<N, const B: usize> = ([N; 2], [Branch<N>; B]);
-/// e^d at the end of the last step, back extensions.
+/// e at the end of the last step, back extensions.
 type Memory<N, const B: usize> = (N, [N; B]);
+type EndOf<'a, N, const B: usize> = End<'a, Constants<N, B>, Point<N, B>, Memory<N, B>>;
 
 impl<const B: usize> Viscoelastic<B> {
-    /// e^d now, and the back extensions at the end of the step.
+    /// What back extensions would grow by over the step, were they not deviators.
     #[inline(always)]
-    fn next<N: Number, const D: usize>(
-        bond: &Bond<N, D>,
-        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
-    ) -> Memory<N, B> {
+    fn growth<N: Number, const D: usize>(bond: &Bond<N, D>, end: &EndOf<N, B>) -> [N; B] {
         let (before, mut back) = *end.memory;
-        let now = bond.extension() - end.point[MEAN] * bond.length;
+        let change = bond.extension() - before;
         for b in 0..B {
-            let [_, keeps, grows] = end.constants.1[b];
-            // before + d (q − before) + growth
-            back[b] = grows.fma(now - before, keeps.fma(back[b] - before, before));
+            let [_, nears, grows] = end.constants.1[b];
+            back[b] = grows.fma(change, nears * (before - back[b]));
         }
-        (now, back)
+        back
+    }
+
+    /// Back extensions at the end of the step.
+    #[inline(always)]
+    fn next<N: Number, const D: usize>(bond: &Bond<N, D>, end: &EndOf<N, B>) -> [N; B] {
+        let mut back = Self::growth(bond, end);
+        for b in 0..B {
+            let along = end.point.1[b] * bond.length;
+            back[b] = end.memory.1[b] + (back[b] - along);
+        }
+        back
+    }
+
+    /// `∫ αω Σ λ (e − q) dq` of the step, by the trapezoidal rule (energy / volume²).
+    #[inline(always)]
+    fn dissipation<N: Number, const D: usize>(
+        bond: &Bond<N, D>,
+        end: &EndOf<N, B>,
+        back: &[N; B],
+    ) -> N {
+        let (before, old) = *end.memory;
+        let now = bond.extension();
+        let mut sum = N::constant(0.0);
+        for b in 0..B {
+            let force = (before - old[b]) + (now - back[b]);
+            sum = (end.constants.1[b][0] * force).fma(back[b] - old[b], sum);
+        }
+        N::constant(0.5) * end.point.0[ALPHA] * bond.omega * sum
     }
 }
 
@@ -79,8 +107,9 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     type Constants<N: Number> = Constants<N, B>;
     /// 1/m
     type Form<N: Number> = N;
-    type Sum<N: Number> = N;
-    type Point<N: Number> = [N; 3];
+    /// `Σ ω|ξ|e`, `Σ ω|ξ|²`; `Σ ω|ξ|` of what back extensions would grow by.
+    type Sum<N: Number> = ([N; 2], [N; B]);
+    type Point<N: Number> = Point<N, B>;
     type Past<N: Number> = [N; 0];
     type Memory<N: Number> = Memory<N, B>;
     type State<N: Number> = Along<N>;
@@ -88,16 +117,16 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
 
     fn columns(&self) -> Columns {
         let mut memory = vec![Declaration::of_bonds(
-            "deviatoric_extension",
+            "extension",
             Dimension::LENGTH,
-            "Deviatoric part e^d of the extension of a bond at the end of the last step.",
+            "Extension e of a bond at the end of the last step.",
         )];
         memory.extend((1..=B).map(|b| Declaration {
             name: Cow::Owned(format!("back_extension_{b}")),
             ..Declaration::of_bonds(
                 "",
                 Dimension::LENGTH,
-                "Back extension q of a branch, which follows e^d (Mitchell 2011).",
+                "Back extension q of a branch, which follows the deviator of e (Mitchell 2011).",
             )
         }));
         Columns {
@@ -111,9 +140,9 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         let n = m.solid.n;
         let branch = |(part, time): &(f64, f64)| {
             let x = dt / time;
-            [*part, (-x).exp(), growth(x)]
+            [*part, -(-x).exp_m1(), growth(x)]
         };
-        let none = [0.0, 1.0, 0.0];
+        let none = [0.0; 3];
         (
             [n * n * m.solid.kappa, m.solid.beta],
             std::array::from_fn(|b| m.branches.get(b).map_or(none, branch)),
@@ -125,13 +154,13 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     }
 
     #[inline(always)]
-    fn share<N: Number>(
-        &self,
-        _: usize,
-        bond: &Bond<N, D>,
-        _: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
-    ) -> N {
-        bond.omega * bond.length * bond.extension()
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &EndOf<N, B>) -> ([N; 2], [N; B]) {
+        let weight = bond.omega * bond.length;
+        let mut growth = Self::growth(bond, end);
+        for b in 0..B {
+            growth[b] = weight * growth[b];
+        }
+        ([weight * bond.extension(), weight * bond.length], growth)
     }
 
     #[inline(always)]
@@ -139,37 +168,34 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         &self,
         _: usize,
         site: &Site<Constants<N, B>, N, [N; 0]>,
-        sum: N,
-        point: &mut [N; 3],
+        ([dilated, whole], growth): ([N; 2], [N; B]),
+        (point, along): &mut Point<N, B>,
     ) {
         let (c, per_m) = (site.constants.0, *site.form);
-        point[MEAN] = per_m * sum;
-        point[P] = c[BULK] * per_m * point[MEAN];
+        point[DILATED] = per_m * dilated;
+        point[P] = c[BULK] * per_m * point[DILATED];
         point[ALPHA] = c[BETA] * per_m;
+        let zero = N::constant(0.0);
+        let per_whole = zero.choose(whole, N::constant(1.0).div(whole), zero);
+        for b in 0..B {
+            along[b] = per_whole * growth[b];
+        }
     }
 
     #[inline(always)]
-    fn answer<N: Number>(
-        &self,
-        bond: &Bond<N, D>,
-        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
-    ) -> Along<N> {
-        let (_, back) = Self::next(bond, end);
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, B>) -> Along<N> {
+        let back = Self::next(bond, end);
         let mut e = bond.extension();
         for b in 0..B {
             e = e - end.constants.1[b][0] * back[b];
         }
-        let t = end.point[ALPHA].fma(e, end.point[P] * bond.length);
+        let t = end.point.0[ALPHA].fma(e, end.point.0[P] * bond.length);
         Along(bond.omega * t * bond.inv_current)
     }
 
     #[inline(always)]
-    fn energy<N: Number>(
-        &self,
-        bond: &Bond<N, D>,
-        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
-    ) -> N {
-        let (_, back) = Self::next(bond, end);
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, B>) -> N {
+        let back = Self::next(bond, end);
         let e = bond.extension();
         let (mut lasting, mut sum) = (N::constant(1.0), N::constant(0.0));
         for b in 0..B {
@@ -179,35 +205,30 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
             sum = (part * branch).fma(branch, sum);
         }
         sum = (lasting * e).fma(e, sum);
-        N::constant(0.5) * end.point[ALPHA] * bond.omega * sum
+        let stored = N::constant(0.5) * end.point.0[ALPHA] * bond.omega * sum;
+        stored + Self::dissipation(bond, end, &back)
     }
 
     #[inline(always)]
     fn point_energy<N: Number>(
         &self,
         site: &Site<Constants<N, B>, N, [N; 0]>,
-        _: N,
-        point: &[N; 3],
+        _: ([N; 2], [N; B]),
+        (point, _): &Point<N, B>,
     ) -> N {
-        N::constant(0.5) * site.constants.0[BULK] * point[MEAN] * point[MEAN]
+        N::constant(0.5) * site.constants.0[BULK] * point[DILATED] * point[DILATED]
     }
 
     #[inline(always)]
     fn advance<N: Number>(
         &self,
         bond: &Bond<N, D>,
-        end: &End<Constants<N, B>, [N; 3], Memory<N, B>>,
+        end: &EndOf<N, B>,
         memory: &mut Memory<N, B>,
     ) -> N {
-        let (before, old) = *end.memory;
-        let (now, back) = Self::next(bond, end);
-        *memory = (now, back);
-        let mut sum = N::constant(0.0);
-        for b in 0..B {
-            let force = (before - old[b]) + (now - back[b]);
-            sum = (end.constants.1[b][0] * force).fma(back[b] - old[b], sum);
-        }
-        N::constant(0.5) * end.point[ALPHA] * bond.omega * sum
+        let back = Self::next(bond, end);
+        *memory = (bond.extension(), back);
+        Self::dissipation(bond, end, &back)
     }
 }
 

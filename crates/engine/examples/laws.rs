@@ -1,0 +1,144 @@
+//! Time per directed bond and step of laws of the shelf beside the linear solid, whole steps in 3-D, on one thread or as many as asked for:
+//! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`.
+use peridyne::execute::simd::Simd;
+use peridyne::run::{Options, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::spec::*;
+use std::time::Instant;
+
+/// Cells along an edge of the cube, whose family has 122 bonds.
+const CELLS: i32 = 60;
+
+fn spec(law: LawSpec, breaks: bool, family: FamilyChoice) -> Spec {
+    let mut quarters = vec![];
+    for z in 0..CELLS {
+        for y in 0..CELLS {
+            for x in 0..CELLS {
+                quarters.push([4 * x, 4 * y, 4 * z]);
+            }
+        }
+    }
+    let body = BodySpec::Sites {
+        kind: LatticeKind::Cubic,
+        spacing: 1.0,
+        origin: [0.0; 3],
+        quarters,
+        volume: None,
+    };
+    let mut spec = Spec::new(3, body, 1.0, law);
+    spec.horizon = Horizon::Ratio(3);
+    spec.influence = Influence::Inverse;
+    spec.volume_scaling = true;
+    spec.family = family;
+    spec.schedule.time_step = TimeStep::Fraction(0.1);
+    if breaks {
+        spec.materials[0].fracture = Some(FractureSpec {
+            criterion: Criterion::Stretch(0.5),
+            alpha: 0.0,
+        });
+    }
+    spec
+}
+
+/// Rows: name, law.
+fn laws() -> Vec<(&'static str, LawSpec)> {
+    let elastic = || Parameters::numbers(&[("young", 1.0), ("poisson", 0.3)]);
+    let plastic = |yields: f64| {
+        let all = elastic()
+            .with("yield_stress", Parameter::Number(yields))
+            .with("hardening", Parameter::Number(0.1));
+        LawSpec::named("elastic_plastic", all)
+    };
+    let branches = |count: usize| {
+        let rows = (0..count)
+            .map(|b| vec![0.2, 10f64.powi(b as i32)])
+            .collect();
+        LawSpec::named(
+            "viscoelastic",
+            elastic().with("branches", Parameter::Rows(rows)),
+        )
+    };
+    let correspondence = |stress: &str| {
+        let all = elastic().with("stress", Parameter::Word(stress.into()));
+        LawSpec::named("correspondence", all)
+    };
+    let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.1)]);
+    vec![
+        (
+            "lps",
+            LawSpec::Lps(Moduli {
+                young: 1.0,
+                poisson: 0.3,
+            }),
+        ),
+        ("plastic, elastic yet", plastic(1e3)),
+        ("plastic, flowing", plastic(1e-9)),
+        ("viscoelastic, 1 branch", branches(1)),
+        ("viscoelastic, 4 branches", branches(4)),
+        ("correspondence, linear", correspondence("linear")),
+        ("correspondence, neo_hookean", correspondence("neo_hookean")),
+        ("softening", LawSpec::named("softening", softening)),
+    ]
+}
+
+fn main() {
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let threads = words.first().and_then(|w| w.parse().ok());
+    if threads.is_some() {
+        words.remove(0);
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(1))
+        .build()
+        .expect("a pool of threads");
+    for simd in Simd::available() {
+        for (name, law) in laws() {
+            for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+                for breaks in [false, true] {
+                    // it must be able to break
+                    if name == "softening" && !breaks {
+                        continue;
+                    }
+                    let row = format!(
+                        "{:8} {:8} {:6} {name}",
+                        simd.name(),
+                        format!("{family:?}").to_lowercase(),
+                        if breaks { "breaks" } else { "intact" }
+                    );
+                    if words.iter().all(|w| row.contains(w.as_str())) {
+                        let spec = spec(law.clone(), breaks, family);
+                        pool.install(|| time(&row, &spec, simd));
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn time(row: &str, spec: &Spec, simd: Simd) {
+    let options = Options {
+        simd: Some(simd),
+        ..Options::default()
+    };
+    let mut sim = build(spec, options).expect("a body");
+    let n = sim.info().points as usize;
+    let wave = |i: usize, a: usize| 1e-3 * (0.37 * i as f64 + 2.0 * a as f64).sin();
+    let v: Vec<[f64; 3]> = (0..n)
+        .map(|i| std::array::from_fn(|a| wave(i, a)))
+        .collect();
+    sim.set_velocities(&v);
+    sim.start(false);
+    let mut best = f64::MAX;
+    for _ in 0..if simd == Simd::Portable { 3 } else { 16 } {
+        let start = Instant::now();
+        sim.step().expect("a step");
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    let bonds = sim.info().directed_bonds as f64;
+    println!(
+        "{row:55} {:7.3} ns/bond {:8.2} ms {:5} B/point",
+        best * 1e9 / bonds,
+        best * 1e3,
+        sim.info().bytes / n
+    );
+}
