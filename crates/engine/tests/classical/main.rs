@@ -54,9 +54,10 @@ fn led(spec: &mut Spec, u: [&str; 3]) -> Box<dyn Simulation> {
 }
 
 /// A component of the stress of the point in the middle.
-fn stress(sim: &mut dyn Simulation, component: usize) -> f64 {
+fn stress(sim: &mut dyn Simulation, component: &str) -> f64 {
     let n = sim.info().points as usize;
-    let mut all = vec![0.0; n];
-    assert!(sim.read("stress", component, 0, &mut all));
-    all[n / 2]
+    let column = sim.column("stress").unwrap();
+    let names = column.declaration.shape.components();
+    let place = names.iter().position(|c| *c == component).unwrap();
+    column.values.at(n / 2, place)
 }
