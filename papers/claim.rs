@@ -227,14 +227,14 @@ pub fn compare(
     computed: &[(String, Computed)],
     small: bool,
 ) -> Result<Vec<Claim>, Failure> {
-    let asked: Vec<&Published> = published
+    let due: Vec<&Published> = published
         .iter()
         .filter(|p| !(small && p.full_only))
         .collect();
     let values = |key: &str| computed.iter().filter(|(k, _)| k == key).count();
     let quoted = |keys: Vec<&str>| keys.join("`, `");
     let mut problems = Vec::new();
-    let missing: Vec<&str> = asked
+    let missing: Vec<&str> = due
         .iter()
         .map(|p| p.key.as_str())
         .filter(|k| values(k) == 0)
@@ -257,7 +257,7 @@ pub fn compare(
     let unknown: Vec<&str> = computed
         .iter()
         .map(|(k, _)| k.as_str())
-        .filter(|k| !asked.iter().any(|p| p.key == *k))
+        .filter(|k| !due.iter().any(|p| p.key == *k))
         .collect();
     if !unknown.is_empty() {
         problems.push(format!(
@@ -268,8 +268,7 @@ pub fn compare(
     if !problems.is_empty() {
         return Err(Failure::new(problems.join("; ")));
     }
-    asked
-        .into_iter()
+    due.into_iter()
         .filter_map(|p| Some((p, &computed.iter().find(|(k, _)| *k == p.key)?.1)))
         .map(|(p, value)| judged(p, value))
         .collect()

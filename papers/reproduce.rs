@@ -134,8 +134,8 @@ pub fn reproduce_of(
     options: &Options,
 ) -> Result<Vec<Outcome>, Failure> {
     let mut chosen = select(all, selection)?;
-    let asked = selection.map(|s| s.trim_matches('/'));
-    chosen.retain(|e| options.small || !e.long() || asked == Some(&name(*e)));
+    let whole_name = selection.map(|s| s.trim_matches('/'));
+    chosen.retain(|e| options.small || !e.long() || whole_name == Some(&name(*e)));
     let mut outcomes = Vec::new();
     for e in chosen {
         (options.progress)(&format!("{}: {}", name(e), e.title()));

@@ -213,17 +213,17 @@ mod tests {
             .flat_map(|i| (0..=i).map(move |j| (i, j, if i == j { 400.0 } else { 1.0 })))
             .collect();
         for (entries, least, most) in [(arrow, 2 * n - 1, 16 * n), (full, n * (n + 1) / 2, n * n)] {
-            let asked = std::cell::RefCell::new(vec![]);
+            let requests = std::cell::RefCell::new(vec![]);
             let none = Factors::symmetric(n, &entries, |bytes| {
-                asked.borrow_mut().push(bytes);
+                requests.borrow_mut().push(bytes);
                 false
             });
             assert!(matches!(none, Err(FactorError::TooLarge)));
-            let asked = asked.into_inner();
-            assert_eq!(asked.len(), 2);
-            let numbers = asked[1] / 8.0;
+            let requests = requests.into_inner();
+            assert_eq!(requests.len(), 2);
+            let numbers = requests[1] / 8.0;
             assert!((least as f64..=most as f64).contains(&numbers), "{numbers}");
-            assert!(Factors::symmetric(n, &entries, |bytes| bytes <= asked[1]).is_ok());
+            assert!(Factors::symmetric(n, &entries, |bytes| bytes <= requests[1]).is_ok());
         }
     }
 

@@ -56,7 +56,7 @@ struct Found {
 }
 
 pub fn bar(arguments: &BarArguments) -> Result<(), Failure> {
-    let bar = asked(arguments).map_err(Failure::input)?;
+    let bar = parse(arguments).map_err(Failure::input)?;
     let short = bar.points() * bar.m() <= LONGEST_FRACTION;
     let f = (short || bar.homogenized()).then(|| bar.f());
     let found = Found {
@@ -78,7 +78,7 @@ pub fn bar(arguments: &BarArguments) -> Result<(), Failure> {
 }
 
 /// The bar, or what to write instead.
-fn asked(arguments: &BarArguments) -> Result<Bar, String> {
+fn parse(arguments: &BarArguments) -> Result<Bar, String> {
     let BarArguments { m, points, .. } = *arguments;
     if m < 1 {
         return Err(format!(

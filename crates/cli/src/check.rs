@@ -18,10 +18,10 @@ use peridyne::spec::{Criterion, Moduli, Spec};
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
 use peridyne_lammps::Units;
-use peridyne_theory::asked::asked;
-use peridyne_theory::elastic::{PatchTest, patch_test};
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
-use peridyne_theory::stiffness::{Stiffness, components};
+use peridyne_theory::nominal::nominal_moduli;
+use peridyne_theory::patch_test::{PatchTest, patch_test};
+use peridyne_theory::voigt::{Stiffness, components};
 use std::time::{Duration, Instant};
 
 /// Time spent on trial steps.
@@ -67,7 +67,7 @@ struct Findings<'a> {
 struct Material {
     name: String,
     density: f64,
-    asked: Option<Moduli>,
+    nominal: Option<Moduli>,
     /// Speeds of long pressure and shear waves (length / time); no shear waves in 1-D.
     pressure_wave: f64,
     shear_wave: Option<f64>,
@@ -244,7 +244,7 @@ fn materials(
             horizon,
             moments,
         };
-        let asked = asked(&m.law, d, spec.plane, moments);
+        let nominal = nominal_moduli(&m.law, d, spec.plane, moments);
         let s00 = info.critical_stretch.get(n).copied();
         let (pressure, shear) = match patch.and_then(|p| p.best(n)) {
             Some(class) => waves(&class.stiffness, thin),
@@ -253,7 +253,7 @@ fn materials(
         Material {
             name: m.name.clone(),
             density: m.density,
-            asked,
+            nominal,
             pressure_wave: (pressure / m.density).sqrt(),
             shear_wave: (d > 1).then(|| (shear / m.density).sqrt()),
             fracture: s00.filter(|s| s.is_finite()).map(|s| {

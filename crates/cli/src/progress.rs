@@ -77,6 +77,6 @@ impl Progress for Terminal {
     }
 
     fn ended(&mut self) -> Option<String> {
-        signals::asked().map(|s| s.to_string())
+        signals::received().map(|s| s.to_string())
     }
 }

@@ -86,7 +86,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         plan.dir.display()
     ));
     let mut progress = Terminal::new(steps, sim.info().directed_bonds);
-    sim.stop_when(|| signals::asked().is_some());
+    sim.stop_when(|| signals::received().is_some());
     let result = drive(sim.as_mut(), &plan, &mut progress);
     progress.end();
     match result {
@@ -113,7 +113,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                     plan.dir.join("damage.png").display()
                 ));
             }
-            match signals::asked() {
+            match signals::received() {
                 Some(signal) if report.status == Status::Ended => Err(Failure::Ended(signal)),
                 _ => Ok(()),
             }

@@ -132,7 +132,7 @@ pub fn run(
             Failure::Input((*e).into())
         }
     })?;
-    let signal = signals::asked().filter(|_| outcome.ended);
+    let signal = signals::received().filter(|_| outcome.ended);
     finish(&mut outcome, &name, &text, &results, threads)
         .map_err(|e| Failure::Run(e.to_string()))?;
     signal.map_or(Ok(()), |s| Err(Failure::Ended(s)))
@@ -196,7 +196,7 @@ fn finish(
         text,
         threads,
     );
-    if let Some(signal) = signals::asked().filter(|_| outcome.ended) {
+    if let Some(signal) = signals::received().filter(|_| outcome.ended) {
         report.status = Status::Ended;
         report.ended_by = Some(signal.to_string());
     }
@@ -312,7 +312,7 @@ impl Console for Terminal {
     }
 
     fn ended(&mut self) -> bool {
-        signals::asked().is_some()
+        signals::received().is_some()
     }
 
     fn progress(&mut self, done: u64, of: u64) {

@@ -1,7 +1,7 @@
 //! SIGINT (Ctrl-C) and SIGTERM.
 //!
 //! Until a run steps there is nothing to keep, and a signal ends the program at once. From its first step on
-//! ([`asked`]) the first signal is a request to end at the next step, and a second one ends the program at once.
+//! ([`received`]) the first signal is a request to end at the next step, and a second one ends the program at once.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -61,8 +61,8 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Has a signal asked this run to end? From the first call on the run ends at its next step instead of at once.
-pub fn asked() -> Option<Signal> {
+/// The signal that this run is to end for. From the first call on the run ends at its next step instead of at once.
+pub fn received() -> Option<Signal> {
     let last = LAST.load(Ordering::SeqCst);
     if last == 0 {
         AT_ONCE.store(false, Ordering::SeqCst);

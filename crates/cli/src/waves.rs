@@ -9,7 +9,7 @@ use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use peridyne::spec::{Stepper, TimeStep};
 use peridyne_io::deck::{Deck, UnitSystem};
-use peridyne_theory::survey::{Survey, TERMS, survey};
+use peridyne_theory::lattice_dynamics::{LatticeDynamics, TERMS, lattice_dynamics};
 use peridyne_theory::upscale::{UpscaleError, lattice};
 use std::path::{Path, PathBuf};
 
@@ -32,10 +32,10 @@ pub struct WavesArguments {
     pub threads: Option<usize>,
 }
 
-/// A survey with what the deck says about it.
+/// The dynamics of a lattice with what the deck says about it.
 struct Found<'a> {
     deck: &'a Deck,
-    survey: Survey,
+    dynamics: LatticeDynamics,
     /// The program's own estimate of the stability limit, if the step comes from it.
     estimate: Option<f64>,
 }
@@ -87,7 +87,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
         }
     };
     let found = Found {
-        survey: survey(&deck.spec, time_step, arguments.order / 2).map_err(told)?,
+        dynamics: lattice_dynamics(&deck.spec, time_step, arguments.order / 2).map_err(told)?,
         deck,
         estimate,
     };

@@ -22,7 +22,7 @@ fn waves(file: &Path, arguments: &[&str], out: &Path) -> Output {
 }
 
 /// The JSON on the standard output of a run that must succeed.
-fn survey(name: &str, arguments: &[&str], out: &Path) -> Value {
+fn report(name: &str, arguments: &[&str], out: &Path) -> Value {
     let mut all = vec!["--json"];
     all.extend(arguments);
     let done = waves(&deck(name), &all, out);
@@ -40,7 +40,7 @@ fn a_chain_of_neighbours_is_the_textbook_chain() {
     let dir = tempfile::tempdir().unwrap();
     // ω = (2c/a) sin(ka/2), a = 0.25; at the sharp limit velocity Verlet turns the last wave into π/Δt
     let set = ["--set", "horizon.m_ratio=1", "--set", "run.time_step=0.25"];
-    let found = survey("good/spring_chain.toml", &set, dir.path());
+    let found = report("good/spring_chain.toml", &set, dir.path());
     assert!((number(&found, "/stability/sharp_limit") - 0.25).abs() < 1e-14);
     assert!((number(&found, "/stability/time_step_over_sharp_limit") - 1.0).abs() < 1e-13);
     assert!((number(&found, "/special_points/1/omega/0") - 8.0).abs() < 1e-12);
@@ -73,7 +73,7 @@ fn a_chain_of_neighbours_is_the_textbook_chain() {
 #[test]
 fn coefficients_of_chains_are_fractions_to_the_order_asked() {
     let dir = tempfile::tempdir().unwrap();
-    let found = survey("good/spring_chain.toml", &["--order", "12"], dir.path());
+    let found = report("good/spring_chain.toml", &["--order", "12"], dir.path());
     let fractions = found["gradient_fractions"].as_array().unwrap();
     assert_eq!(fractions.len(), 6);
     let sum = |power: u32| (1..=20u128).map(|j| j.pow(power)).sum::<u128>();
@@ -108,14 +108,14 @@ fn coefficients_of_chains_are_fractions_to_the_order_asked() {
     );
     assert_eq!(wrong.status.code(), Some(2));
     // roots of whole numbers are no fractions
-    let plate = survey("good/exact_plate.toml", &[], dir.path());
+    let plate = report("good/exact_plate.toml", &[], dir.path());
     assert_eq!(plate["gradient_fractions"], serde_json::json!([]));
 }
 
 #[test]
 fn copper_has_the_constants_of_its_table() {
     let dir = tempfile::tempdir().unwrap();
-    let found = survey("good/copper_bar.toml", &[], dir.path());
+    let found = report("good/copper_bar.toml", &[], dir.path());
     let c = |name: &str| number(&found, &format!("/elastic/lattice/cubic/{name}"));
     // eV/Å³
     let gpa = 160.217_663_4;
@@ -143,7 +143,7 @@ fn copper_has_the_constants_of_its_table() {
 fn stretched_copper_grows_waves_and_says_which() {
     let dir = tempfile::tempdir().unwrap();
     let set = ["--set", "body.spacing=4.5"];
-    let found = survey("good/copper_bar.toml", &set, dir.path());
+    let found = report("good/copper_bar.toml", &set, dir.path());
     assert!(number(&found, "/stability/unstable_part") > 0.0);
     assert!(number(&found, "/stability/growing_waves/0/rate") > 0.0);
     assert!(number(&found, "/reference/pressure") < 0.0);
@@ -158,7 +158,7 @@ fn stretched_copper_grows_waves_and_says_which() {
 #[test]
 fn a_solid_stands_beside_the_continuum_asked_for() {
     let dir = tempfile::tempdir().unwrap();
-    let found = survey("good/periodic_wave.toml", &[], dir.path());
+    let found = report("good/periodic_wave.toml", &[], dir.path());
     let bulk = |who: &str| number(&found, &format!("/elastic/{who}/cubic/bulk"));
     assert!((bulk("lattice") / bulk("continuum") - 1.0).abs() < 1e-9);
     assert!((number(&found, "/stability/time_step_over_sharp_limit") - 0.5).abs() < 0.01);
@@ -205,7 +205,7 @@ fn a_chain_of_atoms_has_its_nonlinear_equation() {
                 material = { mass = 1, law = { morse = { depth = 2, alpha = 1.5, distance = 1.2 } } }\n\
                 run = { steps = 1, time_step = 0.01 }\n";
     std::fs::write(&file, text).unwrap();
-    let found = survey(file.to_str().unwrap(), &[], &dir.path().join("out"));
+    let found = report(file.to_str().unwrap(), &[], &dir.path().join("out"));
     for (n, stretch) in [0.98, 1.0, 1.02].into_iter().enumerate() {
         let at = |path: &str| format!("/nonlinear_gradient_equation/{n}/{path}");
         assert_eq!(number(&found, &at("stretch")), stretch);

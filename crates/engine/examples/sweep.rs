@@ -238,8 +238,8 @@ fn main() {
     if threads.is_some() {
         words.remove(0);
     }
-    let asked = |s: &State| words.iter().any(|w| w == s.name());
-    let mut states: Vec<State> = State::ALL.into_iter().filter(asked).collect();
+    let named = |s: &State| words.iter().any(|w| w == s.name());
+    let mut states: Vec<State> = State::ALL.into_iter().filter(named).collect();
     if states.is_empty() {
         states.push(State::Calm);
     }

@@ -4,8 +4,8 @@ use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 use peridyne_theory::crystal::{Crystal, LatticeSolid};
-use peridyne_theory::elastic::patch_test;
-use peridyne_theory::stiffness::components;
+use peridyne_theory::patch_test::patch_test;
+use peridyne_theory::voigt::components;
 use std::f64::consts::PI;
 
 const H: f64 = 0.5;

@@ -6,7 +6,7 @@ use peridyne::space::region::Region;
 use peridyne::spec::LinearBody;
 use peridyne::spec::*;
 use peridyne::statics::{Direct, Support};
-use peridyne_theory::elastic::patch_test;
+use peridyne_theory::patch_test::patch_test;
 
 const YOUNG: f64 = 70.0;
 

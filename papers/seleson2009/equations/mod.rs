@@ -10,12 +10,12 @@ use peridyne_io::write::table::Table;
 use peridyne_theory::dispersion::chain::{SpringContinuum, cin};
 use peridyne_theory::exact::{Field, Q, q};
 use peridyne_theory::gradient::Expansion;
+use peridyne_theory::gradient::comparison::{Comparison, compare};
 use peridyne_theory::gradient::inner;
 use peridyne_theory::gradient::linear::{
     LinearChain, dispersion_series, springs_closed, springs_continuum, springs_excess,
 };
 use peridyne_theory::gradient::power_law::{PowerLawChain, orders};
-use peridyne_theory::upscaling::{Comparison, compare};
 
 use crate::measure::largest;
 use crate::{Context, Failure, Findings};

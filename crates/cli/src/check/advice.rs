@@ -3,7 +3,7 @@
 use super::{Findings, atoms, directions, mean};
 use peridyne::spec::{Calibration, Horizon, LawSpec};
 use peridyne_io::deck::UnitSystem;
-use peridyne_theory::elastic::Place;
+use peridyne_theory::patch_test::Place;
 
 /// A warning with its fix.
 pub struct Advice {
@@ -76,7 +76,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
         if matches!(
             spec.law,
             LawSpec::EamLike { .. } | LawSpec::LpsAsTyped { .. }
-        ) && m.asked.is_none()
+        ) && m.nominal.is_none()
         {
             say(
                 format!(
@@ -152,10 +152,10 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
         let Some(class) = patch.best(n) else { continue };
         if class.place != Place::Bulk {
             let young = patch.whole(n).and_then(|w| w.young_along());
-            let told = match (young, directions::asked_along(found, m)) {
-                (Some(young), Some(asked)) => format!(
+            let told = match (young, directions::nominal_along(found, m)) {
+                (Some(young), Some(nominal)) => format!(
                     ", and its Young's modulus is off what was asked for along {}",
-                    directions::against(&young, asked)
+                    directions::against(&young, nominal)
                 ),
                 (None, _) => ", and it is not stable".into(),
                 (Some(_), None) => String::new(),
@@ -170,13 +170,13 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
             continue;
         }
         let real = mean(found, &class.stiffness);
-        if let Some(asked) = m.asked {
+        if let Some(nominal) = m.nominal {
             let off = match real.young.is_finite() {
-                true => real.young / asked.young - 1.0,
+                true => real.young / nominal.young - 1.0,
                 // unlike along its axes: the worst of them
                 false => (class.stiffness.young_along().into_iter().flatten())
-                    .zip(directions::asked_along(found, m).into_iter().cycle())
-                    .map(|(e, asked)| e / asked - 1.0)
+                    .zip(directions::nominal_along(found, m).into_iter().cycle())
+                    .map(|(e, nominal)| e / nominal - 1.0)
                     .fold(0.0, |worst: f64, off| match off.abs() > worst.abs() {
                         true => off,
                         false => worst,

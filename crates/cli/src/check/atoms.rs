@@ -3,7 +3,7 @@
 use super::Findings;
 use peridyne::spec::{BodySpec, PotentialSpec};
 use peridyne_io::deck::Dim;
-use peridyne_theory::stiffness::components;
+use peridyne_theory::voigt::components;
 
 /// Above this part of the stability limit steps are coarse: 15 in the shortest period.
 const COARSE: f64 = 0.2;

@@ -2,19 +2,19 @@
 
 use super::{Findings, Material};
 use peridyne::spec::Plane;
-use peridyne_theory::elastic::PatchTest;
-use peridyne_theory::stiffness::{Directional, Stiffness};
+use peridyne_theory::patch_test::PatchTest;
+use peridyne_theory::voigt::{Directional, Stiffness};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Young's modulus that bars along the axes would have if the body were what was asked for: of a slice in plane strain that of
 /// the plane.
-pub fn asked_along(found: &Findings, m: &Material) -> Option<f64> {
-    let asked = m.asked?;
+pub fn nominal_along(found: &Findings, m: &Material) -> Option<f64> {
+    let nominal = m.nominal?;
     let slice = found.sim.info().dimension == 2 && found.spec.plane == Plane::Strain;
     Some(match slice {
-        true => asked.young / (1.0 - asked.poisson * asked.poisson),
-        false => asked.young,
+        true => nominal.young / (1.0 - nominal.poisson * nominal.poisson),
+        false => nominal.young,
     })
 }
 
@@ -30,7 +30,7 @@ pub fn lines(
     if d == 1 {
         return vec![];
     }
-    let asked = asked_along(found, m);
+    let nominal = nominal_along(found, m);
     let places = patch.classes.iter().filter(|c| c.material == n);
     let mut all: Vec<(&str, Stiffness)> = places
         .map(|c| (c.place.name(d), c.stiffness.clone()))
@@ -43,7 +43,7 @@ pub fn lines(
     let mut lines = vec!["  along the axes, sides free".to_string()];
     for (name, stiffness) in all {
         let text = match stiffness.directional() {
-            Some(directional) => told(&directional, asked, number),
+            Some(directional) => told(&directional, nominal, number),
             None => "no moduli: not stable".into(),
         };
         lines.push(format!("  {name:<12}{text}"));
@@ -51,10 +51,10 @@ pub fn lines(
     lines
 }
 
-fn told(directional: &Directional, asked: Option<f64>, number: &dyn Fn(f64) -> String) -> String {
+fn told(directional: &Directional, nominal: Option<f64>, number: &dyn Fn(f64) -> String) -> String {
     let d = directional.young.len();
     let young = directional.young.iter().zip(AXES).map(|(e, axis)| {
-        let percent = asked.map_or(String::new(), |a| format!(" {:+.1} %", percent(*e, a)));
+        let percent = nominal.map_or(String::new(), |a| format!(" {:+.1} %", percent(*e, a)));
         format!("E {axis} {}{percent}", number(*e))
     });
     let pairs: &[(usize, usize)] = if d == 2 {
@@ -81,14 +81,14 @@ fn told(directional: &Directional, asked: Option<f64>, number: &dyn Fn(f64) -> S
 }
 
 /// How many percent more than asked for, in tenths.
-fn percent(value: f64, asked: f64) -> f64 {
+fn percent(value: f64, nominal: f64) -> f64 {
     // + 0.0 makes −0 and 0 one
-    0.1 * ((1000.0 * (value / asked - 1.0)).round() + 0.0)
+    0.1 * ((1000.0 * (value / nominal - 1.0)).round() + 0.0)
 }
 
 /// `x +56.0 %, y +56.0 %, z −20.1 %` of Young's moduli against one.
-pub fn against(young: &[f64], asked: f64) -> String {
+pub fn against(young: &[f64], nominal: f64) -> String {
     let each = young.iter().zip(AXES);
-    let each = each.map(|(e, axis)| format!("{axis} {:+.1} %", percent(*e, asked)));
+    let each = each.map(|(e, axis)| format!("{axis} {:+.1} %", percent(*e, nominal)));
     each.collect::<Vec<_>>().join(", ")
 }

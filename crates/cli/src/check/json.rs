@@ -3,8 +3,8 @@
 use super::advice::advice;
 use super::{Findings, directions, mean};
 use peridyne::spec::Stepper;
-use peridyne_theory::elastic::Class;
-use peridyne_theory::stiffness::{Stiffness, components};
+use peridyne_theory::patch_test::Class;
+use peridyne_theory::voigt::{Stiffness, components};
 use serde_json::{Value, json};
 
 pub fn write(found: &Findings) -> String {
@@ -14,11 +14,11 @@ pub fn write(found: &Findings) -> String {
         json!({
             "name": m.name,
             "density": m.density,
-            "asked": m.asked.map(|a| json!({
+            "asked": m.nominal.map(|a| json!({
                 "young": a.young, "poisson": a.poisson, "bulk": a.bulk(), "shear": a.shear(),
             })),
             "whole": found.patch.as_ref().and_then(|p| p.whole(n)).map(|w| along(&w)),
-            "asked_along_axes": directions::asked_along(found, m),
+            "asked_along_axes": directions::nominal_along(found, m),
             "places": classes.filter(|c| c.material == n).map(|c| class(found, c)).collect::<Vec<_>>(),
             "pressure_wave": m.pressure_wave,
             "shear_wave": m.shear_wave,

@@ -4,8 +4,8 @@ use super::advice::advice;
 use super::{Findings, Material, directions, mean};
 use peridyne::spec::{Criterion, LawSpec, Method, Moduli, PmbStiffness, Stepper};
 use peridyne_io::deck::{Dim, UnitSystem, describe};
-use peridyne_theory::elastic::{Class, PatchTest, Place};
-use peridyne_theory::stiffness::components;
+use peridyne_theory::patch_test::{Class, PatchTest, Place};
+use peridyne_theory::voigt::components;
 use std::fmt::Write;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -220,9 +220,9 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
             "A^U"
         )
     };
-    let line = |name: &str, real: Moduli, asked: Option<Moduli>, more: &str| {
-        let cell = |value: f64, asked: Option<f64>, width: usize, scale: f64| {
-            let percent = match asked {
+    let line = |name: &str, real: Moduli, nominal: Option<Moduli>, more: &str| {
+        let cell = |value: f64, nominal: Option<f64>, width: usize, scale: f64| {
+            let percent = match nominal {
                 // + 0.0 makes −0 and 0 one
                 Some(a) if value.is_finite() && a.is_finite() && a != 0.0 => {
                     let tenths = (1000.0 * (value / a - 1.0)).round() + 0.0;
@@ -233,16 +233,16 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
             format!("{:>w$}{percent:>10}", digits(value / scale), w = width - 10)
         };
         let mut text = format!("  {name:<12}");
-        text += &cell(real.young, asked.map(|a| a.young), 20, scale.factor);
+        text += &cell(real.young, nominal.map(|a| a.young), 20, scale.factor);
         if d > 1 {
-            text += &cell(real.bulk(), asked.map(|a| a.bulk()), 20, scale.factor);
-            text += &cell(real.shear(), asked.map(|a| a.shear()), 20, scale.factor);
-            text += &cell(real.poisson, asked.map(|a| a.poisson), 18, 1.0);
+            text += &cell(real.bulk(), nominal.map(|a| a.bulk()), 20, scale.factor);
+            text += &cell(real.shear(), nominal.map(|a| a.shear()), 20, scale.factor);
+            text += &cell(real.poisson, nominal.map(|a| a.poisson), 18, 1.0);
         }
         (text + more).trim_end().to_string()
     };
-    if let Some(asked) = m.asked {
-        let _ = writeln!(out, "{}", line("asked", asked, None, ""));
+    if let Some(nominal) = m.nominal {
+        let _ = writeln!(out, "{}", line("asked", nominal, None, ""));
     }
     for class in patch.classes.iter().filter(|c| c.material == n) {
         let real = mean(found, &class.stiffness);
@@ -250,7 +250,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
             let universal = a.universal.map_or("–".into(), |u| format!("{u:.3}"));
             format!("{:>8.3}{universal:>8}", a.zener)
         });
-        let text = line(class.place.name(d), real, m.asked, &more);
+        let text = line(class.place.name(d), real, m.nominal, &more);
         let _ = writeln!(out, "{text}");
     }
     let number = |value: f64| digits(value / scale.factor);

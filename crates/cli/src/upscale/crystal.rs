@@ -7,7 +7,7 @@ use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{FamilyChoice, Spec};
 use peridyne_io::deck::{Deck, Dim, Flag};
 use peridyne_theory::crystal::Crystal;
-use peridyne_theory::upscale::{self, REACH, lattice, rest_spacing};
+use peridyne_theory::upscale::{self, REACH, equilibrium_spacing, lattice};
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Without a deck")]
@@ -260,7 +260,7 @@ pub fn deck(
     if arguments.spacing.is_none() {
         whole.push(flag("spacing", "body.spacing", 1));
         let deck = understood(&whole, &flags)?;
-        let Some(rest) = rest_spacing(&deck.spec) else {
+        let Some(rest) = equilibrium_spacing(&deck.spec) else {
             return Err(Failure::input(format!(
                 "--spacing is missing: no spacing was found at which a {} lattice of {} has no pressure{}",
                 arguments.lattice.as_deref().unwrap_or_default(),

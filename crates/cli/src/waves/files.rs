@@ -5,8 +5,8 @@ use peridyne_io::write::WriteError;
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
-use peridyne_theory::stiffness::{Stiffness, components};
-use peridyne_theory::survey::{Branch, Row};
+use peridyne_theory::lattice_dynamics::{Branch, Row};
+use peridyne_theory::voigt::{Stiffness, components};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -60,7 +60,7 @@ fn branches(mut table: Table, rows: &[&Row], found: &Found) -> Table {
 fn wave_columns(table: Table, rows: &[&Row], found: &Found) -> Table {
     let unit = per(units(found.deck.units)[0]);
     let axes = ["kx", "ky", "kz"].into_iter().enumerate();
-    axes.take(found.survey.dimension)
+    axes.take(found.dynamics.dimension)
         .fold(table, |t, (a, name)| {
             t.column(name, &unit, rows.iter().map(|r| r.wave[a]))
         })
@@ -68,7 +68,7 @@ fn wave_columns(table: Table, rows: &[&Row], found: &Found) -> Table {
 
 /// Writes all into `dir`.
 pub fn write(dir: &Path, found: &Found, json: &Value) -> Result<Vec<PathBuf>, WriteError> {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let unit = units(found.deck.units);
     create_directory(dir)?;
     let mut files = vec![
@@ -99,7 +99,7 @@ pub fn write(dir: &Path, found: &Found, json: &Value) -> Result<Vec<PathBuf>, Wr
 }
 
 fn dispersion(found: &Found) -> Plot {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let unit = units(found.deck.units);
     let mut plot = Plot::new(format!("Dispersion, {} lattice", s.kind.name()))
         .x("along the path of the zone", &per(unit[0]))
@@ -129,7 +129,7 @@ fn dispersion(found: &Found) -> Plot {
 }
 
 fn velocities(found: &Found) -> Plot {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let unit = units(found.deck.units);
     let mut plot = Plot::new("Velocities along symmetry directions: phase (solid), group (dashed)")
         .x("k", &per(unit[0]))
@@ -168,7 +168,7 @@ fn stiffness(s: &Stiffness) -> Value {
 }
 
 pub fn json(found: &Found) -> Value {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let [length, time] = units(found.deck.units);
     json!({
         "units": { "length": length, "time": time, "system": found.deck.units.name() },
@@ -223,7 +223,7 @@ pub fn json(found: &Found) -> Value {
             "lattice": stiffness(&s.stiffness),
             "stress_strain": s.stress_strain.as_ref().map(stiffness),
             "continuum": s.continuum.as_ref().map(stiffness),
-            "asked": s.asked.map(|m| json!({
+            "asked": s.nominal.map(|m| json!({
                 "young": m.young,
                 "poisson": m.poisson.is_finite().then_some(m.poisson),
             })),

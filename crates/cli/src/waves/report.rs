@@ -1,13 +1,13 @@
-//! The survey as text.
+//! The dynamics of a lattice as text.
 
 use super::Found;
 use peridyne_io::deck::Dim;
-use peridyne_theory::stiffness::{Stiffness, components};
+use peridyne_theory::voigt::{Stiffness, components};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
 pub fn text(found: &Found) -> String {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let units = found.deck.units;
     let write = |v: f64, d: Dim| units.write(v, d);
     let mut t = String::new();
@@ -92,7 +92,7 @@ fn reduced(wave: &[f64], spacing: f64) -> String {
 }
 
 fn stability(t: &mut String, found: &Found) {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let time = |v: f64| found.deck.units.write(v, Dim::TIME);
     *t += "\nstability\n";
     if s.growing.is_empty() {
@@ -183,7 +183,7 @@ fn table(t: &mut String, name: &str, s: &Stiffness, pressure: &dyn Fn(f64) -> St
 }
 
 fn elastic(t: &mut String, found: &Found) {
-    let s = &found.survey;
+    let s = &found.dynamics;
     let pressure = |v: f64| found.deck.units.write(v, Dim::PRESSURE);
     *t += "\nelastic constants\n";
     let name = if s.relaxed {
@@ -204,7 +204,7 @@ fn elastic(t: &mut String, found: &Found) {
 }
 
 fn gradients(t: &mut String, found: &Found) {
-    let s = &found.survey;
+    let s = &found.dynamics;
     if s.directions.iter().all(|d| d.gradients.is_empty()) {
         *t += "\nno gradient coefficients: the cell has several sites";
         return;
@@ -233,7 +233,7 @@ fn gradients(t: &mut String, found: &Found) {
 
 /// Of a chain of atoms.
 fn nonlinear(t: &mut String, found: &Found) {
-    let s = &found.survey;
+    let s = &found.dynamics;
     if s.nonlinear.is_empty() {
         return;
     }

@@ -55,14 +55,14 @@ impl<const D: usize> Constraint<D> {
         times: &[f64],
         dt: f64,
     ) -> Option<[f64; 2]> {
-        let asked = |c: &Self, k: usize, t: f64| match (self.kind, other.kind) {
+        let prescribed = |c: &Self, k: usize, t: f64| match (self.kind, other.kind) {
             (Prescribed::Displacement, Prescribed::Displacement) => {
                 c.program.at(a, k, &c.points[k], t)
             }
             (Prescribed::Velocity, _) | (_, Prescribed::Velocity) => c.velocity(a, k, t, dt),
         };
         times.iter().find_map(|t| {
-            let both = [asked(self, k, *t), asked(other, j, *t)];
+            let both = [prescribed(self, k, *t), prescribed(other, j, *t)];
             // round-off of two ways to write the same
             let near = 1e-9 * both[0].abs().max(both[1].abs());
             ((both[0] - both[1]).abs() > near).then_some(both)

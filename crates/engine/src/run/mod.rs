@@ -154,7 +154,7 @@ pub trait Simulation: Steered + Examined + Send {
     fn step(&mut self) -> Result<(), RunError>;
     /// A question that a long search for an equilibrium asks in every iteration: has somebody had enough? It then ends with
     /// [`SolveError::Stopped`], and the state is that of the increment before.
-    fn stop_when(&mut self, asked: fn() -> bool);
+    fn stop_when(&mut self, stop: fn() -> bool);
     fn step_number(&self) -> u64;
     fn time(&self) -> f64;
     /// Energies now; an error if the balance shows that the run has gone unstable.

@@ -176,8 +176,8 @@ impl<const D: usize> Simulation for Model<D> {
         self.advance()
     }
 
-    fn stop_when(&mut self, asked: fn() -> bool) {
-        self.stop = asked;
+    fn stop_when(&mut self, stop: fn() -> bool) {
+        self.stop = stop;
     }
 
     fn step_number(&self) -> u64 {

@@ -158,12 +158,12 @@ impl Engine for Flight {
 #[derive(Default)]
 pub struct TestHost {
     /// Everything of the set-up but the atoms, which fly.
-    pub asked: Option<(Pair, f64, Atoms)>,
+    pub built: Option<(Pair, f64, Atoms)>,
 }
 
 impl Host for TestHost {
     fn build(&mut self, setup: Setup) -> Result<Box<dyn Engine>, HostError> {
-        self.asked = Some((setup.pair, setup.lattice_constant, setup.atoms.clone()));
+        self.built = Some((setup.pair, setup.lattice_constant, setup.atoms.clone()));
         let n = setup.atoms.len();
         Ok(Box::new(Flight {
             atoms: setup.atoms,

@@ -34,7 +34,7 @@ fn deck(name: &str, variables: &[(&str, &str)], steps: Option<(&str, &str)>) -> 
 
 fn atoms(ran: &Ran) -> usize {
     ran.host
-        .asked
+        .built
         .as_ref()
         .map_or(0, |(_, _, atoms)| atoms.len())
 }
@@ -43,7 +43,7 @@ fn atoms(ran: &Ran) -> usize {
 #[test]
 fn algorithm_7() {
     let ran = deck("in.algorithm7", &[], Some(("run 2000", "run 2")));
-    let (pair, lattice, atoms) = ran.host.asked.unwrap();
+    let (pair, lattice, atoms) = ran.host.built.unwrap();
     assert_eq!(atoms.len(), 103_110);
     assert_eq!(lattice, 0.0005);
     let Pair::Pmb(table) = pair else {
@@ -74,7 +74,7 @@ fn impact() {
         assert_eq!(atoms(&ran), 103_110);
         let header = "   Step         PotEng         KinEng         TotEng          c_D1     ";
         assert!(ran.lines.iter().any(|l| l == header), "{:?}", ran.lines);
-        let (pair, ..) = ran.host.asked.unwrap();
+        let (pair, ..) = ran.host.built.unwrap();
         assert_eq!(matches!(pair, Pair::Lps(_)), model == "lps");
     }
 }

@@ -27,7 +27,7 @@ mod energy;
 mod error;
 pub mod exact;
 pub mod lattice;
-mod lump;
+mod mass_lumping;
 mod near;
 mod rows;
 mod schur;
@@ -42,7 +42,7 @@ mod tests;
 pub use balls::Work;
 pub use check::{DEFINITE_LIMIT, EIGEN_LIMIT, Stability};
 pub use error::CoarsenError;
-pub use lump::{Lumping, Volume};
+pub use mass_lumping::{Lumping, Volume};
 pub use schur::SCHUR_LIMIT;
 pub use select::Selection;
 
@@ -176,7 +176,7 @@ pub fn coarsen<const D: usize>(
     let plan = Plan {
         task,
         options,
-        lumped: lump::lump(body, &retained, &marked, spacing(body, retained.len())),
+        lumped: mass_lumping::lump_mass(body, &retained, &marked, spacing(body, retained.len())),
     };
     let (mut made, radius, convergence) = plan.converged()?;
     made.body.carriers = body.carriers.clone().map(|c| c.passed(&made.pass));
@@ -258,7 +258,7 @@ fn finite<const D: usize>(body: &LinearBody<D>) -> Result<(), CoarsenError> {
 
 /// Mean spacing of so many points in the box of a body (length).
 fn spacing<const D: usize>(body: &LinearBody<D>, points: usize) -> f64 {
-    let wide = lump::extents(body);
+    let wide = mass_lumping::extents(body);
     let most = wide.iter().fold(0.0f64, |m, x| m.max(*x));
     // a body that is thin along an axis is counted as a plate
     let thin = most / points as f64;
@@ -287,7 +287,7 @@ fn mass_and_centre<const D: usize>(body: &LinearBody<D>) -> (f64, [f64; D]) {
 struct Plan<'a, const D: usize> {
     task: Task<'a, D>,
     options: &'a Options,
-    lumped: lump::Lumped,
+    lumped: mass_lumping::LumpedMass,
 }
 
 /// The coarse body of one radius.
@@ -379,7 +379,7 @@ impl<const D: usize> Plan<'_, D> {
             (_, Radius::Tolerance(t)) => return Err(CoarsenError::Tolerance(t)),
         };
         let coarse = spacing(self.task.body, self.task.retained.len());
-        let span = lump::extents(self.task.body);
+        let span = mass_lumping::extents(self.task.body);
         let span = span.iter().map(|x| x * x).sum::<f64>().sqrt();
         // shapes from the energy fall off sooner than rows
         let first = match self.options.scheme {

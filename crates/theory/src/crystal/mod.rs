@@ -93,10 +93,10 @@ pub enum CrystalError {
     NoCutoff,
     #[error("no neighbour within the reach of {reach}: the nearest is at {nearest}")]
     NoNeighbours { reach: f64, nearest: f64 },
-    #[error("at most {most} shells of neighbours are counted, {asked} were asked for")]
-    TooManyShells { asked: u32, most: u32 },
-    #[error("at most {most} gradient orders are derived, {asked} were asked for")]
-    TooManyTerms { asked: usize, most: usize },
+    #[error("at most {most} shells of neighbours are counted, {requested} were asked for")]
+    TooManyShells { requested: u32, most: u32 },
+    #[error("at most {most} gradient orders are derived, {requested} were asked for")]
+    TooManyTerms { requested: usize, most: usize },
     #[error(
         "the embedding energy has no value at the reference density {density}: the state is outside of what the \
          potential describes"

@@ -130,7 +130,7 @@ fn neighbours<const D: usize>(
 ) -> Result<Vec<Link<D>>, CrystalError> {
     let within = |h| links::<D>(kind, spacing, h);
     let distance = |l: &Link<D>| spacing * (l.squared as f64).sqrt() / 4.0;
-    let (mut found, asked) = match reach {
+    let (mut found, reach) = match reach {
         Reach::Cutoff if potential.cutoff().is_finite() => {
             let cutoff = potential.cutoff();
             (within(Horizon::Length(cutoff))?, cutoff)
@@ -144,7 +144,7 @@ fn neighbours<const D: usize>(
     found.retain(|l| distance(l) <= potential.cutoff());
     if found.is_empty() {
         return Err(CrystalError::NoNeighbours {
-            reach: asked.min(potential.cutoff()),
+            reach: reach.min(potential.cutoff()),
             nearest: kind.nearest() * spacing,
         });
     }
@@ -159,7 +159,7 @@ fn shells<const D: usize>(
 ) -> Result<Vec<Link<D>>, CrystalError> {
     if n == 0 || n > SHELLS {
         return Err(CrystalError::TooManyShells {
-            asked: n,
+            requested: n,
             most: SHELLS,
         });
     }

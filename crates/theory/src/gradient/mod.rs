@@ -3,6 +3,7 @@
 //! The force density of a smooth deformation y(x) is ordered by powers of the model's length:
 //! `ρ ÿ = Σ_p P_p(y′, y″, …)`, where P_p is of gradient order 2p + 2 (seleson2009 sections 3–5).
 
+pub mod comparison;
 pub mod fractions;
 pub mod inner;
 pub mod law_sum;

@@ -53,7 +53,7 @@ pub fn expansion<F: Field>(
 ) -> Result<Expansion<F>, CrystalError> {
     if terms > MOST_TERMS {
         return Err(CrystalError::TooManyTerms {
-            asked: terms,
+            requested: terms,
             most: MOST_TERMS,
         });
     }

@@ -4,7 +4,7 @@ use super::{Rule, UpscaleError, crystal, lattice};
 use crate::crystal::Crystal;
 use crate::exact::polynomial::Monomial;
 use crate::gradient::nonlinear;
-use crate::survey::{NONLINEAR_TERMS, STRETCHES};
+use crate::lattice_dynamics::{NONLINEAR_TERMS, STRETCHES};
 use peridyne::run::{Options, build};
 use peridyne::spec::{BodySpec, FamilyChoice, Horizon, Spec, TimeStep};
 use std::collections::BTreeSet;

@@ -9,9 +9,9 @@
 //! [`upscale_keeping`] asks for one of the two: [`Keep::Shells`] goes with every law.
 
 pub mod card;
-mod rest;
+mod equilibrium_spacing;
 
-pub use rest::rest_spacing;
+pub use equilibrium_spacing::equilibrium_spacing;
 
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
 use peridyne::family::stencil::Stencil;

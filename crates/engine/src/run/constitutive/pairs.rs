@@ -78,11 +78,11 @@ pub(super) fn bond_table(
 
 /// The table of all pairs of materials, whose own stiffnesses are `own`.
 pub(in crate::run) fn contact_stiffness(
-    asked: &ContactStiffness,
+    stiffness: &ContactStiffness,
     own: &[f64],
 ) -> Result<PairTable, BuildError> {
-    let table = match asked {
-        ContactStiffness::Same(stiffness) => PairTable::uniform(*stiffness),
+    let table = match stiffness {
+        ContactStiffness::Same(one) => PairTable::uniform(*one),
         ContactStiffness::Laws => PairTable::new(own.len(), |a, b| {
             // two in series; alike ones exactly their own
             if own[a] == own[b] {

@@ -99,12 +99,12 @@ impl<const D: usize> Model<D> {
     ) -> Result<Solved, SolveError> {
         let mut load = self.external();
         if !self.at_peace() {
-            let mut rest = zeros(self.body.len);
+            let mut reference = zeros(self.body.len);
             let u = self.body.at_rest();
             self.interaction
-                .forces(&self.body, &u, &mut rest, Sweep::Hold, None);
+                .forces(&self.body, &u, &mut reference, Sweep::Hold, None);
             for a in 0..D {
-                for (l, r) in load[a].iter_mut().zip(rest[a].iter()) {
+                for (l, r) in load[a].iter_mut().zip(reference[a].iter()) {
                     *l += r;
                 }
             }
@@ -191,8 +191,10 @@ impl<const D: usize> Model<D> {
     ) -> Result<(Solved, Tried<D>), SolveError> {
         let goal = self.goal(state.options);
         let mut r = vec![[0.0; D]; now.x.len()];
-        let rest = self.rest(support);
-        let mut scale = self.missing(&now, inertia, &mut r, support).hypot(rest);
+        let reference = self.residual_of_reference(support);
+        let mut scale = self
+            .missing(&now, inertia, &mut r, support)
+            .hypot(reference);
         let added = inertia.map_or(&[][..], |m| &m.added);
         let mut iterations = 0;
         for _ in 0..NEWTON {
@@ -289,12 +291,14 @@ impl<const D: usize> Model<D> {
                     state.factors = None;
                 }
                 if left < size || unstable || halving == HALVINGS {
-                    (now, scale) = (tried, new.hypot(rest));
+                    (now, scale) = (tried, new.hypot(reference));
                     break;
                 }
                 if old {
                     // with factors of here
-                    scale = self.missing(&now, inertia, &mut r, support).hypot(rest);
+                    scale = self
+                        .missing(&now, inertia, &mut r, support)
+                        .hypot(reference);
                     break;
                 }
                 part *= 0.5;
@@ -324,7 +328,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// What atoms at their sites pull at each other without any load; 0 of other laws.
-    fn rest(&mut self, support: &Support<D>) -> f64 {
+    fn residual_of_reference(&mut self, support: &Support<D>) -> f64 {
         if self.at_peace() {
             return 0.0;
         }
@@ -362,9 +366,9 @@ impl<const D: usize> Model<D> {
         let goal = self.goal(state.options);
         // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
         let mut sum = vec![0.0; self.body.len];
-        let rest = self.body.at_rest();
+        let reference = self.body.at_rest();
         let body = &self.body;
-        self.interaction.tangents(body, &rest, &mut |bond| {
+        self.interaction.tangents(body, &reference, &mut |bond| {
             let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
             sum[bond.i] += body.volume.at(bond.i) * trace;
         });
@@ -374,11 +378,11 @@ impl<const D: usize> Model<D> {
         let top = largest_ratio(&self.body, self.interaction.as_mut(), &mass);
         // a step of 1 is stable to 4; half of that leaves room for stiffening and contact
         mass.iter_mut().for_each(|m| *m *= 0.5 * top);
-        let rest = self.rest(support);
+        let reference = self.residual_of_reference(support);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
         relax(&mut x, &mass, support, goal, |x, f| {
-            let scale = self.imbalance(x, &mut r, support).hypot(rest);
+            let scale = self.imbalance(x, &mut r, support).hypot(reference);
             f.copy_from_slice(&r);
             scale
         })

@@ -25,12 +25,12 @@ pub(super) fn bodies(
     document: &Document,
     files: &Files,
 ) -> Result<BodySpec> {
-    let asked = document.dimension.as_ref();
+    let dimension = document.dimension.as_ref();
     let mut pieces: Vec<PieceSpec> = Vec::new();
     for (n, at) in written(document).enumerate() {
         let written = &at.value;
         let before = context.dimension;
-        let mut spec = body::body(context, at, asked, files)?;
+        let mut spec = body::body(context, at, dimension, files)?;
         if n > 0 && context.dimension != before {
             let message = format!(
                 "this body is {}-D, the first is {before}-D",
@@ -170,9 +170,9 @@ pub(super) fn own(
                 })
         };
         let material = materials.iter().find(of_body).or(materials.first());
-        let asked = at.value.influence.as_ref().map(|i| i.value);
+        let own = at.value.influence.as_ref().map(|i| i.value);
         piece.influence = Some(influence(
-            asked.or(document.influence),
+            own.or(document.influence),
             material.map_or(&[], std::slice::from_ref),
         ));
         piece.family = match &at.value.family {

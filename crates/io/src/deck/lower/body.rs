@@ -33,7 +33,7 @@ impl From<LatticeName> for LatticeKind {
 pub(super) fn body(
     context: &mut Context,
     body: &At<Body>,
-    asked: Option<&At<usize>>,
+    given_dimension: Option<&At<usize>>,
     files: &Files,
 ) -> Result<BodySpec> {
     let written = &body.value;
@@ -59,7 +59,7 @@ pub(super) fn body(
             (Some(points.cloud), points.dimension)
         }
     };
-    context.dimension = dimension(context, asked, natural, written.lattice.is_some())?;
+    context.dimension = dimension(context, given_dimension, natural, written.lattice.is_some())?;
     if let (Some(_), Some(unit)) = (&written.lattice, &written.file_unit) {
         return Err(context.error(
             &unit.span,
@@ -131,24 +131,24 @@ pub(super) fn body(
 
 fn dimension(
     context: &Context,
-    asked: Option<&At<usize>>,
+    given: Option<&At<usize>>,
     natural: Option<usize>,
     lattice: bool,
 ) -> Result<usize> {
-    match (asked, natural) {
+    match (given, natural) {
         (None, natural) => Ok(natural.unwrap_or(3)),
-        (Some(asked), _) if !(1..=3).contains(&asked.value) => Err(context.error(
-            &asked.span,
-            format!("the dimension is 1, 2 or 3, not {}", asked.value),
+        (Some(given), _) if !(1..=3).contains(&given.value) => Err(context.error(
+            &given.span,
+            format!("the dimension is 1, 2 or 3, not {}", given.value),
         )),
-        (Some(asked), Some(natural)) if asked.value != natural => {
+        (Some(given), Some(natural)) if given.value != natural => {
             let what = if lattice { "lattice" } else { "mesh" };
             Err(context.error(
-                &asked.span,
-                format!("the {what} is {natural}-D, not {}-D", asked.value),
+                &given.span,
+                format!("the {what} is {natural}-D, not {}-D", given.value),
             ))
         }
-        (Some(asked), _) => Ok(asked.value),
+        (Some(given), _) => Ok(given.value),
     }
 }
 

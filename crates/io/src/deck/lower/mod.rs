@@ -245,8 +245,8 @@ pub(super) fn lower(
 fn written_fields(document: &Document) -> Option<Vec<String>> {
     let written = document.output.fields.as_ref()?;
     // numbers of points are always written
-    let asked = written.iter().filter(|f| f.value != "id");
-    Some(asked.map(|f| f.value.clone()).collect())
+    let named = written.iter().filter(|f| f.value != "id");
+    Some(named.map(|f| f.value.clone()).collect())
 }
 
 fn section(context: &Context, document: &Document) -> Result<f64> {
@@ -342,8 +342,8 @@ fn horizon(
 }
 
 /// The customary influence function of the law, unless one is asked for.
-fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influence {
-    match asked {
+fn influence(named: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influence {
+    match named {
         Some(InfluenceName::Constant) => Influence::Constant,
         Some(InfluenceName::Inverse) => Influence::Inverse,
         Some(InfluenceName::Conical) => Influence::Conical,
@@ -369,10 +369,10 @@ fn influence(asked: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
 /// Factors of the bonds near the surface that a deck asks for.
 fn surface_factors(
     context: &Context,
-    asked: &At<SurfaceName>,
+    named: &At<SurfaceName>,
     spec: &Spec,
 ) -> Result<Option<SurfaceFactors>> {
-    let method = match asked.value {
+    let method = match named.value {
         SurfaceName::None => return Ok(None),
         SurfaceName::Exact => SurfaceMethod::Exact,
         SurfaceName::Volume => SurfaceMethod::Volume,
@@ -381,7 +381,7 @@ fn surface_factors(
     };
     match peridyne_theory::homogenize::surface::correct(spec, method) {
         Ok((factors, _)) => Ok(Some(factors)),
-        Err(e) => Err(context.error_with(&asked.span, e.to_string(), e.help())),
+        Err(e) => Err(context.error_with(&named.span, e.to_string(), e.help())),
     }
 }
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::crystal::Crystal;
 use crate::exact::{Q, q};
-use crate::upscaling::compare;
+use crate::gradient::comparison::compare;
 use peridyne::law::potential::cut::Cut;
 use peridyne::law::potential::mei::Mei;
 use peridyne::law::potential::tabulated::Tabulated;
@@ -234,7 +234,7 @@ fn states_without_an_equation_say_why() {
         Err(CrystalError::Density { .. })
     ));
     let many = CrystalError::TooManyTerms {
-        asked: MOST_TERMS + 1,
+        requested: MOST_TERMS + 1,
         most: MOST_TERMS,
     };
     assert_eq!(why(1.0, MOST_TERMS + 1), many);

@@ -4,7 +4,7 @@
 //! that the first m−1 strains say all others, and the last m−1 rows say what they are. In whole numbers this needs
 //! products of a long number with a short one only, N m² of them, and one small system of long numbers at the end.
 
-use super::stiffness::{Stiffness, common_denominator};
+use super::stiffness_matrix::{StiffnessMatrix, common_denominator};
 use super::{Bar, Ends};
 use crate::exact::{Field, Q};
 use num_bigint::BigInt;
@@ -43,7 +43,7 @@ impl Bar {
     }
 
     /// The rows of G that are not those of an endless bar, of one end, and one that is.
-    fn distinct_rows(&self, s: &Stiffness<Q>) -> Vec<Vec<Q>> {
+    fn distinct_rows(&self, s: &StiffnessMatrix<Q>) -> Vec<Vec<Q>> {
         let m = self.m;
         let row = |a: usize| (0..a + m).map(|b| s.cut(a, b)).collect();
         (0..m).map(row).collect()

@@ -2,14 +2,14 @@
 
 use super::Bar;
 use super::parameters::parameters;
-use super::stiffness::{Stiffness, common_denominator};
+use super::stiffness_matrix::{StiffnessMatrix, common_denominator};
 use crate::exact::{Field, Q};
 use num_bigint::BigInt;
 
 impl Bar {
     /// Coefficients in fractions or floating-point numbers, in units of cA.
-    pub fn stiffness<F: Field>(&self) -> Stiffness<F> {
-        Stiffness::new(self.m, self.points, self.ends, &self.factors())
+    pub fn stiffness<F: Field>(&self) -> StiffnessMatrix<F> {
+        StiffnessMatrix::new(self.m, self.points, self.ends, &self.factors())
     }
 
     /// Factors of the bonds between an end point and the m−1 points next to it, nearest first; 1 if not homogenized.
@@ -34,7 +34,7 @@ pub struct Corner {
 impl Bar {
     /// The upper left corner with the scale of the paper's examples (24), (41), (57), (76), (79), (82).
     pub fn corner(&self) -> Corner {
-        let plain = Stiffness::<Q>::new(self.m, self.points, self.ends, &[]);
+        let plain = StiffnessMatrix::<Q>::new(self.m, self.points, self.ends, &[]);
         let scale = common_denominator(plain.inner.iter().chain(&plain.to_end));
         let stiffness = self.stiffness::<Q>();
         let row = |i: usize| {

@@ -8,7 +8,7 @@
 //! residual is computed in whole numbers, without rounding. G is a sum over bonds of positive terms, those of nearest
 //! neighbours alone at least ½: `‖e − e_found‖ ≤ 2 ‖residual‖`.
 
-use super::stiffness::{Stiffness, common_denominator};
+use super::stiffness_matrix::{StiffnessMatrix, common_denominator};
 use super::{Bar, Ends};
 use crate::exact::{Field, Q};
 use num_bigint::{BigInt, Sign};
@@ -112,7 +112,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn new(s: &Stiffness<Q>, count: usize) -> Rows {
+    fn new(s: &StiffnessMatrix<Q>, count: usize) -> Rows {
         let m = s.m();
         let row = |a: usize| (0..a + m).map(|b| s.cut(a, b)).collect();
         let rows: Vec<Vec<Q>> = (0..m).map(row).collect();

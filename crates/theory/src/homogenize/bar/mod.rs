@@ -7,7 +7,7 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | coefficients of the equations | [`stiffness`], [`equations`] |
+//! | coefficients of the equations | [`stiffness_matrix`], [`equations`] |
 //! | which factors make uniform strain exact? | [`parameters`] |
 //! | strains and displacements, a million points or fractions | [`strain`] |
 //! | f(N), the elongation over the classical one, as a fraction | [`elongation`] |
@@ -27,7 +27,7 @@ pub mod limit;
 pub mod micromodulus;
 pub mod parameters;
 pub mod relaxation;
-pub mod stiffness;
+pub mod stiffness_matrix;
 pub mod strain;
 pub mod vibration;
 

@@ -1,7 +1,7 @@
 //! The factors that make a bar homogeneous, found by solving for them.
 
 use super::Ends;
-use super::stiffness::Stiffness;
+use super::stiffness_matrix::StiffnessMatrix;
 use crate::exact::Field;
 
 /// α_1 … α_{m−1}: factors of the bonds between an end point and its neighbours at distance 1, …, m−1.
@@ -13,7 +13,7 @@ use crate::exact::Field;
 /// ones, which (59) misprints as `2(m − 1) + 1`.
 pub fn parameters<F: Field>(m: usize, ends: Ends) -> Vec<F> {
     let points = 2 * m + 1;
-    let with = |factor: i64| Stiffness::new(m, points, ends, &vec![F::whole(factor); m - 1]);
+    let with = |factor: i64| StiffnessMatrix::new(m, points, ends, &vec![F::whole(factor); m - 1]);
     let (none, one) = (with(0), with(1));
     let uniform: Vec<F> = (0..points as i64).map(F::whole).collect();
     (1..m)
@@ -50,7 +50,7 @@ mod tests {
     #[test]
     fn the_caption_of_figure_2_swaps_them() {
         assert_eq!(parameters::<Q>(3, Ends::Full), [q(5, 2), q(3, 2)]);
-        let swapped = Stiffness::new(3, 9, Ends::Full, &[q(3, 2), q(5, 2)]);
+        let swapped = StiffnessMatrix::new(3, 9, Ends::Full, &[q(3, 2), q(5, 2)]);
         let uniform: Vec<Q> = (0..9).map(|k| q(k, 1)).collect();
         assert_ne!(swapped.pull(1, &uniform), q(0, 1));
     }

@@ -6,12 +6,12 @@
 //! carry no load; the row of the end then gives F. G is symmetric with m−1 diagonals above the main one, and its eigenvalues
 //! lie between ½ (bonds of nearest neighbours alone) and m²: a million points lose no digits.
 
-use super::stiffness::Stiffness;
+use super::stiffness_matrix::StiffnessMatrix;
 use super::{Bar, Ends};
 use crate::exact::Field;
 use peridyne_algebra::banded::Banded;
 
-impl<F: Field> Stiffness<F> {
+impl<F: Field> StiffnessMatrix<F> {
     /// G_ab of two interspaces 0…N−2.
     pub fn cut(&self, a: usize, b: usize) -> F {
         let (low, high) = (a.min(b), a.max(b));
@@ -97,7 +97,7 @@ impl Bar {
 }
 
 /// Row of an end point, from the strains next to it.
-fn end_pull<F: Field>(s: &Stiffness<F>, strains: &[F]) -> F {
+fn end_pull<F: Field>(s: &StiffnessMatrix<F>, strains: &[F]) -> F {
     let (mut sum, mut u) = (F::zero(), F::zero());
     for (k, coefficient) in s.of_end().iter().enumerate() {
         u = u + strains[k].clone();

@@ -3,7 +3,7 @@
 //! `ρ ü_i = c A Σ_j s_ij (u_j − u_i)`, `u_1 = 0`: `ω² = 2E/(ρ m²Δ²) λ`, λ an eigenvalue of −S without its first row and column.
 //! The last point's matter ends half a spacing beyond it: such a bar is `(N−½)Δ` long, not NΔ.
 
-use super::stiffness::Stiffness;
+use super::stiffness_matrix::StiffnessMatrix;
 use super::{Bar, BarError, Ends};
 use peridyne_algebra::banded::{Banded, Factored};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -54,7 +54,7 @@ impl Rod {
 /// The peridynamic bar.
 #[derive(Debug, Clone)]
 pub struct Vibration {
-    stiffness: Stiffness<f64>,
+    stiffness: StiffnessMatrix<f64>,
     /// Δ
     pub spacing: f64,
     /// `2E/(ρ m²Δ²)`, turns eigenvalues into squares of frequencies.

@@ -14,7 +14,7 @@
 
 use crate::crystal::{Bond, Crystal};
 use crate::dispersion::hermitian::{Matrix, eigen};
-use crate::stiffness::{Stiffness, axes, components};
+use crate::voigt::{Stiffness, axes, components};
 use peridyne::spec::{Moduli, Plane};
 
 /// Constants of the three axes of a square or cubic crystal.

@@ -25,18 +25,18 @@ pub enum Lumping {
 }
 
 /// Volume and mass per retained point, those of removed points included.
-pub(super) struct Lumped {
+pub(super) struct LumpedMass {
     pub volume: Vec<f64>,
     pub mass: Vec<f64>,
     pub lumping: Lumping,
 }
 
-pub(super) fn lump<const D: usize>(
+pub(super) fn lump_mass<const D: usize>(
     body: &LinearBody<D>,
     retained: &[u32],
     marked: &[bool],
     spacing: f64,
-) -> Lumped {
+) -> LumpedMass {
     let points = retained.iter().map(|i| body.position[*i as usize]);
     let near = Near::of(points, spacing, body.period);
     let widest = 2.0 * extents(body).iter().sum::<f64>();
@@ -59,7 +59,7 @@ pub(super) fn lump<const D: usize>(
                 mass[q as usize] += w * body.volume[p] * body.density[p];
             }
         }
-        Lumped {
+        LumpedMass {
             volume,
             mass,
             lumping,

@@ -4,7 +4,7 @@
 //! D(D+1)/2 unit strains and their pair sums give. Points are sorted by how much of a full family they have.
 
 use crate::crystal::Bond;
-use crate::stiffness::{Stiffness, axes, components};
+use crate::voigt::{Stiffness, axes, components};
 use peridyne::run::{Info, Simulation};
 use std::f64::consts::PI;
 
@@ -106,7 +106,7 @@ impl PatchTest {
 /// Stiffness of every class of points. Takes one pass over the bonds per coefficient: 1, 6 or 21; of atoms one in all.
 ///
 /// Atoms at rest have energy and may be under stress, so that the energy of a strain is no measure of stiffness; theirs is `B`
-/// of [`crate::lattice_elastic`] about the displacements of now, stress against strain with all atoms carried along.
+/// of [`crate::elastic_constants`] about the displacements of now, stress against strain with all atoms carried along.
 pub fn patch_test(sim: &mut dyn Simulation) -> PatchTest {
     let info = sim.info().clone();
     let info = &info;

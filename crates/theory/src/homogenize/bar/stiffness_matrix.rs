@@ -7,7 +7,7 @@ use num_traits::One;
 
 /// The matrix S of `c A S u = −b`; it repeats itself between the ends, so that only distances are stored.
 #[derive(Debug, Clone)]
-pub struct Stiffness<F> {
+pub struct StiffnessMatrix<F> {
     points: usize,
     /// Between points that are no ends, by distance from 1.
     pub(super) inner: Vec<F>,
@@ -17,7 +17,7 @@ pub struct Stiffness<F> {
     pub(super) to_end: Vec<F>,
 }
 
-impl<F: Field> Stiffness<F> {
+impl<F: Field> StiffnessMatrix<F> {
     /// With any m−1 factors; N ≥ 2m+1.
     pub(super) fn new(m: usize, points: usize, ends: Ends, factors: &[F]) -> Self {
         let half = F::ratio(1, 2);
@@ -35,7 +35,7 @@ impl<F: Field> Stiffness<F> {
                 *s = s.clone() * half.clone();
             }
         }
-        Stiffness {
+        StiffnessMatrix {
             points,
             inner,
             of_end,
@@ -103,7 +103,7 @@ impl<F: Field> Stiffness<F> {
     }
 }
 
-impl Stiffness<f64> {
+impl StiffnessMatrix<f64> {
     /// `S u`, fast.
     pub fn apply(&self, u: &[f64], out: &mut [f64]) {
         let (m, n) = (self.m(), self.points);

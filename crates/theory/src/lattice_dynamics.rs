@@ -1,18 +1,18 @@
-//! Everything that the linear model of a lattice says, for reports: waves along the path of the Brillouin zone and along
+//! Lattice dynamics: what the linear model of a lattice says, for reports: waves along the path of the Brillouin zone and along
 //! symmetry directions, stability, elastic constants, gradient coefficients. Per volume of the three-dimensional body.
 
-use crate::asked::asked;
 use crate::crystal::{Crystal, LatticeSolid, Reference};
 use crate::dispersion::verlet_frequency;
 use crate::dispersion::zone::{SpecialPoint, path, special_points};
+use crate::elastic_constants::continuum;
 use crate::exact::{Field, Q};
 use crate::gradient::fractions::fractions;
 use crate::gradient::linear::LinearChain;
 use crate::gradient::{Expansion, nonlinear};
-use crate::lattice_elastic::continuum;
+use crate::nominal::nominal_moduli;
 use crate::stability::Limit;
-use crate::stiffness::Stiffness;
 use crate::upscale::{UpscaleError, crystal, lattice};
+use crate::voigt::Stiffness;
 use peridyne::law::micromodulus::Moments;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{Moduli, Spec};
@@ -87,8 +87,9 @@ pub struct Growing {
     pub rate: f64,
 }
 
+/// What [`lattice_dynamics`] finds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Survey {
+pub struct LatticeDynamics {
     pub dimension: usize,
     pub kind: LatticeKind,
     pub spacing: f64,
@@ -113,7 +114,8 @@ pub struct Survey {
     pub relaxed: bool,
     /// Stress against strain, under pressure.
     pub stress_strain: Option<Stiffness>,
-    pub asked: Option<Moduli>,
+    /// What the law is made for.
+    pub nominal: Option<Moduli>,
     pub continuum: Option<Stiffness>,
     pub pressure: f64,
     /// Largest net force on a site.
@@ -134,18 +136,26 @@ pub const STRETCHES: [f64; 3] = [0.98, 1.0, 1.02];
 pub const NONLINEAR_TERMS: usize = 3;
 
 /// What waves a lattice spec carries, with steps of `time_step`, and so many gradient coefficients.
-pub fn survey(spec: &Spec, time_step: f64, terms: usize) -> Result<Survey, UpscaleError> {
+pub fn lattice_dynamics(
+    spec: &Spec,
+    time_step: f64,
+    terms: usize,
+) -> Result<LatticeDynamics, UpscaleError> {
     if spec.materials.len() != 1 {
         return Err(UpscaleError::SeveralMaterials);
     }
     match spec.dimension {
-        1 => survey_in::<1>(spec, time_step, terms),
-        2 => survey_in::<2>(spec, time_step, terms),
-        _ => survey_in::<3>(spec, time_step, terms),
+        1 => dynamics_in::<1>(spec, time_step, terms),
+        2 => dynamics_in::<2>(spec, time_step, terms),
+        _ => dynamics_in::<3>(spec, time_step, terms),
     }
 }
 
-fn survey_in<const D: usize>(spec: &Spec, dt: f64, terms: usize) -> Result<Survey, UpscaleError> {
+fn dynamics_in<const D: usize>(
+    spec: &Spec,
+    dt: f64,
+    terms: usize,
+) -> Result<LatticeDynamics, UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
     let (crystal, reference) = crystal::<D>(spec)?;
     let points = special_points(kind);
@@ -163,7 +173,7 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64, terms: usize) -> Result<Surve
         solid.section = section;
         Moments::continuum(D, solid.delta(), section, spec.influence)
     };
-    let asked = asked(&spec.materials[0].law, D, spec.plane, moments);
+    let nominal = nominal_moduli(&spec.materials[0].law, D, spec.plane, moments);
     let instability = crystal.instability(per_axis);
     let mut growing: Vec<Growing> = vec![];
     if let Some(worst) = &instability {
@@ -198,7 +208,7 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64, terms: usize) -> Result<Surve
             })
     };
     let fractions = fractions(spec, terms).filter(same).unwrap_or_default();
-    Ok(Survey {
+    Ok(LatticeDynamics {
         dimension: D,
         kind,
         spacing,
@@ -218,8 +228,8 @@ fn survey_in<const D: usize>(spec: &Spec, dt: f64, terms: usize) -> Result<Surve
         relaxed: relaxed.is_some(),
         stiffness: per_section(relaxed.unwrap_or_else(|| crystal.rigid_elastic_constants())),
         stress_strain: crystal.stress_strain().map(per_section),
-        continuum: asked.map(|m| continuum(D, spec.plane, m)),
-        asked,
+        continuum: nominal.map(|m| continuum(D, spec.plane, m)),
+        nominal,
         pressure: crystal.pressure() / section,
         residual: crystal.residual(),
         nonlinear: match (D, &reference) {
@@ -433,7 +443,8 @@ mod tests {
     #[test]
     fn springs_of_one_neighbour_are_the_textbook_chain() {
         let law = LawSpec::Springs(PmbStiffness::Young(8.0));
-        let found = survey(&spec(LatticeKind::Chain, law.clone(), 1), 0.2, TERMS).unwrap();
+        let found =
+            lattice_dynamics(&spec(LatticeKind::Chain, law.clone(), 1), 0.2, TERMS).unwrap();
         // c = 2, ω_max = 2c/a = 8; at the edge sin(ω Δt/2) = ω Δt/2 of the wave
         assert!((found.sharp - 0.25).abs() < 1e-14);
         let edge = found.path.last().unwrap();
@@ -451,7 +462,7 @@ mod tests {
         assert!((found.continuum.unwrap().c[0][0] - 8.0).abs() < 1e-12);
         assert!(found.growing.is_empty());
         // beyond the limit the shortest waves have no frequency
-        let fast = survey(&spec(LatticeKind::Chain, law, 1), 0.26, TERMS).unwrap();
+        let fast = lattice_dynamics(&spec(LatticeKind::Chain, law, 1), 0.26, TERMS).unwrap();
         assert_eq!(fast.path.last().unwrap().branches[0].verlet, None);
         assert!(fast.path[1].branches[0].verlet.is_some());
     }
@@ -475,7 +486,7 @@ mod tests {
             young: 3.0,
             poisson: 0.3,
         });
-        let found = survey(&spec(LatticeKind::Square, law, 3), 0.01, TERMS).unwrap();
+        let found = lattice_dynamics(&spec(LatticeKind::Square, law, 3), 0.01, TERMS).unwrap();
         let names: Vec<&str> = found.directions.iter().map(|d| d.name.as_str()).collect();
         assert_eq!(names, ["Γ–X", "Γ–M"]);
         assert!(found.bound <= found.sharp * (1.0 + 1e-9));

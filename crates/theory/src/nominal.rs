@@ -1,4 +1,4 @@
-//! The moduli that a law asks for, as the solid would have them.
+//! Nominal moduli: those that a law is made for, as the solid would have them.
 
 use peridyne::law::micromodulus::Moments;
 use peridyne::spec::{LawSpec, Moduli, Plane, PmbStiffness};
@@ -7,7 +7,12 @@ use peridyne::spec::{LawSpec, Moduli, Plane, PmbStiffness};
 /// `dimension` dimensions; `None` where it stands for none. In 1-D Poisson's ratio is NaN.
 ///
 /// A micromodulus is read with the sums of a full ball, `moments`.
-pub fn asked(law: &LawSpec, dimension: usize, plane: Plane, moments: Moments) -> Option<Moduli> {
+pub fn nominal_moduli(
+    law: &LawSpec,
+    dimension: usize,
+    plane: Plane,
+    moments: Moments,
+) -> Option<Moduli> {
     let d = dimension as f64;
     let bond_based = |young: f64| Moduli {
         young,
@@ -76,9 +81,10 @@ mod tests {
                 let moments = Moments::continuum(d, 0.3, 1.0, Influence::Constant);
                 for stiffness in [PmbStiffness::Young(7.0), PmbStiffness::Bulk(5.0)] {
                     let c = micromodulus(d, plane, stiffness, moments);
-                    let direct = asked(&LawSpec::Pmb(stiffness), d, plane, moments).unwrap();
+                    let direct =
+                        nominal_moduli(&LawSpec::Pmb(stiffness), d, plane, moments).unwrap();
                     let law = LawSpec::Pmb(PmbStiffness::Micromodulus(c));
-                    let by_c = asked(&law, d, plane, moments).unwrap();
+                    let by_c = nominal_moduli(&law, d, plane, moments).unwrap();
                     assert!((direct.young / by_c.young - 1.0).abs() < 1e-13);
                 }
             }

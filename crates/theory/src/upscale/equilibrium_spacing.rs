@@ -8,7 +8,7 @@ use peridyne::spec::{Form, PotentialSpec, Spec};
 
 /// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
 /// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
-pub fn rest_spacing(spec: &Spec) -> Option<f64> {
+pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
     struct At {
         kind: LatticeKind,
         reach: Reach,
@@ -129,12 +129,12 @@ mod tests {
             sigma: 2.0,
         });
         // lattice sums of the endless fcc crystal: nearest distance 1.0902 σ (2 Z12/Z6)^(1/6)
-        let a = rest_spacing(&spec(LatticeKind::Fcc, lj.clone(), 16.0)).unwrap();
+        let a = equilibrium_spacing(&spec(LatticeKind::Fcc, lj.clone(), 16.0)).unwrap();
         assert!((a / (2.0 * 1.0902 * 2f64.sqrt()) - 1.0).abs() < 2e-3, "{a}");
         let mut chain = spec(LatticeKind::Chain, lj, f64::INFINITY);
         chain.family = FamilyChoice::Stencil;
         chain.horizon = Horizon::Ratio(1);
-        let a = rest_spacing(&chain).unwrap();
+        let a = equilibrium_spacing(&chain).unwrap();
         assert!(
             (a / (2.0 * 2f64.powf(1.0 / 6.0)) - 1.0).abs() < 1e-12,
             "{a}"
@@ -150,9 +150,12 @@ mod tests {
                 dispersion,
             })
         };
-        let a = rest_spacing(&spec(LatticeKind::Fcc, form(50.0), 9.0)).unwrap();
+        let a = equilibrium_spacing(&spec(LatticeKind::Fcc, form(50.0), 9.0)).unwrap();
         assert!((2.0..6.0).contains(&a), "{a}");
         // repulsion alone
-        assert_eq!(rest_spacing(&spec(LatticeKind::Fcc, form(0.0), 9.0)), None);
+        assert_eq!(
+            equilibrium_spacing(&spec(LatticeKind::Fcc, form(0.0), 9.0)),
+            None
+        );
     }
 }
