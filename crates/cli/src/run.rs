@@ -154,8 +154,9 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     {
         None => Ok(()),
         Some((bytes, (key, what))) => {
-            let error = BuildError::new(
+            let error = BuildError::too_large(
                 key,
+                (bytes, Some(free)),
                 format!(
                     "{steps} steps would write about {} of {what}; the disk has {} left",
                     size(bytes),

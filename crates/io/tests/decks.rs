@@ -1,5 +1,6 @@
 //! Every deck of the repository: the good ones are understood, the bad ones say what their first line expects.
 
+use peridyne::error::BuildErrorKind;
 use peridyne::run::{Options, build};
 use peridyne_io::deck::Deck;
 use std::path::{Path, PathBuf};
@@ -105,6 +106,38 @@ fn decks_that_fail_in_the_build_say_what_is_wrong_and_where() {
         }
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// A program need not read the message.
+#[test]
+fn decks_that_fail_in_the_build_fail_by_a_kind() {
+    use BuildErrorKind::*;
+    let unknown = |name: &str| Unknown { name: name.into() };
+    let expected = [
+        ("crack_without_length", Invalid),
+        ("gamma_below_a_half", Invalid),
+        ("implicit_without_a_step", Missing),
+        ("points_without_material", Missing),
+        ("probe_of_unknown_field", unknown("strian")),
+        ("unknown_field_to_write", unknown("damge")),
+        ("conditions_disagree", Conflict),
+        ("period_below_horizon", Conflict),
+        ("friction_in_statics", Unsupported),
+        ("springs_on_a_cloud", Unsupported),
+        ("empty_region", Empty),
+        ("cloud_too_thin_for_its_horizon", Empty),
+        ("too_many_sites", TooMany),
+        ("plate_not_held", IllPosed),
+        ("density_of_electrons_negative", IllPosed),
+    ];
+    let decks = decks("bad/build");
+    for (name, kind) in expected {
+        let named = |d: &&(PathBuf, String)| d.0.file_stem().is_some_and(|n| n == name);
+        let (path, text) = decks.iter().find(named).unwrap();
+        let deck = Deck::parse(text, path.to_str().unwrap(), &[]).unwrap();
+        let error = build(&deck.spec, Options::default()).err().unwrap();
+        assert_eq!(error.kind, kind, "{name}: {error}");
+    }
 }
 
 /// Each point has the density of the file, unless the materials have one.

@@ -20,7 +20,7 @@ impl<const D: usize> Body<D> {
     ) -> Result<Self, BuildError> {
         let basis = lattice.kind.basis();
         if quarters.is_empty() {
-            return Err(BuildError::new("body", "the body has no points"));
+            return Err(BuildError::empty("body", "the body has no points"));
         }
         let mut low = [i32::MAX; D];
         let mut high = [i32::MIN; D];
@@ -34,7 +34,7 @@ impl<const D: usize> Body<D> {
         let extent: [usize; D] = std::array::from_fn(|a| (high[a] - low[a] + 1) as usize);
         for a in 0..D {
             if periodic[a] && extent[a] < reach {
-                return Err(BuildError::new(
+                return Err(BuildError::conflict(
                     "periodic",
                     format!(
                         "the period along {} is {} cells, shorter than the horizon of {reach}",
@@ -61,7 +61,7 @@ impl<const D: usize> Body<D> {
         let span = grid.shift([reach as i64; D], 0).unsigned_abs() as usize;
         grid.guard = span.div_ceil(TILE) * TILE + TILE;
         if grid.slots() > u32::MAX as usize {
-            return Err(BuildError::new(
+            return Err(BuildError::too_many(
                 "body",
                 format!("{} lattice slots are more than 2³² − 1", grid.slots()),
             ));
@@ -73,7 +73,7 @@ impl<const D: usize> Body<D> {
             let rest: [i32; 3] =
                 std::array::from_fn(|a| if a < D { q[a].rem_euclid(4) } else { 0 });
             let Some(b) = basis.iter().position(|s| *s == rest) else {
-                return Err(BuildError::new(
+                return Err(BuildError::invalid(
                     "body",
                     format!("{q:?} quarters is not a site of the lattice"),
                 ));
@@ -81,7 +81,7 @@ impl<const D: usize> Body<D> {
             let slot = grid.slot(cell, b).expect("the box was made of these sites");
             let i = slot - grid.guard;
             if grid.owned[i / TILE] >> (i % TILE) & 1 == 1 {
-                return Err(BuildError::new(
+                return Err(BuildError::conflict(
                     "body",
                     format!("two points on one lattice site {q:?}"),
                 ));
@@ -126,13 +126,13 @@ impl<const D: usize> Body<D> {
     ) -> Result<Self, BuildError> {
         let n = position.len();
         if n == 0 {
-            return Err(BuildError::new("body", "the body has no points"));
+            return Err(BuildError::empty("body", "the body has no points"));
         }
         if let Some(i) = position
             .iter()
             .position(|x| x[..D].iter().any(|c| !c.is_finite()))
         {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 "body",
                 format!(
                     "the position of point {} is not finite: {:?}",
@@ -142,7 +142,7 @@ impl<const D: usize> Body<D> {
             ));
         }
         if let Some(i) = volume.iter().position(|v| !(*v > 0.0 && v.is_finite())) {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 "body",
                 format!(
                     "the volume of point {} is {}, expected a positive number",

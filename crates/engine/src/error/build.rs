@@ -1,9 +1,34 @@
 //! What cannot be built.
 
-/// A specification that cannot be built.
+/// What a program can tell apart of the ways in which a specification cannot be built.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BuildErrorKind {
+    /// A value that can never be: beyond its bounds, not finite, not of the shape that is needed.
+    Invalid,
+    /// What must be said is not.
+    Missing,
+    /// Nothing is called so.
+    Unknown { name: String },
+    /// Entries that could each be, and not together.
+    Conflict,
+    /// What has a meaning, and the engine does not have: laws, families, integrators, conditions that do not go together, or what this machine
+    /// lacks.
+    Unsupported,
+    /// Nothing is left: no points, no bonds.
+    Empty,
+    /// More than can be counted.
+    TooMany,
+    /// More bytes of memory, or on the disk, than are left (`None`: the system does not say).
+    TooLarge { needed: f64, left: Option<f64> },
+    /// Mechanics without an answer: a body that nothing holds, or whose energy has no meaning.
+    IllPosed,
+}
+
+/// A specification that cannot be built: `kind`, `path` and `help` for programs, `message` for readers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct BuildError {
+    pub kind: BuildErrorKind,
     /// Dotted path of the offending entry in the spec (`"body.region"`), empty when it is not one entry.
     pub path: String,
     /// What is wrong and what was expected.
@@ -12,16 +37,59 @@ pub struct BuildError {
     pub help: Option<String>,
 }
 
+/// One constructor for each kind.
 impl BuildError {
-    pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
+    fn of(kind: BuildErrorKind, path: impl Into<String>, message: impl Into<String>) -> Self {
         BuildError {
+            kind,
             path: path.into(),
             message: message.into(),
             help: None,
         }
     }
+    pub fn invalid(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::Invalid, path, message)
+    }
+    pub fn missing(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::Missing, path, message)
+    }
+    /// Nothing is called `name`.
+    pub fn unknown(
+        path: impl Into<String>,
+        name: impl Into<String>,
+        message: impl Into<String>,
+    ) -> Self {
+        Self::of(BuildErrorKind::Unknown { name: name.into() }, path, message)
+    }
+    pub fn conflict(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::Conflict, path, message)
+    }
+    pub fn unsupported(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::Unsupported, path, message)
+    }
+    pub fn empty(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::Empty, path, message)
+    }
+    pub fn too_many(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::TooMany, path, message)
+    }
+    pub fn too_large(
+        path: impl Into<String>,
+        (needed, left): (f64, Option<f64>),
+        message: impl Into<String>,
+    ) -> Self {
+        Self::of(BuildErrorKind::TooLarge { needed, left }, path, message)
+    }
+    pub fn ill_posed(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::of(BuildErrorKind::IllPosed, path, message)
+    }
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
+        self
+    }
+    /// The same of another entry.
+    pub fn at(mut self, path: impl Into<String>) -> Self {
+        self.path = path.into();
         self
     }
 }

@@ -4,7 +4,7 @@ mod build;
 mod run;
 mod solve;
 
-pub use build::BuildError;
+pub use build::{BuildError, BuildErrorKind};
 pub use run::RunError;
 pub use solve::{Loose, SolveError};
 

@@ -17,8 +17,9 @@ pub fn available() -> Option<f64> {
 /// It does not fit into what is left.
 pub fn afford(path: &str, what: &str, bytes: f64, help: &str) -> Result<(), BuildError> {
     match available() {
-        Some(left) if bytes > left => Err(BuildError::new(
+        Some(left) if bytes > left => Err(BuildError::too_large(
             path,
+            (bytes, Some(left)),
             format!(
                 "{what} would take about {}; this machine has {} left",
                 size(bytes),
@@ -90,6 +91,7 @@ fn kibibytes(text: &str, key: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::BuildErrorKind;
 
     #[test]
     fn the_kernel_counts_in_kibibytes() {
@@ -110,5 +112,10 @@ mod tests {
             "{error}"
         );
         assert_eq!(error.help.as_deref(), Some("take less"));
+        let needed = match error.kind {
+            BuildErrorKind::TooLarge { needed, .. } => needed,
+            kind => panic!("{kind:?}"),
+        };
+        assert_eq!(needed, 1e18);
     }
 }

@@ -50,21 +50,21 @@ impl HorizonList {
         of: impl Fn(usize, usize) -> f64 + Sync,
     ) -> Result<Self, BuildError> {
         let Layout::Cloud(x) = &body.layout else {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "family",
                 "a horizon list needs a cloud of points, not a lattice body",
             )
             .help("convert the body with `to_cloud`"));
         };
         if !(horizon > 0.0 && horizon.is_finite()) {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 "horizon",
                 format!("the horizon is {horizon}, expected a positive length"),
             ));
         }
         for (a, period) in body.period.iter().enumerate() {
             if let Some(p) = period.filter(|p| *p <= 2.0 * horizon) {
-                return Err(BuildError::new(
+                return Err(BuildError::conflict(
                     "periodic",
                     format!(
                         "the period along {} is {p:e}, not more than two horizons of {horizon:e}: a point would meet \
@@ -77,7 +77,7 @@ impl HorizonList {
         }
         // vector gathers count numbers of four-number records with 31 bits
         if body.len >= 1 << 29 {
-            return Err(BuildError::new(
+            return Err(BuildError::too_many(
                 "body",
                 format!("{} points are too many for a list (2²⁹)", body.len),
             ));
@@ -253,7 +253,7 @@ fn count<const D: usize>(
             };
             let (a, b) = (id(i).min(id(j)), id(i).max(id(j)));
             let p = body.position(i);
-            Err(BuildError::new(
+            Err(BuildError::conflict(
                 "body",
                 format!(
                     "points {a} and {b} are in one place, ({:e}, {:e}, {:e})",

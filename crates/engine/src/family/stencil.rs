@@ -139,7 +139,7 @@ pub(crate) fn too_many(bonds: f64, horizon: Horizon, spacings: f64) -> BuildErro
              three to six spacings are usual"
         ),
     };
-    BuildError::new(
+    BuildError::too_many(
         "horizon",
         format!("{bonds:.4e} bonds per point are too many: at most {MOST}"),
     )

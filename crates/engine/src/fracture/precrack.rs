@@ -50,7 +50,7 @@ impl<const D: usize> Crack<D> {
     /// radius of zero, a polygon with fewer than three corners, without area, or not flat (to 1e-6 of its size). A
     /// polygon that crosses itself is cracked where a ray from outside enters an odd number of times.
     pub fn new(shape: &CrackShape, period: [Option<f64>; D]) -> Result<Self, BuildError> {
-        let fail = |message: String| Err(BuildError::new("precracks", message));
+        let fail = |message: String| Err(BuildError::invalid("precracks", message));
         let numbers: Vec<f64> = match shape {
             CrackShape::Segment { from, to } => [*from, *to].concat(),
             CrackShape::Disk {
@@ -83,7 +83,7 @@ impl<const D: usize> Crack<D> {
                 "a segment",
                 "a segment (extruded along z), a disk or a polygon",
             ];
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 "precracks",
                 format!("a {name} cannot crack a body in {D} dimensions"),
             )

@@ -455,7 +455,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
         _body: &Body<D>,
         _factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) -> Result<(), BuildError> {
-        Err(BuildError::new(
+        Err(BuildError::unsupported(
             "bonds",
             "factors of bonds need a solid (pmb, lps) or springs on a lattice",
         ))

@@ -16,7 +16,7 @@ pub(super) fn check_box(
 ) -> Result<(), BuildError> {
     let cutoff = potential.cut_off();
     if !(cutoff > 0.0 && cutoff.is_finite()) {
-        return Err(BuildError::new(
+        return Err(BuildError::missing(
             "potential.cutoff",
             format!("the potential has no cut-off ({cutoff})"),
         )
@@ -26,7 +26,7 @@ pub(super) fn check_box(
         if let Some(p) = p
             && cutoff > 0.5 * p * (1.0 + 1e-12)
         {
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 "potential.cutoff",
                 format!(
                     "the cut-off {cutoff:.6e} is beyond half the period {p:.6e} along {axis}: an atom would see another twice"
@@ -58,7 +58,7 @@ pub(super) fn crystal(
     let stencil = Stencil::new(kind, spacing, horizon);
     let found = bulk(potential, &stencil, spacing, volume);
     if found.density <= found.least_density {
-        return Err(BuildError::new(
+        return Err(BuildError::ill_posed(
             "potential",
             format!(
                 "the electron density of the perfect {} lattice of spacing {spacing:e} is {:.6e}: the embedding energy has no meaning there, its logarithm needs a positive density",

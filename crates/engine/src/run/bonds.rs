@@ -20,7 +20,7 @@ pub(super) fn scale<const D: usize>(
     let mut warnings = vec![];
     let solid = |m: &MaterialSpec| Solid::of_law(D, spec.plane, &m.law).is_some();
     if !spec.bonds.is_empty() && spec.materials.iter().any(solid) {
-        return Err(BuildError::new(
+        return Err(BuildError::unsupported(
             "bonds[0]",
             "factors of bonds need a bond-based law: in a state-based one a bond also acts through the pressure of its ends",
         )
@@ -28,10 +28,7 @@ pub(super) fn scale<const D: usize>(
     }
     for (n, factor) in spec.bonds.iter().enumerate() {
         let path = format!("bonds[{n}]");
-        let named = |e: BuildError| BuildError {
-            path: path.clone(),
-            ..e
-        };
+        let named = |e: BuildError| e.at(path.clone());
         match factor {
             BondFactorSpec::Field(field) => {
                 let mut at = vec![1.0; body.len];
@@ -44,7 +41,7 @@ pub(super) fn scale<const D: usize>(
                             field.source(),
                             &x[..D]
                         );
-                        return Err(BuildError::new(path, message)
+                        return Err(BuildError::invalid(path, message)
                             .help("exp(…) and max(…, 0) are never negative"));
                     }
                     at[s as usize] = value;
@@ -58,7 +55,7 @@ pub(super) fn scale<const D: usize>(
                 if !(*factor >= 0.0 && factor.is_finite()) {
                     let message =
                         format!("the factor is {factor}, expected 0 or a positive number");
-                    return Err(BuildError::new(path, message));
+                    return Err(BuildError::invalid(path, message));
                 }
                 let found = Cell::new(false);
                 let scaled = |i: usize, j: usize, _| {

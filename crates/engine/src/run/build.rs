@@ -54,7 +54,7 @@ pub fn build_with(
     shelf: &Shelf,
 ) -> Result<Box<dyn Simulation>, BuildError> {
     if !spec.pairs.is_empty() && spec.schedule.stepper != Stepper::Verlet {
-        return Err(BuildError::new(
+        return Err(BuildError::unsupported(
             "pairs",
             "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
         ));
@@ -62,7 +62,7 @@ pub fn build_with(
     if let Some(simd) = options.simd
         && !Simd::available().contains(&simd)
     {
-        return Err(BuildError::new(
+        return Err(BuildError::unsupported(
             "simd",
             format!("this machine has no {}", simd.name()),
         ));
@@ -71,7 +71,7 @@ pub fn build_with(
         1 => Ok(Box::new(build_in::<1>(spec, options, shelf)?)),
         2 => Ok(Box::new(build_in::<2>(spec, options, shelf)?)),
         3 => Ok(Box::new(build_in::<3>(spec, options, shelf)?)),
-        d => Err(BuildError::new(
+        d => Err(BuildError::invalid(
             "dimension",
             format!("{d} dimensions; expected 1, 2 or 3"),
         )),
@@ -136,7 +136,7 @@ fn consistent(spec: &Spec) -> Result<(), BuildError> {
             | LawSpec::Springs(_)
             | LawSpec::Named(_) => Ok(()),
         };
-        fits.map_err(|message| BuildError::new(format!("materials[{n}].law"), message))?;
+        fits.map_err(|message| BuildError::invalid(format!("materials[{n}].law"), message))?;
     }
     Ok(())
 }
@@ -225,10 +225,8 @@ pub fn build_in<const D: usize>(
             .enumerate()
             .filter(|(_, c)| c.kind == kind)
         {
-            let shape = Crack::new(&crack.shape, body.period).map_err(|e| BuildError {
-                path: format!("precracks[{n}]"),
-                ..e
-            })?;
+            let shape = Crack::new(&crack.shape, body.period)
+                .map_err(|e| e.at(format!("precracks[{n}]")))?;
             let count = interaction.cut(&body, kind, &|from, to| shape.crosses(&from, &to));
             if count == 0 {
                 warnings.push(format!("pre-crack {} cuts no bond", n + 1));
@@ -253,7 +251,7 @@ pub fn build_in<const D: usize>(
     let directed_bonds = interaction.directed_bonds();
     let bonded = parts.iter().any(|p| p.bonded);
     if directed_bonds == 0 && body.points() > 1 && bonded && body.points() > body.pieces().len() {
-        return Err(BuildError::new(
+        return Err(BuildError::empty(
             "horizon",
             format!(
                 "no two of the {} points are within the horizon {horizon:e}",
@@ -290,7 +288,7 @@ pub fn build_in<const D: usize>(
         Stepper::Newmark(_) => false,
     };
     if !explicit && spec.schedule.time_step == TimeStep::Auto {
-        return Err(BuildError::new(
+        return Err(BuildError::missing(
             "schedule.time_step",
             "an implicit step is stable at any length: how long it is must be said",
         )
@@ -305,14 +303,14 @@ pub fn build_in<const D: usize>(
     let dt = match (spec.schedule.time_step, fraction) {
         (_, Some(x)) if stable_step.is_finite() => x * stable_step,
         (TimeStep::Fraction(_) | TimeStep::Auto, _) if body.points() == 1 => {
-            return Err(BuildError::new(
+            return Err(BuildError::empty(
                 "body",
                 "the body has one point, and a point alone has no bonds: no stable step can be derived",
             )
             .help("a larger region or a smaller spacing, or time_step as a number"));
         }
         (TimeStep::Fraction(_) | TimeStep::Auto, _) => {
-            return Err(BuildError::new(
+            return Err(BuildError::ill_posed(
                 "schedule.time_step",
                 "nothing resists: no stable step can be derived",
             )
@@ -321,7 +319,7 @@ pub fn build_in<const D: usize>(
         (TimeStep::Fixed(dt), _) => dt,
     };
     if !(dt > 0.0 && dt.is_finite()) {
-        return Err(BuildError::new(
+        return Err(BuildError::invalid(
             "schedule.time_step",
             format!("the time step is {dt}, expected a positive number"),
         ));
@@ -347,7 +345,7 @@ pub fn build_in<const D: usize>(
         let message =
             format!("the time step {dt:.4e} is above the stability limit {limit:.4e} of this body");
         if !spec.schedule.force_unstable {
-            return Err(BuildError::new("schedule.time_step", message)
+            return Err(BuildError::invalid("schedule.time_step", message)
                 .help(format!("write time_step = {:.3e} or \"auto\"; force_unstable = true under [run] runs it all the same", 0.8 * stable_step)));
         }
         warnings.push(message);
@@ -489,7 +487,7 @@ fn bind<const D: usize>(
                 "interface `{}` joins two of several bodies, and there is one",
                 interface.name
             );
-            return Err(BuildError::new("interface[0].bodies", message)
+            return Err(BuildError::conflict("interface[0].bodies", message)
                 .help("write [[body]] for each of the two"));
         }
         let model = parts[0].constitutive(body, shelf, simd, warnings)?;
@@ -544,29 +542,23 @@ fn friction<const D: usize>(
     let Some(coefficient) = spec.contact.as_ref().map(|c| c.friction) else {
         return Ok(None);
     };
-    let refused = |message: String, help: &str| {
-        Err(BuildError::new("contact.friction", message).help(help.to_string()))
-    };
+    let path = "contact.friction";
     if !(coefficient >= 0.0 && coefficient.is_finite()) {
-        return refused(
-            format!("the friction coefficient is {coefficient}, expected a number from 0 on"),
-            "0.3 is usual",
-        );
+        let message =
+            format!("the friction coefficient is {coefficient}, expected a number from 0 on");
+        return Err(BuildError::invalid(path, message).help("0.3 is usual"));
     }
     if coefficient == 0.0 {
         return Ok(None);
     }
     if D == 1 {
-        return refused(
-            "points on a line have nothing to rub along".into(),
-            "leave friction out",
-        );
+        let message = "points on a line have nothing to rub along";
+        return Err(BuildError::unsupported(path, message).help("leave friction out"));
     }
     if spec.schedule.statics().is_some() {
-        return refused(
-            "friction follows velocities, which equilibrium does not have".into(),
-            "leave friction out, or take [run] instead of [statics]",
-        );
+        let message = "friction follows velocities, which equilibrium does not have";
+        return Err(BuildError::unsupported(path, message)
+            .help("leave friction out, or take [run] instead of [statics]"));
     }
     Ok(Some(Friction::new(coefficient, body)))
 }

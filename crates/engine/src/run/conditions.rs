@@ -35,14 +35,20 @@ impl<const D: usize> Model<D> {
         let members: Vec<u32> = match (set, named) {
             ("all", _) => (0..carriers.points() as u32).collect(),
             (_, Some((_, members))) => members.clone(),
-            (_, None) => return Err(BuildError::new("", format!("there is no set `{set}`"))),
+            (_, None) => {
+                return Err(BuildError::unknown(
+                    "",
+                    set,
+                    format!("there is no set `{set}`"),
+                ));
+            }
         };
         let lost = members
             .iter()
             .filter(|p| !carriers.carries(**p as usize))
             .count();
         if lost > 0 || members.is_empty() {
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 "",
                 format!(
                     "{lost} of {} points of `{set}` carry no load: the body was condensed for other loads",
@@ -71,24 +77,20 @@ impl<const D: usize> Model<D> {
     ) -> Result<(Vec<Load<D>>, Vec<Constraint<D>>), BuildError> {
         let (mut loads, mut constraints) = (vec![], vec![]);
         for (n, c) in conditions.iter().enumerate() {
-            let (slots, points) = self.slots_of(&c.set, sets).map_err(|e| BuildError {
-                path: format!("conditions[{n}].set"),
-                ..e
-            })?;
+            let (slots, points) = self
+                .slots_of(&c.set, sets)
+                .map_err(|e| e.at(format!("conditions[{n}].set")))?;
             let load = |kind| Load::new(kind, slots.clone(), points.clone());
             if let Some(carriers) = &self.carriers
                 && let Some((value, area)) = density(&c.kind)
             {
                 let made = self.condensed(carriers, &c.set, value, area);
-                loads.push(made.map_err(|e| BuildError {
-                    path: format!("conditions[{n}]"),
-                    ..e
-                })?);
+                loads.push(made.map_err(|e| e.at(format!("conditions[{n}]")))?);
                 continue;
             }
             // groups of scripts may be empty
             if slots.is_empty() && self.carriers.is_some() {
-                return Err(BuildError::new(
+                return Err(BuildError::empty(
                     format!("conditions[{n}].set"),
                     format!("no point of `{}` was retained", c.set),
                 )
@@ -183,7 +185,7 @@ impl<const D: usize> Model<D> {
                             conditions[m].set,
                             &x[..D]
                         );
-                        return Err(BuildError::new(format!("conditions[{m}]"), message).help(
+                        return Err(BuildError::conflict(format!("conditions[{m}]"), message).help(
                             "make their sets disjoint, or leave this component out of one of them",
                         ));
                     }

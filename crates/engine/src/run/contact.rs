@@ -71,7 +71,7 @@ pub(super) fn repulsion<const D: usize>(
     if !body.pieces().is_empty() {
         for (a, period) in body.period.iter().enumerate() {
             if let Some(p) = period.filter(|p| *p <= 3.0 * longest) {
-                return Err(BuildError::new(
+                return Err(BuildError::conflict(
                     "periodic",
                     format!(
                         "the period along {} is {p:e}, not more than three ranges of contact of {longest:e}: a point would meet its own image",

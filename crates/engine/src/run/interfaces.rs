@@ -41,7 +41,7 @@ pub(super) fn interfaces<const D: usize>(
             .iter()
             .any(|m| m.bodies == [a, b] || m.bodies == [b, a])
         {
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 format!("interface[{n}].bodies"),
                 format!(
                     "two interfaces join `{}` and `{}`",
@@ -66,8 +66,9 @@ fn join<const D: usize>(
     let mut bodies = [0; 2];
     for (place, name) in bodies.iter_mut().zip(&written.bodies) {
         let Some(found) = pieces.iter().position(|p| p.name == *name) else {
-            return Err(BuildError::new(
+            return Err(BuildError::unknown(
                 "bodies",
+                name,
                 format!("there is no body `{name}`"),
             ));
         };
@@ -75,11 +76,11 @@ fn join<const D: usize>(
     }
     if bodies[0] == bodies[1] {
         return Err(
-            BuildError::new("bodies", "it joins a body with itself").help("name two bodies")
+            BuildError::invalid("bodies", "it joins a body with itself").help("name two bodies")
         );
     }
     if !spec.bonds.is_empty() {
-        return Err(BuildError::new(
+        return Err(BuildError::unsupported(
             "",
             "factors of bonds do not reach the bonds of an interface",
         )
@@ -125,7 +126,7 @@ fn join<const D: usize>(
         ConstitutiveModel::new::<D>(&own, None, full.horizon, spacing, moments, shelf, simd)?;
     let slots = near(all, bodies, model.reach());
     if slots.is_empty() {
-        return Err(BuildError::new(
+        return Err(BuildError::empty(
             "horizon",
             format!(
                 "no point of `{}` is within its horizon {:e} of `{}`",

@@ -142,7 +142,11 @@ impl<const D: usize> Model<D> {
             self.body.slots.clone()
         } else {
             let Some((_, ids)) = sets.iter().find(|(n, _)| n == set) else {
-                return Err(BuildError::new("", format!("there is no set `{set}`")));
+                return Err(BuildError::unknown(
+                    "",
+                    set,
+                    format!("there is no set `{set}`"),
+                ));
             };
             ids.iter().map(|id| self.body.slots[*id as usize]).collect()
         };

@@ -231,7 +231,7 @@ impl<const D: usize> Model<D> {
         if let Some(observable) = observables::named(name) {
             return match self.lacking(observable) {
                 None => Ok(observable.declaration.clone()),
-                Some(why) => Err(BuildError::new(
+                Some(why) => Err(BuildError::unsupported(
                     path,
                     format!("there is no {name} here: {why}"),
                 )),
@@ -240,7 +240,7 @@ impl<const D: usize> Model<D> {
         let known = self.declared();
         match known.iter().find(|c| c.name == name) {
             Some(column) if column.on == On::Points => Ok(column.clone()),
-            Some(_) => Err(BuildError::new(
+            Some(_) => Err(BuildError::invalid(
                 path,
                 format!("`{name}` is a column of bonds, not of points"),
             )),
@@ -251,7 +251,7 @@ impl<const D: usize> Model<D> {
                     Some(near) => format!("did you mean `{near}`?"),
                     None => format!("known are {}", names.join(", ")),
                 };
-                Err(BuildError::new(path, format!("unknown field `{name}`")).help(help))
+                Err(BuildError::unknown(path, name, format!("unknown field `{name}`")).help(help))
             }
         }
     }

@@ -85,14 +85,14 @@ pub(super) fn parts<'a, const D: usize>(
 /// What several bodies cannot have yet.
 fn several_can(spec: &Spec, pieces: &[PieceSpec]) -> Result<(), BuildError> {
     let refused = |path: &str, message: &str, help: &str| {
-        Err(BuildError::new(path, message.to_string()).help(help))
+        Err(BuildError::unsupported(path, message.to_string()).help(help))
     };
     if pieces.is_empty() {
-        return refused("body", "there are no bodies", "give one");
+        return Err(BuildError::missing("body", "there are no bodies").help("give one"));
     }
     for (n, piece) in pieces.iter().enumerate() {
         if pieces[..n].iter().any(|p| p.name == piece.name) {
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 format!("body[{n}].name"),
                 format!("two bodies are called `{}`", piece.name),
             ));

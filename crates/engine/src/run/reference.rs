@@ -83,7 +83,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                       quarters: &[[i32; 3]],
                       volume: Option<f64>| {
         if kind.dimension() != D {
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 "body.lattice",
                 format!(
                     "a {} lattice has {} dimensions, the run has {D}",
@@ -103,7 +103,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         let volume = volume.unwrap_or(kind.site_volume() * spacing.powi(D as i32) * spec.section);
         let horizon = horizon.length(spacing);
         if horizon < spacing * kind.nearest() {
-            return Err(BuildError::new(
+            return Err(BuildError::conflict(
                 "horizon",
                 format!(
                     "the horizon {horizon:e} is below the distance {:e} of nearest points",
@@ -135,7 +135,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 && given > 0.0
                 && (given - p).abs() > 1e-9 * p
             {
-                return Err(BuildError::new(
+                return Err(BuildError::conflict(
                     "periodic",
                     format!(
                         "the period along {} is {given:e}, the lattice body repeats after {p:e}",
@@ -173,7 +173,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
             perturb,
         } => {
             if !(*spacing > 0.0 && spacing.is_finite()) {
-                return Err(BuildError::new(
+                return Err(BuildError::invalid(
                     "body.spacing",
                     format!("the spacing is {spacing}, expected a positive length"),
                 ));
@@ -205,7 +205,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         } => list_if_asked(on_lattice(*kind, *spacing, *origin, quarters, *volume)?),
         BodySpec::Cloud(cloud) => {
             if spec.family == FamilyChoice::Stencil {
-                return Err(BuildError::new(
+                return Err(BuildError::unsupported(
                     "family",
                     "a stencil needs a lattice body, this is a cloud of points",
                 ));
@@ -228,7 +228,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 horizon: spec.horizon.length(spacing),
             })
         }
-        BodySpec::Several(_) => Err(BuildError::new(
+        BodySpec::Several(_) => Err(BuildError::unsupported(
             "body",
             "several bodies inside one of several bodies",
         )),
@@ -238,7 +238,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
 /// Every site moved by a uniform random vector in ±amplitude per axis.
 fn perturbed<const D: usize>(body: &Body<D>, p: &Perturbation) -> Result<Body<D>, BuildError> {
     if !(p.amplitude >= 0.0 && p.amplitude < 0.5 * body.spacing) {
-        return Err(BuildError::new(
+        return Err(BuildError::invalid(
             "body.perturb",
             format!(
                 "the amplitude {} must be below half the spacing {}",

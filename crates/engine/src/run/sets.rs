@@ -45,7 +45,7 @@ pub(super) fn sets<const D: usize>(
             loaded = points.map(|p| p as u32).collect();
         }
         if ids.is_empty() && loaded.is_empty() {
-            return Err(BuildError::new(
+            return Err(BuildError::empty(
                 format!("sets.{}", set.name),
                 format!("set `{}` has no points", set.name),
             )
@@ -87,8 +87,9 @@ fn member<'a, const D: usize>(
                 BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => None,
             };
             let Some(ids) = named.and_then(|n| body.ids().into_iter().nth(n)) else {
-                return Err(BuildError::new(
+                return Err(BuildError::unknown(
                     format!("sets.{set}"),
+                    name,
                     format!("set `{set}` is of the body `{name}`, which does not exist"),
                 ));
             };
@@ -122,7 +123,7 @@ pub(super) fn assign_materials<const D: usize>(
         return Ok(());
     }
     if materials.len() > u8::MAX as usize {
-        return Err(BuildError::new(
+        return Err(BuildError::too_many(
             "materials",
             format!("{} materials; at most 255", materials.len()),
         ));
@@ -135,8 +136,9 @@ pub(super) fn assign_materials<const D: usize>(
             &all
         } else {
             let Some((_, ids)) = sets.iter().find(|(name, _)| *name == m.set) else {
-                return Err(BuildError::new(
+                return Err(BuildError::unknown(
                     format!("materials[{n}].set"),
+                    &m.set,
                     format!(
                         "material `{}` is on set `{}`, which does not exist",
                         m.name, m.set
@@ -148,7 +150,7 @@ pub(super) fn assign_materials<const D: usize>(
         for &id in ids {
             if let Some(other) = of[id as usize].replace(n as u8) {
                 let x = body.position(body.slots[id as usize] as usize);
-                return Err(BuildError::new(
+                return Err(BuildError::conflict(
                     format!("materials[{n}].set"),
                     format!(
                         "point {} at {x:?} belongs to material `{}` and to material `{}`",
@@ -163,7 +165,7 @@ pub(super) fn assign_materials<const D: usize>(
     }
     if let Some(id) = of.iter().position(Option::is_none) {
         let x = body.position(body.slots[id] as usize);
-        return Err(BuildError::new(
+        return Err(BuildError::missing(
             "materials",
             format!("point {} at {x:?} belongs to no material", id + 1),
         )
@@ -185,14 +187,13 @@ pub(super) fn assign_materials<const D: usize>(
 pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Result<(), BuildError> {
     for (n, init) in spec.initial.iter().enumerate() {
         let sets = std::mem::take(&mut model.sets);
-        let members = model.slots_of(&init.set, &sets).map_err(|e| BuildError {
-            path: format!("initial[{n}].set"),
-            ..e
-        });
+        let members = model
+            .slots_of(&init.set, &sets)
+            .map_err(|e| e.at(format!("initial[{n}].set")));
         model.sets = sets;
         let (slots, points) = members?;
         if slots.is_empty() && model.carriers.is_some() {
-            return Err(BuildError::new(
+            return Err(BuildError::empty(
                 format!("initial[{n}].set"),
                 format!("no point of `{}` was retained", init.set),
             ));
@@ -206,7 +207,7 @@ pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Resu
                 for (s, x) in slots.iter().zip(&points) {
                     let value = e.eval(x, 0.0);
                     if !value.is_finite() {
-                        return Err(BuildError::new(
+                        return Err(BuildError::invalid(
                             format!("initial[{n}]"),
                             format!("`{}` is {value} at {x:?}", e.source()),
                         ));

@@ -21,7 +21,7 @@ pub(super) fn scale<const D: usize>(
         && surface.row.iter().all(|r| (*r as usize) < rows)
         && surface.part.iter().all(|p| *p > 0.0 && *p <= 1.0);
     let (true, Layout::Grid(_), Some(cell)) = (fits, &body.layout, body.volume.uniform()) else {
-        return Err(BuildError::new(
+        return Err(BuildError::conflict(
             "surface",
             format!(
                 "the factors of bonds are for {} points of {rows} kinds on a lattice, and do not fit this body of {points} points",
@@ -61,10 +61,7 @@ pub(super) fn scale<const D: usize>(
                 other: beyond * other / part,
             }
         })
-        .map_err(|e| BuildError {
-            path: "surface".into(),
-            ..e
-        })?;
+        .map_err(|e| e.at("surface"))?;
     if surface.part.iter().any(|p| *p != 1.0) {
         let mut volume = vec![0.0; body.len];
         for (slot, r) in body.slots.iter().zip(&surface.row) {

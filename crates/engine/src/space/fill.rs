@@ -46,7 +46,7 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
     for a in 0..dimension {
         let axis = AXES[a];
         if !(low[a].is_finite() && high[a].is_finite()) && low[a] <= high[a] {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 "body.region",
                 format!("the body has no end along {axis}"),
             )
@@ -56,7 +56,7 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
         // one cell of margin: membership decides, and it rounds
         let (from, to) = (cell(low[a]).floor() - 1.0, cell(high[a]).ceil() + 1.0);
         if low[a] <= high[a] && !(from > -5e8 && to < 5e8) {
-            return Err(BuildError::new(
+            return Err(BuildError::too_many(
                 "body.spacing",
                 format!("the body spans more than 5e8 lattice cells along {axis}"),
             )
@@ -67,7 +67,7 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
     }
     let basis = lattice.kind.basis();
     if cells > f64::from(u32::MAX) {
-        return Err(BuildError::new(
+        return Err(BuildError::too_many(
             "body.spacing",
             format!("the region spans {cells:.3e} lattice cells"),
         )
@@ -106,8 +106,12 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
     quarters
         .try_reserve_exact(cells as usize * basis.len())
         .map_err(|_| {
-            BuildError::new(
+            BuildError::too_large(
                 "body.spacing",
+                (
+                    (cells as usize * basis.len() * size_of::<[i32; 3]>()) as f64,
+                    memory::available(),
+                ),
                 format!("no memory for the sites of {cells:.3e} lattice cells"),
             )
         })?;
@@ -138,7 +142,7 @@ fn empty(lattice: &Lattice, low: Point, high: Point) -> BuildError {
     let dimension = lattice.kind.dimension();
     let kind = lattice.kind.name();
     let error = |extent: String| {
-        BuildError::new(
+        BuildError::empty(
             "body.region",
             format!("the region holds no site of the {kind} lattice: {extent}"),
         )

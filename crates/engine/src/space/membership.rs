@@ -68,20 +68,20 @@ impl Membership {
     pub fn new(lattice: &Lattice, region: &Region) -> Result<Self, BuildError> {
         let spacing = lattice.spacing;
         if !(spacing > 0.0 && spacing.is_finite()) {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 "body.spacing",
                 format!("the lattice spacing must be positive, it is {spacing}"),
             ));
         }
         if !lattice.origin.iter().all(|o| o.is_finite()) {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 "body.origin",
                 format!("the origin must be finite, it is {:?}", lattice.origin),
             ));
         }
         region
             .check()
-            .map_err(|message| BuildError::new("body.region", message))?;
+            .map_err(|message| BuildError::invalid("body.region", message))?;
         Ok(Membership {
             shape: Units::new(lattice).compile(region),
         })

@@ -152,7 +152,7 @@ impl Deck {
         match outside.find(|(key, _)| !(own_dir && *key == "dir")) {
             None => Ok(()),
             Some((key, name)) => Err(self.explain(
-                &BuildError::new(
+                &BuildError::invalid(
                     format!("output.{key}"),
                     format!("output.{key} = {name:?} leads out of the folder of the results"),
                 )

@@ -124,7 +124,7 @@ fn an_error_of_the_engine_finds_its_line() {
             "{path}: {found}"
         );
     }
-    let error = deck.explain(&BuildError::new("body.region", "empty").help("grow it"));
+    let error = deck.explain(&BuildError::empty("body.region", "empty").help("grow it"));
     assert_eq!((error.line, error.file.as_str()), (Some(9), "impact.toml"));
 }
 

@@ -41,7 +41,7 @@ pub(super) fn constants<const D: usize>(
     for (n, m) in spec.materials.iter().enumerate() {
         solid.extend(Solid::of_law(D, spec.plane, m.law.linear()));
         if !(m.density > 0.0 && m.density.is_finite()) {
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 at(n, "density"),
                 format!("density is {}, expected a positive number", m.density),
             ));
@@ -52,7 +52,7 @@ pub(super) fn constants<const D: usize>(
             LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_)
         );
         if plain && (m.fracture.is_some() || spec.contact.is_some() || !spec.precracks.is_empty()) {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 at(n, "law"),
                 "springs, micromoduli and potentials have no bonds that break and no contact of their own",
             )
@@ -91,15 +91,16 @@ pub(super) fn constants<const D: usize>(
                 (1.0, 0.0)
             }
             LawSpec::Named(law) => {
-                return Err(BuildError::new(
+                return Err(BuildError::unknown(
                     at(n, "law"),
+                    law.name.clone(),
                     format!("the law {} is on no shelf", law.name),
                 ));
             }
         };
         if !(value > 0.0 && value.is_finite()) {
             return Err(
-                BuildError::new(at(n, "law"), "stiffness must be positive and finite")
+                BuildError::invalid(at(n, "law"), "stiffness must be positive and finite")
                     .help("check the moduli: K > 0, G > 0, −1 < ν < ½"),
             );
         }
@@ -113,10 +114,10 @@ pub(super) fn constants<const D: usize>(
         &given.is_empty(),
     ];
     match kinds.iter().filter(|none| !**none).count() {
-        0 => return Err(BuildError::new("materials", "the body has no material")),
+        0 => return Err(BuildError::missing("materials", "the body has no material")),
         1 => {}
         _ => {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "materials",
                 "different kinds of law in one body, such as bond-based and state-based",
             )
@@ -124,19 +125,20 @@ pub(super) fn constants<const D: usize>(
         }
     }
     if springs.iter().any(|c| *c != springs[0]) {
-        return Err(
-            BuildError::new("materials", "springs of unlike stiffness in one body")
-                .help("give all materials the same springs"),
-        );
+        return Err(BuildError::unsupported(
+            "materials",
+            "springs of unlike stiffness in one body",
+        )
+        .help("give all materials the same springs"));
     }
     if atoms.iter().any(|p| *p != atoms[0]) {
         return Err(
-            BuildError::new("materials", "atoms of unlike potentials in one body")
+            BuildError::unsupported("materials", "atoms of unlike potentials in one body")
                 .help("give all materials the same potential: a potential knows one kind of atom"),
         );
     }
     if given.iter().any(|b| !Arc::ptr_eq(b, given[0])) {
-        return Err(BuildError::new(
+        return Err(BuildError::unsupported(
             "materials",
             "micromoduli of more than one linear body in one body",
         )

@@ -69,13 +69,13 @@ impl ConstitutiveModel {
             Laws::Micromoduli(linear) => {
                 let Some(linear) = (**linear).clone().of::<D>() else {
                     let found = linear.dimension();
-                    return Err(BuildError::new(
+                    return Err(BuildError::conflict(
                         "micromoduli",
                         format!("the micromoduli are those of a {found}-D body, this one has {D}"),
                     ));
                 };
                 if linear.points() != body.points() {
-                    return Err(BuildError::new(
+                    return Err(BuildError::conflict(
                         "micromoduli",
                         format!(
                             "there are micromoduli of {} points, the body has {}",
@@ -162,7 +162,7 @@ impl ConstitutiveModel {
         across: impl Fn(usize, usize) -> bool + Sync,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         let Laws::Bond(c) = &self.laws else {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "law",
                 "an interface is made of bonds, and this law acts through its points",
             )
@@ -185,7 +185,7 @@ impl ConstitutiveModel {
     fn links<const D: usize>(&self, body: &Body<D>) -> Result<Links<D>, BuildError> {
         match (&body.layout, &self.stencil) {
             (Layout::Grid(grid), Some(stencil)) => Ok(Links::new(body, grid, stencil)),
-            _ => Err(BuildError::new(
+            _ => Err(BuildError::unsupported(
                 "family",
                 "springs live on a lattice, this is a cloud of points",
             )
@@ -254,10 +254,12 @@ impl ConstitutiveModel {
                 PointConstants::None,
                 toughness,
             ),
-            Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => Err(BuildError::new(
-                "pairs",
-                "springs, potentials and micromoduli have no constants of pairs of materials",
-            )),
+            Laws::Springs(_) | Laws::Atoms(_) | Laws::Micromoduli(_) => {
+                Err(BuildError::unsupported(
+                    "pairs",
+                    "springs, potentials and micromoduli have no constants of pairs of materials",
+                ))
+            }
         }
     }
 

@@ -18,17 +18,18 @@ pub(super) fn bond_table(
     if spec.pairs.is_empty() {
         return Ok(None);
     }
-    let error = |message: String| Err(BuildError::new("pairs", message));
+    let invalid = |message: String| Err(BuildError::invalid("pairs", message));
+    let unsupported = |message: &str| Err(BuildError::unsupported("pairs", message));
     if spec.pairs.len() != materials * materials {
-        return error(format!(
+        return invalid(format!(
             "{} pairs of {materials} materials, expected {}",
             spec.pairs.len(),
             materials * materials
         ));
     }
     if !matches!(spec.influence, Influence::Constant | Influence::Inverse) {
-        return error(
-            "an influence function that ends at the horizon, with horizons of pairs".into(),
+        return unsupported(
+            "an influence function that ends at the horizon, with horizons of pairs",
         );
     }
     let mut pairs = vec![];
@@ -38,27 +39,26 @@ pub(super) fn bond_table(
             (Laws::Bond(_), LawSpec::Pmb(PmbStiffness::Micromodulus(c))) => (*c, 0.0),
             (Laws::Solid(_), law @ LawSpec::LpsAsTyped { .. }) => {
                 let Some(solid) = Solid::of_law(spec.dimension, spec.plane, law) else {
-                    return error("a law that is no solid".into());
+                    return unsupported("a law that is no solid");
                 };
                 (solid.beta, solid.kappa)
             }
             _ => {
-                return error(
-                    "pairs have a micromodulus (pmb) or moduli as typed (lps), of the law of the materials"
-                        .into(),
+                return unsupported(
+                    "pairs have a micromodulus (pmb) or moduli as typed (lps), of the law of the materials",
                 );
             }
         };
         let mirrored = &spec.pairs[with * materials + of];
         let fine = |x: f64| x >= 0.0 && x.is_finite();
         if !fine(stiffness) || !fine(p.horizon) || p.horizon > horizon * (1.0 + 1e-9) {
-            return error(format!(
+            return invalid(format!(
                 "materials {of} and {with} have the stiffness {stiffness:e} and the horizon {:e}; that of the body is {horizon:e}",
                 p.horizon
             ));
         }
         if p.horizon != mirrored.horizon {
-            return error(format!(
+            return invalid(format!(
                 "materials {of} and {with} must have the same horizon both ways round"
             ));
         }
@@ -95,7 +95,7 @@ pub(in crate::run) fn contact_stiffness(
             let fits = rows.len() == own.len() && rows.iter().all(|r| r.len() == own.len());
             let symmetric = || (0..rows.len()).all(|a| (0..a).all(|b| rows[a][b] == rows[b][a]));
             if !fits || !symmetric() {
-                return Err(BuildError::new(
+                return Err(BuildError::invalid(
                     "contact.stiffness",
                     format!(
                         "expected a symmetric table of {0} by {0} numbers, one for every pair of materials",

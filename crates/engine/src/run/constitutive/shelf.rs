@@ -127,9 +127,8 @@ impl Shelf {
     /// No such law, or parameters that do not fit it.
     pub fn resolve(&self, spec: &mut Spec) -> Result<(), BuildError> {
         for (n, m) in spec.materials.iter_mut().enumerate() {
-            let path = format!("materials[{n}].law");
             self.look_up(&mut m.law)
-                .map_err(|message| BuildError::new(path, message))?;
+                .map_err(|e| e.at(format!("materials[{n}].law")))?;
         }
         Ok(())
     }
@@ -138,23 +137,24 @@ impl Shelf {
     ///
     /// # Errors
     /// As of [`Shelf::resolve`].
-    pub fn look_up(&self, law: &mut LawSpec) -> Result<(), String> {
+    pub fn look_up(&self, law: &mut LawSpec) -> Result<(), BuildError> {
         let LawSpec::Named(law) = law else {
             return Ok(());
         };
         let Some(entry) = self.entry(&law.name) else {
             let known: Vec<&str> = self.descriptors().map(|d| d.name.as_ref()).collect();
-            return Err(format!(
+            let message = format!(
                 "there is no law named {}; the shelf has {}",
                 law.name,
                 known.join(", ")
-            ));
+            );
+            return Err(BuildError::unknown("law", law.name.clone(), message));
         };
-        entry
-            .descriptor
-            .check(&mut law.parameters)
-            .map_err(|(_, message)| message)?;
-        law.linear = Some(Box::new((entry.linear)(&law.parameters)?));
+        let invalid = |message: String| BuildError::invalid("law", message);
+        let checked = entry.descriptor.check(&mut law.parameters);
+        checked.map_err(|(_, message)| invalid(message))?;
+        let linear = (entry.linear)(&law.parameters).map_err(invalid)?;
+        law.linear = Some(Box::new(linear));
         Ok(())
     }
 
@@ -209,7 +209,7 @@ pub(super) fn chosen<const D: usize>(
     let mut materials = vec![];
     for (n, law) in laws.iter().enumerate() {
         let Some(law) = law.as_ref().filter(|l| l.name == first.name) else {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 format!("materials[{n}].law"),
                 "different kinds of law in one body, such as bond-based and state-based",
             )
@@ -227,8 +227,9 @@ pub(super) fn chosen<const D: usize>(
         });
     }
     let Some(entry) = shelf.entry(&first.name) else {
-        return Err(BuildError::new(
+        return Err(BuildError::unknown(
             "materials[0].law",
+            first.name.clone(),
             format!("the law {} is on no shelf", first.name),
         ));
     };
@@ -256,7 +257,7 @@ impl Chosen {
         let binder = self.entry.binders.get(D - 1);
         match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
             Some(binder) => binder(self, place),
-            None => Err(BuildError::new(
+            None => Err(BuildError::unsupported(
                 "materials[0].law",
                 format!(
                     "the law {} is for two and three dimensions, this body has {D}",
@@ -286,7 +287,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         .collect();
     let law = M::make(D, chosen.plane, &given).map_err(|(n, message)| {
         let n = numbers.get(n).copied().unwrap_or(0);
-        BuildError::new(format!("materials[{n}].law"), message)
+        BuildError::invalid(format!("materials[{n}].law"), message)
     })?;
     let Place {
         body,

@@ -40,7 +40,7 @@ pub(super) fn toughness<const D: usize>(
                 | LawSpec::Atoms(_)
                 | LawSpec::Micromoduli(_)
                 | LawSpec::Named(_) => {
-                    return Err(BuildError::new(
+                    return Err(BuildError::unsupported(
                         path,
                         "a fracture energy is known for pmb and lps materials only",
                     )
@@ -49,7 +49,7 @@ pub(super) fn toughness<const D: usize>(
             };
             let s00 = (energy / of_unit_stretch).sqrt();
             if !(s00 > 0.0) {
-                return Err(BuildError::new(
+                return Err(BuildError::invalid(
                     path,
                     format!("a fracture energy of {energy} gives no critical stretch"),
                 ));
@@ -58,7 +58,7 @@ pub(super) fn toughness<const D: usize>(
         }
     };
     if !(s00 > 0.0) || !(fracture.alpha >= 0.0) {
-        return Err(BuildError::new(
+        return Err(BuildError::invalid(
             path,
             format!(
                 "critical stretch {s00} and alpha {} must be positive",

@@ -57,7 +57,7 @@ impl<const D: usize> Model<D> {
         let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
         for (memory, name) in named.map(|n| n.memory()) {
             if memory != Memory::Nothing && options.method == Method::Linear {
-                return Err(BuildError::new(
+                return Err(BuildError::unsupported(
                     "statics.method",
                     format!("the law {name} is linear about the reference only, and remembers"),
                 )
@@ -66,7 +66,7 @@ impl<const D: usize> Model<D> {
         }
         let support = self.support();
         if support.unknowns() == 0 {
-            return Err(BuildError::new(
+            return Err(BuildError::ill_posed(
                 "conditions",
                 SolveError::NothingFree.to_string(),
             ));
@@ -78,7 +78,7 @@ impl<const D: usize> Model<D> {
         let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
         if let Some(loose) = support.loose(&position, &parts, &self.body.period).first() {
             let x = position[loose.point];
-            return Err(BuildError::new(
+            return Err(BuildError::ill_posed(
                 "conditions",
                 format!(
                     "the body is not held: {} of the part of {} points around {x:?} meets no resistance",
@@ -100,7 +100,7 @@ impl<const D: usize> Model<D> {
             _ => None,
         };
         if let Some(wrong) = wrong {
-            return Err(BuildError::new("conditions", wrong)
+            return Err(BuildError::unsupported("conditions", wrong)
                 .help("prescribe a displacement, as a function of t from 0 to 1"));
         }
         let atoms = |r: &ConstitutiveModel| matches!(r.laws, Laws::Atoms(_));
@@ -112,7 +112,7 @@ impl<const D: usize> Model<D> {
         if options.method != Method::Relaxation
             && (self.contact.is_some() || !self.indenters.is_empty())
         {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "statics.method",
                 "contact and indenters have no tangent here",
             )
@@ -134,7 +134,7 @@ impl<const D: usize> Model<D> {
                 (Solver::Auto | Solver::Direct, Method::Linear | Method::Newton) => None,
             };
             if let Some((path, wrong, help)) = wrong {
-                return Err(BuildError::new(
+                return Err(BuildError::unsupported(
                     path,
                     format!("{wrong}, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
                 )
@@ -149,7 +149,7 @@ impl<const D: usize> Model<D> {
         let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
         for (memory, name) in named.map(|n| n.memory()) {
             if memory == Memory::Time {
-                return Err(BuildError::new(
+                return Err(BuildError::unsupported(
                     path,
                     format!("the law {name} answers to how fast it is deformed: it moves in time, by explicit steps"),
                 )

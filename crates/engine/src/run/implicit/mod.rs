@@ -40,7 +40,7 @@ impl<const D: usize> Model<D> {
                 true => "schedule.beta",
                 false => "schedule.gamma",
             };
-            return Err(BuildError::new(
+            return Err(BuildError::invalid(
                 path,
                 format!("beta = {beta} and gamma = {gamma} are not stable at any step, which takes 2 beta ≥ gamma ≥ 0.5"),
             )
@@ -49,35 +49,35 @@ impl<const D: usize> Model<D> {
         let explicit = "integrator = \"verlet\" knows it; or leave it out";
         self.knows_no_time("schedule.integrator")?;
         if let Some(n) = spec.materials.iter().position(|m| m.fracture.is_some()) {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 format!("materials[{n}].fracture"),
                 "bonds that break within an implicit step are not supported",
             )
             .help(explicit));
         }
         if let Some(n) = spec.interfaces.iter().position(|i| i.fracture.is_some()) {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 format!("interface[{n}].fracture"),
                 "bonds that break within an implicit step are not supported",
             )
             .help(explicit));
         }
         if spec.contact.is_some() {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "contact",
                 "contact has no tangent, which an implicit step needs",
             )
             .help("write contact = false, or integrator = \"verlet\""));
         }
         if !self.indenters.is_empty() {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "indenters",
                 "an indenter has no tangent, which an implicit step needs",
             )
             .help(explicit));
         }
         if let Err(SolveError::NoTangent { what }) = self.all_have_tangents() {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "conditions",
                 format!("{what} has no tangent, which an implicit step needs"),
             )
@@ -89,7 +89,7 @@ impl<const D: usize> Model<D> {
         }
         let asymmetry = self.interaction.asymmetry();
         if asymmetry > statics::SYMMETRIC && options.solver == Solver::ConjugateGradients {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 "schedule.solver",
                 format!("conjugate gradients need a symmetric body, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
             )

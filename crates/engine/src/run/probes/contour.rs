@@ -35,19 +35,19 @@ impl<const D: usize> Model<D> {
     ) -> Result<Contour, BuildError> {
         let at = |key: &str| format!("{path}.{key}");
         if D != 2 {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 path,
                 format!("a contour is one in two dimensions, this body has {D}"),
             ));
         }
         if self.interaction.is_potential() {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 path,
                 "a contour goes through a solid, these are atoms",
             ));
         }
         if self.statics.is_none() {
-            return Err(BuildError::new(
+            return Err(BuildError::unsupported(
                 path,
                 "a contour integral needs equilibrium: in motion the inertia inside it counts, too",
             )
@@ -69,13 +69,14 @@ impl<const D: usize> Model<D> {
                     high - low,
                     2.0 * REACH * horizon
                 );
-                return Err(BuildError::new(at("corners"), message).help("move the corners apart"));
+                return Err(
+                    BuildError::conflict(at("corners"), message).help("move the corners apart")
+                );
             }
             if low < bounds[a][0] - half_cell || high > bounds[a][1] + half_cell {
                 let message = "the rectangle leaves the body, whose surface would have to be part of the contour";
-                return Err(
-                    BuildError::new(at("corners"), message).help("move the corners into the body")
-                );
+                return Err(BuildError::conflict(at("corners"), message)
+                    .help("move the corners into the body"));
             }
         }
         let inside = |s: usize| {
@@ -89,9 +90,8 @@ impl<const D: usize> Model<D> {
             .flat_map(|l| l.slots().iter().map(|s| *s as usize));
         if held.map(|(s, _)| s).chain(loaded).any(inside) {
             let message = "points inside the rectangle are held or loaded, and what that does would count as energy of the crack";
-            return Err(
-                BuildError::new(at("corners"), message).help("move the corners away from them")
-            );
+            return Err(BuildError::conflict(at("corners"), message)
+                .help("move the corners away from them"));
         }
         Ok(Contour {
             modulus: self.plane_modulus(spec),

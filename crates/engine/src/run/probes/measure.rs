@@ -31,7 +31,7 @@ impl<const D: usize> Model<D> {
                 .find(|c| all.iter().any(|p| taken(p, c)));
             if let Some(column) = twice {
                 let message = format!("two probes write the column `{}`", column.name);
-                return Err(BuildError::new(format!("probes[{n}].name"), message)
+                return Err(BuildError::conflict(format!("probes[{n}].name"), message)
                     .help("give them different names"));
             }
             all.push(probe);
@@ -49,10 +49,10 @@ impl<const D: usize> Model<D> {
                 if known.is_empty() { "" } else { ", " },
                 known.join(", ")
             );
-            return Err(BuildError::new(at("set"), message).help(help));
+            return Err(BuildError::unknown(at("set"), &spec.set, message).help(help));
         };
         if ids.is_empty() {
-            return Err(BuildError::new(
+            return Err(BuildError::empty(
                 at("set"),
                 format!("the set `{}` has no points", spec.set),
             ));
@@ -71,7 +71,7 @@ impl<const D: usize> Model<D> {
             Measure::Moment { about } => {
                 if D == 1 {
                     let message = "there are no moments in one dimension";
-                    return Err(BuildError::new(at("about"), message));
+                    return Err(BuildError::unsupported(at("about"), message));
                 }
                 let turns = TURNS.iter().filter(|(_, axes)| axes.iter().all(|a| *a < D));
                 // a moment is no energy, though it has the dimension of one
@@ -164,7 +164,9 @@ impl<const D: usize> Model<D> {
                         true => format!("`{of}` is one number: leave component out"),
                         false => format!("components are {}, and magnitude", known.join(", ")),
                     };
-                    return Err(BuildError::new(format!("{path}.component"), message).help(help));
+                    return Err(
+                        BuildError::invalid(format!("{path}.component"), message).help(help)
+                    );
                 };
                 (vec![Some(*n)], vec![titled(*n)])
             }

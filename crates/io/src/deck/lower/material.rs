@@ -232,8 +232,8 @@ fn shelved(context: &Context, span: &Range<usize>, named: &NamedLaw) -> Result<L
         return Err(context.error_with(place, message, help()));
     }
     let mut law = LawSpec::named(&named.name, parameters);
-    if let Err(message) = shelf.look_up(&mut law) {
-        return Err(context.error_with(span, message, help()));
+    if let Err(e) = shelf.look_up(&mut law) {
+        return Err(context.error_with(span, e.message, help()));
     }
     Ok(law)
 }
