@@ -72,6 +72,17 @@ impl<const D: usize> Body<D> {
         &self.layout
     }
 
+    /// Of a lattice body, which a stencil is made for.
+    ///
+    /// # Panics
+    /// If it is another body.
+    pub(crate) fn grid(&self) -> &Grid<D> {
+        match &self.layout {
+            Layout::Grid(grid) => grid,
+            Layout::Cloud(_) | Layout::Several(_) => unreachable!("stencils live on grids"),
+        }
+    }
+
     /// Slot of each point, in order of id.
     pub fn slots(&self) -> &[u32] {
         &self.slots

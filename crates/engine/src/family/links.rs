@@ -161,9 +161,7 @@ impl<const D: usize> Links<D> {
 
     /// Every undirected bond once: slots i < j (images resolved), ξ from i to j.
     pub fn each(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
-        let Layout::Grid(grid) = &body.layout else {
-            return;
-        };
+        let grid = body.grid();
         let original = body.originals();
         self.each_directed(grid, |i, j, sub, k| {
             let link = &self.links[sub][k];

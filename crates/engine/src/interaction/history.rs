@@ -1,7 +1,7 @@
 //! What bonds remember: the next critical stretch, and the energy of those that just broke.
 
-use super::Toughness;
 use super::bond::critical_stretch;
+use super::{Repulsion, Toughness};
 use crate::body::Body;
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::execute::lane::{Lane, TILE};
@@ -70,6 +70,43 @@ pub fn write_critical<const D: usize>(
         critical[s as usize] = values[s as usize];
     }
     true
+}
+
+/// Does anything depend on how far bonds were stretched: do they break, or repel when broken?
+pub fn remembers(repulsion: Option<&Repulsion>, toughness: &[Toughness]) -> bool {
+    repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite())
+}
+
+/// Marks the bond of a lane as whole or broken.
+pub fn set(bits: &mut u8, lane: usize, whole: bool) {
+    match whole {
+        true => *bits |= 1 << lane,
+        false => *bits &= !(1 << lane),
+    }
+}
+
+/// `1 − whole/family`; 0 of a point without a family.
+pub fn damage(whole: f64, family: f64) -> f64 {
+    if family == 0.0 {
+        0.0
+    } else {
+        1.0 - whole / family
+    }
+}
+
+/// Does a crack cross the line between two places?
+pub type Crosses<'a, const D: usize> = dyn Fn([f64; D], [f64; D]) -> bool + Sync + 'a;
+
+/// Does a crack cross the bond ξ of a point at `from`? Through a periodic face it is in two places, and ends at `to` in the other
+/// one; either end must see the same.
+pub fn crossed<const D: usize>(
+    crosses: &Crosses<D>,
+    from: [f64; D],
+    xi: [f64; D],
+    to: Option<[f64; D]>,
+) -> bool {
+    let other = |to: [f64; D]| crosses(std::array::from_fn(|a| to[a] - xi[a]), to);
+    crosses(from, std::array::from_fn(|a| from[a] + xi[a])) || to.is_some_and(other)
 }
 
 /// `s` of `e`.

@@ -5,7 +5,7 @@
 
 use super::scale::{Scale, TileFactors};
 use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
-use crate::body::{Body, Field, Grid, Identity, Layout, Values};
+use crate::body::{Body, Field, Grid, Identity, Values};
 use crate::error::BuildError;
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -232,9 +232,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         _: &Field<D>,
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
-        let Layout::Grid(grid) = &body.layout else {
-            return;
-        };
+        let grid = body.grid();
         let original = body.originals();
         self.links.each_directed(grid, |i, j, sub, k| {
             let factor = self.factor(grid, i, k);
@@ -269,9 +267,7 @@ impl<const D: usize> Interaction<D> for LinearInteraction<D> {
         body: &Body<D>,
         factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
     ) -> Result<(), BuildError> {
-        let Layout::Grid(grid) = &body.layout else {
-            unreachable!("stencils live on grids")
-        };
+        let grid = body.grid();
         let links = &self.links;
         let old = std::mem::take(&mut self.scale);
         let width = links.links.iter().map(Vec::len).max().unwrap_or(0);

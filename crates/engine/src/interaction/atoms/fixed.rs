@@ -1,18 +1,18 @@
 //! A potential on a lattice whose neighbours stay neighbours: chains of seleson2009 (5.1), upscaled models of
 //! seleson2014 (3.4). Distances are the current ones.
 
-use super::{Faults, bad_density, embed, find_fault};
-use crate::body::{Body, Column, FAR, Field, Identity, Layout, field};
+mod kernel;
+
+use super::{Curvatures, Faults, find_fault};
+use crate::body::{Body, Column, FAR, Field, Identity, field};
 use crate::execute::blocks::{PerBlock, Shared};
-use crate::execute::lane::Lane;
-use crate::execute::simd::{Kernel, Simd};
-use crate::family::links::{Link, Links, Tile, Tiles};
-use crate::interaction::tangent::curvature;
+use crate::execute::simd::Simd;
+use crate::family::links::{Links, Tiles};
 use crate::interaction::{
-    BondForce, BondState, BondTangent, Fault, Interaction, PointEnergies, Sweep, Tally,
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
-use crate::law::number::Dual;
 use crate::law::potential::Potential;
+use kernel::{Density, Energies, Forces, View};
 
 /// A potential on a stencil.
 pub struct FixedAtoms<const D: usize, P> {
@@ -24,8 +24,7 @@ pub struct FixedAtoms<const D: usize, P> {
     limit: f64,
     /// F′ per slot; empty without embedding.
     slope: Column,
-    /// F″ per slot, of the last tangent.
-    curvature: Vec<f64>,
+    curvatures: Curvatures,
     volume: f64,
     /// The link of a chain to its next neighbour.
     next: Option<usize>,
@@ -45,7 +44,7 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
             } else {
                 Column::default()
             },
-            curvature: vec![],
+            curvatures: Curvatures::default(),
             volume: body.volume.uniform().unwrap_or(1.0),
             potential,
             next: next_of_chain(&links),
@@ -93,192 +92,6 @@ fn next_of_chain<const D: usize>(links: &Links<D>) -> Option<usize> {
     let forward = links.iter().enumerate().filter(|(_, l)| l.xi[0] > 0.0);
     let next = forward.min_by(|a, b| a.1.xi[0].total_cmp(&b.1.xi[0]))?;
     Some(next.0)
-}
-
-struct View<'a, const D: usize, P> {
-    tiles: Tiles<'a, D>,
-    potential: &'a P,
-    /// Squared length.
-    limit: f64,
-}
-
-impl<const D: usize, P: Potential> View<'_, D, P> {
-    /// Current vector to the partners along a bond, and its square; `i` are the tile's own displacements.
-    #[inline(always)]
-    fn vector<L: Lane>(&self, tile: &Tile<D>, link: &Link<D>, i: &[L; D]) -> ([L; D], L) {
-        let j = self.tiles.partners::<L>(tile, link);
-        let mut y = *i;
-        let mut q = L::splat(0.0);
-        for a in 0..D {
-            y[a] = L::splat(link.xi[a]) + (j[a] - i[a]);
-            q = y[a].fma(y[a], q);
-        }
-        (y, q)
-    }
-
-    /// Lanes whose partners at bond `k` are beyond the cut-off or not there.
-    #[inline(always)]
-    fn out<L: Lane>(&self, q: L, tile: &Tile<D>, k: usize) -> L::Mask {
-        let far = q.ge(L::splat(self.limit));
-        match tile.bits {
-            None => far,
-            Some(bits) => L::or(far, L::dead(bits[k])),
-        }
-    }
-
-    /// Σ f of a tile.
-    #[inline(always)]
-    fn density<L: Lane>(&self, tile: &Tile<D>, i: &[L; D]) -> L {
-        let mut density = L::splat(0.0);
-        for (k, link) in tile.links.iter().enumerate() {
-            let (_, q) = self.vector(tile, link, i);
-            let f = self.potential.density(Dual::variable(q)).value;
-            density = density + f.zero_if(self.out(q, tile, k));
-        }
-        density
-    }
-
-    /// The first of a tile's points that went through its partner at bond `k` of a chain.
-    #[inline(always)]
-    fn crossed<L: Lane>(&self, tile: &Tile<D>, k: usize, i: &[L; D]) -> Option<Fault> {
-        let (y, _) = self.vector(tile, &tile.links[k], i);
-        let there = tile.bits.map_or(tile.owned, |bits| bits[k]);
-        let crossed = L::bits(L::splat(0.0).ge(y[0])) as u8 & there;
-        if crossed == 0 {
-            return None;
-        }
-        let i = tile.first + crossed.trailing_zeros() as usize;
-        let j = i.wrapping_add_signed(tile.links[k].shift);
-        Some(Fault::Crossing { i, j })
-    }
-}
-
-struct Density<'a, const D: usize, P> {
-    view: View<'a, D, P>,
-    slope: Shared,
-}
-
-impl<const D: usize, P: Potential> Kernel for Density<'_, D, P> {
-    type Out = Option<Fault>;
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
-        let view = &self.view;
-        let mut fault = None;
-        for tile in view.tiles.block(block) {
-            let density = view.density::<L>(&tile, &view.tiles.own(&tile));
-            let [_, slope] = embed(view.potential, density);
-            // SAFETY: tiles are disjoint
-            unsafe {
-                slope
-                    .zero_if(L::dead(tile.owned))
-                    .store(self.slope.at(tile.first))
-            };
-            if fault.is_none()
-                && let Some((l, density)) =
-                    bad_density(view.potential, density.to_array(), tile.owned)
-            {
-                fault = Some(Fault::Density {
-                    slot: tile.first + l,
-                    density,
-                });
-            }
-        }
-        fault
-    }
-}
-
-struct Forces<'a, const D: usize, P> {
-    view: View<'a, D, P>,
-    slope: &'a Column,
-    f: [Shared; D],
-    /// 2 / volume
-    scale: f64,
-    /// The bond of a chain that must not turn over.
-    next: Option<usize>,
-}
-
-impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
-    type Out = Option<Fault>;
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Option<Fault> {
-        let view = &self.view;
-        let mut fault = None;
-        for tile in view.tiles.block(block) {
-            let i = view.tiles.own::<L>(&tile);
-            let mut own = L::splat(0.0);
-            if P::EMBEDDED {
-                // SAFETY: as the displacements
-                own = unsafe { L::load(self.slope.as_ptr().add(tile.first)) };
-            }
-            let mut force = [L::splat(0.0); D];
-            for (k, link) in tile.links.iter().enumerate() {
-                let (y, q) = view.vector(&tile, link, &i);
-                let mut pull = view.potential.pair(Dual::variable(q)).slope;
-                if P::EMBEDDED {
-                    // SAFETY: as the displacements
-                    let other =
-                        unsafe { L::load(self.slope.as_ptr().add(tile.first).offset(link.shift)) };
-                    let f = view.potential.density(Dual::variable(q)).slope;
-                    pull = f.fma(own + other, pull);
-                }
-                let pull = pull.zero_if(view.out(q, &tile, k));
-                for a in 0..D {
-                    force[a] = pull.fma(y[a], force[a]);
-                }
-            }
-            let dead = L::dead(tile.owned);
-            for a in 0..D {
-                let f = force[a] * L::splat(self.scale);
-                // SAFETY: tiles are disjoint
-                unsafe { f.zero_if(dead).store(self.f[a].at(tile.first)) };
-            }
-            if D == 1
-                && fault.is_none()
-                && let Some(k) = self.next
-            {
-                fault = view.crossed(&tile, k, &i);
-            }
-        }
-        fault
-    }
-}
-
-struct Energies<'a, const D: usize, P> {
-    view: View<'a, D, P>,
-    /// Energy density per slot, if asked for.
-    out: Shared,
-    /// 1 / volume
-    inverse: f64,
-}
-
-impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
-    type Out = [f64; 1];
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 1] {
-        let view = &self.view;
-        let mut sum = 0.0;
-        for tile in view.tiles.block(block) {
-            let i = view.tiles.own::<L>(&tile);
-            let mut energy = L::splat(0.0);
-            for (k, link) in tile.links.iter().enumerate() {
-                let (_, q) = view.vector(&tile, link, &i);
-                let pair = view.potential.pair(Dual::variable(q)).value;
-                energy = energy + pair.zero_if(view.out(q, &tile, k));
-            }
-            energy = energy * L::splat(0.5);
-            if P::EMBEDDED {
-                let [f, _] = embed(view.potential, view.density(&tile, &i));
-                energy = energy + f;
-            }
-            let energy = energy.zero_if(L::dead(tile.owned));
-            if !self.out.0.is_null() {
-                // SAFETY: tiles are disjoint
-                unsafe { (energy * L::splat(self.inverse)).store(self.out.at(tile.first)) };
-            }
-            sum += energy.to_array().iter().sum::<f64>();
-        }
-        [sum]
-    }
 }
 
 impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
@@ -338,9 +151,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         }
         let slope = |s: usize| self.slope.get(s).copied().unwrap_or(0.0);
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
-        let Layout::Grid(grid) = &body.layout else {
-            return;
-        };
+        let grid = body.grid();
         let original = body.originals();
         self.links.each_directed(grid, |i, j, sub, k| {
             let xi = self.links.links[sub][k].xi;
@@ -360,10 +171,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
                 2.0 / self.volume,
             ));
         });
-        self.curvature = density
-            .iter()
-            .map(|d| curvature(&self.potential, *d))
-            .collect();
+        self.curvatures = Curvatures::of(&self.potential, &density);
     }
 
     fn each_force(
@@ -381,7 +189,7 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
     }
 
     fn gain(&self, slot: usize) -> f64 {
-        self.curvature.get(slot).copied().unwrap_or(0.0)
+        self.curvatures.at(slot)
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {

@@ -6,6 +6,7 @@
 pub mod current;
 pub mod fixed;
 
+use super::tangent::curvature;
 use super::{Fault, Tally};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::{Lane, TILE};
@@ -20,7 +21,20 @@ fn embed<L: Lane, P: Potential>(potential: &P, density: L) -> [L; 2] {
     [f.value, f.slope]
 }
 
-/// The first of eight densities that F has no meaning at; `owned` are the lanes that have a point.
+/// The first of eight densities that F has no meaning at; `owned` are the lanes that have a point, each in its slot.
+#[inline(always)]
+fn density_fault<L: Lane, P: Potential>(
+    potential: &P,
+    density: L,
+    owned: u8,
+    slot: impl Fn(usize) -> usize,
+) -> Option<Fault> {
+    let (l, density) = bad_density(potential, density.to_array(), owned)?;
+    let slot = slot(l);
+    Some(Fault::Density { slot, density })
+}
+
+/// Its lane, and the density. Not for each instruction set.
 fn bad_density<P: Potential>(
     potential: &P,
     density: [f64; TILE],
@@ -29,6 +43,20 @@ fn bad_density<P: Potential>(
     let least = potential.least_density();
     let bad = |l: &usize| owned >> l & 1 == 1 && (density[*l] <= least || density[*l].is_nan());
     (0..TILE).find(bad).map(|l| (l, density[l]))
+}
+
+/// F″ per slot, of the last tangents; empty without embedding.
+#[derive(Default)]
+struct Curvatures(Vec<f64>);
+
+impl Curvatures {
+    fn of<P: Potential>(potential: &P, density: &[f64]) -> Self {
+        Curvatures(density.iter().map(|d| curvature(potential, *d)).collect())
+    }
+
+    fn at(&self, slot: usize) -> f64 {
+        self.0.get(slot).copied().unwrap_or(0.0)
+    }
 }
 
 /// Room for what a kernel that looks for faults finds.

@@ -1,18 +1,23 @@
 //! The sweeps over a horizon list: lanes run over the points of a slice, bonds in a fixed order. No closure touches a
 //! lane (see the stencil's kernel).
 
-use crate::body::Field;
+mod energies;
+mod forces;
+mod share;
+
 use crate::execute::blocks::Shared;
-use crate::execute::lane::series::{Extension, Function, Series, Stretch};
+use crate::execute::lane::series::{Extension, Function};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::horizon::HorizonList;
+use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::pairs::{BondLanes, BondTable};
 use crate::interaction::weight::BondWeight;
-use crate::interaction::{EnergyFields, Motion, Repulsion, Tally, Toughness, history};
 use crate::law::Law;
-use crate::spec::Release;
+pub use energies::Energies;
+pub use forces::Forces;
+pub use share::Share;
 
 /// Slices per block of work.
 pub const BLOCK: usize = 32;
@@ -335,270 +340,5 @@ impl<const D: usize> Kernel for Pack<'_, D> {
                 }
             }
         }
-    }
-}
-
-/// Force pass.
-pub struct Forces<'a, const D: usize, W, const FULL: bool> {
-    pub view: View<'a, D, W>,
-    pub f: [Shared; D],
-    pub next: Shared,
-    pub toughness: &'a [Toughness],
-    /// Material per slot; empty when there is one.
-    pub material: &'a [u8],
-    /// `None`: nothing breaks.
-    pub motion: Option<Motion<'a, D>>,
-}
-
-impl<const D: usize, W: Law, const FULL: bool> Kernel for Forces<'_, D, W, FULL> {
-    type Out = Tally;
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> Tally {
-        let mut tally = Tally::default();
-        for slice in self.view.block(block) {
-            let lines = self.view.list.start[slice]..self.view.list.start[slice + 1];
-            // SAFETY: the list was made for these records; each slice is written by one block
-            unsafe { self.points::<L>(slice, lines, &mut tally) };
-        }
-        tally
-    }
-}
-
-impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// All bonds of a slice.
-    #[inline(always)]
-    unsafe fn points<L: Lane>(
-        &self,
-        slice: usize,
-        lines: std::ops::Range<usize>,
-        tally: &mut Tally,
-    ) {
-        let v = &self.view;
-        let zero = L::splat(0.0);
-        let contact_e = L::splat(v.contact_e());
-        let series = Series::<Extension>::new();
-        unsafe {
-            let rows = v.rows(slice);
-            let i = v.end::<L, true>(rows);
-            let mut lowest = L::splat(f64::INFINITY);
-            // s0 of pairs of materials: the greatest of all whole bonds
-            let mut greatest = L::splat(f64::NEG_INFINITY);
-            let mut acc = [zero; D];
-            // broken bonds: Σ x and Σ k r0² s, rare
-            let mut lost: Option<[L; 2]> = None;
-            for line in lines {
-                let partners = v.partners(line);
-                let j = v.end::<L, true>(partners);
-                let b = v.bond::<L>(&i, &j, rows, partners);
-                let (k, own, other) = v.acting(&b, i.field, j.field);
-                let dead = L::dead(*v.alive.at(line));
-                let e = b.e.nan_if(dead);
-                let g = series.at(e);
-                let mut pull = v.law.pull(k, g, own, other).zero_if(dead);
-                if FULL {
-                    let breaks = j.critical.min(i.critical).lt(e);
-                    lowest = e.min(lowest);
-                    if v.paired {
-                        let [s00, alpha] = v.pairs.memory::<L>(&b.pair);
-                        greatest = (s00 - alpha * history::stretch(e)).max(greatest);
-                    }
-                    if L::any(L::or(breaks, b.e.lt(contact_e))) {
-                        if let Some(motion) = self.motion
-                            && L::any(breaks)
-                        {
-                            let which = L::bits(breaks);
-                            *v.alive.at(line) &= !(which as u8);
-                            tally.broken += which.count_ones() as u64;
-                            let s = Stretch::exact(e);
-                            let share = b.k * b.r0_squared * s;
-                            let x = v.law.pair_energy(k * b.r0_squared * s * s, own, other)
-                                + motion.farewell(pull, parting(motion.v, b.y, rows, partners));
-                            let sum = lost.unwrap_or([zero; 2]);
-                            lost = Some([
-                                sum[0] + L::select(breaks, x, zero),
-                                sum[1] + L::select(breaks, share, zero),
-                            ]);
-                            if motion.release == Release::AtOnce {
-                                pull = pull.zero_if(breaks);
-                            }
-                        }
-                        pull = pull + v.repel(&b, j.volume, rows, partners).0;
-                    }
-                }
-                for a in 0..D {
-                    acc[a] = pull.fma(b.y[a], acc[a]);
-                }
-            }
-            for a in 0..D {
-                scatter(acc[a], self.f[a], rows, 1);
-            }
-            if FULL {
-                let material = |l: usize| {
-                    let slot = *rows.add(l) as usize;
-                    self.material.get(slot).map_or(0, |m| *m as usize)
-                };
-                let alone = history::alone::<L, W>(i.critical);
-                let next = if v.paired {
-                    let lonely = lowest.ge(L::splat(f64::INFINITY));
-                    L::select(lonely, alone, history::critical(greatest))
-                } else {
-                    history::next_critical(self.toughness, material, lowest, alone)
-                };
-                scatter(next, self.next, rows, 1);
-                if let (Some(lost), Some(motion)) = (lost, self.motion) {
-                    let growth = if W::SHARES {
-                        self.growth::<L>(slice, &i, &motion)
-                    } else {
-                        zero
-                    };
-                    let kappa = v.volume::<L>(rows);
-                    let q = v.pressure_factor(rows, i.field[1]) * kappa;
-                    let own = [i.field[0] * kappa, i.field[1]];
-                    let energy = history::released::<L, W>(q, own, lost, growth) * i.volume;
-                    for x in &energy.to_array() {
-                        tally.released += x;
-                    }
-                }
-            }
-        }
-    }
-}
-
-impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
-    /// Growth of `Σ k r0² s` of whole bonds in half a step: `½Δt Σ k (ξ+η)·(v_j − v_i)/(1 + s)`.
-    #[inline(always)]
-    unsafe fn growth<L: Lane>(&self, slice: usize, i: &End<L, D>, motion: &Motion<D>) -> L {
-        let v = &self.view;
-        let mut sum = L::splat(0.0);
-        // SAFETY: as in the force pass
-        unsafe {
-            let rows = v.rows(slice);
-            for line in v.list.start[slice]..v.list.start[slice + 1] {
-                let partners = v.partners(line);
-                let b = v.bond::<L>(i, &v.end::<L, false>(partners), rows, partners);
-                let dead = L::dead(*v.alive.at(line));
-                let current = L::splat(1.0) + Stretch::exact(b.e);
-                let rate = parting(motion.v, b.y, rows, partners).div(current);
-                sum = sum + (b.k * rate).zero_if(dead);
-            }
-        }
-        L::splat(motion.half_step()) * sum
-    }
-}
-
-/// Share pass: `P = q Σ k r0² s` into field 0.
-pub struct Share<'a, const D: usize, W> {
-    pub view: View<'a, D, W>,
-}
-
-impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
-    type Out = ();
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) {
-        let v = &self.view;
-        let series = Series::<Stretch>::new();
-        for slice in v.block(block) {
-            // SAFETY: as in the force pass; pressures are written, stiffnesses read
-            unsafe {
-                let rows = v.rows(slice);
-                let i = v.end::<L, false>(rows);
-                let mut sum = L::splat(0.0);
-                for line in v.list.start[slice]..v.list.start[slice + 1] {
-                    let partners = v.partners(line);
-                    let j = v.end::<L, false>(partners);
-                    let b = v.bond::<L>(&i, &j, rows, partners);
-                    let dead = L::dead(*v.alive.at(line));
-                    let e = b.e.nan_if(dead);
-                    let s = series.at(e);
-                    let kr = (b.k * b.r0_squared).zero_if(dead);
-                    sum = kr.fma(s.zero_if(dead), sum);
-                }
-                let q = v.pressure_factor(rows, L::gather2(v.fields.0, rows)[1]);
-                scatter(q * sum, v.fields, rows, 2);
-            }
-        }
-    }
-}
-
-/// `(ξ+η)·(v_j − v_i)`; `y` points from i to j.
-#[inline(always)]
-unsafe fn parting<L: Lane, const D: usize>(
-    v: &Field<D>,
-    y: [L; D],
-    rows: *const u32,
-    partners: *const u32,
-) -> L {
-    let mut rate = L::splat(0.0);
-    for a in 0..D {
-        let mut relative = [0.0; TILE];
-        for (l, r) in relative.iter_mut().enumerate() {
-            // SAFETY: rows and partners are slots
-            unsafe { *r = v[a][*partners.add(l) as usize] - v[a][*rows.add(l) as usize] };
-        }
-        // SAFETY: a number per lane
-        rate = y[a].fma(unsafe { L::load(relative.as_ptr()) }, rate);
-    }
-    rate
-}
-
-/// Energy pass: strain and repulsion energy density, `Σ k r0² s` and `Σ k r0²` over whole bonds.
-pub struct Energies<'a, const D: usize, W> {
-    pub view: View<'a, D, W>,
-    pub fields: Option<EnergyFields>,
-}
-
-impl<const D: usize, W: Law> Kernel for Energies<'_, D, W> {
-    /// Strain and repulsion energy of the block (energy).
-    type Out = [f64; 2];
-
-    #[inline(always)]
-    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
-        let v = &self.view;
-        let series = Series::<Stretch>::new();
-        let mut sums = [0.0; 2];
-        let contact_e = L::splat(v.contact_e());
-        for slice in v.block(block) {
-            // SAFETY: as in the force pass
-            unsafe {
-                let zero = L::splat(0.0);
-                let rows = v.rows(slice);
-                let i = v.end::<L, true>(rows);
-                let (mut strain, mut repulsion, mut share, mut weight) = (zero, zero, zero, zero);
-                for line in v.list.start[slice]..v.list.start[slice + 1] {
-                    let partners = v.partners(line);
-                    let j = v.end::<L, true>(partners);
-                    let b = v.bond::<L>(&i, &j, rows, partners);
-                    let (k, own, other) = v.acting(&b, i.field, j.field);
-                    let dead = L::dead(*v.alive.at(line));
-                    let s = series.at(b.e.nan_if(dead)).zero_if(dead);
-                    let kr = (b.k * b.r0_squared).zero_if(dead);
-                    let kr_pair = (k * b.r0_squared).zero_if(dead);
-                    let x = v.law.pair_energy(kr_pair * s * s, own, other);
-                    strain = strain + x.zero_if(dead);
-                    share = kr.fma(s, share);
-                    weight = weight + kr;
-                    if v.repulsion.is_some() && L::any(b.e.lt(contact_e)) {
-                        repulsion = repulsion + v.repel(&b, j.volume, rows, partners).1;
-                    }
-                }
-                if W::SHARES {
-                    let q = v.pressure_factor(rows, i.field[1]) * v.volume::<L>(rows);
-                    strain = strain + L::splat(0.5) * q * share * share;
-                }
-                for (sum, x) in sums.iter_mut().zip([strain, repulsion]) {
-                    let energy = x * i.volume;
-                    energy.to_array().iter().for_each(|x| *sum += x);
-                }
-                if let Some(out) = self.fields {
-                    scatter(strain, out.strain, rows, 1);
-                    scatter(repulsion, out.repulsion, rows, 1);
-                    scatter(share, out.share, rows, 1);
-                    scatter(weight, out.weight, rows, 1);
-                }
-            }
-        }
-        sums
     }
 }

@@ -1,15 +1,15 @@
 //! A stencil interaction from a body, a stencil and a law.
 
 use super::StencilInteraction;
-use super::kernel::{ALIKE, BLOCK, Bond, MOST, Partner, WHOLE};
-use crate::body::{Body, Column, Grid, Layout, field};
+use super::kernel::{BLOCK, Bond, MOST, Partner};
+use crate::body::{Body, Column, Layout, field};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
 use crate::family::stencil::{Offset, Stencil};
 use crate::interaction::scale::Scale;
-use crate::interaction::{PointConstants, Repulsion, Tally, Toughness, laws_fields};
+use crate::interaction::{PointConstants, Repulsion, Tally, Toughness, history, laws_fields};
 use crate::law::Law;
 use std::collections::HashMap;
 
@@ -128,7 +128,7 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 new
             });
         }
-        let remembers = repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite());
+        let remembers = history::remembers(repulsion.as_ref(), &toughness);
         let critical = if remembers {
             Column::new(body.len, f64::INFINITY, field::line(3))
         } else {
@@ -172,30 +172,5 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         };
         made.look(grid);
         made
-    }
-
-    /// Find the tiles whose bonds are all whole, and those of them whose ends are alike.
-    pub(super) fn look(&mut self, grid: &Grid<D>) {
-        let words = self.width.div_ceil(64);
-        let mut state = std::mem::take(&mut self.state);
-        for (n, state) in state.iter_mut().enumerate() {
-            let row = self.row(n);
-            let reach = &self.reaches[self.reach[n] as usize * words..][..words];
-            let leads = |k: &usize| reach[k / 64] >> (k % 64) & 1 == 1;
-            let whole = (0..self.width).filter(leads).all(|k| row[k] == 0xff);
-            let first = grid.tile_slot(self.tiles[n] as usize);
-            let bonds = &self.bonds[grid.tile_sublattice(self.tiles[n] as usize)];
-            let field = &self.fields[1];
-            let alike = whole && !field.is_empty() && {
-                let same =
-                    |slot: usize| field[slot..slot + TILE].iter().all(|x| *x == field[first]);
-                same(first)
-                    && (0..self.width)
-                        .filter(leads)
-                        .all(|k| same(bonds[k].to(first)))
-            };
-            *state = if whole { WHOLE } else { 0 } | if alike { ALIKE } else { 0 };
-        }
-        self.state = state;
     }
 }

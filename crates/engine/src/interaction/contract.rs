@@ -1,0 +1,277 @@
+//! What every law on every family can do: the contract between bonds and those who move, load and watch a body.
+
+use super::{BondForce, BondState, BondTangent, PointEnergies, Sweep, Tally, add_virial, along};
+use crate::body::{Body, Field, Identity};
+use crate::columns::Declaration;
+use crate::error::BuildError;
+use crate::law::BondFactors;
+use crate::spec::CrackKind;
+
+/// A law on a family, made for one body.
+///
+/// What kernels read and write without looking is checked here, once for each sweep: methods that take a body refuse another one
+/// than that of [`made_for`](Interaction::made_for), and fields of another length.
+pub trait Interaction<const D: usize>: Send + Sync {
+    /// The body that it was made for.
+    fn made_for(&self) -> Identity;
+
+    /// Does a sweep over this body with these fields stay inside what was made?
+    ///
+    /// # Panics
+    /// If the body is another one, or a field has another length than it.
+    fn check(&self, body: &Body<D>, fields: &[&Field<D>]) {
+        assert!(
+            body.identity == self.made_for(),
+            "an interaction made for another body: make one for this body"
+        );
+        let columns = fields.iter().flat_map(|f| f.iter());
+        if let Some(column) = { columns }.find(|c| c.len() != body.len) {
+            panic!(
+                "a field of {} slots, the body has {}: fields come from `at_rest` or `zeros(body.len())`",
+                column.len(),
+                body.len
+            );
+        }
+    }
+
+    /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
+    /// bonds' memory if asked to. Images of `u` must be fresh. What is `seen` are the energies of the bonds that are
+    /// whole before any breaks, as [observe](Interaction::observe) gives them, at less cost.
+    ///
+    /// # Panics
+    /// If the body is another one than that of [`made_for`](Interaction::made_for), or a field does not have its length.
+    fn forces(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        self.check(body, &[u, &*f]);
+        if let Sweep::Evolve { v, .. } = sweep {
+            self.check(body, &[v]);
+        }
+        // SAFETY: just checked
+        unsafe { self.forces_unchecked(body, u, f, sweep, seen) }
+    }
+
+    /// [`forces`](Interaction::forces).
+    ///
+    /// # Safety
+    /// The body and all fields pass [`check`](Interaction::check).
+    unsafe fn forces_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally;
+
+    /// Strain energy of bonds and energy of repulsion inside the family at `u` (energy), without allocating.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn energy(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        self.check(body, &[u]);
+        // SAFETY: just checked
+        unsafe { self.energy_unchecked(body, u) }
+    }
+
+    /// [`energy`](Interaction::energy).
+    ///
+    /// # Safety
+    /// The body and the field pass [`check`](Interaction::check).
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2];
+
+    /// Energy densities and dilatation of all points at `u`.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn observe(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        self.check(body, &[u]);
+        // SAFETY: just checked
+        unsafe { self.observe_unchecked(body, u, out) }
+    }
+
+    /// [`observe`](Interaction::observe).
+    ///
+    /// # Safety
+    /// The body and the field pass [`check`](Interaction::check).
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies);
+
+    /// Energy densities and dilatation of all points under a homogeneous displacement gradient `∂u_a/∂x_b`, so small that
+    /// nobody gets other neighbours; periodic images move like everything else.
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        // images of a grid have displacements of their own
+        let mut u = body.at_rest();
+        let images = body.images.iter().map(|(copy, _)| copy);
+        for &s in body.slots.iter().chain(images) {
+            let moved = along(gradient, &body.position(s as usize));
+            for a in 0..D {
+                u[a][s as usize] = moved[a];
+            }
+        }
+        self.observe(body, &u, out);
+    }
+
+    /// Is it a potential between atoms, per atom and not per volume?
+    fn is_potential(&self) -> bool {
+        false
+    }
+
+    /// Every directed bond that is whole with its tangent at `u`, images of which are fresh, in order of slots. Repulsion inside
+    /// the family is left out. The scalars' gains are in [`Interaction::gain`] afterwards.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn tangents(&mut self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        self.check(body, &[u]);
+        // SAFETY: just checked
+        unsafe { self.tangents_unchecked(body, u, visit) }
+    }
+
+    /// [`tangents`](Interaction::tangents).
+    ///
+    /// # Safety
+    /// The body and the field pass [`check`](Interaction::check).
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    );
+
+    /// `∂p_i / ∂(Σ share)` of a slot, since the last call of [`Interaction::tangents`].
+    fn gain(&self, _slot: usize) -> f64 {
+        0.0
+    }
+
+    /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
+
+    /// What enumerates the bonds: `"stencil"`, `"list"` or `"neighbours"`.
+    fn family(&self) -> &'static str;
+
+    /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), positive where pairs repel; `None`: the law has no forces
+    /// of single bonds.
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        let mut virial = [0.0; 6];
+        let known = self.each_force(body, u, &mut |bond| {
+            let factor = -0.5 * body.volume.at(bond.i);
+            add_virial(&mut virial, &bond.force, &bond.y, factor);
+        });
+        known.then_some(virial)
+    }
+
+    /// Damage `1 − Σ V_j (whole) / Σ V_j (family)` per slot; 0 for points without a family.
+    fn damage(&self, _body: &Body<D>, out: &mut [f64]) {
+        out.fill(0.0);
+    }
+
+    /// Cut bonds whose end points satisfy `crosses`. Returns directed bonds cut. Call before the first sweep.
+    fn cut(
+        &mut self,
+        _body: &Body<D>,
+        _kind: CrackKind,
+        _crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        0
+    }
+
+    /// Multiply the parts of the force density at slot i, of its bond to slot j (an image, maybe) `cell` cells away, by
+    /// `factors(i, j, cell)`; energies, and what breaking releases, follow. Weighted volumes become those of full families,
+    /// critical stretches stay. Factors of several calls are multiplied. Call before the first sweep.
+    fn scale_bonds(
+        &mut self,
+        _body: &Body<D>,
+        _factors: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
+    ) -> Result<(), BuildError> {
+        Err(BuildError::unsupported(
+            "bonds",
+            "factors of bonds need a solid (pmb, lps) or springs on a lattice",
+        ))
+    }
+
+    /// Volume with which the bond along ξ acts on slot i, and its factors, where there are any.
+    fn reached(
+        &self,
+        _body: &Body<D>,
+        _i: usize,
+        _xi: [f64; D],
+    ) -> Option<(f64, BondFactors<f64>)> {
+        None
+    }
+
+    /// Compute what depends on the family (weighted volumes); after all `Absent` cuts, before the first sweep.
+    fn prepare(&mut self, _body: &Body<D>) {}
+
+    /// How far action is from reaction, as `Soundness::asymmetry` of a linear body; given micromoduli need not be
+    /// symmetric, and then there is no energy whose slope the forces are.
+    fn asymmetry(&self) -> f64 {
+        0.0
+    }
+
+    /// Directed bonds of the reference family.
+    fn directed_bonds(&self) -> u64;
+
+    /// Size of the family of every slot.
+    fn family_size(&self, body: &Body<D>, slot: usize) -> usize;
+
+    /// Directed pairs whose distance is within round-off of the horizon, in or out, where that was counted.
+    fn near_horizon(&self) -> u64 {
+        0
+    }
+
+    /// Point field of the law at a slot; 0 where the law has none.
+    fn point_field(&self, _field: usize, _slot: usize) -> f64 {
+        0.0
+    }
+
+    /// Is the pair bonded or repelled inside the family (so that contact outside must leave it alone)?
+    fn in_family(&self, _body: &Body<D>, _i: usize, _j: usize) -> bool {
+        false
+    }
+
+    /// Columns that the law has of points and of bonds: what it remembers ([`Life::Persistent`](crate::columns::Life)) and what it
+    /// answers at the displacements of now ([`Life::Derived`](crate::columns::Life)). Names are those of the field, none twice.
+    fn columns(&self) -> Vec<Declaration> {
+        vec![]
+    }
+
+    /// Writes the values of one of its [columns](Interaction::columns) into `out`: [`stored`](crate::columns::Shape::stored)
+    /// numbers, of points for each slot of the body (0 where there is no point), of bonds for each directed bond of the reference
+    /// family in order of slots, broken ones too. Images of `u` must be fresh. False: there is no such column, and `out` is empty.
+    fn read_column(&self, _body: &Body<D>, _u: &Field<D>, _name: &str, out: &mut Vec<f64>) -> bool {
+        out.clear();
+        false
+    }
+
+    /// Sets a persistent column to values in the order in which [`read_column`](Interaction::read_column) gives them, after
+    /// [`prepare`](Interaction::prepare). False: there is no such column, it follows from others, or the number of values is
+    /// another; then nothing is changed.
+    fn write_column(&mut self, _body: &Body<D>, _name: &str, _values: &[f64]) -> bool {
+        false
+    }
+
+    /// Every directed bond that pulls or pushes at `u`, in order of slots, with the force density that its point gets from it: their
+    /// sum is that of [`forces`](Interaction::forces) without breaking. Repulsion inside the family counts. Images of `u` must be
+    /// fresh. False: the law has no forces of single bonds, and nothing is visited.
+    fn each_force(
+        &mut self,
+        _body: &Body<D>,
+        _u: &Field<D>,
+        _visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        false
+    }
+
+    /// The memory of bonds, as it is laid out: bits of whole bonds and critical values of `e`.
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&[], &[])
+    }
+
+    /// Bytes held.
+    fn bytes(&self) -> usize;
+}

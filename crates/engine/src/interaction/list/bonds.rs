@@ -1,0 +1,92 @@
+//! The bonds of a list one by one, in order of rows: for whatever is not a kernel.
+
+use super::ListInteraction;
+use crate::body::{Body, Field, zeros};
+use crate::execute::lane::TILE;
+use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep};
+use crate::law::{BondFactors, Law};
+
+impl<const D: usize, W: Law> ListInteraction<D, W> {
+    /// Every directed bond of the list: row, line, slots.
+    pub(super) fn each_line(&self) -> impl Iterator<Item = (usize, usize, [usize; 2])> + '_ {
+        let rows = self.list.rows.iter().enumerate();
+        rows.flat_map(|(row, &i)| {
+            let partners = self.list.partners(row);
+            partners.map(move |(line, j)| (row, line, [i as usize, j]))
+        })
+    }
+
+    pub(super) fn is_whole(&self, row: usize, line: usize) -> bool {
+        self.alive[line] >> (row % TILE) & 1 == 1
+    }
+
+    fn field(&self, slot: usize) -> [f64; 2] {
+        [0, 1].map(|n| self.fields.get(2 * slot + n).copied().unwrap_or(0.0))
+    }
+
+    pub(super) fn each_tangent(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        if W::SHARES {
+            // the pressures of this state
+            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+        }
+        let view = self.view(&self.moved);
+        for (row, line, [i, j]) in self.each_line() {
+            if !self.is_whole(row, line) {
+                continue;
+            }
+            let (xi, share) = view.constant(i, j);
+            let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
+            let mut fields = [i, j].map(|s| self.field(s));
+            if view.paired {
+                let pair = self.pairs.get(body.material_of(i), body.material_of(j));
+                k *= pair.stiffness;
+                fields.iter_mut().for_each(|f| f[0] *= pair.ratio());
+            }
+            let mut tangent = BondTangent::of_law(
+                self.law,
+                [i, j],
+                k,
+                BondFactors::ONE,
+                xi,
+                std::array::from_fn(|a| u[a][j] - u[a][i]),
+                fields,
+            );
+            if view.paired && W::SHARES {
+                // the scalar is that of unit constants
+                let pair = self.pairs.get(body.material_of(i), body.material_of(j));
+                tangent.share = tangent.share.map(|x| x / pair.stiffness);
+                tangent.pull = tangent.pull.map(|p| p.map(|x| x * pair.ratio()));
+            }
+            visit(tangent);
+        }
+    }
+
+    pub(super) fn each_pull(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondForce<D>)) {
+        self.pack_now(u);
+        if W::SHARES {
+            self.share();
+        }
+        let view = self.view(&self.moved);
+        for (row, line, [i, j]) in self.each_line() {
+            let (pull, y) = view.pull_of(i, j, self.is_whole(row, line));
+            if pull != 0.0 {
+                let force = y.map(|c| pull * c);
+                visit(BondForce { i, j, y, force });
+            }
+        }
+    }
+
+    /// Every undirected bond of the reference family.
+    pub(super) fn each_of_family(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let view = self.view(&self.moved);
+        for (row, line, [i, j]) in self.each_line().filter(|(.., [i, j])| i <= j) {
+            let state = BondState::of(self.is_whole(row, line));
+            visit(i, j, view.constant(i, j).0, state);
+        }
+    }
+}

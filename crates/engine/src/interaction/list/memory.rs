@@ -1,0 +1,81 @@
+//! What the bonds of a list remember: which are whole, which were cut, and from which stretch they break.
+
+use super::ListInteraction;
+use crate::body::Body;
+use crate::execute::lane::TILE;
+use crate::interaction::history::{self, Crosses};
+use crate::law::Law;
+use crate::spec::CrackKind;
+
+impl<const D: usize, W: Law> ListInteraction<D, W> {
+    pub(super) fn damages(&self, body: &Body<D>, out: &mut [f64]) {
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            let volume = |j| body.volume.at(j);
+            let family = self.sum(row, &self.list.present, volume);
+            let whole = self.sum(row, &self.alive, volume);
+            out[i as usize] = history::damage(whole, family);
+        }
+    }
+
+    pub(super) fn cut_where(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &Crosses<D>,
+    ) -> u64 {
+        let at = |slot: usize| -> [f64; D] {
+            let x = body.position(slot);
+            std::array::from_fn(|a| x[a])
+        };
+        let view = self.view(&self.moved);
+        let mut cut = vec![];
+        for (row, line, [i, j]) in self.each_line() {
+            if !self.is_whole(row, line) {
+                continue;
+            }
+            let (xi, _) = view.constant(i, j);
+            let to = self.is_periodic().then(|| at(j));
+            if history::crossed(crosses, at(i), xi, to) {
+                cut.push((line, row % TILE));
+            }
+        }
+        for &(line, l) in &cut {
+            history::set(&mut self.alive[line], l, false);
+            if kind == CrackKind::Absent {
+                history::set(&mut self.list.present[line], l, false);
+            }
+        }
+        if kind == CrackKind::Absent {
+            self.list.directed -= cut.len() as u64;
+        }
+        cut.len() as u64
+    }
+
+    pub(super) fn read_named(&self, body: &Body<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        match name {
+            history::WHOLE => {
+                out.clear();
+                let bit = |(row, line, _)| f64::from(u8::from(self.is_whole(row, line)));
+                out.extend(self.each_line().map(bit));
+                true
+            }
+            _ => history::read_critical(body, &self.critical, name, out),
+        }
+    }
+
+    pub(super) fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        if name != history::WHOLE {
+            return history::write_critical(body, &mut self.critical, name, values);
+        }
+        let bonds = self.each_line().map(|(row, line, _)| (line, row % TILE));
+        let bonds: Vec<_> = bonds.collect();
+        if bonds.len() != values.len() {
+            return false;
+        }
+        for ((line, l), value) in bonds.into_iter().zip(values) {
+            let whole = *value != 0.0 && self.list.present[line] >> l & 1 == 1;
+            history::set(&mut self.alive[line], l, whole);
+        }
+        true
+    }
+}

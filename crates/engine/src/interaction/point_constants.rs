@@ -1,0 +1,54 @@
+//! Numbers of points that bonds of a law need: from constants of materials and the weighted volume of each point.
+
+use crate::law::Law;
+use crate::law::solid::eam_like::Solid;
+
+/// How the point fields of a law follow from the weighted volume of each point.
+#[derive(Debug, Clone)]
+pub enum PointConstants {
+    /// No fields.
+    None,
+    /// Field 0 is a constant per material.
+    PerMaterial(Vec<f64>),
+    /// EAM-like: per material `(n, κ, β)`.
+    Solid(Vec<Solid>),
+}
+
+impl PointConstants {
+    /// n and 1/m of a point, from its `β/m`; 0 of laws without.
+    pub(super) fn per_weight(&self, material: usize, by_weight: impl Fn() -> f64) -> [f64; 2] {
+        match self {
+            PointConstants::Solid(s) => [s[material].n, by_weight() / s[material].beta],
+            PointConstants::None | PointConstants::PerMaterial(_) => [0.0; 2],
+        }
+    }
+}
+
+/// Pressure factors differ from the law's own where materials with unlike `κ/β²` meet.
+pub(super) fn unlike(solids: &[Solid]) -> bool {
+    solids.iter().any(|s| s.ratio() != solids[0].ratio())
+}
+
+/// `P / Σ k r0² s` at a slot: its own of `pressure`, else the law's, from `β/m`.
+pub(super) fn pressure_factor<W: Law>(
+    law: W,
+    pressure: &[f64],
+    slot: usize,
+    by_weight: impl Fn() -> f64,
+) -> f64 {
+    match pressure.get(slot) {
+        Some(q) => *q,
+        None => law.pressure_factor(by_weight()),
+    }
+}
+
+/// Kernels have two point fields, and laws that share a scalar keep it and the weighted volume there.
+///
+/// # Panics
+/// If the law says otherwise.
+pub(super) fn laws_fields<W: Law>() {
+    assert!(
+        W::FIELDS <= 2 && (!W::SHARES || W::FIELDS == 2),
+        "a law has at most two point fields, and two if it shares a scalar"
+    );
+}

@@ -1,0 +1,174 @@
+//! The bonds of a stencil one by one, in order of slots: for whatever is not a kernel.
+
+use super::StencilInteraction;
+use crate::body::{Body, Field, Grid, zeros};
+use crate::execute::lane::TILE;
+use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep};
+use crate::law::Law;
+
+/// A point in its tile.
+pub(super) struct Place {
+    /// Place of the tile among those that have points.
+    pub n: usize,
+    pub sublattice: usize,
+    pub lane: usize,
+    pub slot: usize,
+}
+
+impl<const D: usize, W: Law> StencilInteraction<D, W> {
+    /// All points.
+    pub(super) fn places<'a>(&'a self, grid: &'a Grid<D>) -> impl Iterator<Item = Place> + 'a {
+        let tiles = self.tiles.iter().map(|t| *t as usize).enumerate();
+        tiles.flat_map(move |(n, tile)| {
+            let (first, sublattice) = (grid.tile_slot(tile), grid.tile_sublattice(tile));
+            let owned = (0..TILE).filter(move |l| grid.is_owned(first + l));
+            owned.map(move |lane| Place {
+                n,
+                sublattice,
+                lane,
+                slot: first + lane,
+            })
+        })
+    }
+
+    /// Bytes of the bonds of a tile.
+    pub(super) fn row(&self, n: usize) -> &[u8] {
+        &self.alive[n * self.width..(n + 1) * self.width]
+    }
+
+    /// Where the bits of all directed bonds are between points that there are: byte and lane.
+    pub(super) fn bits<'a>(
+        &'a self,
+        body: &'a Body<D>,
+    ) -> impl Iterator<Item = (usize, usize)> + 'a {
+        let grid = body.grid();
+        self.places(grid).flat_map(move |p| {
+            let partners = &self.partners[p.sublattice];
+            let there = move |k: &usize| {
+                grid.neighbour(p.slot, partners[*k].cell, partners[*k].to)
+                    .is_some()
+            };
+            let first = p.n * self.width;
+            (0..partners.len())
+                .filter(there)
+                .map(move |k| (first + k, p.lane))
+        })
+    }
+
+    fn field(&self, slot: usize) -> [f64; 2] {
+        [0, 1].map(|n| self.fields[n].get(slot).copied().unwrap_or(0.0))
+    }
+
+    /// The pressures of this state.
+    fn update_pressures(&mut self, body: &Body<D>, u: &Field<D>) {
+        if W::SHARES {
+            self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
+        }
+    }
+
+    pub(super) fn each_tangent(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        self.update_pressures(body, u);
+        let original = body.originals();
+        for p in self.places(body.grid()) {
+            for (b, bits) in self.bonds[p.sublattice].iter().zip(self.row(p.n)) {
+                if bits >> p.lane & 1 == 0 {
+                    continue;
+                }
+                let (i, j) = (p.slot, b.to(p.slot));
+                visit(BondTangent::of_law(
+                    self.law,
+                    [i, original(j)],
+                    b.k,
+                    self.scale.of(p.n, b.number as usize, p.lane),
+                    b.back.map(|x| -x),
+                    std::array::from_fn(|a| u[a][j] - u[a][i]),
+                    [i, j].map(|s| self.field(s)),
+                ));
+            }
+        }
+    }
+
+    pub(super) fn each_pull(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) {
+        self.update_pressures(body, u);
+        let grid = body.grid();
+        let original = body.originals();
+        for p in self.places(grid) {
+            let bonds = self.bonds[p.sublattice]
+                .iter()
+                .zip(&self.partners[p.sublattice]);
+            for ((b, to), bits) in bonds.zip(self.row(p.n)) {
+                let i = p.slot;
+                let alive = bits >> p.lane & 1 == 1;
+                // beside the body another row of it lies in memory
+                let there = || grid.neighbour(i, to.cell, to.to).is_some();
+                if !alive && (self.repulsion.is_none() || !there()) {
+                    continue;
+                }
+                let j = b.to(i);
+                let eta: [f64; D] = std::array::from_fn(|a| u[a][j] - u[a][i]);
+                let xi = b.back.map(|x| -x);
+                let ends = [i, original(j)];
+                let mut pull = 0.0;
+                let y = std::array::from_fn(|a| xi[a] + eta[a]);
+                if alive {
+                    let fields = [i, j].map(|s| self.field(s));
+                    let factors = self.scale.of(p.n, b.number as usize, p.lane);
+                    pull =
+                        BondTangent::of_law(self.law, ends, b.k, factors, xi, eta, fields).tension;
+                }
+                if let Some(repulsion) = &self.repulsion {
+                    let materials = ends.map(|s| body.material_of(s));
+                    pull += repulsion.pull(&xi, &y, materials, self.volume);
+                }
+                if pull != 0.0 {
+                    visit(BondForce {
+                        i,
+                        j: ends[1],
+                        y,
+                        force: y.map(|c| pull * c),
+                    });
+                }
+            }
+        }
+    }
+
+    /// Every undirected bond of the reference family.
+    pub(super) fn each_of_family(
+        &self,
+        body: &Body<D>,
+        visit: &mut dyn FnMut(usize, usize, [f64; D], BondState),
+    ) {
+        let grid = body.grid();
+        let original = body.originals();
+        for p in self.places(grid) {
+            let bonds = self.bonds[p.sublattice]
+                .iter()
+                .zip(&self.partners[p.sublattice]);
+            for ((b, to), bits) in bonds.zip(self.row(p.n)) {
+                // without images the other end's turn
+                if b.shift < 0 && body.images.is_empty() {
+                    continue;
+                }
+                let Some(j) = grid.neighbour(p.slot, to.cell, to.to) else {
+                    continue;
+                };
+                let j = original(j);
+                // a bond between a point and its own image counts from one side only
+                if p.slot < j || (p.slot == j && b.shift > 0) {
+                    let state = BondState::of(bits >> p.lane & 1 == 1);
+                    visit(p.slot, j, b.back.map(|x| -x), state);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! What a sweep over all bonds may change, and what it reports besides forces.
+
+use crate::body::Field;
+use crate::execute::lane::Lane;
+use crate::spec::Release;
+use std::ops::AddAssign;
+
+/// May bonds break in this sweep?
+#[derive(Debug, Clone, Copy)]
+pub enum Sweep<'a, const D: usize> {
+    /// Forces, test and break, then the new critical stretch. A bond that lets go at once missed the half step that
+    /// ends here, one that does after its force pulls over half the next step, and the others pull over that half step
+    /// with pressures of before; `v` (velocity of the step's middle, images too) and `steps`, the time steps that end
+    /// and begin here, say what that costs. The first evaluation of a run ends no step: 0.
+    Evolve {
+        v: &'a Field<D>,
+        steps: [f64; 2],
+        release: Release,
+    },
+    /// Forces only; the memory stays as it is.
+    Hold,
+}
+/// The motion of a sweep in which bonds break.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Motion<'a, const D: usize> {
+    pub v: &'a Field<D>,
+    /// Time steps that end and begin here.
+    pub steps: [f64; 2],
+    pub release: Release,
+}
+
+impl<const D: usize> Motion<'_, D> {
+    /// Energy density that a breaking bond takes from the motion, by pulling over half a step once more, or gives to it by not
+    /// doing so over half a step: half of `½Δt F·(v_j − v_i)`, the other half is the partner's. `rate` is
+    /// `(ξ+η)·(v_j − v_i)`.
+    #[inline(always)]
+    pub(super) fn farewell<L: Lane>(&self, pull: L, rate: L) -> L {
+        let time = match self.release {
+            Release::AtOnce => -0.25 * self.steps[0],
+            Release::AfterForce => 0.25 * self.steps[1],
+        };
+        L::splat(time) * pull * rate
+    }
+
+    /// Half the step that begins (time).
+    pub(super) fn half_step(&self) -> f64 {
+        0.5 * self.steps[1]
+    }
+}
+
+impl<'a, const D: usize> Sweep<'a, D> {
+    /// `None`: nothing breaks.
+    pub(super) fn motion(self) -> Option<Motion<'a, D>> {
+        match self {
+            Sweep::Evolve { v, steps, release } => Some(Motion { v, steps, release }),
+            Sweep::Hold => None,
+        }
+    }
+}
+
+/// What a sweep reports besides its forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tally {
+    /// Directed bonds that broke.
+    pub broken: u64,
+    /// Energy that they held (energy).
+    pub released: f64,
+    /// What laws with memory dissipated (energy).
+    pub dissipated: f64,
+    /// The lowest critical `e` of any point from now on, where that is counted.
+    pub least_critical: f64,
+    /// Why these forces mean nothing.
+    pub fault: Option<Fault>,
+}
+
+/// A state that a law has no answer to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fault {
+    /// The embedding energy has no meaning at this density of this slot.
+    Density { slot: usize, density: f64 },
+    /// Neighbours of a chain went through each other (slots).
+    Crossing { i: usize, j: usize },
+}
+
+impl Fault {
+    /// The same of other slots.
+    pub(super) fn at(self, slot_of: impl Fn(usize) -> usize) -> Fault {
+        match self {
+            Fault::Density { slot, density } => Fault::Density {
+                slot: slot_of(slot),
+                density,
+            },
+            Fault::Crossing { i, j } => Fault::Crossing {
+                i: slot_of(i),
+                j: slot_of(j),
+            },
+        }
+    }
+}
+
+impl Default for Tally {
+    fn default() -> Tally {
+        Tally {
+            broken: 0,
+            released: 0.0,
+            dissipated: 0.0,
+            least_critical: f64::INFINITY,
+            fault: None,
+        }
+    }
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, o: Tally) {
+        self.broken += o.broken;
+        self.released += o.released;
+        self.dissipated += o.dissipated;
+        self.least_critical = self.least_critical.min(o.least_critical);
+        self.fault = self.fault.or(o.fault);
+    }
+}
