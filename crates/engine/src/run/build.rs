@@ -1,37 +1,28 @@
 //! From a specification to a model: the only place that matches on dimension, law and family.
 
 use super::atoms;
-use super::constitutive::{ConstitutiveModels, Shelf};
+use super::bind::{bind, names};
+use super::clouds::{own_densities, own_velocities};
+use super::constitutive::Shelf;
 use super::equilibrium::state::StaticState;
+use super::feasible::{consistent, enough_memory, possible};
 use super::implicit::state::Implicit;
-use super::interfaces::interfaces;
 use super::model::Model;
 use super::parts::{Part, parts};
-use super::probe;
 use super::reference::current_neighbours;
 use super::sets::{assign_materials, initial, sets};
+use super::time_step::{Limits, time_step};
 use super::{Info, Simulation, Steered};
-use super::{bonds, surface};
+use super::{bonds, precracks, surface};
 use super::{contact, gaps};
-use crate::body::{Body, Layout, Values, zeros};
+use crate::body::zeros;
 use crate::condition::carried::Carried;
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
-use crate::execute::memory;
 use crate::execute::simd::Simd;
-use crate::family::stencil::Stencil;
-use crate::fracture::precrack::Crack;
-use crate::interaction::Interaction;
-use crate::interaction::friction::Friction;
-use crate::interaction::several::SeveralInteraction;
-use crate::space::Point;
-use crate::space::ball_volume;
-use crate::spec::{BodySpec, Cloud, CrackKind, Form, Horizon, LawSpec, Spec, Stepper, TimeStep};
+use crate::spec::{BodySpec, Horizon, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
-
-/// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
-const SOLID_FRACTION: f64 = 0.8;
 
 /// How to build, as opposed to what.
 #[derive(Debug, Clone, Copy, Default)]
@@ -53,20 +44,7 @@ pub fn build_with(
     options: Options,
     shelf: &Shelf,
 ) -> Result<Box<dyn Simulation>, BuildError> {
-    if !spec.pairs.is_empty() && spec.schedule.stepper != Stepper::Verlet {
-        return Err(BuildError::unsupported(
-            "pairs",
-            "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
-        ));
-    }
-    if let Some(simd) = options.simd
-        && !Simd::available().contains(&simd)
-    {
-        return Err(BuildError::unsupported(
-            "simd",
-            format!("this machine has no {}", simd.name()),
-        ));
-    }
+    possible(spec, options.simd)?;
     match spec.dimension {
         1 => Ok(Box::new(build_in::<1>(spec, options, shelf)?)),
         2 => Ok(Box::new(build_in::<2>(spec, options, shelf)?)),
@@ -76,69 +54,6 @@ pub fn build_with(
             format!("{d} dimensions; expected 1, 2 or 3"),
         )),
     }
-}
-
-/// Does the model fit into memory? Of bonds a stencil keeps bits, a list partners and bits, and atoms about the partners
-/// of their cut-off.
-fn enough_memory<const D: usize>(
-    body: &Body<D>,
-    stencil: Option<&Stencil>,
-    horizon: f64,
-    atoms: bool,
-) -> Result<(), BuildError> {
-    let slots = body.len as f64;
-    let spacings = horizon / body.spacing;
-    let (bonds, each) = match stencil {
-        Some(s) => (slots * s.bonds() as f64, 0.125),
-        None => {
-            // no point has more partners than the ball holds, or the body
-            let ball = ball_volume(D, spacings);
-            // the estimate may be some times too high where bodies are thin: the list itself is counted before it is made
-            let doubt = if atoms { 1.0 } else { 4.0 };
-            (slots * ball.min(body.points() as f64) / doubt, 4.125)
-        }
-    };
-    let (what, path, help) = if bonds * each > slots * 24.0 * D as f64 {
-        (
-            format!("{:.2e} bonds of {:.2e} points", bonds, body.points() as f64),
-            "horizon",
-            format!(
-                "the horizon {horizon:e} is {spacings:.1} spacings: check its unit and its decimal point, and those of the \
-                 spacing; three to six spacings are usual"
-            ),
-        )
-    } else {
-        (
-            format!("a body of {:.2e} points", body.points() as f64),
-            "body.spacing",
-            "check the units of the spacing and of the region; a larger spacing makes fewer points"
-                .into(),
-        )
-    };
-    memory::afford(path, &what, slots * 24.0 * D as f64 + bonds * each, &help)
-}
-
-/// Do lists that the spec gives belong to each other?
-fn consistent(spec: &Spec) -> Result<(), BuildError> {
-    for (n, m) in spec.materials.iter().enumerate() {
-        let fits = match &m.law {
-            LawSpec::Micromoduli(body) => body.check(),
-            LawSpec::Atoms(potential) => match &potential.form {
-                Form::Tabulated(table) => table.check(),
-                Form::LennardJones(_) | Form::Morse(_) | Form::Buckingham(_) | Form::Mei(_) => {
-                    Ok(())
-                }
-            },
-            LawSpec::Pmb(_)
-            | LawSpec::Lps(_)
-            | LawSpec::LpsAsTyped { .. }
-            | LawSpec::EamLike { .. }
-            | LawSpec::Springs(_)
-            | LawSpec::Named(_) => Ok(()),
-        };
-        fits.map_err(|message| BuildError::invalid(format!("materials[{n}].law"), message))?;
-    }
-    Ok(())
 }
 
 /// Build the model of a spec in D dimensions.
@@ -214,26 +129,7 @@ pub fn build_in<const D: usize>(
     if spec.potential().is_none() && spec.micromoduli().is_none() {
         warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
     }
-    let mut cut = 0;
-    for kind in [CrackKind::Absent, CrackKind::Broken] {
-        if kind == CrackKind::Broken {
-            interaction.prepare(&body);
-        }
-        for (n, crack) in spec
-            .precracks
-            .iter()
-            .enumerate()
-            .filter(|(_, c)| c.kind == kind)
-        {
-            let shape = Crack::new(&crack.shape, body.period)
-                .map_err(|e| e.at(format!("precracks[{n}]")))?;
-            let count = interaction.cut(&body, kind, &|from, to| shape.crosses(&from, &to));
-            if count == 0 {
-                warnings.push(format!("pre-crack {} cuts no bond", n + 1));
-            }
-            cut += count;
-        }
-    }
+    let cut = precracks::cut(spec, &body, interaction.as_mut(), &mut warnings)?;
     if spec.contact.as_ref().is_some_and(|c| c.friction > 0.0)
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {
@@ -271,85 +167,19 @@ pub fn build_in<const D: usize>(
     let gaps = gaps::between(&body, reach, range);
     let spacing = |n: usize| body.pieces()[n].body.spacing;
     warnings.extend(gaps::warnings(spec, &gaps, spacing));
-    let (mut bond_step, mut contact_step) = (f64::INFINITY, f64::INFINITY);
-    let mut touching = None;
-    if !options.trust_time_step && spec.schedule.statics().is_none() {
-        let first = constitutive.first();
-        let lambda = probe::bonds(first, &body, interaction.as_mut(), spec, cell_volume)?;
-        bond_step = probe::step(lambda);
-        if let Some(r) = &repulsion {
-            touching = r.limit(&parts, &body, lambda);
-        }
-        contact_step = touching.map_or(f64::INFINITY, |t| probe::step(t.lambda));
-    }
-    let stable_step = bond_step.min(contact_step);
-    let explicit = match spec.schedule.stepper {
-        Stepper::Verlet | Stepper::Statics(_) => true,
-        Stepper::Newmark(_) => false,
+    let limits = match options.trust_time_step || spec.schedule.statics().is_some() {
+        true => Limits::UNKNOWN,
+        false => Limits::of(
+            spec,
+            (&parts, &constitutive),
+            &body,
+            interaction.as_mut(),
+            cell_volume,
+            repulsion.as_ref(),
+        )?,
     };
-    if !explicit && spec.schedule.time_step == TimeStep::Auto {
-        return Err(BuildError::missing(
-            "schedule.time_step",
-            "an implicit step is stable at any length: how long it is must be said",
-        )
-        .help("write time_step as a number, a thirtieth of the shortest period of interest, or { safety = 20 } for twenty explicit ones"));
-    }
-    let fraction = match spec.schedule.time_step {
-        TimeStep::Fixed(_) => None,
-        TimeStep::Fraction(x) => Some(x),
-        TimeStep::Auto if spec.potential().is_some() => Some(atoms::FRACTION),
-        TimeStep::Auto => Some(SOLID_FRACTION),
-    };
-    let dt = match (spec.schedule.time_step, fraction) {
-        (_, Some(x)) if stable_step.is_finite() => x * stable_step,
-        (TimeStep::Fraction(_) | TimeStep::Auto, _) if body.points() == 1 => {
-            return Err(BuildError::empty(
-                "body",
-                "the body has one point, and a point alone has no bonds: no stable step can be derived",
-            )
-            .help("a larger region or a smaller spacing, or time_step as a number"));
-        }
-        (TimeStep::Fraction(_) | TimeStep::Auto, _) => {
-            return Err(BuildError::ill_posed(
-                "schedule.time_step",
-                "nothing resists: no stable step can be derived",
-            )
-            .help("give time_step as a number"));
-        }
-        (TimeStep::Fixed(dt), _) => dt,
-    };
-    if !(dt > 0.0 && dt.is_finite()) {
-        return Err(BuildError::invalid(
-            "schedule.time_step",
-            format!("the time step is {dt}, expected a positive number"),
-        ));
-    }
-    // a step that was chosen may be right where nothing ever touches
-    let chosen = matches!(spec.schedule.time_step, TimeStep::Fixed(_));
-    let limit = if chosen { bond_step } else { stable_step };
-    if dt > contact_step && dt <= limit && explicit {
-        let of = touching
-            .map_or([0, 0], |t| t.materials)
-            .map(|k| repulsion.as_ref().map_or("", |r| r.name(spec, k)));
-        let [a, b] = of;
-        let between = if a == b {
-            format!("points of {a}")
-        } else {
-            format!("{a} and {b}")
-        };
-        warnings.push(format!(
-            "the time step {dt:.4e} is above the stability limit {contact_step:.4e} of contact between {between}: the run goes unstable if many of them touch"
-        ));
-    }
-    if dt > limit && explicit {
-        let message =
-            format!("the time step {dt:.4e} is above the stability limit {limit:.4e} of this body");
-        if !spec.schedule.force_unstable {
-            return Err(BuildError::invalid("schedule.time_step", message)
-                .help(format!("write time_step = {:.3e} or \"auto\"; force_unstable = true under [run] runs it all the same", 0.8 * stable_step)));
-        }
-        warnings.push(message);
-    }
+    let points = body.points();
+    let dt = time_step(spec, points, &limits, repulsion.as_ref(), &mut warnings)?;
     let sizes = body
         .slots
         .iter()
@@ -379,8 +209,8 @@ pub fn build_in<const D: usize>(
             families: constitutive.families(spec.materials.len()),
             time_step: dt,
             stepper: spec.schedule.stepper,
-            stable_step,
-            contact_step,
+            stable_step: limits.stable(),
+            contact_step: limits.contact,
             bodies: names(spec, &body),
             gaps,
             cut,
@@ -396,7 +226,7 @@ pub fn build_in<const D: usize>(
             let pairs = constitutive.first().pairs.as_ref();
             r.contact(&parts, &body, pairs.map_or(least_horizon, |p| p.shortest()))
         }),
-        friction: friction(spec, &body)?,
+        friction: contact::friction(spec, &body)?,
         boltzmann: spec.boltzmann,
         release: spec.release,
         stop: || false,
@@ -469,162 +299,4 @@ pub fn build_in<const D: usize>(
     }
     model.probes = model.probes_of(&spec.probes)?;
     Ok(model)
-}
-
-/// Laws and bonds of all bodies.
-#[allow(clippy::type_complexity)] // what a model is made of, twice
-fn bind<const D: usize>(
-    spec: &Spec,
-    parts: &mut [Part],
-    body: &mut Body<D>,
-    shelf: &Shelf,
-    simd: Simd,
-    warnings: &mut Vec<String>,
-) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
-    let BodySpec::Several(named) = &spec.body else {
-        if let Some(interface) = spec.interfaces.first() {
-            let message = format!(
-                "interface `{}` joins two of several bodies, and there is one",
-                interface.name
-            );
-            return Err(BuildError::conflict("interface[0].bodies", message)
-                .help("write [[body]] for each of the two"));
-        }
-        let model = parts[0].constitutive(body, shelf, simd, warnings)?;
-        let interaction = model.interaction(body, None)?;
-        return Ok((ConstitutiveModels::one(model), interaction));
-    };
-    let (mut constitutive, mut bonds) = (vec![], vec![]);
-    for (n, part) in parts.iter_mut().enumerate() {
-        let mut own = body.pieces()[n].body.clone();
-        part.choose(body, n, &mut own);
-        let mut told = vec![];
-        let made = part
-            .constitutive(&own, shelf, simd, &mut told)
-            .and_then(|model| {
-                let bonds = part.bonds(&model, &own)?;
-                Ok((model, bonds))
-            });
-        let (model, bond) = made.map_err(|e| BuildError {
-            message: format!("body `{}`: {}", named[n].name, e.message),
-            ..e
-        })?;
-        warnings.extend(
-            told.iter()
-                .map(|w| format!("body `{}`: {w}", named[n].name)),
-        );
-        constitutive.push((body.pieces()[n].first, part.materials.clone(), model));
-        bonds.push(bond);
-        if let Layout::Several(pieces) = &mut body.layout {
-            pieces[n].body = own;
-        }
-    }
-    let mut joined = vec![];
-    for made in interfaces(spec, named, body, shelf, simd)? {
-        let (count, horizon) = (made.interface.near_horizon(), made.model.horizon);
-        if count > 0 && !made.model.ratio {
-            warnings.push(format!(
-                "{count} directed bonds of an interface end within round-off of its horizon {horizon:e}: write it as a whole number of spacings (m_ratio), or well between two distances"
-            ));
-        }
-        joined.push(made.interface);
-    }
-    let interaction = SeveralInteraction::new(body, bonds, joined);
-    let constitutive = ConstitutiveModels::several(constitutive);
-    Ok((constitutive, Box::new(interaction)))
-}
-
-/// Friction of contact; `None`: points slide freely.
-fn friction<const D: usize>(
-    spec: &Spec,
-    body: &Body<D>,
-) -> Result<Option<Friction<D>>, BuildError> {
-    let Some(coefficient) = spec.contact.as_ref().map(|c| c.friction) else {
-        return Ok(None);
-    };
-    let path = "contact.friction";
-    if !(coefficient >= 0.0 && coefficient.is_finite()) {
-        let message =
-            format!("the friction coefficient is {coefficient}, expected a number from 0 on");
-        return Err(BuildError::invalid(path, message).help("0.3 is usual"));
-    }
-    if coefficient == 0.0 {
-        return Ok(None);
-    }
-    if D == 1 {
-        let message = "points on a line have nothing to rub along";
-        return Err(BuildError::unsupported(path, message).help("leave friction out"));
-    }
-    if spec.schedule.statics().is_some() {
-        let message = "friction follows velocities, which equilibrium does not have";
-        return Err(BuildError::unsupported(path, message)
-            .help("leave friction out, or take [run] instead of [statics]"));
-    }
-    Ok(Some(Friction::new(coefficient, body)))
-}
-
-/// Names and sizes of several bodies.
-fn names<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<(String, u64)> {
-    match &spec.body {
-        BodySpec::Several(pieces) => {
-            let all = pieces.iter().zip(body.pieces());
-            all.map(|(p, own)| (p.name.clone(), own.body.points() as u64))
-                .collect()
-        }
-        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => vec![],
-    }
-}
-
-/// The clouds of a spec, each with the ids of its points.
-fn clouds<'a, const D: usize>(
-    spec: &'a Spec,
-    body: &Body<D>,
-) -> Vec<(&'a Cloud, std::ops::Range<usize>)> {
-    let cloud = |b: &'a BodySpec| match b {
-        BodySpec::Cloud(cloud) => Some(cloud),
-        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Several(_) => None,
-    };
-    match &spec.body {
-        BodySpec::Several(pieces) => {
-            let all = pieces.iter().zip(body.ids());
-            all.filter_map(|(p, ids)| Some((cloud(&p.body)?, ids)))
-                .collect()
-        }
-        one => cloud(one)
-            .map(|c| (c, 0..body.points()))
-            .into_iter()
-            .collect(),
-    }
-}
-
-/// Points of a cloud that brings densities have those.
-fn own_densities<const D: usize>(spec: &Spec, body: &mut Body<D>) {
-    let mut density: Vec<f64> = vec![];
-    for (cloud, ids) in clouds(spec, body) {
-        if !cloud.density.is_empty() {
-            if density.is_empty() {
-                density = body
-                    .slots
-                    .iter()
-                    .map(|s| body.density.at(*s as usize))
-                    .collect();
-            }
-            density[ids].copy_from_slice(&cloud.density);
-        }
-    }
-    if !density.is_empty() {
-        body.density = Values::from_points(&density, &body.slots, body.len, 1.0);
-    }
-}
-
-/// Velocities that clouds bring; `None`: they bring none.
-fn own_velocities<const D: usize>(spec: &Spec, body: &Body<D>) -> Option<Vec<Point>> {
-    let mut velocity = vec![];
-    for (cloud, ids) in clouds(spec, body) {
-        if !cloud.velocity.is_empty() {
-            velocity.resize(body.points(), [0.0; 3]);
-            velocity[ids].copy_from_slice(&cloud.velocity);
-        }
-    }
-    (!velocity.is_empty()).then_some(velocity)
 }

@@ -7,6 +7,7 @@ use crate::body::Body;
 use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
 use crate::error::BuildError;
 use crate::interaction::contact::Contact;
+use crate::interaction::friction::Friction;
 use crate::interaction::{PairTable, Repulsion};
 use crate::space::AXES;
 use crate::spec::{ContactStiffness, Spec};
@@ -173,4 +174,33 @@ impl Rules {
         }
         Contact::new(self.repulsion, body, horizon, &bonded).kinds(kind)
     }
+}
+
+/// Friction of contact; `None`: points slide freely.
+pub(super) fn friction<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+) -> Result<Option<Friction<D>>, BuildError> {
+    let Some(coefficient) = spec.contact.as_ref().map(|c| c.friction) else {
+        return Ok(None);
+    };
+    let path = "contact.friction";
+    if !(coefficient >= 0.0 && coefficient.is_finite()) {
+        let message =
+            format!("the friction coefficient is {coefficient}, expected a number from 0 on");
+        return Err(BuildError::invalid(path, message).help("0.3 is usual"));
+    }
+    if coefficient == 0.0 {
+        return Ok(None);
+    }
+    if D == 1 {
+        let message = "points on a line have nothing to rub along";
+        return Err(BuildError::unsupported(path, message).help("leave friction out"));
+    }
+    if spec.schedule.statics().is_some() {
+        let message = "friction follows velocities, which equilibrium does not have";
+        return Err(BuildError::unsupported(path, message)
+            .help("leave friction out, or take [run] instead of [statics]"));
+    }
+    Ok(Some(Friction::new(coefficient, body)))
 }

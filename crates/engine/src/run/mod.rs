@@ -2,14 +2,18 @@
 
 mod accounts;
 mod atoms;
+mod bind;
 mod bonds;
 mod build;
 mod calibration;
 mod changes;
+mod clouds;
 mod conditions;
 mod constitutive;
 mod contact;
 mod equilibrium;
+mod examined;
+mod feasible;
 mod free;
 mod gaps;
 mod implicit;
@@ -18,12 +22,15 @@ mod model;
 mod motion;
 mod observation;
 mod parts;
+mod precracks;
 mod probe;
 mod probes;
 mod record;
 mod reference;
 mod sets;
+mod steered;
 mod surface;
+mod time_step;
 mod virial;
 
 pub use build::{Options, build, build_in, build_with};

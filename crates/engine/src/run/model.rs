@@ -4,25 +4,24 @@ use super::constitutive::ConstitutiveModels;
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
 use super::probes::state::Probe;
-use super::{AtomBond, Examined, Families, Info, ModeShape, Simulation, Steered, Wall};
+use super::{Info, Simulation};
 use crate::body::{Body, Field};
 use crate::columns::Declaration;
-use crate::condition::carried::{Carried, Motion};
+use crate::condition::carried::Carried;
 use crate::condition::constraint::Constraint;
-use crate::condition::driven::{Drive, Driven};
+use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::Load;
-use crate::condition::reaction::Reaction;
 use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
-use crate::error::{BuildError, RunError, SolveError};
+use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
-use crate::interaction::{Fault, Interaction, PointEnergies, Sweep};
+use crate::interaction::{Fault, Interaction, PointEnergies};
 use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot};
 use crate::space::Point;
-use crate::spec::{AnyLinearBody, Carriers, ConditionSpec, IndenterSpec, Release};
+use crate::spec::{Carriers, Release};
 use crate::statics::Solved;
 
 /// A model in D dimensions.
@@ -110,7 +109,7 @@ impl<const D: usize> Model<D> {
         self.body.slots.iter().map(|&s| value(s as usize)).collect()
     }
 
-    fn observed_of(&self, energies: &PointEnergies) -> Observed {
+    pub(super) fn observed_of(&self, energies: &PointEnergies) -> Observed {
         let field = |f: &[f64]| self.by_id(|i| f.get(i).copied().unwrap_or(0.0));
         Observed {
             strain: field(&energies.strain),
@@ -253,264 +252,5 @@ impl<const D: usize> Simulation for Model<D> {
     fn solved(&self) -> Option<Solved> {
         let implicit = self.implicit.as_ref().map(|i| &i.equations);
         self.statics.as_ref().or(implicit).map(|s| s.solved)
-    }
-}
-
-impl<const D: usize> Steered for Model<D> {
-    fn depart(&mut self) -> Result<f64, RunError> {
-        if self.implicit.is_some() {
-            return Err(RunError::Implicit {
-                step: self.step + 1,
-                position: None,
-                error: SolveError::NoTangent {
-                    what: "what acts between the halves of a step",
-                },
-            });
-        }
-        Model::depart(self)?;
-        Ok(self.fastest)
-    }
-
-    fn arrive(&mut self) -> Result<(), RunError> {
-        Model::arrive(self)
-    }
-
-    fn reflect(&mut self, wall: &Wall, ids: Option<&[u32]>) {
-        self.bounce(wall, ids);
-    }
-
-    fn set_carried(&mut self, ids: &[u32]) {
-        self.finish();
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.carried = Carried::new(slots.collect());
-    }
-
-    fn carry(&mut self, next: &[Motion]) {
-        self.carried.tell(next);
-    }
-
-    fn remove(&mut self, ids: &[u32]) {
-        self.take_away(ids);
-    }
-
-    fn set_time(&mut self, step: u64, time: f64) {
-        self.step = step;
-        self.origin = (step, time);
-    }
-
-    fn set_time_step(&mut self, dt: f64) {
-        self.finish();
-        self.origin = (self.step, self.time());
-        self.dt = dt;
-        self.info.time_step = dt;
-    }
-
-    fn set_conditions(
-        &mut self,
-        conditions: &[ConditionSpec],
-        sets: &[(String, Vec<u32>)],
-        indenters: &[IndenterSpec],
-    ) -> Result<(), BuildError> {
-        let (loads, constraints) = self.loads_and_constraints(conditions, sets)?;
-        self.finish();
-        let now = self.energy_now();
-        self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
-        self.driven.clear();
-        self.loads = loads;
-        self.constraints = constraints;
-        self.indenters = indenters.iter().map(Indenter::new).collect();
-        Ok(())
-    }
-
-    fn read(&mut self, name: &str, component: usize, first: usize, out: &mut [f64]) -> bool {
-        let vector = match name {
-            "reference" => {
-                self.body.coordinates(first, component, out);
-                return true;
-            }
-            "displacement" => &self.u,
-            "velocity" => {
-                self.finish();
-                &self.v
-            }
-            "force_density" => &self.f,
-            "volume" | "density" => {
-                let (volume, density) = (&self.body.volume, &self.body.density);
-                let values = if name == "volume" { volume } else { density };
-                for (x, &s) in out.iter_mut().zip(&self.body.slots[first..]) {
-                    *x = values.at(s as usize);
-                }
-                return true;
-            }
-            _ => return false,
-        };
-        match vector.get(component) {
-            Some(values) => {
-                for (x, &s) in out.iter_mut().zip(&self.body.slots[first..]) {
-                    *x = values[s as usize];
-                }
-            }
-            None => out.fill(0.0),
-        }
-        true
-    }
-
-    fn write(&mut self, name: &str, component: usize, first: usize, values: &[f64]) -> bool {
-        self.finish();
-        let vector = match name {
-            "displacement" => {
-                self.look_again();
-                self.virial = None;
-                self.virials = None;
-                &mut self.u
-            }
-            "velocity" => &mut self.v,
-            _ => return false,
-        };
-        if let Some(component) = vector.get_mut(component) {
-            for (value, &s) in values.iter().zip(&self.body.slots[first..]) {
-                component[s as usize] = *value;
-            }
-        }
-        true
-    }
-
-    fn watch_next(&mut self) {
-        self.watch = true;
-    }
-
-    fn watched(&self) -> Option<Observed> {
-        self.watched.as_ref().map(|w| self.observed_of(w))
-    }
-
-    fn watch_virial_next(&mut self) {
-        self.watch_virial = true;
-    }
-
-    fn watch_virials_next(&mut self) {
-        self.watch_virials = true;
-    }
-
-    fn virials(&mut self) -> Vec<[f64; 6]> {
-        let points = match &self.virials {
-            Some(points) => points.clone(),
-            None => {
-                self.refresh_images();
-                if let Some(pairs) = &mut self.contact {
-                    let (body, interaction) = (&self.body, &self.interaction);
-                    pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-                }
-                let mut points = self.virials_of_bonds();
-                self.add_virials_of_contact(&mut points);
-                points
-            }
-        };
-        self.by_id(|i| points[i])
-    }
-
-    fn set_driven(&mut self, driven: &[(Drive, Option<Vec<u32>>)]) {
-        self.finish();
-        let slot = |id: &u32| self.body.slots[*id as usize];
-        let new = driven.iter().map(|(drive, ids)| {
-            let slots = match ids {
-                None => self.body.slots.clone(),
-                Some(ids) => ids.iter().map(slot).collect(),
-            };
-            let at = |s: &u32| self.body.position(*s as usize);
-            let points = slots.iter().map(at).collect();
-            Driven::new(drive, slots, points)
-        });
-        let new: Vec<_> = new.collect();
-        for old in std::mem::replace(&mut self.driven, new) {
-            match old {
-                Driven::Load(l) => self.past_work[1] += l.work,
-                Driven::Indenter(i) => self.past_work[2] += i.work,
-            }
-        }
-    }
-
-    fn drive(&mut self, index: usize, value: &Drive) -> bool {
-        self.driven.get_mut(index).is_some_and(|d| d.set(value))
-    }
-
-    fn reaction(&self, index: usize) -> Reaction {
-        self.driven
-            .get(index)
-            .map_or_else(Reaction::default, Driven::reaction)
-    }
-
-    fn set_still(&mut self, ids: &[u32]) {
-        self.finish();
-        let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        self.still = Still::new(slots.collect());
-    }
-}
-
-impl<const D: usize> Examined for Model<D> {
-    fn families(&self) -> Families {
-        self.count_families()
-    }
-
-    fn energy_under_strain(&self, strain: [[f64; 3]; 3]) -> Vec<f64> {
-        self.strained(strain)
-    }
-
-    fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
-        Model::bonds_of_atoms(self, visit)
-    }
-
-    fn forces_under(&mut self, displacement: &[Point]) -> Vec<Point> {
-        let mut u = self.body.at_rest();
-        Self::scatter(&self.body, &mut u, displacement);
-        for c in &mut u {
-            self.body.fill_images(c);
-        }
-        let mut f = crate::body::zeros(self.body.len);
-        self.interaction
-            .forces(&self.body, &u, &mut f, Sweep::Hold, None);
-        self.vectors(&f)
-    }
-
-    fn observed(&mut self) -> Observed {
-        self.refresh_images();
-        let mut out = self.seen_now();
-        if let Some(pairs) = &mut self.contact {
-            let (body, interaction) = (&self.body, &self.interaction);
-            pairs.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            pairs.add_energy_density(body, &self.u, &mut out.repulsion);
-        }
-        self.observed_of(&out)
-    }
-
-    fn virial(&mut self) -> [f64; 6] {
-        match self.virial {
-            Some(virial) => virial,
-            None => self.virial_now(),
-        }
-    }
-
-    fn relax(&mut self, tolerance: f64) -> Result<Solved, RunError> {
-        self.finish();
-        self.settle_free(tolerance)
-    }
-
-    fn linear_body(&mut self) -> AnyLinearBody {
-        let body = crate::spec::LinearBody {
-            carriers: self.carriers.clone(),
-            ..self.linear_now()
-        };
-        AnyLinearBody::new(body).expect("there are three dimensions")
-    }
-
-    fn modes(&mut self, count: usize) -> Result<Vec<ModeShape>, SolveError> {
-        let found = self.lowest_modes(count)?;
-        Ok(found
-            .iter()
-            .map(|m| ModeShape {
-                square: m.square,
-                frequency: m.frequency(),
-                shape: Self::padded(&m.shape),
-            })
-            .collect())
     }
 }
