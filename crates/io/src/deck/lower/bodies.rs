@@ -3,6 +3,7 @@
 use super::body;
 use super::context::{Context, Result};
 use super::pieces::within;
+use super::sets;
 use super::{Files, horizon, influence, section};
 use crate::deck::document::{Body, Document, FamilyName};
 use crate::deck::error::nearest;
@@ -110,8 +111,8 @@ pub(super) fn sets(context: &Context, document: &Document, all: &BodySpec) -> Re
         };
         sets.push(set(piece.name.clone(), Members::All));
         if let BodySpec::Cloud(cloud) = &piece.body {
-            for name in body::named(cloud) {
-                if let Some(members) = body::of_file(cloud, name) {
+            for name in sets::named(cloud) {
+                if let Some(members) = sets::of_file(cloud, name) {
                     sets.push(set(format!("{}.{name}", piece.name), members));
                 }
             }

@@ -7,9 +7,12 @@ mod context;
 mod interface;
 mod material;
 mod motion;
+mod periods;
 mod pieces;
 mod probes;
+mod region;
 mod schedule;
+mod sets;
 mod warnings;
 
 pub(super) use atoms::boltzmann;
@@ -100,14 +103,14 @@ pub(super) fn lower(
     measured_constants(&context, document)?;
     let mut body = bodies::bodies(&mut context, document, files)?;
     bodies::check(&context, document)?;
-    let periodic = body::periods(
+    let periodic = periods::periods(
         &context,
         document.periodic.as_ref(),
         document.body.value.cells.as_ref(),
         &mut body,
     )?;
     let mut sets = bodies::sets(&context, document, &body)?;
-    sets.extend(body::sets(&context, &document.sets, &body)?);
+    sets.extend(sets::sets(&context, &document.sets, &body)?);
     let mut potential = atoms::potential(&context, &document.material, &body, files)?;
     if potential.is_some() {
         atoms::units_are_said(&context, document)?;
@@ -228,7 +231,7 @@ pub(super) fn lower(
         .as_ref()
         .and_then(|a| a.species.first().cloned());
     Ok(Lowered {
-        corner: body::corner(&context, &document.body.value, &spec.body),
+        corner: periods::corner(&context, &document.body.value, &spec.body),
         species: species.or(of_body.filter(|s| s.parse::<u32>().is_err())),
         spec,
         output,

@@ -1,7 +1,7 @@
 //! Initial values, conditions, indenters, pre-cracks.
 
-use super::body::region;
 use super::context::{Context, Result};
+use super::region::region;
 use crate::deck::document::{
     BondFactor, Condition, CrackName, FlatShape, Indenter, Initial, Precrack, Shape,
 };

@@ -1,0 +1,59 @@
+//! Cracks, and bonds with factors.
+
+use super::CrackName;
+use crate::deck::value::{At, Number, Vector};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A heterogeneous body, or a weak plane.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BondFactor {
+    /// Expression of x, y, z; a bond gets the mean of both ends by the rule of `interface`. With crossing: a number.
+    pub value: Number,
+    /// Only bonds that cross this shape.
+    pub crossing: Option<At<FlatShape>>,
+}
+
+/// One of segment, disk, polygon, point.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlatShape {
+    /// 2-D, or endless along z.
+    pub segment: Option<Segment>,
+    pub disk: Option<Disk>,
+    /// Three or more corners.
+    pub polygon: Option<At<Vec<Vector>>>,
+    /// 1-D.
+    pub point: Option<Number>,
+}
+
+/// One of segment, disk, polygon, point.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Precrack {
+    /// 2-D, or endless along z.
+    pub segment: Option<Segment>,
+    pub disk: Option<Disk>,
+    /// Three or more corners.
+    pub polygon: Option<At<Vec<Vector>>>,
+    /// 1-D.
+    pub point: Option<Number>,
+    /// absent (never there; when left out) or broken (counted as damage).
+    pub kind: Option<CrackName>,
+}
+
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Segment {
+    pub from: Vector,
+    pub to: Vector,
+}
+
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Disk {
+    pub center: Vector,
+    pub normal: Vector,
+    pub radius: Number,
+}

@@ -1,0 +1,116 @@
+//! Words of the deck that stand for one of several.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+macro_rules! names {
+    ($($(#[$doc:meta])* $name:ident { $($(#[$each:meta])* $variant:ident),+ $(,)? })+) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum $name { $($(#[$each])* $variant),+ }
+    )+};
+}
+
+names! {
+    PlaneName { Stress, Strain }
+    LatticeName { Chain, Square, Triangular, Cubic, Bcc, Fcc, Diamond }
+    AxisName { X, Y, Z }
+    InterfaceName {
+        /// Harmonic mean: the two half bonds in series.
+        Series,
+        /// Arithmetic mean: side by side.
+        Parallel,
+        /// The weaker of both, as LAMMPS does.
+        Minimum,
+    }
+    InfluenceName {
+        /// 1
+        Constant,
+        /// 1/ξ
+        Inverse,
+        /// 1 − ξ/δ
+        Conical,
+        /// exp(−(2ξ/δ)²)
+        Gaussian,
+        /// Cubic B-spline with support δ, 1 at ξ = 0.
+        CubicSpline,
+    }
+    CalibrationName {
+        /// Constants from the integrals over the full ball.
+        Continuum,
+        /// Constants from the sums over a full family of this body.
+        Discrete,
+    }
+    SurfaceName {
+        None,
+        /// Every uniform strain is an equilibrium under its uniform traction.
+        Exact,
+        /// By the volume of the families.
+        Volume,
+        /// By the strain energy under uniaxial stretch.
+        Energy,
+        /// By the stiffness that a point feels when the rest stands still.
+        Force,
+    }
+    FamilyName {
+        /// Stencil on lattices, list of a cloud, current neighbours of atoms.
+        Auto,
+        /// Offsets of a lattice, nothing stored per bond.
+        Stencil,
+        /// Stored bonds of the reference.
+        List,
+        /// Atoms within the cut-off now.
+        Neighbours,
+    }
+    /// How a motion goes on in time.
+    IntegratorName {
+        /// Velocity Verlet: explicit, stable below a limit of the step.
+        Verlet,
+        /// Newmark's method: implicit, stable at any step.
+        Newmark,
+    }
+    MeasureName {
+        /// Force that constraints exert on the set, per axis.
+        Reaction,
+        /// Moment of that force about a fixed point.
+        Moment,
+        /// Kinetic, strain and repulsion energy of the set.
+        Energy,
+        /// Mean of a field over the points of the set.
+        Mean,
+        /// Smallest value.
+        Min,
+        /// Largest value.
+        Max,
+        /// Sum over the points.
+        Sum,
+        /// A field at the point of the set that is nearest to a place.
+        Value,
+        /// J-integral and stress intensity K of a crack tip (2-D statics), by a rectangle around it.
+        Contour,
+    }
+    CrackName {
+        /// Bonds that never were.
+        Absent,
+        /// Bonds that count as damage.
+        Broken,
+    }
+}
+
+impl MeasureName {
+    /// As it is written.
+    pub fn title(self) -> &'static str {
+        match self {
+            MeasureName::Reaction => "reaction",
+            MeasureName::Moment => "moment",
+            MeasureName::Energy => "energy",
+            MeasureName::Mean => "mean",
+            MeasureName::Min => "min",
+            MeasureName::Max => "max",
+            MeasureName::Sum => "sum",
+            MeasureName::Value => "value",
+            MeasureName::Contour => "contour",
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! How a body moves or comes to rest, and what is measured of it.
+
+use super::{IntegratorName, MeasureName};
+use crate::deck::value::{At, Number, Or, Vector, Written};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    pub steps: Option<At<u64>>,
+    /// Instead of steps.
+    pub duration: Option<Number>,
+    /// A time, or { safety = 0.8 } of the estimated limit (when left out).
+    pub time_step: Option<At<Or<Written, Safety>>>,
+    /// Run even if the step is above the stability limit.
+    #[serde(default)]
+    pub force_unstable: bool,
+    /// verlet when left out. newmark is implicit: stable at any step, which must be given, and without fracture and contact.
+    pub integrator: Option<At<IntegratorName>>,
+    /// newmark: 1/4 when left out.
+    pub beta: Option<Number>,
+    /// newmark: 1/2 when left out; more damps what is fast beside the step.
+    pub gamma: Option<Number>,
+    /// newmark: auto when left out, factors of small systems, conjugate gradients of large ones.
+    pub solver: Option<At<SolverName>>,
+    /// newmark: residual force over loads, reactions and inertia; 1e-10 when left out.
+    pub tolerance: Option<Number>,
+    /// newmark: iterations of conjugate gradients; 100,000 when left out.
+    pub iterations: Option<At<usize>>,
+    pub threads: Option<At<usize>>,
+}
+
+/// When a bond past its critical stretch lets go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ReleaseName {
+    /// In the force evaluation that finds it there, as in CabanaPD.
+    AtOnce,
+    /// After the force of that evaluation, as in LAMMPS: it pulls once more.
+    AfterForce,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Statics {
+    /// linear (about the reference) when left out; newton for large deformation, relaxation for contact.
+    pub method: Option<MethodName>,
+    /// auto when left out: factors of small systems, conjugate gradients of large ones.
+    pub solver: Option<SolverName>,
+    /// Increments of load while t goes from 0 to 1; 1 when left out, and 0 looks at modes only.
+    pub increments: Option<At<u64>>,
+    /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
+    pub tolerance: Option<Number>,
+    /// Iterations of conjugate gradients or of relaxation; 100,000 when left out.
+    pub iterations: Option<At<usize>>,
+    /// So many lowest modes of vibration about the last state; modes.csv and modes.pvd.
+    pub modes: Option<At<usize>>,
+    pub threads: Option<At<usize>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MethodName {
+    Linear,
+    Newton,
+    Relaxation,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverName {
+    Auto,
+    Direct,
+    Cg,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Safety {
+    pub safety: Number,
+}
+
+/// A measurement of a set of points; its columns of history.csv begin with its name.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    pub name: At<String>,
+    /// All points when left out.
+    pub set: Option<At<String>>,
+    pub measure: At<MeasureName>,
+    /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value.
+    pub of: Option<At<String>>,
+    /// x, xy, … or magnitude; all components when left out.
+    pub component: Option<At<String>>,
+    /// Fixed point of a moment.
+    pub about: Option<Vector>,
+    /// Place in the reference; of value.
+    pub at: Option<Vector>,
+    /// Two opposite corners of a rectangle around the tip of a crack, three horizons to every side at least; of contour.
+    pub corners: Option<At<Vec<Vector>>>,
+    /// Where the crack grows to; of contour, [1, 0] when left out.
+    pub direction: Option<Vector>,
+}

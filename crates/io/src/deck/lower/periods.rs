@@ -1,0 +1,142 @@
+//! Periods of a body, and the corner that they begin at.
+
+use super::context::{Context, Result};
+use crate::deck::document::{Body, Periodic};
+use crate::deck::units::{Dim, short};
+use crate::deck::value::{At, Or};
+use peridyne::space::region::Region;
+use peridyne::spec::BodySpec;
+use std::ops::Range;
+
+const INF: f64 = f64::INFINITY;
+
+/// Lower corner of the periods: of the whole cells, of the region, or of the file's box.
+pub(super) fn corner(context: &Context, written: &Body, body: &BodySpec) -> [f64; 3] {
+    match body {
+        BodySpec::Lattice { origin, region, .. } => {
+            let low = match &written.cells {
+                Some(_) => *origin,
+                None => region.bounds().0,
+            };
+            low.map(|c| if c.is_finite() { c } else { 0.0 })
+        }
+        BodySpec::Sites { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => {
+            context.atoms.as_ref().map_or([0.0; 3], |file| file.corner)
+        }
+    }
+}
+
+/// Periods per axis. A lattice body is cut to one period, half open: the face at the upper end is the image of the
+/// one at the lower end.
+pub(super) fn periods(
+    context: &Context,
+    written: Option<&At<Periodic>>,
+    cells: Option<&At<Vec<At<u32>>>>,
+    body: &mut BodySpec,
+) -> Result<[Option<f64>; 3]> {
+    let mut out = [None; 3];
+    let Some(written) = written else {
+        if let Some(linear) = &context.micromoduli {
+            return Ok(linear.period());
+        }
+        if let Some(file) = &context.atoms
+            && let Some(periodic) = file.periodic
+        {
+            out = std::array::from_fn(|a| {
+                (a < context.dimension && periodic[a]).then_some(file.cell[a])
+            });
+        }
+        return Ok(out);
+    };
+    let mut wanted: Vec<(usize, Range<usize>, Option<f64>)> = Vec::new();
+    match &written.value {
+        Or::Bare(axes) => wanted.extend(
+            axes.iter()
+                .map(|axis| (axis.value as usize, axis.span.clone(), None)),
+        ),
+        Or::Table(periods) => {
+            for (a, number) in [&periods.x, &periods.y, &periods.z].into_iter().enumerate() {
+                if let Some(number) = number {
+                    wanted.push((
+                        a,
+                        number.span.clone(),
+                        Some(context.positive(number, Dim::LENGTH, "the period")?),
+                    ));
+                }
+            }
+        }
+    }
+    for (a, span, period) in wanted {
+        let axis = ["x", "y", "z"][a];
+        if a >= context.dimension {
+            return Err(context.error(
+                &span,
+                format!("there is no {axis} in {}-D", context.dimension),
+            ));
+        }
+        out[a] = Some(match body {
+            BodySpec::Lattice {
+                kind,
+                spacing,
+                region,
+                ..
+            } => {
+                let (low, high) = region.bounds();
+                let edge = *spacing * kind.edges()[a];
+                let own = cells.and_then(|c| c.value.get(a));
+                let own = own.map(|n| f64::from(n.value) * edge);
+                let length = period.or(own).unwrap_or(high[a] - low[a]);
+                let cells = length / edge;
+                if !length.is_finite() || !low[a].is_finite() {
+                    let help = "clip the region with a block along it";
+                    return Err(context.error_with(
+                        &span,
+                        format!("the body has no end along {axis} to be a period"),
+                        help,
+                    ));
+                }
+                if (cells - cells.round()).abs() > 1e-6 || cells.round() < 1.0 {
+                    let message =
+                        format!("the period along {axis} is {} lattice cells", short(cells));
+                    let help = format!(
+                        "make it a whole number of cells of {}",
+                        context.units.write(edge, Dim::LENGTH)
+                    );
+                    return Err(context.error_with(&span, message, help));
+                }
+                if own.is_some_and(|own| own == length) {
+                    out[a] = Some(length);
+                    continue;
+                }
+                let (mut from, mut to) = ([-INF; 3], [INF; 3]);
+                (from[a], to[a]) = (low[a], low[a] + length - edge / 8.0);
+                let whole = std::mem::replace(region, Region::Everything);
+                *region = Region::Intersection(vec![
+                    whole,
+                    Region::Block {
+                        low: from,
+                        high: to,
+                    },
+                ]);
+                length
+            }
+            BodySpec::Several(_) => period.ok_or_else(|| {
+                context.error_with(
+                    &span,
+                    "several bodies do not say their period",
+                    format!("write periodic = {{ {axis} = \"50 mm\" }}"),
+                )
+            })?,
+            BodySpec::Sites { .. } | BodySpec::Cloud(_) => period
+                .or(context.atoms.as_ref().map(|f| f.cell[a]))
+                .ok_or_else(|| {
+                    context.error_with(
+                        &span,
+                        "points from a file do not say their period",
+                        format!("write periodic = {{ {axis} = \"50 mm\" }}"),
+                    )
+                })?,
+        });
+    }
+    Ok(out)
+}
