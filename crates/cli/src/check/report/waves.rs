@@ -1,0 +1,166 @@
+//! Waves, steps and fracture.
+
+use super::numbers::whole;
+use super::row;
+use crate::check::Findings;
+use peridyne::spec::{Criterion, Method, Stepper};
+use peridyne_io::deck::Dim;
+
+pub(super) fn waves(found: &Findings) -> String {
+    let (info, units) = (found.sim.info(), found.units);
+    let mut out = String::from("Waves and step\n");
+    let long = (0..info.dimension)
+        .map(|a| found.high[a] - found.low[a] + info.spacing)
+        .fold(0.0, f64::max);
+    for m in &found.materials {
+        if !m.pressure_wave.is_finite() {
+            continue;
+        }
+        let prefix = if found.materials.len() > 1 {
+            format!("{}: ", m.name)
+        } else {
+            String::new()
+        };
+        let shear = m.shear_wave.map_or(String::new(), |c| {
+            format!(", shear {}", units.write(c, Dim::VELOCITY))
+        });
+        let kind = if m.shear_wave.is_some() {
+            "pressure "
+        } else {
+            ""
+        };
+        let speeds = units.write(m.pressure_wave, Dim::VELOCITY);
+        row(
+            &mut out,
+            "wave speeds",
+            format!("{prefix}{kind}{speeds}{shear}"),
+        );
+        let crossing = long / m.pressure_wave;
+        let steps = match found.spec.schedule.statics() {
+            Some(_) => String::new(),
+            None => format!(
+                " = {} steps",
+                whole((crossing / info.time_step).ceil() as u64)
+            ),
+        };
+        row(
+            &mut out,
+            "crossing",
+            format!(
+                "{prefix}{}{steps} through the longest side",
+                units.write(crossing, Dim::TIME)
+            ),
+        );
+    }
+    if let Some(statics) = found.spec.schedule.statics() {
+        let how = match statics.method {
+            Method::Linear => "linear about the reference",
+            Method::Newton => "by Newton's method",
+            Method::Relaxation => "by relaxation, which finds its own step",
+        };
+        row(
+            &mut out,
+            "equilibrium",
+            format!("{} increments of load, {how}", whole(found.steps)),
+        );
+        return out;
+    }
+    if let Stepper::Newmark(n) = found.spec.schedule.stepper {
+        row(
+            &mut out,
+            "integrator",
+            format!(
+                "implicit, Newmark's method with beta = {}, gamma = {}",
+                n.beta, n.gamma
+            ),
+        );
+        let ratio = info.time_step / info.stable_step;
+        row(
+            &mut out,
+            "time step",
+            format!(
+                "{}, {ratio:.3} times the limit {} of explicit steps",
+                units.write(info.time_step, Dim::TIME),
+                units.write(info.stable_step, Dim::TIME)
+            ),
+        );
+        row(
+            &mut out,
+            "run",
+            format!(
+                "{} steps = {}",
+                whole(found.steps),
+                units.write(found.steps as f64 * info.time_step, Dim::TIME)
+            ),
+        );
+        return out;
+    }
+    row(&mut out, "integrator", "velocity Verlet");
+    row(
+        &mut out,
+        "time step",
+        format!(
+            "{}, {:.1} % of the stability limit {}{}",
+            units.write(info.time_step, Dim::TIME),
+            100.0 * info.time_step / info.stable_step,
+            units.write(info.stable_step, Dim::TIME),
+            if info.contact_step <= info.stable_step && info.contact_step.is_finite() {
+                ", which contact sets"
+            } else {
+                ""
+            }
+        ),
+    );
+    row(
+        &mut out,
+        "run",
+        format!(
+            "{} steps = {}",
+            whole(found.steps),
+            units.write(found.steps as f64 * info.time_step, Dim::TIME)
+        ),
+    );
+    out
+}
+
+pub(super) fn fracture(found: &Findings) -> String {
+    let units = found.units;
+    let mut out = String::new();
+    for (m, spec) in found.materials.iter().zip(&found.spec.materials) {
+        let Some((s00, energy)) = m.fracture else {
+            continue;
+        };
+        let prefix = if found.materials.len() > 1 {
+            format!("{}: ", m.name)
+        } else {
+            String::new()
+        };
+        let energy = energy.map_or("no formula for this law".to_string(), |e| {
+            units.write(e, Dim::FRACTURE_ENERGY)
+        });
+        let given = matches!(
+            spec.fracture.map(|f| f.criterion),
+            Some(Criterion::Energy(_))
+        );
+        let (a, b) = if given {
+            ("from the energy", "asked")
+        } else {
+            ("asked", "from the stretch")
+        };
+        row(
+            &mut out,
+            "critical stretch",
+            format!("{prefix}{:.4} % ({a})", 100.0 * s00),
+        );
+        row(
+            &mut out,
+            "fracture energy",
+            format!("{prefix}{energy} ({b})"),
+        );
+    }
+    if out.is_empty() {
+        out
+    } else {
+        format!("Fracture\n{out}")
+    }
+}

@@ -1,0 +1,225 @@
+//! Level after level: made, written, run.
+
+use super::report::{record, told};
+use super::way::Way;
+use super::{Acting, CoarsenArguments, Level};
+use crate::failure::{Failure, say};
+use crate::side_by_side::{compare, run, save};
+use peridyne::space::Point;
+use peridyne::spec::{Carriers, LinearBody, Method};
+use peridyne_io::deck::Deck;
+use peridyne_io::deck::coarsened::coarsened;
+use peridyne_io::deck::upscaled::copied;
+use peridyne_io::write::atomic::{create_directory, write_file};
+use peridyne_io::write::linear::write_linear;
+use peridyne_theory::coarsen::{self, Radius, Selection, Stability, Volume};
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// Coarsens a body level by level, and writes and runs what was made.
+pub(super) fn levels<const D: usize>(
+    arguments: &CoarsenArguments,
+    deck: &Deck,
+    out: &Path,
+    mut body: LinearBody<D>,
+    relaxed: Option<Vec<Point>>,
+    kept: Option<Vec<u32>>,
+    acting: Acting,
+) -> Result<(), Failure> {
+    let way = acting.way;
+    // atoms are where they rest; files, sets and conditions know them by their sites
+    let mut sites = body.position.clone();
+    for (x, u) in body.position.iter_mut().zip(relaxed.iter().flatten()) {
+        for a in 0..D {
+            x[a] += u[a];
+        }
+    }
+    if !way.condensed && body.carriers.is_some() {
+        return Err(Failure::input(
+            "--loads silling: this body was condensed with its loads; begin with the deck of the whole body",
+        ));
+    }
+    if way.condensed && body.carriers.is_none() && acting.loaded.contains(&true) {
+        let (position, volume) = (sites.clone(), body.volume.clone());
+        let carriers = Carriers::of(position, volume, acting.spacing, &acting.loaded);
+        body.carriers = Some(carriers);
+    }
+    let level0 = relaxed.is_some().then(|| at_sites(&body, &sites));
+    let selection = match (arguments.every, arguments.spacing, kept) {
+        (Some(every), _, _) => Selection::Sublattice { every, through: 0 },
+        (_, Some(spacing), _) => Selection::BlueNoise { spacing, seed: 1 },
+        (_, _, Some(points)) => Selection::Marked(points),
+        _ => {
+            return Err(Failure::input(
+                "say which points to retain: --every K on a lattice, --spacing LENGTH of a cloud, or --keep SET",
+            ));
+        }
+    };
+    if matches!(selection, Selection::Marked(_)) && arguments.levels > 1 {
+        return Err(Failure::input("--keep SET retains one set: --levels 1"));
+    }
+    let mut made: Vec<Level<D>> = vec![];
+    // of the level below: points among which the next ones are chosen, and points that stay because they are held
+    let mut regular: Vec<u32> = (0..body.points() as u32).collect();
+    let mut held: Vec<u32> = regular.clone();
+    held.retain(|i| way.supports && acting.held[*i as usize]);
+    for level in 1..=arguments.levels {
+        let wrong = |e: coarsen::CoarsenError| {
+            Failure::input(format!("{}, level {level}: {e}", deck.file()))
+        };
+        let step = arguments.every.unwrap_or(2).pow(level as u32 - 1);
+        let selection = match &selection {
+            Selection::BlueNoise { spacing, seed } => Selection::BlueNoise {
+                spacing: spacing * f64::from(step),
+                seed: *seed,
+            },
+            other => other.clone(),
+        };
+        let options = coarsen::Options {
+            scheme: way.scheme,
+            symmetrise: way.symmetrise,
+            rotation: arguments.rotation,
+            volume: match way.condensed {
+                true => Volume::Lumped,
+                false => Volume::Kept,
+            },
+            radius: match arguments.radius {
+                Some(radius) => Radius::Fixed(radius * f64::from(step)),
+                None => Radius::Tolerance(arguments.tolerance),
+            },
+        };
+        let began = Instant::now();
+        let among = LinearBody {
+            position: regular.iter().map(|i| sites[*i as usize]).collect(),
+            period: body.period,
+            ..LinearBody::nothing()
+        };
+        let chosen = selection.choose(&among).map_err(wrong)?;
+        let chosen: Vec<u32> = chosen.iter().map(|k| regular[*k as usize]).collect();
+        let mut retained = [chosen.as_slice(), &held].concat();
+        retained.sort_unstable();
+        retained.dedup();
+        let place = |i: &u32| retained.partition_point(|r| r < i) as u32;
+        regular = chosen.iter().map(place).collect();
+        held = held.iter().map(place).collect();
+        let (coarse, report) = coarsen::coarsen(&body, &retained, &options).map_err(wrong)?;
+        let seconds = began.elapsed().as_secs_f64();
+        let name = format!("level{level}");
+        let text = coarsened(deck, &format!("{name}.npz"), level).map_err(Failure::input)?;
+        sites = retained.iter().map(|i| sites[*i as usize]).collect();
+        let made_of = Level {
+            name,
+            body: at_sites(&coarse, &sites),
+            report,
+            text,
+            seconds,
+            supports: retained.len() - regular.len(),
+        };
+        say(&told(level, &made_of, way));
+        if let Stability::Stable { growth } = made_of.report.stability
+            && growth > 0.0
+            && deck.spec.schedule.statics().is_none()
+        {
+            say(&format!(
+                "note: without symmetry there is no energy: in dynamics the free vibrations of level {level} grow by a factor e in {:.3e}",
+                1.0 / growth
+            ));
+        }
+        made.push(made_of);
+        body = coarse;
+    }
+    write_levels(out, deck, level0.as_ref(), &made, way)?;
+    if arguments.run {
+        run_levels(out, deck, level0.is_some(), &made)?;
+    }
+    Ok(())
+}
+
+/// Decks, linear bodies and records of all levels, in a folder.
+fn write_levels<const D: usize>(
+    out: &Path,
+    deck: &Deck,
+    level0: Option<&LinearBody<D>>,
+    made: &[Level<D>],
+    way: Way,
+) -> Result<(), Failure> {
+    create_directory(out).map_err(|e| Failure::Run(e.to_string()))?;
+    let failed = |e: peridyne_io::write::WriteError| Failure::Run(e.to_string());
+    let finest = match level0 {
+        None => copied(deck),
+        Some(body) => {
+            write_linear(&out.join("level0.npz"), body).map_err(failed)?;
+            coarsened(deck, "level0.npz", 0)
+        }
+    };
+    save(out, "level0.toml", &finest.map_err(Failure::input)?)?;
+    for level in made {
+        let name = &level.name;
+        write_linear(&out.join(format!("{name}.npz")), &level.body).map_err(failed)?;
+        save(out, &format!("{name}.toml"), &level.text)?;
+        let json = serde_json::to_string_pretty(&record(level, way))
+            .map_err(|e| Failure::Run(e.to_string()))?;
+        write_file(&out.join(format!("{name}.json")), |w| {
+            w.write_all(json.as_bytes())
+        })
+        .map_err(failed)?;
+    }
+    say(&format!(
+        "decks in {}: level0.toml to {}.toml",
+        out.display(),
+        made.last().map_or("level0", |m| &m.name)
+    ));
+    Ok(())
+}
+
+/// Runs all levels and tells how far they are from the finest.
+fn run_levels<const D: usize>(
+    out: &Path,
+    deck: &Deck,
+    relaxed: bool,
+    made: &[Level<D>],
+) -> Result<(), Failure> {
+    if relaxed {
+        say("note: level 0 is the linear body about the relaxed crystal");
+    } else if deck
+        .spec
+        .schedule
+        .statics()
+        .is_some_and(|s| s.method != Method::Linear)
+    {
+        say("note: level 0 is run as its deck says, nonlinear; the levels are linear");
+    }
+    let fine = run(&out.join("level0.toml"), None)?;
+    for Level { name, .. } in made {
+        let coarse = run(&out.join(format!("{name}.toml")), Some(fine.time))?;
+        let m = compare(&fine, &coarse);
+        if !m.error.is_finite() {
+            say(&format!(
+                "{name}: nothing moves at the {} points that both have: no error can be told",
+                m.points
+            ));
+            continue;
+        }
+        say(&format!(
+            "{name}: displacement error {} % at {} points, {:.1} times as fast ({:.3} s against {:.3} s)",
+            match 100.0 * m.error {
+                small if small < 1e-3 => format!("{small:.1e}"),
+                error => format!("{error:.3}"),
+            },
+            m.points,
+            m.seconds[0] / m.seconds[1],
+            m.seconds[1],
+            m.seconds[0],
+        ));
+    }
+    Ok(())
+}
+
+/// A body whose points are looked for at other places.
+fn at_sites<const D: usize>(body: &LinearBody<D>, sites: &[[f64; D]]) -> LinearBody<D> {
+    LinearBody {
+        position: sites.to_vec(),
+        ..body.clone()
+    }
+}
