@@ -9,6 +9,9 @@ use std::sync::Arc;
 
 use super::atoms::{Atoms, Members};
 use super::domain::SimBox;
+pub use super::pair::{
+    EpsCoefficients, LpsCoefficients, Pair, PairTable, PmbCoefficients, Style, VesCoefficients,
+};
 pub use super::quantity::{BLOCK, HostError, Particles, Quantity};
 use super::units::Units;
 pub use peridyne::condition::carried::{Carry, Motion};
@@ -33,68 +36,6 @@ pub struct Setup {
     pub steps: u64,
     pub atoms: Atoms,
     pub pair: Pair,
-}
-
-/// `pair_style` and `pair_coeff`.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Pair {
-    Pmb(PairTable<PmbCoefficients>),
-    Lps(PairTable<LpsCoefficients>),
-}
-
-impl Pair {
-    /// Number of atom types.
-    pub fn types(&self) -> usize {
-        match self {
-            Pair::Pmb(table) => table.types(),
-            Pair::Lps(table) => table.types(),
-        }
-    }
-}
-
-/// Coefficients for every pair of atom types; symmetric, complete.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairTable<T> {
-    types: usize,
-    values: Vec<T>,
-}
-
-impl<T: Copy> PairTable<T> {
-    /// `None` if a pair has no coefficients. `values[(i−1)·types + (j−1)]` for types `i`, `j` from 1.
-    pub fn complete(types: usize, values: &[Option<T>]) -> Option<Self> {
-        let values = values.iter().copied().collect::<Option<Vec<T>>>()?;
-        (values.len() == types * types).then_some(PairTable { types, values })
-    }
-    /// Number of atom types.
-    pub fn types(&self) -> usize {
-        self.types
-    }
-    /// For atom types `i` and `j`, from 1 to [`PairTable::types`].
-    pub fn get(&self, i: usize, j: usize) -> T {
-        self.values[(i - 1) * self.types + (j - 1)]
-    }
-}
-
-/// `pair_coeff I J c δ s00 α` of `peri/pmb`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PmbCoefficients {
-    /// Micromodulus c as typed.
-    pub micromodulus: f64,
-    /// Horizon δ as typed (bonds have `r² ≤ δ²`).
-    pub horizon: f64,
-    pub critical_stretch: f64,
-    pub alpha: f64,
-}
-
-/// `pair_coeff I J K G δ s00 α` of `peri/lps`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LpsCoefficients {
-    pub bulk: f64,
-    pub shear: f64,
-    /// Horizon δ as typed.
-    pub horizon: f64,
-    pub critical_stretch: f64,
-    pub alpha: f64,
 }
 
 /// What acts on the atoms besides the bonds, in the order of the script's fixes: each works on the force left

@@ -24,6 +24,7 @@ mod lattice;
 mod lost;
 pub mod model;
 mod momenta;
+mod pair;
 mod park;
 mod particles;
 mod printf;

@@ -13,10 +13,7 @@ use super::dump::Dump;
 use super::error::{Place, Problem, Result, Span, suggestion};
 use super::files::Folder;
 use super::fix::Fix;
-use super::host::{
-    BLOCK, Condition, Console, Engine, Host, LpsCoefficients, Motion, Particles, PmbCoefficients,
-    Quantity,
-};
+use super::host::{BLOCK, Condition, Console, Engine, Host, Motion, Particles, Quantity, Style};
 use super::lattice::Lattice;
 use super::particles::{Field, View};
 use super::random::Ranmar;
@@ -50,11 +47,11 @@ impl Store {
     }
 }
 
-/// `pair_style` with what `pair_coeff` gave so far, `[types²]`.
+/// `pair_style` with the numbers that `pair_coeff` gave so far, `[types²]`.
 #[derive(Debug, Clone, PartialEq)]
-pub enum PairState {
-    Pmb(Vec<Option<PmbCoefficients>>),
-    Lps(Vec<Option<LpsCoefficients>>),
+pub struct PairState {
+    pub style: Style,
+    pub values: Vec<Option<Vec<f64>>>,
 }
 
 /// Simulation time and steps.

@@ -216,5 +216,6 @@ parity! {
     crack_pmb crack_lps weak_pmb weak_lps across_pmb unlike_lps horizons_pmb horizons_lps touch_pmb
     sqrt2_pmb three_pmb shatter_pmb shatter_lps
     indent_lattice_pmb move_pmb velocity_pmb displace_pmb regions_pmb
+    cube_ves cube_eps
     forces_pmb walls_pmb lost_pmb lost_lps stress_pmb random_pmb flat_pmb drag_lps
 }

@@ -104,7 +104,7 @@ impl Session<'_> {
             None => "a potential".to_string(),
         };
         Err(Problem::new(format!(
-            "`{shown}` belongs to molecular dynamics; of LAMMPS's scripts peridyne runs those of peridynamics (`atom_style peri`, `pair_style peri/pmb` or `peri/lps`)"
+            "`{shown}` belongs to molecular dynamics; of LAMMPS's scripts peridyne runs those of peridynamics (`atom_style peri`, `pair_style peri/pmb`, `peri/lps`, `peri/ves` or `peri/eps`)"
         ))
         .help(format!(
             "atoms run from a deck: write a .toml file with a body (`body = {{ file = \"FILE.data\" }}` takes LAMMPS's data files and dumps) and a material with {law}; `peridyne laws` lists the potentials, `peridyne schema` the keys, decks/good/lennard_jones_liquid.toml and copper_bar.toml are examples"

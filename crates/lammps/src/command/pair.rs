@@ -2,7 +2,8 @@
 
 use super::Args;
 use crate::error::{Place, Problem, Result};
-use crate::host::{LpsCoefficients, PmbCoefficients};
+use crate::host::Style;
+use crate::pair::HORIZON;
 use crate::session::{PairState, Session, Store};
 
 impl Session<'_> {
@@ -17,26 +18,26 @@ impl Session<'_> {
     }
 
     pub(super) fn pair_style(&mut self, args: &mut Args) -> Result<()> {
-        let style = args.next("`peri/pmb` or `peri/lps`")?;
-        let pairs = self.types * self.types;
-        let pair = match style.as_str() {
-            "peri/pmb" => PairState::Pmb(vec![None; pairs]),
-            "peri/lps" => PairState::Lps(vec![None; pairs]),
-            _ => return Err(args.unknown(style, "the pair style", ["peri/pmb", "peri/lps"])),
+        let word = args.next("a style such as `peri/lps`")?;
+        let named = Style::ALL.into_iter().find(|s| s.name() == word.as_str());
+        let Some(style) = named else {
+            return Err(args.unknown(word, "the pair style", Style::ALL.map(Style::name)));
         };
         args.finish()?;
         self.pairs_may_change()?;
-        self.pair = Some(pair);
+        self.pair = Some(PairState {
+            style,
+            values: vec![None; self.types * self.types],
+        });
         Ok(())
     }
 
     /// The first pairs without coefficients, for messages.
     pub(super) fn pairs_missing(&self) -> String {
         let types = self.types;
-        let given = |place: usize| match &self.pair {
-            Some(PairState::Pmb(table)) => table.get(place).is_some_and(Option::is_some),
-            Some(PairState::Lps(table)) => table.get(place).is_some_and(Option::is_some),
-            None => false,
+        let given = |place: usize| {
+            let values = self.pair.as_ref().and_then(|p| p.values.get(place));
+            values.is_some_and(Option::is_some)
         };
         let pairs = (0..types).flat_map(|i| (i..types).map(move |j| (i, j)));
         let mut missing = pairs.filter(|(i, j)| !given(i * types + j));
@@ -67,48 +68,23 @@ impl Session<'_> {
             }
             ranges.push(*range.start() as usize - 1..*range.end() as usize);
         }
-        let pmb = match &self.pair {
-            None => {
-                return Err(Problem::new("`pair_coeff` needs a pair style")
-                    .help("write `pair_style peri/pmb` before"));
-            }
-            Some(PairState::Pmb(_)) => true,
-            Some(PairState::Lps(_)) => false,
+        let Some(PairState { style, values }) = &mut self.pair else {
+            return Err(Problem::new("`pair_coeff` needs a pair style")
+                .help("write `pair_style peri/pmb` before"));
         };
-        let names: &[&str] = if pmb {
-            &[
-                "the micromodulus c",
-                "the horizon",
-                "the critical stretch s00",
-                "alpha",
-            ]
-        } else {
-            &[
-                "the bulk modulus K",
-                "the shear modulus G",
-                "the horizon",
-                "the critical stretch s00",
-                "alpha",
-            ]
-        };
-        let mut v = Vec::new();
-        for (k, name) in names.iter().enumerate() {
+        let (names, short) = style.coefficients();
+        let mut numbers = Vec::new();
+        for name in names {
             let needed = args.number(name).and_then(|x| match x {
                 // a horizon of 0 bonds nothing
-                x if k + 3 == names.len() && !(x >= 0.0) => Err(Problem::new(format!(
+                x if *name == HORIZON && !(x >= 0.0) => Err(Problem::new(format!(
                     "{name} must not be negative, it is {x}"
                 ))),
                 x => Ok(x),
             });
-            v.push(needed.map_err(|p| {
-                if p.help.is_some() {
-                    return p;
-                }
-                p.help(if pmb {
-                    "pair_coeff I J c horizon s00 alpha"
-                } else {
-                    "pair_coeff I J K G horizon s00 alpha"
-                })
+            numbers.push(needed.map_err(|p| match p.help {
+                Some(_) => p,
+                None => p.help(format!("pair_coeff I J {short}")),
             })?);
         }
         args.finish()?;
@@ -117,32 +93,15 @@ impl Session<'_> {
         let (path, text, span) = &self.here;
         let here = Place::line(path, text, *span);
         self.pair_places.resize(types * types, Place::Command);
+        // `pair_style` may come before the box, when the number of types is not known
+        if values.len() != types * types {
+            *values = vec![None; types * types];
+        }
         for i in ranges[0].clone() {
             for j in ranges[1].clone().filter(|j| *j >= i) {
                 for place in both(i, j) {
                     self.pair_places[place] = here.clone();
-                    match &mut self.pair {
-                        Some(PairState::Pmb(table)) => {
-                            grow(table, types);
-                            table[place] = Some(PmbCoefficients {
-                                micromodulus: v[0],
-                                horizon: v[1],
-                                critical_stretch: v[2],
-                                alpha: v[3],
-                            });
-                        }
-                        Some(PairState::Lps(table)) => {
-                            grow(table, types);
-                            table[place] = Some(LpsCoefficients {
-                                bulk: v[0],
-                                shear: v[1],
-                                horizon: v[2],
-                                critical_stretch: v[3],
-                                alpha: v[4],
-                            });
-                        }
-                        None => {}
-                    }
+                    values[place] = Some(numbers.clone());
                 }
             }
         }
@@ -151,13 +110,5 @@ impl Session<'_> {
                 .help("write the smaller type first"));
         }
         Ok(())
-    }
-}
-
-/// `pair_style` may come before the box, when the number of types is not known.
-fn grow<T>(table: &mut Vec<Option<T>>, types: usize) {
-    if table.len() != types * types {
-        table.clear();
-        table.resize_with(types * types, || None);
     }
 }

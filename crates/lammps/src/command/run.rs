@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::Args;
 use crate::atoms::Atoms;
 use crate::error::{Problem, Result};
-use crate::host::{Pair, PairTable, RunStart, Setup};
+use crate::host::{RunStart, Setup, Style};
 use crate::printf::general;
 use crate::script::Script;
 use crate::session::{PairState, Session, Store};
@@ -77,15 +77,13 @@ impl Session<'_> {
             return Err(Problem::new("there are no atoms")
                 .help("write `create_atoms` or `read_data` before"));
         }
-        let pair = match &self.pair {
-            Some(PairState::Pmb(table)) => PairTable::complete(self.types, table).map(Pair::Pmb),
-            Some(PairState::Lps(table)) => PairTable::complete(self.types, table).map(Pair::Lps),
-            None => {
-                return Err(Problem::new("there is no pair style").help(
-                    "write `pair_style peri/pmb` or `peri/lps`, and `pair_coeff`, before `run`",
-                ));
-            }
+        let Some(PairState { style, values }) = &self.pair else {
+            return Err(Problem::new("there is no pair style").help(format!(
+                "write `pair_style` with one of {}, and `pair_coeff`, before `run`",
+                Style::ALL.map(Style::name).join(", ")
+            )));
         };
+        let pair = style.pair(self.types, values);
         let pair = pair.ok_or_else(|| {
             let missing = self.pairs_missing();
             Problem::new(format!(

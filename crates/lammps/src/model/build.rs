@@ -10,7 +10,7 @@ use peridyne::spec::Spec;
 use super::types::Types;
 use super::{ModelEngine, in_plane, spec};
 use crate::atoms::{Atoms, Column};
-use crate::host::{BLOCK, Engine, Host, HostError, Pair, Particles, Quantity, Setup};
+use crate::host::{BLOCK, Engine, Host, HostError, Particles, Quantity, Setup, Style};
 
 /// Makes peridyne models of scripts.
 #[derive(Debug, Clone, Copy, Default)]
@@ -25,7 +25,7 @@ pub struct Prepared {
     pub simulation: Box<dyn Simulation>,
     /// What the user should know.
     pub notes: Vec<String>,
-    /// Bulk and shear modulus for each atom type, from 1; nothing of PMB.
+    /// As [`ModelEngine`] has them.
     moduli: Vec<[f64; 2]>,
     /// Pairs of atom types that repel without bounds.
     unbonded: Vec<(usize, usize)>,
@@ -66,7 +66,8 @@ impl Host for ModelHost {
             driven: Vec::new(),
             moduli,
             unbonded,
-            undefined: matches!(pair, Pair::Lps(_)),
+            style: pair.style(),
+            undefined: pair.style() != Style::Pmb,
             notes,
         }))
     }
@@ -78,7 +79,16 @@ impl ModelHost {
     /// # Errors
     /// Something that the engine has not.
     pub fn prepare(&self, setup: &Setup) -> Result<Prepared, HostError> {
+        let style = setup.pair.style();
         let types = Types::new(&setup.pair, &setup.atoms)?;
+        let shelved = matches!(style, Style::Ves | Style::Eps);
+        if shelved && setup.dimension == 2 {
+            let name = style.name();
+            return Err(HostError::new(format!(
+                "`{name}` in two dimensions: LAMMPS has the moduli and yield surface of space there, which are those of no plane"
+            ))
+            .help("use `dimension 3`, or `peri/lps`, or a deck with plane = \"strain\""));
+        }
         let spec = spec::spec(setup, &types)?;
         let options = Options {
             simd: self.simd,
@@ -88,7 +98,11 @@ impl ModelHost {
         write_velocities(simulation.as_mut(), setup.dimension, &setup.atoms)?;
         let highest = setup.pair.types();
         let moduli = types.moduli();
-        let of = |kind: usize| moduli.get(types.material_of(kind)).copied();
+        let of = |kind: usize| {
+            let [bulk, shear] = *moduli.get(types.material_of(kind))?;
+            // these two know no part of a family in their energies
+            Some([bulk, if shelved { 0.0 } else { shear }])
+        };
         Ok(Prepared {
             notes: notes(setup, &types, simulation.as_ref()),
             moduli: (1..=highest).filter_map(of).collect(),
@@ -99,20 +113,42 @@ impl ModelHost {
     }
 }
 
+/// What LAMMPS's `peri/ves` and `peri/eps` do to bonds (observed: with nothing that relaxes or yields they are not its `peri/lps`).
+const OWN_ENDS: &str = "here the two ends of a bond answer with the dilatation of their own each (Mitchell 2011); LAMMPS's `peri/ves` and `peri/eps` compute the force on an atom with its own dilatation for both ends, so that forces between two atoms whose dilatations differ are not opposite, momentum is not conserved, and without relaxation or yield they are not its `peri/lps`; results are LAMMPS's as long as the dilatations of neighbours and partners are equal";
+
+/// And `peri/ves` in time.
+const SET_UPS: &str = "LAMMPS's `peri/ves` lets bonds relax for one more time step in the set-up of each `run`; here time stands still there";
+
+/// And `peri/eps` to what flows.
+const FLOW: &str = "the yield stress is that of the material, ½ Σ t²/ω = 15 σ_y²/(6m) (Mitchell 2011 for ω = 1/r); LAMMPS's `peri/eps` yields elsewhere (its norm of t is multiplied by dilatations, its bound 25 σ_y²/(8πδ⁵) is that of ω = 1), its plastic extensions grow by t instead of t/ω, too large by 1/length, and are forgotten in every step without yield, and positions soon are no numbers: plastic flow is not LAMMPS's here";
+
 /// Where the run is not LAMMPS's, or LAMMPS's is not what one might think.
 fn notes(setup: &Setup, types: &Types, sim: &dyn Simulation) -> Vec<String> {
     let mut notes = vec![];
     let mut note = |text: &str| notes.push(text.to_string());
-    if let Pair::Lps(_) = setup.pair {
-        note(
-            "pe, E_pair, E_vdwl, etotal and pe/atom are LAMMPS's: its `peri/lps` counts half of the energy of changes of shape, so that their sum with ke is not conserved; the energies in run.json are whole",
-        );
+    let style = setup.pair.style();
+    let name = style.name();
+    match style {
+        Style::Pmb | Style::Lps => {}
+        Style::Ves => {
+            note(OWN_ENDS);
+            note(SET_UPS);
+        }
+        Style::Eps => {
+            note(OWN_ENDS);
+            note(FLOW);
+        }
+    }
+    if style != Style::Pmb {
+        note(&format!(
+            "pe, E_pair, E_vdwl, etotal and pe/atom are LAMMPS's: its `{name}` counts half of the energy of changes of shape, so that their sum with ke is not conserved; the energies in run.json are whole",
+        ));
     }
     let across = (0..setup.dimension).any(|a| setup.domain.periodic(a));
-    if matches!(setup.pair, Pair::Lps(_)) && across {
-        note(
-            "LPS through periodic faces: LAMMPS's `peri/lps` computes the weighted volumes of points near such a face without the nearest images, so that they are far too large there; here they are those of the nearest images",
-        );
+    if style != Style::Pmb && across {
+        note(&format!(
+            "`{name}` through periodic faces: LAMMPS computes the weighted volumes of points near such a face without the nearest images, so that they are far too large there; here they are those of the nearest images",
+        ));
     }
     if types.unlike_moduli() {
         note(

@@ -23,7 +23,7 @@ use super::atoms::{Column, Members};
 use super::domain::SimBox;
 use super::host::{
     BLOCK, Condition, Energies, Engine, HostError, Motion, Particles, Quantity, Reaction, RunStart,
-    Wall,
+    Style, Wall,
 };
 use super::units::Units;
 
@@ -63,10 +63,11 @@ pub struct ModelEngine {
     /// Were the bonds there in a force evaluation?
     bonded: bool,
     driven: Vec<Option<usize>>,
-    /// Bulk and shear modulus for each atom type, from 1; nothing of PMB.
+    /// Bulk and shear modulus for each atom type, from 1, with which LAMMPS counts energies; nothing of PMB.
     moduli: Vec<[f64; 2]>,
     /// Pairs of atom types that repel without bounds.
     unbonded: Vec<(usize, usize)>,
+    style: Style,
     /// Would LAMMPS not know the critical stretches of the next evaluation with bonds?
     undefined: bool,
     notes: Vec<String>,
@@ -301,7 +302,7 @@ impl Engine for ModelEngine {
             if sim.velocities().iter().any(moves)
                 || self.bonded && sim.displacements().iter().any(moves)
             {
-                self.notes.push("atoms move or are strained when the bonds of `peri/lps` are first asked: LAMMPS has no critical stretches yet then and may break every bond that is stretched; here none breaks in that step (let LAMMPS make `run 1` at rest before anything moves, for equal results)".to_string());
+                self.notes.push(format!("atoms move or are strained when the bonds of `{}` are first asked: LAMMPS has no critical stretches yet then and may break every bond that is stretched; here none breaks in that step (let LAMMPS make `run 1` at rest before anything moves, for equal results)", self.style.name()));
             }
         }
         sim.watch_next();

@@ -20,7 +20,7 @@ use crate::host::{HostError, Pair, Setup};
 pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
     let influence = match &setup.pair {
         Pair::Pmb(_) => Influence::Constant,
-        Pair::Lps(_) => Influence::Inverse,
+        Pair::Lps(_) | Pair::Ves(_) | Pair::Eps(_) => Influence::Inverse,
     };
     let domain = &setup.domain;
     let periodic =

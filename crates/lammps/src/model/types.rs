@@ -5,10 +5,12 @@
 //! ends of the bond, so those of unlike types are not opposite. Contact is 15 c/δ of the pair; for LPS c = 18 K/(πδ⁴) with
 //! the K of whichever point stands first in a neighbour list, for which the mean of both is taken here.
 
-use peridyne::spec::{ContactStiffness, LawSpec, PairSpec, PmbStiffness};
+use peridyne::spec::{ContactStiffness, LawSpec, PairSpec, Parameter, Parameters, PmbStiffness};
 
 use crate::atoms::{Atoms, Column};
-use crate::host::{HostError, LpsCoefficients, Pair, PmbCoefficients};
+use crate::host::{
+    EpsCoefficients, HostError, LpsCoefficients, Pair, PmbCoefficients, Style, VesCoefficients,
+};
 
 /// What a pair of types has.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +46,35 @@ impl From<LpsCoefficients> for Coefficients {
     }
 }
 
+impl LpsCoefficients {
+    /// The same with a law of the shelf, which has these moduli and more.
+    fn named(self, name: &str, more: (&str, Parameter)) -> Coefficients {
+        let moduli = Parameters::numbers(&[("bulk", self.bulk), ("shear", self.shear)]);
+        Coefficients {
+            law: LawSpec::named(name, moduli.with(more.0, more.1)),
+            ..self.into()
+        }
+    }
+}
+
+impl From<VesCoefficients> for Coefficients {
+    fn from(c: VesCoefficients) -> Self {
+        // nothing relaxes: the elastic solid
+        if c.part == 0.0 {
+            return c.solid.into();
+        }
+        let branches = Parameter::Rows(vec![vec![c.part, c.time]]);
+        c.solid.named("viscoelastic", ("branches", branches))
+    }
+}
+
+impl From<EpsCoefficients> for Coefficients {
+    fn from(c: EpsCoefficients) -> Self {
+        let stress = Parameter::Number(c.yield_stress);
+        c.solid.named("elastic_plastic", ("yield_stress", stress))
+    }
+}
+
 /// The types that atoms have, and the coefficients of their pairs.
 pub struct Types<'a> {
     pair: &'a Pair,
@@ -72,6 +103,16 @@ impl<'a> Types<'a> {
         if types.pairs().all(|(i, j)| types.get(i, j) == own) {
             types.materials.truncate(1);
         }
+        let style = pair.style();
+        if types.materials.len() > 1 && matches!(style, Style::Ves | Style::Eps) {
+            let unlike = types.pairs().find(|(i, j)| types.get(*i, *j) != own);
+            let (i, j) = unlike.unwrap_or((first, first));
+            return Err(HostError::new(format!(
+                "atom types with unlike coefficients of `{}`: types {i} and {j} have others than {first} and {first}",
+                style.name()
+            ))
+            .help("give all types the same with `pair_coeff * * ...`; types of their own have `peri/pmb` and `peri/lps`"));
+        }
         if types.materials.len() > 255 {
             return Err(HostError::new(format!(
                 "{} atom types with coefficients of their own; at most 255 are supported",
@@ -89,6 +130,8 @@ impl<'a> Types<'a> {
         match self.pair {
             Pair::Pmb(table) => table.get(i, j).into(),
             Pair::Lps(table) => table.get(i, j).into(),
+            Pair::Ves(table) => table.get(i, j).into(),
+            Pair::Eps(table) => table.get(i, j).into(),
         }
     }
 
@@ -134,9 +177,10 @@ impl<'a> Types<'a> {
 
     /// Stiffness of contact.
     pub fn contact(&self) -> ContactStiffness {
-        match self.materials[..] {
-            [_] => ContactStiffness::Laws,
-            ref all => {
+        match (self.pair.style(), &self.materials[..]) {
+            (Style::Pmb | Style::Lps, [_]) => ContactStiffness::Laws,
+            (_, [only]) => ContactStiffness::Same(self.repulsion(*only, *only)),
+            (_, all) => {
                 let row = |i: &usize| all.iter().map(|j| self.repulsion(*i, *j)).collect();
                 ContactStiffness::Pairs(all.iter().map(row).collect())
             }
@@ -151,8 +195,9 @@ impl<'a> Types<'a> {
         }
         let micromodulus = match self.pair {
             Pair::Pmb(table) => table.get(i, j).micromodulus,
-            Pair::Lps(table) => {
-                let bulk = 0.5 * (table.get(i, i).bulk + table.get(j, j).bulk);
+            Pair::Lps(_) | Pair::Ves(_) | Pair::Eps(_) => {
+                let bulk = |i: usize| self.solid(i).map_or(0.0, |s| s.bulk);
+                let bulk = 0.5 * (bulk(i) + bulk(j));
                 18.0 * bulk / (std::f64::consts::PI * c.horizon.powi(4))
             }
         };
@@ -166,14 +211,20 @@ impl<'a> Types<'a> {
             .collect()
     }
 
+    /// Moduli of a type.
+    fn solid(&self, i: usize) -> Option<LpsCoefficients> {
+        match self.pair {
+            Pair::Pmb(_) => None,
+            Pair::Lps(table) => Some(table.get(i, i)),
+            Pair::Ves(table) => Some(table.get(i, i).solid),
+            Pair::Eps(table) => Some(table.get(i, i).solid),
+        }
+    }
+
     /// Bulk and shear modulus of each material; nothing of PMB.
     pub fn moduli(&self) -> Vec<[f64; 2]> {
-        let own = self.materials.iter().map(|i| self.get(*i, *i).law);
-        own.filter_map(|law| match law {
-            LawSpec::LpsAsTyped { bulk, shear } => Some([bulk, shear]),
-            _ => None,
-        })
-        .collect()
+        let own = self.materials.iter().filter_map(|i| self.solid(*i));
+        own.map(|s| [s.bulk, s.shear]).collect()
     }
 
     /// Which material a type is of.

@@ -116,6 +116,54 @@ fn what_is_odd_in_lps_is_said() {
     assert!(!noted(&paper, "counts half"));
 }
 
+const VES: &str = "pair_coeff * * 14.9e9 6e9 0.0015001 0.01 0.25 0.5 1e-3";
+const EPS: &str = "pair_coeff * * 14.9e9 6e9 0.0015001 0.01 0.25 1e8";
+
+/// LAMMPS's `peri/ves` and `peri/eps` are not the laws that they are named after.
+#[test]
+fn what_is_odd_in_ves_and_eps_is_said() {
+    for (style, coefficients) in [("ves", VES), ("eps", EPS)] {
+        let paper = run(style, coefficients, 0.0, "").unwrap();
+        for words in [
+            "forces between two atoms whose dilatations differ are not opposite",
+            &format!("`peri/{style}` counts half of the energy"),
+        ] {
+            assert!(noted(&paper, words), "{style}: {:?}", paper.0);
+        }
+        let flows = noted(&paper, "plastic flow is not LAMMPS's here");
+        assert_eq!(flows, style == "eps");
+    }
+    // nothing relaxes
+    let elastic = VES.replace("0.5 1e-3", "0 1e-3");
+    run("ves", &elastic, 0.0, "").unwrap();
+}
+
+#[test]
+fn ves_and_eps_are_for_one_material_in_space() {
+    for (style, coefficients) in [("ves", VES), ("eps", EPS)] {
+        let unlike = format!(
+            "{coefficients}\n{}",
+            coefficients.replace("* *", "2 2").replace("6e9", "7e9")
+        );
+        let error = run(style, &unlike, 0.0, "").map(|_| ()).unwrap_err();
+        assert!(error.message.contains("unlike coefficients"), "{error}");
+        assert!(error.message.contains("types 2 and 2"), "{error}");
+        let flat = format!("dimension 2\n{coefficients}");
+        let error = run(style, &flat, 0.0, "").map(|_| ()).unwrap_err();
+        assert!(error.message.contains("two dimensions"), "{error}");
+        let short = coefficients.rsplit_once(' ').unwrap().0;
+        let error = run(style, short, 0.0, "").map(|_| ()).unwrap_err();
+        let help = error.help.unwrap();
+        assert!(
+            help.contains("pair_coeff I J K G horizon s00 alpha m_"),
+            "{help}"
+        );
+    }
+    let outside = VES.replace("0.5 1e-3", "1.5 1e-3");
+    let error = run("ves", &outside, 0.0, "").map(|_| ()).unwrap_err();
+    assert!(error.message.contains("above 0, at most 1"), "{error}");
+}
+
 /// LAMMPS's LPS has no critical stretches before its first evaluation with bonds.
 #[test]
 fn a_start_in_motion_is_said() {
