@@ -57,9 +57,10 @@ pub struct Document {
     /// `[material]`, or `[material.NAME]` for each of several.
     #[schemars(with = "Or<Material, Named<Material>>")]
     pub material: BTreeMap<String, At<Material>>,
-    /// Bonds between unlike materials of one body; series when left out. Or `[[interface]]`, bonds between two of several bodies.
+    /// Bond-based bonds between unlike materials of one body, and factors of bonds between unlike ends; series when left out. Ends of other
+    /// laws answer for themselves, which is parallel. Or `[[interface]]`, bonds between two of several bodies.
     #[schemars(with = "Option<Or<Vec<Interface>, InterfaceName>>")]
-    pub interface: Option<InterfaceName>,
+    pub interface: Option<At<InterfaceName>>,
     /// `[[interface]]`, under the name that [`locate`](super::locate) gives them.
     #[serde(default, rename = "[[interface]]")]
     #[schemars(skip)]

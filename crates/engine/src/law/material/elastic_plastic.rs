@@ -74,15 +74,15 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     type Constants<N: Number> = [N; 6];
     /// 1/m
     type Form<N: Number> = N;
-    /// `Σ ω|ξ|e`, `Σ ω|ξ|(e − e^p)`, `Σ ω|ξ|²`; then `Σ ω (e^d)²`.
-    type Sum<N: Number> = [N; 3];
+    /// `Σ ω|ξ|e`, `Σ ω|ξ|(e − e^p)`, `Σ ω (e − e^p)²`, `Σ ω|ξ|²`.
+    type Sum<N: Number> = [N; 4];
     type Point<N: Number> = [N; 6];
     /// ε̄
     type Past<N: Number> = [N; 1];
     /// e^p
     type Memory<N: Number> = [N; 1];
     type State<N: Number> = Along<N>;
-    const PASSES: usize = 2;
+    const PASSES: usize = 1;
 
     fn columns(&self) -> Columns {
         Columns {
@@ -121,43 +121,38 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     #[inline(always)]
     fn share<N: Number>(
         &self,
-        pass: usize,
+        _: usize,
         bond: &Bond<N, D>,
         end: &End<[N; 6], [N; 6], [N; 1]>,
-    ) -> [N; 3] {
-        if pass == 0 {
-            let (weight, e) = (bond.omega * bond.length, bond.extension());
-            return [
-                weight * e,
-                weight * (e - end.memory[0]),
-                weight * bond.length,
-            ];
-        }
-        let trial = Self::trial(bond, end);
-        let zero = N::constant(0.0);
-        [bond.omega * trial * trial, zero, zero]
+    ) -> [N; 4] {
+        let (weight, e) = (bond.omega * bond.length, bond.extension());
+        let elastic = e - end.memory[0];
+        [
+            weight * e,
+            weight * elastic,
+            bond.omega * elastic * elastic,
+            weight * bond.length,
+        ]
     }
 
     #[inline(always)]
     fn settle<N: Number>(
         &self,
-        pass: usize,
+        _: usize,
         site: &Site<[N; 6], N, [N; 1]>,
-        sum: [N; 3],
+        [dilated, elastic, square, whole]: [N; 4],
         point: &mut [N; 6],
     ) {
         let (c, per_m) = (site.constants, *site.form);
         let zero = N::constant(0.0);
-        if pass == 0 {
-            let [dilated, elastic, whole] = sum;
-            point[MEAN] = zero.choose(whole, elastic.div(whole), zero);
-            point[DILATED] = per_m * dilated;
-            point[P] = c[BULK] * per_m * point[DILATED];
-            point[ALPHA] = c[BETA] * per_m;
-            return;
-        }
-        let sum = sum[0];
-        let norm = point[ALPHA] * sum.sqrt();
+        point[DILATED] = per_m * dilated;
+        point[P] = c[BULK] * per_m * point[DILATED];
+        point[ALPHA] = c[BETA] * per_m;
+        let mean = zero.choose(whole, elastic.div(whole), zero);
+        point[MEAN] = mean;
+        // Pythagoras: what is orthogonal to |ξ|
+        let deviator = square - mean * elastic;
+        let norm = point[ALPHA] * zero.choose(deviator, deviator.sqrt(), zero);
         // ‖t‖ per stress
         let per_ball = zero.choose(c[BALL], c[BALL], per_m);
         let scale = (c[RADIUS] * per_ball).sqrt();
@@ -187,7 +182,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     fn point_energy<N: Number>(
         &self,
         site: &Site<[N; 6], N, [N; 1]>,
-        _: [N; 3],
+        _: [N; 4],
         point: &[N; 6],
     ) -> N {
         let dilated = point[DILATED];

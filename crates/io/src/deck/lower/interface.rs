@@ -1,11 +1,39 @@
-//! `[[interface]]`: bonds between two of several bodies.
+//! `interface`: what bonds between unlike materials have. `[[interface]]`: bonds between two of several bodies.
 
 use super::context::{Context, Result};
 use super::material::{fracture, law};
 use super::pieces::named;
 use super::{horizon, influence};
-use crate::deck::document::Document;
-use peridyne::spec::{BodySpec, InterfaceSpec};
+use crate::deck::document::{Document, InterfaceName};
+use peridyne::spec::{BodySpec, InterfaceRule, InterfaceSpec, LawSpec, MaterialSpec};
+
+/// What bonds between unlike ends have.
+pub(super) fn rule(
+    context: &Context,
+    document: &Document,
+    materials: &[MaterialSpec],
+) -> Result<InterfaceRule> {
+    let Some(written) = &document.interface else {
+        return Ok(InterfaceRule::Series);
+    };
+    let rule = match written.value {
+        InterfaceName::Parallel => InterfaceRule::Parallel,
+        InterfaceName::Minimum => InterfaceRule::Minimum,
+        InterfaceName::Series => InterfaceRule::Series,
+    };
+    let bonds = |m: &MaterialSpec| matches!(m.law, LawSpec::Pmb(_) | LawSpec::Springs(_));
+    let meant = rule == InterfaceRule::Parallel
+        || !document.bond_factor.is_empty()
+        || materials.iter().all(bonds);
+    match meant {
+        true => Ok(rule),
+        false => Err(context.error_with(
+            &written.span,
+            "`interface` is for bond-based materials (pmb): with other laws each end of a bond answers for itself",
+            "leave it out, or write interface = \"parallel\"",
+        )),
+    }
+}
 
 /// All of a deck.
 pub(super) fn interfaces(

@@ -20,8 +20,8 @@ pub(super) use schedule::{MANY_STEPS, steps};
 
 use super::OutputSpec;
 use super::document::{
-    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, InterfaceName,
-    PlaneName, SurfaceName,
+    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName,
+    SurfaceName,
 };
 use super::error::DeckError;
 use super::source::Source;
@@ -33,7 +33,7 @@ use context::{Context, Result};
 use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon, Influence,
-    InterfaceRule, LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
+    LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
 };
 use std::path::Path;
 
@@ -173,11 +173,7 @@ pub(super) fn lower(
             .as_ref()
             .map(|t| atoms::thermal(&context, t))
             .transpose()?,
-        interface: match document.interface {
-            Some(InterfaceName::Parallel) => InterfaceRule::Parallel,
-            Some(InterfaceName::Minimum) => InterfaceRule::Minimum,
-            Some(InterfaceName::Series) | None => InterfaceRule::Series,
-        },
+        interface: interface::rule(&context, document, &materials)?,
         interfaces: interface::interfaces(&context, document, &body)?,
         pairs: vec![],
         release: material::release(&context, &document.material)?,
