@@ -101,21 +101,29 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 memory: &memory,
             },
         );
-        let back = v.memory_back::<L>(at.number, k, part);
-        let partner = v.point::<L>(ends);
-        let constants = if v.material.is_empty() {
-            at.constants
+        let other = if M::ALIKE && v.material.is_empty() {
+            own.mirrored()
         } else {
-            v.constants_at::<L>(ends)
+            let back = if M::ALIKE {
+                memory
+            } else {
+                v.memory_back::<L>(at.number, k, part)
+            };
+            let partner = v.point::<L>(ends);
+            let constants = if v.material.is_empty() {
+                at.constants
+            } else {
+                v.constants_at::<L>(ends)
+            };
+            v.law.answer(
+                &mirrored(&bond),
+                &End {
+                    constants: &constants,
+                    point: &partner,
+                    memory: &back,
+                },
+            )
         };
-        let other = v.law.answer(
-            &mirrored(&bond),
-            &End {
-                constants: &constants,
-                point: &partner,
-                memory: &back,
-            },
-        );
         let mut pull = own.pull(other, &bond);
         for a in 0..D {
             pull[a] = weight * pull[a];
@@ -172,8 +180,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                         let mut new = old;
                         lost = weight.fma(v.law.advance(&bond, &end, &mut new), lost);
                         for n in 0..count {
-                            let x = L::select(dead, old.get(n), new.get(n));
-                            x.store(v.memory.at(v.family.own(group, k, n, count)));
+                            let (old, new) = (old.get(n), new.get(n));
+                            // a line that did not change is not written
+                            if L::any(old.lt(new)) || L::any(new.lt(old)) {
+                                let x = L::select(dead, old, new);
+                                x.store(v.memory.at(v.family.own(group, k, n, count)));
+                            }
                         }
                     }
                 }

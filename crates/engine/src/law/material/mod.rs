@@ -94,6 +94,8 @@ pub trait ForceState<N, const D: usize>: Copy {
     fn pull(self, other: Self, bond: &Bond<N, D>) -> [N; D];
     /// `T⟨ξ⟩`
     fn alone(self, bond: &Bond<N, D>) -> [N; D];
+    /// What the other end answers that is in the same state.
+    fn mirrored(self) -> Self;
 }
 
 /// `T⟨ξ⟩ = t (ξ+η)`: along the bond, `t` over the current length.
@@ -114,6 +116,10 @@ impl<N: Number, const D: usize> ForceState<N, D> for Along<N> {
     fn alone(self, bond: &Bond<N, D>) -> [N; D] {
         self.pull(Along(N::constant(0.0)), bond)
     }
+    #[inline(always)]
+    fn mirrored(self) -> Self {
+        self
+    }
 }
 
 /// `T⟨ξ⟩` in any direction.
@@ -132,6 +138,13 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
     #[inline(always)]
     fn alone(self, _: &Bond<N, D>) -> [N; D] {
         self.0
+    }
+    #[inline(always)]
+    fn mirrored(mut self) -> Self {
+        for a in 0..D {
+            self.0[a] = N::constant(0.0) - self.0[a];
+        }
+        self
     }
 }
 
@@ -183,6 +196,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const PASSES: usize;
     /// Do its functions read the stretch of bonds?
     const STRETCHES: bool = true;
+    /// Is a bond of one material in the same state at both its ends: do answers and memory know nothing of points? True saves half.
+    const ALIKE: bool = false;
     /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?
     const FORM_OF_WHOLE: bool = false;
 

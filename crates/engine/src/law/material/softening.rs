@@ -80,6 +80,7 @@ impl<const D: usize> Material<D> for Softening {
     type Memory<N: Number> = [N; 1];
     type State<N: Number> = Along<N>;
     const PASSES: usize = 0;
+    const ALIKE: bool = true;
 
     fn columns(&self) -> Columns {
         Columns {
