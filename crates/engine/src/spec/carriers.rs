@@ -1,6 +1,6 @@
 //! Points of the body that a coarse one was condensed from: loads act on them, and the condensation passes their forces on.
 
-use super::linear_body::rows;
+use super::linear_body::{add_alike, rows};
 
 /// `F_q = Σ_p T_qp F_p`: forces on points q of the body from those on the points p that carry loads. The condensed load of an
 /// exact elimination is the Schur complement's, `T = −K_qe K_ee⁻¹`: the transposed resolvent of silling2010 (6) where action is
@@ -108,19 +108,7 @@ impl<const D: usize> Carriers<D> {
                     row.push((*k, product));
                 }
             }
-            // stable: sums have one order
-            row.sort_by_key(|r| r.0);
-            row.dedup_by(|again, kept| {
-                let same = again.0 == kept.0;
-                if same {
-                    for a in 0..D {
-                        for b in 0..D {
-                            kept.1[a][b] += again.1[a][b];
-                        }
-                    }
-                }
-                same
-            });
+            add_alike(&mut row);
             for (k, t) in row {
                 target.push(k);
                 block.push(t);

@@ -30,6 +30,7 @@ pub use law::{
     Criterion, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw, PairSpec,
     Parameter, Parameters, PmbStiffness, Release,
 };
+pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{
     Buckingham, End, Form, LennardJones, MeiSpec, Morse, PotentialSpec, TableSpec,

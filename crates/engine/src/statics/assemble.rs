@@ -2,7 +2,7 @@
 
 use crate::body::{Body, Field};
 use crate::interaction::{BondTangent, Channel, Interaction};
-use crate::spec::LinearBody;
+use crate::spec::{LinearBody, add_alike};
 use rayon::prelude::*;
 
 /// Points per piece of work.
@@ -237,19 +237,7 @@ impl<const D: usize> Rows<'_, D> {
         for bond in &self.bonds.direct[self.first[i]..self.first[i + 1]] {
             row.entries.push((bond.j, bond.stiffness));
         }
-        // stable: sums have one order
-        row.entries.sort_by_key(|e| e.0);
-        row.entries.dedup_by(|again, kept| {
-            let same = again.0 == kept.0;
-            if same {
-                for a in 0..D {
-                    for b in 0..D {
-                        kept.1[a][b] += again.1[a][b];
-                    }
-                }
-            }
-            same
-        });
+        add_alike(&mut row.entries);
     }
 
     /// Every `η_jk` is `(u_k − u_i) − (u_j − u_i)`.
