@@ -8,7 +8,8 @@ use crate::thermo::Lost;
 impl Session<'_> {
     /// Can atoms be lost at all?
     fn can_lose(&self) -> bool {
-        self.domain
+        self.space
+            .domain
             .as_ref()
             .is_some_and(|d| d.faces.iter().flatten().any(|f| *f == Face::Fixed))
     }
@@ -23,8 +24,12 @@ impl Session<'_> {
         }
         self.shrink_box()?;
         self.lose()?;
-        self.rebuild.held = self.unwrapped()?;
-        (self.rebuild.ago, self.rebuild.farthest, self.rebuild.path) = (0, 0.0, 0.0);
+        self.neighbors.rebuild.held = self.population.unwrapped()?;
+        (
+            self.neighbors.rebuild.ago,
+            self.neighbors.rebuild.farthest,
+            self.neighbors.rebuild.path,
+        ) = (0, 0.0, 0.0);
         Ok(())
     }
 
@@ -36,8 +41,8 @@ impl Session<'_> {
         if !self.can_lose() {
             return Ok(());
         }
-        let (schedule, trigger) = (self.neighbors, 0.5 * self.skin);
-        let state = &mut self.rebuild;
+        let (schedule, trigger) = (self.neighbors.schedule, 0.5 * self.neighbors.skin);
+        let state = &mut self.neighbors.rebuild;
         state.ago += 1;
         state.path += path;
         let looks = state.ago >= schedule.delay && state.ago.is_multiple_of(schedule.every);
@@ -51,8 +56,8 @@ impl Session<'_> {
         if (state.farthest + state.path) * 1.001 <= trigger {
             return Ok(());
         }
-        let now = self.unwrapped()?;
-        let state = &mut self.rebuild;
+        let now = self.population.unwrapped()?;
+        let state = &mut self.neighbors.rebuild;
         let far = now.iter().zip(&state.held).map(|(x, h)| {
             let d = [0, 1, 2].map(|a| x[a] - h[a]);
             d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
@@ -67,8 +72,8 @@ impl Session<'_> {
 
     /// Takes away what is outside a fixed face.
     fn lose(&mut self) -> Result<()> {
-        let domain = *self.domain()?;
-        let x = self.unwrapped()?;
+        let domain = *self.space.domain()?;
+        let x = self.population.unwrapped()?;
         let outside = |x: &[f64; 3]| {
             (0..3).find(|&a| {
                 let [low, high] = domain.faces[a];
@@ -85,14 +90,14 @@ impl Session<'_> {
             return Ok(());
         };
         let place = x[first as usize][axis];
-        self.rebuild.lost = match self.thermo.lost {
+        self.neighbors.rebuild.lost = match self.watch.thermo.lost {
             // they stay, and are counted again
             Lost::Error => gone.len(),
-            Lost::Warn | Lost::Ignore => self.rebuild.lost + gone.len(),
+            Lost::Warn | Lost::Ignore => self.neighbors.rebuild.lost + gone.len(),
         };
-        let example = (self.ids.get(first as usize), axis, place);
-        self.rebuild.example.get_or_insert(example);
-        if self.thermo.lost == Lost::Error {
+        let example = (self.population.ids.get(first as usize), axis, place);
+        self.neighbors.rebuild.example.get_or_insert(example);
+        if self.watch.thermo.lost == Lost::Error {
             // the next line of output stops the run
             return Ok(());
         }
@@ -109,18 +114,18 @@ impl Session<'_> {
     /// # Errors
     /// None are left.
     pub fn remove(&mut self, gone: &[u32]) -> Result<()> {
-        let n = self.count();
+        let n = self.population.count();
         let stays = |i: usize| gone.binary_search(&(i as u32)).is_err();
         let places: Vec<usize> = (0..n).filter(|i| stays(*i)).collect();
-        match &mut self.store {
-            Store::Atoms(atoms) => atoms.pick(&places, self.ids.only(&places)),
+        match &mut self.population.store {
+            Store::Atoms(atoms) => atoms.pick(&places, self.population.ids.only(&places)),
             Store::Engine(e) => e.remove(gone),
         }
-        self.ids = self.ids.only(&places);
+        self.population.ids = self.population.ids.only(&places);
         self.forget(&places);
-        if !self.rebuild.held.is_empty() {
-            let held = std::mem::take(&mut self.rebuild.held);
-            self.rebuild.held = places.iter().map(|i| held[*i]).collect();
+        if !self.neighbors.rebuild.held.is_empty() {
+            let held = std::mem::take(&mut self.neighbors.rebuild.held);
+            self.neighbors.rebuild.held = places.iter().map(|i| held[*i]).collect();
         }
         Ok(())
     }
@@ -130,8 +135,8 @@ impl Session<'_> {
     /// # Errors
     /// Something was, and that is an error.
     pub fn check_lost(&mut self) -> Result<()> {
-        let lost = std::mem::take(&mut self.rebuild.lost);
-        let Some((id, axis, place)) = self.rebuild.example.take() else {
+        let lost = std::mem::take(&mut self.neighbors.rebuild.lost);
+        let Some((id, axis, place)) = self.neighbors.rebuild.example.take() else {
             return Ok(());
         };
         let axis = ["x", "y", "z"][axis];
@@ -139,12 +144,12 @@ impl Session<'_> {
             "{lost} atoms left the box through a fixed face by step {}, first the atom with id {id}: {axis} = {place:.6e}",
             self.progress.step
         );
-        match self.thermo.lost {
+        match self.watch.thermo.lost {
             Lost::Error => Err(Problem::new(what).help(
                 "use `boundary s` so that the box follows the atoms, or a larger box; `thermo_modify lost ignore` goes on without them",
             )),
             Lost::Warn => {
-                let (was, now) = (self.count() + lost, self.count());
+                let (was, now) = (self.population.count() + lost, self.population.count());
                 self.console
                     .note(&format!("{what}; lost atoms: original {was} current {now}"));
                 Ok(())

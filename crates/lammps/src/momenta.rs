@@ -13,11 +13,15 @@ impl Session<'_> {
     /// # Errors
     /// A quantity does not exist (yet).
     pub fn rigid(&self, members: &Members) -> Result<Rigid> {
-        let n = self.count();
-        let mass = self.raw(Quantity::Density)?;
-        let x = self.unwrapped()?;
+        let n = self.population.count();
+        let mass = self.population.raw(Quantity::Density)?;
+        let x = self.population.unwrapped()?;
         let three = |q: fn(usize) -> Quantity| -> Result<[Vec<f64>; 3]> {
-            Ok([self.raw(q(0))?, self.raw(q(1))?, self.raw(q(2))?])
+            Ok([
+                self.population.raw(q(0))?,
+                self.population.raw(q(1))?,
+                self.population.raw(q(2))?,
+            ])
         };
         let v = three(Quantity::Velocity)?;
         let f = three(Quantity::Force)?;
@@ -79,10 +83,10 @@ impl Session<'_> {
         angular: bool,
     ) -> Result<()> {
         let whole = self.rigid(members)?;
-        let x = self.unwrapped()?;
+        let x = self.population.unwrapped()?;
         let omega = if angular { whole.rotation() } else { [0.0; 3] };
         for a in 0..3 {
-            let mut v = self.raw(Quantity::Velocity(a))?;
+            let mut v = self.population.raw(Quantity::Velocity(a))?;
             for i in (0..v.len()).filter(|i| members.contains(*i)) {
                 let d = [0, 1, 2].map(|b| x[i][b] - whole.center[b]);
                 if linear[a] {
@@ -92,7 +96,8 @@ impl Session<'_> {
                     v[i] -= cross(omega, d)[a];
                 }
             }
-            self.store
+            self.population
+                .store
                 .particles_mut()
                 .write(Quantity::Velocity(a), 0, &v)?;
         }

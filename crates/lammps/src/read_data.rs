@@ -46,7 +46,7 @@ impl Session<'_> {
             ))
             .help("atom_style peri: id type volume density x y z [ix iy iz]"));
         }
-        let domain = SimBox::new(data.low, data.high, self.faces);
+        let domain = SimBox::new(data.low, data.high, self.space.faces);
         let n = data.atoms.len();
         if data.had_images {
             self.console.note(&format!(
@@ -66,11 +66,11 @@ impl Session<'_> {
                 }
             }
         }
-        self.types = data.types;
+        self.population.types = data.types;
         let atoms = Atoms::from(data.atoms);
-        self.ids = atoms.ids.clone();
-        self.domain = Some(domain);
-        self.store = Store::Atoms(atoms);
+        self.population.ids = atoms.ids.clone();
+        self.space.domain = Some(domain);
+        self.population.store = Store::Atoms(atoms);
         Ok(())
     }
 }

@@ -111,9 +111,13 @@ pub fn run_text(
     if !ended {
         done?;
     }
-    let (steps, time_step, time) = (s.progress.steps_done, s.progress.time_step, s.time());
+    let (steps, time_step, time) = (
+        s.progress.steps_done,
+        s.progress.time_step,
+        s.progress.time(),
+    );
     let seconds_stepping = s.progress.stepping_seconds;
-    let engine = match s.store {
+    let engine = match s.population.store {
         Store::Engine(e) => Some(e),
         Store::Atoms(_) => None,
     };

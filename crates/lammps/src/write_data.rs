@@ -16,14 +16,14 @@ impl Session<'_> {
         self.shrink_box()?;
         // a half-written file must not look like a whole one
         let mut out = self.folder.open_part(name)?;
-        let domain = *self.domain()?;
-        let n = self.count();
+        let domain = *self.space.domain()?;
+        let n = self.population.count();
         let step = self.progress.step;
         let mut text = format!(
             "LAMMPS data file via write_data, peridyne {}, timestep = {step}, units = {}\n\n{n} atoms\n{} atom types\n\n",
             env!("CARGO_PKG_VERSION"),
-            self.units.name(),
-            self.types
+            self.space.units.name(),
+            self.population.types
         );
         for (a, axis) in ["x", "y", "z"].iter().enumerate() {
             text += &format!(
@@ -48,7 +48,7 @@ impl Session<'_> {
 
     fn write_rows(&self, fields: &[Field], text: &mut String, out: &mut Sink) -> Result<()> {
         let view = self.view()?;
-        let n = self.count();
+        let n = self.population.count();
         let block = super::host::BLOCK;
         let mut values = vec![vec![0.0; block]; fields.len()];
         for first in (0..n).step_by(block) {
@@ -57,7 +57,7 @@ impl Session<'_> {
                 view.read(*f, first, &mut v[..m])?;
             }
             for i in 0..m {
-                *text += &self.ids.get(first + i).to_string();
+                *text += &self.population.ids.get(first + i).to_string();
                 for v in &values {
                     text.push(' ');
                     *text += &shortest(v[i]);

@@ -11,16 +11,19 @@ use crate::session::Session;
 
 impl Session<'_> {
     pub(super) fn add_compute(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let id = args.next("a compute ID")?;
-        if self.computes.iter().any(|c| c.id == id.as_str()) {
+        if self.watch.computes.iter().any(|c| c.id == id.as_str()) {
             return Err(Problem::at(
                 id.span,
                 format!("there is a compute `{}` already", id.as_str()),
             ));
         }
         let word = args.next("a group ID")?;
-        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let members = self
+            .population
+            .group(word.as_str())
+            .map_err(|p| p.or_at(word.span))?;
         let style = args.next("a compute style")?;
         let raw = |q| ComputeKind::Atoms(vec![Field::Raw(q)]);
         let kind = match style.as_str() {
@@ -97,7 +100,7 @@ impl Session<'_> {
             _ => return Err(args.unknown(style, "the compute style", STYLES)),
         };
         args.finish()?;
-        self.computes.push(Compute {
+        self.watch.computes.push(Compute {
             id: id.as_str().to_string(),
             members,
             kind,
@@ -117,12 +120,15 @@ impl Session<'_> {
     pub(super) fn remove_compute(&mut self, args: &mut Args) -> Result<()> {
         let id = args.next("a compute ID")?;
         args.finish()?;
-        let before = self.computes.len();
-        self.computes.retain(|c| c.id != id.as_str());
-        if self.computes.len() == before {
+        let before = self.watch.computes.len();
+        self.watch.computes.retain(|c| c.id != id.as_str());
+        if self.watch.computes.len() == before {
             return Err(
                 Problem::at(id.span, format!("there is no compute `{}`", id.as_str())).help(
-                    suggestion(id.as_str(), self.computes.iter().map(|c| c.id.as_str())),
+                    suggestion(
+                        id.as_str(),
+                        self.watch.computes.iter().map(|c| c.id.as_str()),
+                    ),
                 ),
             );
         }

@@ -154,7 +154,7 @@ impl Script<'_> {
         let mut exhausted = false;
         for word in &names {
             let name = word.as_str();
-            let variables = &mut self.session.variables;
+            let variables = &mut self.session.formulas.variables;
             match variables.get_mut(name) {
                 None => self
                     .session
@@ -174,7 +174,7 @@ impl Script<'_> {
         if exhausted {
             names
                 .iter()
-                .for_each(|w| self.session.variables.delete(w.as_str()));
+                .for_each(|w| self.session.formulas.variables.delete(w.as_str()));
             self.skip_jump = true;
         }
         Ok(())

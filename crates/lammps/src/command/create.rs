@@ -22,12 +22,12 @@ struct Scatter {
 
 impl Session<'_> {
     pub(super) fn create_atoms(&mut self, args: &mut Args) -> Result<()> {
-        let domain = *self.domain()?;
+        let domain = *self.space.domain()?;
         let kind = args.count("an atom type", 1)? as usize;
-        if kind > self.types {
+        if kind > self.population.types {
             return Err(Problem::new(format!(
                 "atom type {kind} is not between 1 and {}",
-                self.types
+                self.population.types
             )));
         }
         let style = args.next("`box`, `region`, `single` or `random`")?;
@@ -81,13 +81,13 @@ impl Session<'_> {
             }
         }
         let new = if let Some(x) = single {
-            let unit = self.length_unit(lattice_units)?;
+            let unit = self.space.length_unit(lattice_units)?;
             let x = x.map(|x| x * unit);
             Reference::Points(if domain.owns(x) { vec![x] } else { Vec::new() })
         } else if let Some((count, seed)) = random {
             // numbers of a length are in its units, as all are
             let unit = match overlap > 0.0 {
-                true => self.length_unit(lattice_units)?,
+                true => self.space.length_unit(lattice_units)?,
                 false => 1.0,
             };
             let scatter = Scatter {
@@ -98,7 +98,7 @@ impl Session<'_> {
             };
             Reference::Points(self.scattered(&scatter, region.as_ref())?)
         } else {
-            let lattice = self.lattice.filter(|l| l.sites).ok_or_else(|| {
+            let lattice = self.space.lattice.filter(|l| l.sites).ok_or_else(|| {
                 Problem::new("`create_atoms` needs a lattice")
                     .help("write `lattice sc CONSTANT` before")
             })?;
@@ -112,7 +112,7 @@ impl Session<'_> {
                 }
             }
             let sites = lattice
-                .sites_in(self.dimension, low, high, inside)
+                .sites_in(self.space.dimension, low, high, inside)
                 .map_err(Problem::new)?;
             Reference::Sites {
                 lattice: lattice.site_lattice(),
@@ -120,13 +120,13 @@ impl Session<'_> {
             }
         };
         let made = new.len();
-        let atoms = self.atoms()?;
+        let atoms = self.population.atoms()?;
         let was = atoms.len();
         if was + made > u32::MAX as usize {
             return Err(Problem::new("more than 4294967295 atoms"));
         }
         atoms.append(kind as u32, new);
-        self.ids = atoms.ids.clone();
+        self.population.ids = atoms.ids.clone();
         self.console.print(&format!("Created {made} atoms"));
         self.console.print(&format!(
             "  using lattice units in orthogonal box = {}",
@@ -142,7 +142,7 @@ impl Session<'_> {
 
     /// Places drawn at random in the box and the region.
     fn scattered(&mut self, scatter: &Scatter, region: Option<&Region>) -> Result<Vec<[f64; 3]>> {
-        let domain = *self.domain()?;
+        let domain = *self.space.domain()?;
         let (mut low, mut high) = (domain.low, domain.high);
         if let Some((a, b)) = region.and_then(Region::bounds) {
             for k in 0..3 {
@@ -177,7 +177,7 @@ impl Session<'_> {
         for _ in 0..scatter.count {
             for _ in 0..scatter.tries {
                 let mut x = [0, 1, 2].map(|a| low[a] + park.uniform() * (high[a] - low[a]));
-                if self.dimension == 2 {
+                if self.space.dimension == 2 {
                     x[2] = middle;
                 }
                 let free = region.is_none_or(|r| r.contains(x))

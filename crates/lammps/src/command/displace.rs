@@ -12,12 +12,15 @@ use crate::vector::cross;
 
 impl Session<'_> {
     pub(super) fn displace_atoms(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let word = args.next("a group ID")?;
-        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let members = self
+            .population
+            .group(word.as_str())
+            .map_err(|p| p.or_at(word.span))?;
         let style = args.next("move, ramp, random or rotate")?;
-        let n = self.count();
-        let mut x = self.unwrapped()?;
+        let n = self.population.count();
+        let mut x = self.population.unwrapped()?;
         let boxed = self.positions()?;
         let mine: Vec<usize> = (0..n).filter(|i| members.contains(*i)).collect();
         match style.as_str() {
@@ -91,7 +94,7 @@ impl Session<'_> {
                 if length == 0.0 {
                     return Err(Problem::new("the axis of rotation has no length"));
                 }
-                if self.dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0) {
+                if self.space.dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0) {
                     return Err(Problem::new("in two dimensions the axis of rotation is z"));
                 }
                 let axis = axis.map(|c| c / length);
@@ -101,7 +104,7 @@ impl Session<'_> {
                     let along: f64 = (0..3).map(|a| d[a] * axis[a]).sum();
                     let arm = [0, 1, 2].map(|a| d[a] - along * axis[a]);
                     let side = cross(axis, arm);
-                    for a in 0..self.dimension {
+                    for a in 0..self.space.dimension {
                         x[i][a] = point[a] + along * axis[a] + cos * arm[a] + sin * side[a];
                     }
                 }
@@ -117,9 +120,9 @@ impl Session<'_> {
 
     /// Puts atoms to these places on one axis.
     fn place(&mut self, axis: usize, x: &[[f64; 3]]) -> Result<()> {
-        let domain = *self.domain()?;
+        let domain = *self.space.domain()?;
         // atoms that are not built yet lie in the box
-        let place = |x: f64| match self.store {
+        let place = |x: f64| match self.population.store {
             Store::Atoms(_) => domain.wrap(axis, x).0,
             Store::Engine(_) => x,
         };
@@ -127,10 +130,10 @@ impl Session<'_> {
         if let Some(i) = values.iter().position(|x| !x.is_finite()) {
             return Err(Problem::new(format!(
                 "the position of the atom with id {} is not finite",
-                self.ids.get(i)
+                self.population.ids.get(i)
             )));
         }
-        let atoms = self.store.particles_mut();
+        let atoms = self.population.store.particles_mut();
         Ok(atoms.write(Quantity::Position(axis), 0, &values)?)
     }
 
@@ -142,16 +145,19 @@ impl Session<'_> {
                 _ => return Err(args.unknown(word, "the option", ["units"])),
             }
         }
-        self.length_unit(lattice_units)
+        self.space.length_unit(lattice_units)
     }
 
     pub(super) fn delete_atoms(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let style = args.next("group or region")?;
         let word = args.next("an ID")?;
         let gone = match style.as_str() {
             "group" => {
-                let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+                let members = self
+                    .population
+                    .group(word.as_str())
+                    .map_err(|p| p.or_at(word.span))?;
                 members.as_ref().clone()
             }
             "region" => {
@@ -172,8 +178,8 @@ impl Session<'_> {
                 _ => return Err(args.unknown(word, "the option", ["compress"])),
             }
         }
-        let n = self.count();
-        if compress && matches!(self.store, Store::Engine(_)) {
+        let n = self.population.count();
+        if compress && matches!(self.population.store, Store::Engine(_)) {
             return Err(Problem::new(
                 "`delete_atoms` after the first `run` would give the atoms new ids, by which bonds know them",
             )
@@ -182,15 +188,16 @@ impl Session<'_> {
         let ids: Vec<u32> = (0..n as u32)
             .filter(|i| gone.contains(*i as usize))
             .collect();
-        if ids.len() == n && n > 0 && matches!(self.store, Store::Engine(_)) {
+        if ids.len() == n && n > 0 && matches!(self.population.store, Store::Engine(_)) {
             return Err(Problem::new("`delete_atoms` would leave no atoms"));
         }
-        match &mut self.store {
+        match &mut self.population.store {
             Store::Atoms(atoms) if compress => {
                 let keeps = |k: &ComputeKind| matches!(k, ComputeKind::Displace { .. });
-                if self.computes.iter().any(|c| keeps(&c.kind))
+                if self.watch.computes.iter().any(|c| keeps(&c.kind))
                     || self
                         .fixes
+                        .all
                         .iter()
                         .any(|f| matches!(f.kind, FixKind::Move { .. }))
                 {
@@ -198,8 +205,8 @@ impl Session<'_> {
                         .help("move it before them, or add `compress no`"));
                 }
                 let places = filled(n, |i| gone.contains(i));
-                self.ids = Ids::Count(places.len());
-                atoms.pick(&places, self.ids.clone());
+                self.population.ids = Ids::Count(places.len());
+                atoms.pick(&places, self.population.ids.clone());
                 self.forget(&places);
             }
             _ => self.remove(&ids)?,
@@ -207,7 +214,7 @@ impl Session<'_> {
         self.console.print(&format!(
             "Deleted {} atoms, new total = {}",
             ids.len(),
-            self.count()
+            self.population.count()
         ));
         Ok(())
     }

@@ -14,10 +14,13 @@ const INDENT: &str = "fix ID GROUP indent K sphere X Y Z R | cylinder DIM C1 C2 
 
 impl Session<'_> {
     pub(super) fn add_fix(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let id = args.next("a fix ID")?.as_str().to_string();
         let word = args.next("a group ID")?;
-        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let members = self
+            .population
+            .group(word.as_str())
+            .map_err(|p| p.or_at(word.span))?;
         let style = args.next("a fix style")?;
         let kind = match style.as_str() {
             "nve" => FixKind::Nve,
@@ -47,7 +50,7 @@ impl Session<'_> {
                 }
             }
             "viscous" => self.viscous(args)?,
-            "enforce2d" if self.dimension != 2 => {
+            "enforce2d" if self.space.dimension != 2 => {
                 return Err(Problem::new("`fix enforce2d` needs `dimension 2`"));
             }
             "enforce2d" => FixKind::Enforce2d,
@@ -63,7 +66,7 @@ impl Session<'_> {
         };
         args.finish()?;
         let fix = Fix { id, members, kind };
-        match self.fixes.iter_mut().find(|f| f.id == fix.id) {
+        match self.fixes.all.iter_mut().find(|f| f.id == fix.id) {
             Some(old) if std::mem::discriminant(&old.kind) == std::mem::discriminant(&fix.kind) => {
                 *old = Rc::new(fix)
             }
@@ -73,7 +76,7 @@ impl Session<'_> {
                         .help("use another ID, or `unfix` it before"),
                 );
             }
-            None => self.fixes.push(Rc::new(fix)),
+            None => self.fixes.all.push(Rc::new(fix)),
         }
         Ok(())
     }
@@ -82,7 +85,7 @@ impl Session<'_> {
     fn one_number(&mut self, args: &mut Args, what: &str) -> Result<Input> {
         let input = args.input(what)?;
         if let Input::Variable(name) = &input {
-            if let Some(Kind::Atom(_)) = self.variables.get(name) {
+            if let Some(Kind::Atom(_)) = self.formulas.variables.get(name) {
                 return Err(Problem::new(format!(
                     "variable `{name}` is atom-style; this takes one number"
                 ))
@@ -103,10 +106,10 @@ impl Session<'_> {
     }
 
     pub(super) fn variable_exists(&self, name: &str) -> Result<()> {
-        match self.variables.get(name) {
+        match self.formulas.variables.get(name) {
             Some(_) => Ok(()),
             None => Err(Problem::new(format!("there is no variable `{name}`"))
-                .help(suggestion(name, self.variables.names()))),
+                .help(suggestion(name, self.formulas.variables.names()))),
         }
     }
 
@@ -131,7 +134,7 @@ impl Session<'_> {
 
     fn viscous(&mut self, args: &mut Args) -> Result<FixKind> {
         let gamma = args.number("the drag coefficient γ")?;
-        let mut each = vec![gamma; self.types];
+        let mut each = vec![gamma; self.population.types];
         while let Some(word) = args.optional() {
             if word.as_str() != "scale" {
                 return Err(args.unknown(word, "the option", ["scale"]));
@@ -143,7 +146,7 @@ impl Session<'_> {
                 None => {
                     return Err(Problem::new(format!(
                         "atom type {kind} is not between 1 and {}",
-                        self.types
+                        self.population.types
                     )));
                 }
             }
@@ -219,7 +222,7 @@ impl Session<'_> {
                 Problem::new("`fix indent` needs a sphere, cylinder or plane").help(INDENT),
             );
         };
-        let unit = self.length_unit(lattice_units)?;
+        let unit = self.space.length_unit(lattice_units)?;
         Ok(FixKind::Indent {
             stiffness,
             form,
@@ -262,7 +265,7 @@ impl Session<'_> {
                 if length == 0.0 {
                     return Err(Problem::new("the axis of rotation has no length"));
                 }
-                if self.dimension == 2 && (n[0] != 0.0 || n[1] != 0.0) {
+                if self.space.dimension == 2 && (n[0] != 0.0 || n[1] != 0.0) {
                     return Err(Problem::new("in two dimensions the axis of rotation is z"));
                 }
                 Path::Rotate {
@@ -301,17 +304,17 @@ impl Session<'_> {
         }
         match &mut path {
             Path::Linear(values) | Path::Wiggle(values, _) => {
-                let unit = self.length_unit(lattice_units)?;
+                let unit = self.space.length_unit(lattice_units)?;
                 values.iter_mut().flatten().for_each(|x| *x *= unit);
             }
             Path::Rotate { point, .. } => {
-                let unit = self.length_unit(lattice_units)?;
+                let unit = self.space.length_unit(lattice_units)?;
                 *point = point.map(|x| unit * x);
             }
             // variables are in box units
             Path::Variable(..) => {}
         }
-        if self.dimension == 2 {
+        if self.space.dimension == 2 {
             let leaves = match &path {
                 Path::Linear(v) | Path::Wiggle(v, _) => v[2].is_some_and(|z| z != 0.0),
                 Path::Variable(x, v) => x[2].is_some() || v[2].is_some(),
@@ -343,7 +346,7 @@ impl Session<'_> {
                 ));
             };
             let (axis, above) = (face / 2, face % 2 == 1);
-            let domain = self.domain()?;
+            let domain = self.space.domain()?;
             if domain.periodic(axis) {
                 return Err(Problem::at(
                     word.span,
@@ -366,7 +369,7 @@ impl Session<'_> {
             args.next("a face: xlo, xhi, ylo, yhi, zlo or zhi")?;
         }
         let unit = match faces.iter().any(|(_, _, place)| place.is_ok()) {
-            true => self.length_unit(lattice_units)?,
+            true => self.space.length_unit(lattice_units)?,
             false => 1.0,
         };
         let faces = faces.into_iter().map(|(axis, above, place)| WallFace {
@@ -411,12 +414,12 @@ impl Session<'_> {
     pub(super) fn remove_fix(&mut self, args: &mut Args) -> Result<()> {
         let id = args.next("a fix ID")?;
         args.finish()?;
-        let before = self.fixes.len();
-        self.fixes.retain(|f| f.id != id.as_str());
-        if self.fixes.len() == before {
+        let before = self.fixes.all.len();
+        self.fixes.all.retain(|f| f.id != id.as_str());
+        if self.fixes.all.len() == before {
             return Err(
                 Problem::at(id.span, format!("there is no fix `{}`", id.as_str())).help(
-                    suggestion(id.as_str(), self.fixes.iter().map(|f| f.id.as_str())),
+                    suggestion(id.as_str(), self.fixes.all.iter().map(|f| f.id.as_str())),
                 ),
             );
         }

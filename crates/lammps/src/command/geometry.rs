@@ -11,25 +11,25 @@ impl Session<'_> {
     pub(super) fn set_lattice(&mut self, args: &mut Args) -> Result<()> {
         let style = args.next("a lattice style")?;
         let dimension = match style.as_str() {
-            "none" => self.dimension,
+            "none" => self.space.dimension,
             "sc" => 3,
             "sq" => 2,
             _ => return Err(args.unknown(style, "the lattice", ["sc", "sq", "none"])),
         };
-        if dimension != self.dimension {
+        if dimension != self.space.dimension {
             return Err(Problem::at(
                 style.span,
                 format!(
                     "lattice `{}` does not fit dimension {}",
                     style.as_str(),
-                    self.dimension
+                    self.space.dimension
                 ),
             )
             .help("use `sc` in 3 and `sq` in 2 dimensions"));
         }
         let mut constant = args.positive("the lattice constant")?;
         let sites = style.as_str() != "none";
-        if self.units == Units::Lj && sites {
+        if self.space.units == Units::Lj && sites {
             constant = (1.0 / constant).powf(1.0 / dimension as f64); // a reduced density
         }
         let mut origin = [0.0; 3];
@@ -60,7 +60,7 @@ impl Session<'_> {
                 _ => return Err(args.unknown(word, "the option", ["origin"])),
             }
         }
-        self.lattice = Some(Lattice {
+        self.space.lattice = Some(Lattice {
             constant,
             origin,
             sites,

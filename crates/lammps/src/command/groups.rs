@@ -39,7 +39,7 @@ impl Session<'_> {
 
     /// Atoms whose type passes `test`.
     pub(super) fn with_type(&self, test: impl Fn(u64) -> bool) -> Result<Members> {
-        let mut types = vec![0u32; self.count()];
+        let mut types = vec![0u32; self.population.count()];
         self.scan(Field::Raw(Quantity::Type), |first, block| {
             types[first..]
                 .iter_mut()
@@ -50,22 +50,27 @@ impl Session<'_> {
     }
 
     pub(super) fn set_group(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let name = args.next("a group ID")?;
         let id = name.as_str().to_string();
         if id == "all" {
             return Err(Problem::at(name.span, "the group `all` cannot be changed"));
         }
         let style = args.next("a group style")?;
-        let n = self.count();
-        let old = self.group(&id).ok();
+        let n = self.population.count();
+        let old = self.population.group(&id).ok();
         let mut new = match style.as_str() {
             "delete" => {
-                self.group(&id)?;
-                if self.fixes.iter().any(|f| Some(&f.members) == old.as_ref()) {
+                self.population.group(&id)?;
+                if self
+                    .fixes
+                    .all
+                    .iter()
+                    .any(|f| Some(&f.members) == old.as_ref())
+                {
                     return Err(Problem::new(format!("group `{id}` is used by a fix")));
                 }
-                self.groups.retain(|(g, _)| *g != id);
+                self.population.groups.retain(|(g, _)| *g != id);
                 return args.finish();
             }
             "clear" => Members::collect(n, |_| false),
@@ -83,7 +88,11 @@ impl Session<'_> {
             "union" | "subtract" | "intersect" => {
                 let mut groups = Vec::new();
                 while let Some(word) = args.optional() {
-                    groups.push(self.group(word.as_str()).map_err(|p| p.or_at(word.span))?);
+                    groups.push(
+                        self.population
+                            .group(word.as_str())
+                            .map_err(|p| p.or_at(word.span))?,
+                    );
                 }
                 let [first, rest @ ..] = groups.as_slice() else {
                     args.next("a group ID")?;
@@ -118,11 +127,11 @@ impl Session<'_> {
         }
         let count = new.count(n);
         let new = Arc::new(new);
-        let known = self.groups.len();
-        match self.groups.iter_mut().find(|(g, _)| *g == id) {
+        let known = self.population.groups.len();
+        match self.population.groups.iter_mut().find(|(g, _)| *g == id) {
             Some((_, m)) => *m = new,
             None if known >= MOST => return Err(Problem::new(format!("more than {MOST} groups"))),
-            None => self.groups.push((id.clone(), new)),
+            None => self.population.groups.push((id.clone(), new)),
         }
         self.console.print(&format!("{count} atoms in group {id}"));
         Ok(())
@@ -131,16 +140,18 @@ impl Session<'_> {
     /// `type`/`id` with numbers, ranges `a:b`, `a:b:step`, or a comparison.
     fn by_number(&mut self, args: &mut Args, by_type: bool) -> Result<Members> {
         let numbers: Vec<u64> = if by_type {
-            let mut types = Vec::with_capacity(self.count());
+            let mut types = Vec::with_capacity(self.population.count());
             self.scan(Field::Raw(Quantity::Type), |_, block| {
                 types.extend(block.iter().map(|x| *x as u64))
             })?;
             types
         } else {
-            (0..self.count()).map(|i| self.ids.get(i)).collect()
+            (0..self.population.count())
+                .map(|i| self.population.ids.get(i))
+                .collect()
         };
         let number = |i: usize| numbers[i];
-        let n = self.count();
+        let n = self.population.count();
         let first = args.next("a number, a range or a comparison")?;
         if ["<", ">", "<=", ">=", "==", "!=", "<>"].contains(&first.as_str()) {
             let a = args.count("a number", 0)?;

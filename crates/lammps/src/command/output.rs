@@ -22,9 +22,9 @@ const STYLES: [&str; 4] = ["custom", "atom", "xyz", "image"];
 
 impl Session<'_> {
     pub(super) fn add_dump(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let id = args.next("a dump ID")?;
-        if self.dumps.iter().any(|d| d.id == id.as_str()) {
+        if self.watch.dumps.iter().any(|d| d.id == id.as_str()) {
             return Err(Problem::at(
                 id.span,
                 format!("there is a dump `{}` already", id.as_str()),
@@ -32,14 +32,17 @@ impl Session<'_> {
         }
         let dump = self.read_dump_shape(args, id.as_str(), true)?;
         args.finish()?;
-        self.dumps.push(dump);
+        self.watch.dumps.push(dump);
         Ok(())
     }
 
     /// `GROUP STYLE [N] FILE columns...`
     fn read_dump_shape(&mut self, args: &mut Args, id: &str, with_every: bool) -> Result<Dump> {
         let word = args.next("a group ID")?;
-        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let members = self
+            .population
+            .group(word.as_str())
+            .map_err(|p| p.or_at(word.span))?;
         let word = args.next("custom, atom, xyz or image")?;
         let style = match word.as_str() {
             "custom" => DumpStyle::Custom,
@@ -127,19 +130,19 @@ impl Session<'_> {
 
     pub(super) fn dump_modify(&mut self, args: &mut Args) -> Result<()> {
         let id = args.next("a dump ID")?;
-        let Some(at) = self.dumps.iter().position(|d| d.id == id.as_str()) else {
+        let Some(at) = self.watch.dumps.iter().position(|d| d.id == id.as_str()) else {
             return Err(
                 Problem::at(id.span, format!("there is no dump `{}`", id.as_str())).help(
-                    suggestion(id.as_str(), self.dumps.iter().map(|d| d.id.as_str())),
+                    suggestion(id.as_str(), self.watch.dumps.iter().map(|d| d.id.as_str())),
                 ),
             );
         };
         if args.left() == 0 {
             args.next("an option")?;
         }
-        let mut dump = self.dumps.remove(at);
+        let mut dump = self.watch.dumps.remove(at);
         let result = self.modify(args, &mut dump);
-        self.dumps.insert(at, dump);
+        self.watch.dumps.insert(at, dump);
         result
     }
 
@@ -149,7 +152,7 @@ impl Session<'_> {
                 "append" => dump.append = args.yes("append")?,
                 "element" => {
                     dump.elements.clear();
-                    for _ in 0..self.types {
+                    for _ in 0..self.population.types {
                         dump.elements
                             .push(args.next("a name for each atom type")?.as_str().to_string());
                     }
@@ -210,12 +213,12 @@ impl Session<'_> {
     pub(super) fn remove_dump(&mut self, args: &mut Args) -> Result<()> {
         let id = args.next("a dump ID")?;
         args.finish()?;
-        let before = self.dumps.len();
-        self.dumps.retain(|d| d.id != id.as_str());
-        if self.dumps.len() == before {
+        let before = self.watch.dumps.len();
+        self.watch.dumps.retain(|d| d.id != id.as_str());
+        if self.watch.dumps.len() == before {
             return Err(
                 Problem::at(id.span, format!("there is no dump `{}`", id.as_str())).help(
-                    suggestion(id.as_str(), self.dumps.iter().map(|d| d.id.as_str())),
+                    suggestion(id.as_str(), self.watch.dumps.iter().map(|d| d.id.as_str())),
                 ),
             );
         }
@@ -223,7 +226,7 @@ impl Session<'_> {
     }
 
     pub(super) fn write_dump(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let mut dump = self.read_dump_shape(args, "write_dump", false)?;
         if args.eat("modify") {
             self.modify(args, &mut dump)?;
@@ -234,7 +237,7 @@ impl Session<'_> {
     }
 
     pub(super) fn write_data_command(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let file = args.next("a file name")?;
         while let Some(word) = args.optional() {
             match word.as_str() {

@@ -8,7 +8,7 @@ use crate::session::{PairState, Session, Store};
 
 impl Session<'_> {
     fn pairs_may_change(&self) -> Result<()> {
-        match self.store {
+        match self.population.store {
             Store::Atoms(_) => Ok(()),
             Store::Engine(_) => Err(Problem::new(
                 "the material is fixed since the first `run`, which built the bonds",
@@ -25,18 +25,18 @@ impl Session<'_> {
         };
         args.finish()?;
         self.pairs_may_change()?;
-        self.pair = Some(PairState {
+        self.pairs.state = Some(PairState {
             style,
-            values: vec![None; self.types * self.types],
+            values: vec![None; self.population.types * self.population.types],
         });
         Ok(())
     }
 
     /// The first pairs without coefficients, for messages.
     pub(super) fn pairs_missing(&self) -> String {
-        let types = self.types;
+        let types = self.population.types;
         let given = |place: usize| {
-            let values = self.pair.as_ref().and_then(|p| p.values.get(place));
+            let values = self.pairs.state.as_ref().and_then(|p| p.values.get(place));
             values.is_some_and(Option::is_some)
         };
         let pairs = (0..types).flat_map(|i| (i..types).map(move |j| (i, j)));
@@ -54,8 +54,8 @@ impl Session<'_> {
 
     pub(super) fn pair_coeff(&mut self, args: &mut Args) -> Result<()> {
         self.pairs_may_change()?;
-        self.domain()?;
-        let types = self.types;
+        self.space.domain()?;
+        let types = self.population.types;
         let words = [args.next("a type or range")?, args.next("a type or range")?];
         let mut ranges = Vec::new();
         for word in words {
@@ -68,7 +68,7 @@ impl Session<'_> {
             }
             ranges.push(*range.start() as usize - 1..*range.end() as usize);
         }
-        let Some(PairState { style, values }) = &mut self.pair else {
+        let Some(PairState { style, values }) = &mut self.pairs.state else {
             return Err(Problem::new("`pair_coeff` needs a pair style")
                 .help("write `pair_style peri/pmb` before"));
         };
@@ -92,7 +92,7 @@ impl Session<'_> {
         let both = |i: usize, j: usize| [i * types + j, j * types + i];
         let (path, text, span) = &self.here;
         let here = Place::line(path, text, *span);
-        self.pair_places.resize(types * types, Place::Command);
+        self.pairs.places.resize(types * types, Place::Command);
         // `pair_style` may come before the box, when the number of types is not known
         if values.len() != types * types {
             *values = vec![None; types * types];
@@ -100,7 +100,7 @@ impl Session<'_> {
         for i in ranges[0].clone() {
             for j in ranges[1].clone().filter(|j| *j >= i) {
                 for place in both(i, j) {
-                    self.pair_places[place] = here.clone();
+                    self.pairs.places[place] = here.clone();
                     values[place] = Some(numbers.clone());
                 }
             }

@@ -13,15 +13,15 @@ use crate::session::Session;
 
 impl Session<'_> {
     fn no_box_yet(&self) -> Result<()> {
-        if !self.atom_style {
+        if !self.space.atom_style {
             return Err(Problem::new("`atom_style peri` must come before the atoms"));
         }
-        if self.domain.is_some() {
+        if self.space.domain.is_some() {
             return Err(Problem::new(
                 "there is a simulation box already; only one can be made",
             ));
         }
-        if self.dimension == 2 && self.faces[2][0] != Face::Periodic {
+        if self.space.dimension == 2 && self.space.faces[2][0] != Face::Periodic {
             return Err(Problem::new("`dimension 2` needs a periodic z axis")
                 .help("write `boundary f f p`"));
         }
@@ -60,11 +60,11 @@ impl Session<'_> {
                 format!("the box has no extent along {axis}"),
             ));
         }
-        let domain = SimBox::new(low, high, self.faces);
+        let domain = SimBox::new(low, high, self.space.faces);
         self.console
             .print(&format!("Created orthogonal box = {}", corners(low, high)));
-        self.domain = Some(domain);
-        self.types = types as usize;
+        self.space.domain = Some(domain);
+        self.population.types = types as usize;
         Ok(())
     }
 
@@ -157,7 +157,7 @@ impl Session<'_> {
         let indices = frame
             .ids
             .iter()
-            .map(|id| self.ids.find(*id))
+            .map(|id| self.population.ids.find(*id))
             .collect::<Vec<_>>();
         let replaced = indices.iter().flatten().count();
         for ((field, choice), column) in fields.iter().zip(choices).zip(&frame.columns) {
@@ -168,17 +168,23 @@ impl Session<'_> {
                 Quantity::Position(axis)
             };
             let (low, edge) = (frame.low[axis], frame.high[axis] - frame.low[axis]);
-            let mut values = vec![0.0; self.count()];
-            self.store.particles().read(quantity, 0, &mut values)?;
+            let mut values = vec![0.0; self.population.count()];
+            self.population
+                .store
+                .particles()
+                .read(quantity, 0, &mut values)?;
             for (index, x) in indices.iter().zip(column) {
                 if let Some(slot) = index.and_then(|i| values.get_mut(i)) {
                     *slot = if choice == 2 { low + x * edge } else { *x };
                 }
             }
-            self.store.particles_mut().write(quantity, 0, &values)?;
+            self.population
+                .store
+                .particles_mut()
+                .write(quantity, 0, &values)?;
         }
         if take_box {
-            let mut domain = *self.domain()?;
+            let mut domain = *self.space.domain()?;
             for a in 0..3 {
                 if domain.periodic(a)
                     && (domain.low[a], domain.high[a]) != (frame.low[a], frame.high[a])
@@ -190,7 +196,7 @@ impl Session<'_> {
                 }
                 (domain.low[a], domain.high[a]) = (frame.low[a], frame.high[a]);
             }
-            self.domain = Some(domain);
+            self.space.domain = Some(domain);
         }
         self.progress.step = step;
         self.progress.begin = step;

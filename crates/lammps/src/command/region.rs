@@ -37,10 +37,10 @@ impl Session<'_> {
         let style = args.next("a region style")?;
         if style.as_str() == "delete" {
             self.region(&id)?;
-            self.regions.retain(|(n, _)| *n != id);
+            self.space.regions.retain(|(n, _)| *n != id);
             return args.finish();
         }
-        if self.regions.iter().any(|(n, _)| *n == id) {
+        if self.space.regions.iter().any(|(n, _)| *n == id) {
             return Err(Problem::new(format!("there is a region `{id}` already")));
         }
         let mut raw: Vec<Value> = Vec::new();
@@ -126,7 +126,7 @@ impl Session<'_> {
             }
         }
         let unit = if parts.is_empty() {
-            self.length_unit(lattice_units)?
+            self.space.length_unit(lattice_units)?
         } else {
             1.0
         };
@@ -148,7 +148,7 @@ impl Session<'_> {
             outside,
             leaves: if parts.is_empty() { 1 } else { leaves },
             parts,
-            flat: self.dimension == 2,
+            flat: self.space.dimension == 2,
         };
         for input in &definition.values {
             if let Input::Variable(name) = input {
@@ -157,7 +157,7 @@ impl Session<'_> {
         }
         // what can be wrong now is said now
         self.resolve(&id, &definition)?;
-        self.regions.push((id, Rc::new(definition)));
+        self.space.regions.push((id, Rc::new(definition)));
         Ok(())
     }
 
@@ -167,7 +167,7 @@ impl Session<'_> {
             return Ok(Value::Place(if side == 0 { -INF } else { INF }));
         }
         if args.eat("EDGE") {
-            let domain = self.domain()?;
+            let domain = self.space.domain()?;
             let sides = if side == 0 { &domain.low } else { &domain.high };
             return Ok(Value::Place(sides[axis]));
         }
@@ -175,11 +175,11 @@ impl Session<'_> {
     }
 
     fn definition(&self, name: &str) -> Result<Rc<Definition>> {
-        let found = self.regions.iter().find(|(n, _)| n == name);
+        let found = self.space.regions.iter().find(|(n, _)| n == name);
         found.map(|(_, r)| r.clone()).ok_or_else(|| {
             Problem::new(format!("there is no region `{name}`")).help(suggestion(
                 name,
-                self.regions.iter().map(|(n, _)| n.as_str()),
+                self.space.regions.iter().map(|(n, _)| n.as_str()),
             ))
         })
     }

@@ -26,7 +26,7 @@ impl Session<'_> {
     /// # Errors
     /// Wrong arguments.
     pub fn run_plan(&self, args: &mut Args) -> Result<RunPlan> {
-        self.domain()?;
+        self.space.domain()?;
         let mut plan = RunPlan {
             steps: args.count("the number of steps", 0)?,
             setup: true,
@@ -70,20 +70,20 @@ impl Session<'_> {
     /// # Errors
     /// Something is missing, or the host refuses.
     pub fn build(&mut self) -> Result<()> {
-        if let Store::Engine(_) = self.store {
+        if let Store::Engine(_) = self.population.store {
             return Ok(());
         }
-        if self.count() == 0 {
+        if self.population.count() == 0 {
             return Err(Problem::new("there are no atoms")
                 .help("write `create_atoms` or `read_data` before"));
         }
-        let Some(PairState { style, values }) = &self.pair else {
+        let Some(PairState { style, values }) = &self.pairs.state else {
             return Err(Problem::new("there is no pair style").help(format!(
                 "write `pair_style` with one of {}, and `pair_coeff`, before `run`",
                 Style::ALL.map(Style::name).join(", ")
             )));
         };
-        let pair = style.pair(self.types, values);
+        let pair = style.pair(self.population.types, values);
         let pair = pair.ok_or_else(|| {
             let missing = self.pairs_missing();
             Problem::new(format!(
@@ -91,18 +91,18 @@ impl Session<'_> {
             ))
             .help("nothing is mixed, as in LAMMPS: write `pair_coeff I J ...` for each pair, or `pair_coeff * * ...`, before `run`")
         })?;
-        let lattice = self.lattice.as_ref().ok_or_else(|| {
+        let lattice = self.space.lattice.as_ref().ok_or_else(|| {
             Problem::new("the pair styles peri/* need the lattice constant")
                 .help("write `lattice sc CONSTANT` before `run`")
         })?;
         let lattice_constant = lattice.constant;
         self.shrink_box()?;
-        let domain = *self.domain()?;
-        let atoms = std::mem::take(self.atoms()?);
+        let domain = *self.space.domain()?;
+        let atoms = std::mem::take(self.population.atoms()?);
         let setup = Setup {
             title: self.title.clone(),
-            dimension: self.dimension,
-            units: self.units,
+            dimension: self.space.dimension,
+            units: self.space.units,
             domain,
             lattice_constant,
             time_step: self.progress.time_step,
@@ -110,12 +110,12 @@ impl Session<'_> {
             atoms,
             pair,
         };
-        self.store = Store::Atoms(Atoms::default());
-        let types = self.types;
-        self.store = Store::Engine(self.host.build(setup).map_err(|e| {
+        self.population.store = Store::Atoms(Atoms::default());
+        let types = self.population.types;
+        self.population.store = Store::Engine(self.host.build(setup).map_err(|e| {
             let place = e
                 .pair
-                .and_then(|(i, j)| self.pair_places.get((i - 1) * types + j - 1).cloned());
+                .and_then(|(i, j)| self.pairs.places.get((i - 1) * types + j - 1).cloned());
             let mut problem = Box::<Problem>::from(e);
             problem.place = place.unwrap_or(problem.place);
             problem
@@ -140,11 +140,11 @@ impl Session<'_> {
         }
         if plan.setup {
             self.print("Setting up Verlet run ...");
-            self.print(&format!("  Unit style    : {}", self.units.name()));
+            self.print(&format!("  Unit style    : {}", self.space.units.name()));
             self.print(&format!("  Current step  : {}", self.progress.step));
             let dt = general(self.progress.time_step, 6, false);
             self.print(&format!("  Time step     : {dt}"));
-            let mut conditions = std::mem::take(&mut self.acting);
+            let mut conditions = std::mem::take(&mut self.fixes.acting);
             self.conditions(&mut conditions)?;
             let start = RunStart {
                 step: self.progress.step,
@@ -152,12 +152,12 @@ impl Session<'_> {
                 time_step: self.progress.time_step,
                 moving: self.moving(),
                 carried: self.carried(),
-                domain: *self.domain()?,
+                domain: *self.space.domain()?,
             };
-            let atoms = self.count();
+            let atoms = self.population.count();
             let wanted = self.pressure_wanted();
             let stress = self.stress_wanted();
-            let engine = self.engine()?;
+            let engine = self.population.engine()?;
             if wanted {
                 engine.expect_virial();
             }
@@ -165,8 +165,8 @@ impl Session<'_> {
                 engine.expect_virials();
             }
             engine.setup(&start, &conditions)?;
-            self.acting = conditions;
-            let engine = self.engine()?;
+            self.fixes.acting = conditions;
+            let engine = self.population.engine()?;
             let (bonds, bytes) = (engine.directed_bonds(), engine.memory_bytes());
             for note in engine.notes() {
                 self.console.note(&note);
@@ -205,7 +205,7 @@ impl Session<'_> {
         self.thermo_footer();
         let steps = self.progress.step - self.progress.begin;
         let seconds = general(seconds, 6, false);
-        let atoms = self.count();
+        let atoms = self.population.count();
         self.print(&format!(
             "Loop time of {seconds} on 1 procs for {steps} steps with {atoms} atoms"
         ));
@@ -228,10 +228,10 @@ impl Session<'_> {
             problem.while_running = true;
             problem
         };
-        let mut told = std::mem::take(&mut self.told);
+        let mut told = std::mem::take(&mut self.fixes.told);
         self.carry(&mut told)?;
         let stress = self.stress_wanted();
-        let engine = self.engine()?;
+        let engine = self.population.engine()?;
         if output {
             engine.expect_output();
         }
@@ -242,14 +242,17 @@ impl Session<'_> {
             engine.expect_virials();
         }
         let path = engine.depart(&told).map_err(running)?;
-        self.told = told;
+        self.fixes.told = told;
         self.reflect()?;
         self.rebuild_if_due(path)?;
         // conditions hold at the end of the step, where the atoms are now
-        let mut conditions = std::mem::take(&mut self.acting);
+        let mut conditions = std::mem::take(&mut self.fixes.acting);
         self.conditions(&mut conditions)?;
-        self.engine()?.arrive(&conditions).map_err(running)?;
-        self.acting = conditions;
+        self.population
+            .engine()?
+            .arrive(&conditions)
+            .map_err(running)?;
+        self.fixes.acting = conditions;
         Ok(())
     }
 }
@@ -267,7 +270,8 @@ impl Script<'_> {
             s.progress.step += 1;
             let now = s.progress.step;
             let last = now == s.progress.end;
-            let thermo = last || (s.thermo.every > 0 && now.is_multiple_of(s.thermo.every));
+            let thermo =
+                last || (s.watch.thermo.every > 0 && now.is_multiple_of(s.watch.thermo.every));
             let looked = s.fixes_look(now);
             let output = thermo || looked || s.dumps_due(now)?;
             if let Err(p) = s.step(output, wanted && (thermo || looked)) {

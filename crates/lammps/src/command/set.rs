@@ -12,11 +12,12 @@ use crate::variable::tree::Tree;
 
 impl Session<'_> {
     pub(super) fn set_atoms(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let style = args.next("`group`, `atom`, `type` or `region`")?;
         let word = args.next("an ID or range")?;
         let members = match style.as_str() {
             "group" => self
+                .population
                 .group(word.as_str())
                 .map_err(|p| p.or_at(word.span))?
                 .as_ref()
@@ -30,11 +31,18 @@ impl Session<'_> {
                 Members::collect(x.len(), |i| region.contains(x[i]))
             }
             "atom" => {
-                let range = self.range(word, self.ids.get(self.count().saturating_sub(1)))?;
-                Members::collect(self.count(), |i| range.contains(&self.ids.get(i)))
+                let range = self.range(
+                    word,
+                    self.population
+                        .ids
+                        .get(self.population.count().saturating_sub(1)),
+                )?;
+                Members::collect(self.population.count(), |i| {
+                    range.contains(&self.population.ids.get(i))
+                })
             }
             "type" => {
-                let range = self.range(word, self.types as u64)?;
+                let range = self.range(word, self.population.types as u64)?;
                 self.with_type(|t| range.contains(&t))?
             }
             _ => return Err(args.unknown(style, "the style", ["group", "atom", "type", "region"])),
@@ -76,7 +84,7 @@ impl Session<'_> {
                 }
             };
             let value = args.input(name)?;
-            let types = self.types as f64;
+            let types = self.population.types as f64;
             let allowed = |x: f64| match quantity {
                 Quantity::Density | Quantity::Volume => x > 0.0 && x.is_finite(),
                 Quantity::Type => x >= 1.0 && x <= types && x.fract() == 0.0,
@@ -114,35 +122,42 @@ impl Session<'_> {
                 if !allowed(*x) {
                     return Err(wrong(*x, String::new()));
                 }
-                self.store.particles_mut().fill(quantity, *x)?;
+                self.population.store.particles_mut().fill(quantity, *x)?;
             } else {
-                let n = self.count();
+                let n = self.population.count();
                 let mut old = vec![0.0; BLOCK];
                 let mut new = vec![0.0; BLOCK];
                 // all values first: a formula may use what is being set
                 let mut all = vec![0.0; n];
                 for first in (0..n).step_by(BLOCK) {
                     let m = BLOCK.min(n - first);
-                    self.store
+                    self.population
+                        .store
                         .particles()
                         .read(quantity, first, &mut old[..m])?;
-                    tree.fill(&self.view()?, &self.clock(), first, &mut new[..m])?;
+                    tree.fill(&self.view()?, &self.progress.clock(), first, &mut new[..m])?;
                     for k in 0..m {
                         let mine = members.contains(first + k);
                         if mine && !allowed(new[k]) {
                             return Err(wrong(
                                 new[k],
-                                format!(" for the atom with id {}", self.ids.get(first + k)),
+                                format!(
+                                    " for the atom with id {}",
+                                    self.population.ids.get(first + k)
+                                ),
                             ));
                         }
                         all[first + k] = if mine { new[k] } else { old[k] };
                     }
                 }
-                self.store.particles_mut().write(quantity, 0, &all)?;
+                self.population
+                    .store
+                    .particles_mut()
+                    .write(quantity, 0, &all)?;
             }
             self.console.print(&format!(
                 "  {} settings made for {name}",
-                members.count(self.count())
+                members.count(self.population.count())
             ));
         }
         Ok(())
@@ -157,10 +172,13 @@ impl Session<'_> {
             ));
         }
         let kind = args.count("an atom type", 1)?;
-        if kind > self.types as u64 {
+        if kind > self.population.types as u64 {
             return Err(Problem::at(
                 word.span,
-                format!("atom type {kind} is not between 1 and {}", self.types),
+                format!(
+                    "atom type {kind} is not between 1 and {}",
+                    self.population.types
+                ),
             ));
         }
         let fraction = args.number("the fraction")?;
@@ -172,7 +190,7 @@ impl Session<'_> {
         }
         let seed = args.seed()?;
         let x = self.positions()?;
-        let mut types = self.raw(Quantity::Type)?;
+        let mut types = self.population.raw(Quantity::Type)?;
         let mut made = 0;
         for i in (0..types.len()).filter(|i| members.contains(*i)) {
             if Park::at(seed, x[i]).uniform() <= fraction {
@@ -180,7 +198,8 @@ impl Session<'_> {
                 made += 1;
             }
         }
-        self.store
+        self.population
+            .store
             .particles_mut()
             .write(Quantity::Type, 0, &types)?;
         self.console

@@ -10,7 +10,7 @@ use crate::units::Units;
 
 impl Session<'_> {
     fn before_box(&self, args: &Args) -> Result<()> {
-        match self.domain {
+        match self.space.domain {
             None => Ok(()),
             Some(_) => Err(Problem::new(format!(
                 "`{}` must come before the simulation box",
@@ -24,18 +24,18 @@ impl Session<'_> {
         let word = args.next("a system of units")?;
         let found = Units::ALL.iter().find(|(n, _)| *n == word.as_str());
         let names = Units::ALL.iter().map(|(n, _)| *n);
-        self.units = found
+        self.space.units = found
             .ok_or_else(|| args.unknown(word, "the system of units", names))?
             .1;
         self.before_box(args)?;
-        self.progress.time_step = self.units.time_step();
-        self.skin = self.units.skin();
+        self.progress.time_step = self.space.units.time_step();
+        self.neighbors.skin = self.space.units.skin();
         args.finish()
     }
 
     pub(super) fn set_dimension(&mut self, args: &mut Args) -> Result<()> {
         let word = args.next("2 or 3")?;
-        self.dimension = match word.as_str() {
+        self.space.dimension = match word.as_str() {
             "2" => 2,
             "3" => 3,
             _ => return Err(args.unknown(word, "the dimension", ["2", "3"])),
@@ -48,7 +48,7 @@ impl Session<'_> {
         for a in 0..3 {
             let word = args.next("three of p, f, s, m (or pairs like fs)")?;
             let faces: Option<Vec<Face>> = word.as_str().chars().map(Face::parse).collect();
-            self.faces[a] = match faces.as_deref() {
+            self.space.faces[a] = match faces.as_deref() {
                 Some([f]) => [*f, *f],
                 Some([low, high]) if (*low == Face::Periodic) == (*high == Face::Periodic) => {
                     [*low, *high]
@@ -72,7 +72,7 @@ impl Session<'_> {
             return Err(args.unknown(word, "the atom style", ["peri"]));
         }
         self.before_box(args)?;
-        self.atom_style = true;
+        self.space.atom_style = true;
         args.finish()
     }
 
@@ -80,7 +80,7 @@ impl Session<'_> {
         let step = args.positive("the time step")?;
         args.finish()?;
         // time counts on from here with the new step
-        self.progress.time_base = (self.progress.step, self.time());
+        self.progress.time_base = (self.progress.step, self.progress.time());
         self.progress.time_step = step;
         Ok(())
     }
@@ -90,7 +90,7 @@ impl Session<'_> {
         // forwards, the time goes on with the steps
         let forwards = step.checked_sub(self.progress.step);
         let counted = match forwards {
-            Some(n) => self.time() + n as f64 * self.progress.time_step,
+            Some(n) => self.progress.time() + n as f64 * self.progress.time_step,
             None => step as f64 * self.progress.time_step,
         };
         let time = if args.eat("time") {
@@ -101,7 +101,7 @@ impl Session<'_> {
         args.finish()?;
         let counts =
             |f: &&std::rc::Rc<Fix>| matches!(f.kind, FixKind::Average(_) | FixKind::Move { .. });
-        if let Some(fix) = self.fixes.iter().find(counts) {
+        if let Some(fix) = self.fixes.all.iter().find(counts) {
             return Err(Problem::new(format!(
                 "fix `{}` counts steps: they cannot be set anew",
                 fix.id
@@ -110,15 +110,15 @@ impl Session<'_> {
         }
         self.progress.step = step;
         self.progress.time_base = (step, time);
-        for dump in &mut self.dumps {
+        for dump in &mut self.watch.dumps {
             dump.last_written = None;
         }
         Ok(())
     }
 
     pub(super) fn set_neighbor(&mut self, args: &mut Args) -> Result<()> {
-        self.skin = args.number("the skin")?;
-        if self.skin < 0.0 {
+        self.neighbors.skin = args.number("the skin")?;
+        if self.neighbors.skin < 0.0 {
             return Err(Problem::new("the skin must not be negative"));
         }
         let word = args.next("`bin`, `nsq` or `multi`")?;
@@ -134,10 +134,10 @@ impl Session<'_> {
         args.back();
         while let Some(word) = args.optional() {
             match word.as_str() {
-                "every" => self.neighbors.every = args.count("the number of steps", 1)?,
-                "delay" => self.neighbors.delay = args.count("the number of steps", 0)?,
-                "check" => self.neighbors.check = args.yes("check")?,
-                "once" => self.neighbors.once = args.yes("once")?,
+                "every" => self.neighbors.schedule.every = args.count("the number of steps", 1)?,
+                "delay" => self.neighbors.schedule.delay = args.count("the number of steps", 0)?,
+                "check" => self.neighbors.schedule.check = args.yes("check")?,
+                "once" => self.neighbors.schedule.once = args.yes("once")?,
                 // how lists are stored
                 "one" | "page" | "binsize" | "cluster" | "include" => {
                     args.next("a value")?;
@@ -223,7 +223,7 @@ impl Session<'_> {
     }
 
     pub(super) fn info(&mut self) -> Result<()> {
-        let held = match &self.store {
+        let held = match &self.population.store {
             Store::Atoms(_) => "not built yet".to_string(),
             Store::Engine(e) => format!(
                 "{} directed bonds, {} bytes",
@@ -232,12 +232,19 @@ impl Session<'_> {
             ),
         };
         let lines = [
-            format!("Units = {}", self.units.name()),
-            format!("Dimension = {}", self.dimension),
-            format!("Atoms = {}, types = {}", self.count(), self.types),
+            format!("Units = {}", self.space.units.name()),
+            format!("Dimension = {}", self.space.dimension),
+            format!(
+                "Atoms = {}, types = {}",
+                self.population.count(),
+                self.population.types
+            ),
             format!(
                 "Box = {}",
-                self.domain.as_ref().map_or("none".into(), |d| d.describe())
+                self.space
+                    .domain
+                    .as_ref()
+                    .map_or("none".into(), |d| d.describe())
             ),
             format!("Model = {held}"),
         ];

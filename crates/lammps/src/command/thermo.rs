@@ -19,12 +19,12 @@ pub(super) fn number_format(word: &Word) -> Result<Format> {
 
 impl Session<'_> {
     pub(super) fn set_thermo(&mut self, args: &mut Args) -> Result<()> {
-        self.thermo.every = args.count("the number of steps between lines", 0)?;
+        self.watch.thermo.every = args.count("the number of steps between lines", 0)?;
         args.finish()
     }
 
     pub(super) fn thermo_style(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let style = args.next("one, multi, yaml or custom")?;
         let columns = match style.as_str() {
             "one" => columns::one(),
@@ -48,7 +48,7 @@ impl Session<'_> {
             }
         };
         args.finish()?;
-        let old = &self.thermo;
+        let old = &self.watch.thermo;
         if old.integer.is_some()
             || old.float.is_some()
             || !old.single.is_empty()
@@ -57,7 +57,7 @@ impl Session<'_> {
             self.console
                 .note("a new thermo_style drops earlier thermo_modify settings");
         }
-        self.thermo = Thermo {
+        self.watch.thermo = Thermo {
             columns,
             add_volume: style.as_str() != "custom",
             line: match style.as_str() {
@@ -65,7 +65,7 @@ impl Session<'_> {
                 "yaml" => Line::Yaml,
                 _ => Line::One,
             },
-            every: self.thermo.every,
+            every: self.watch.thermo.every,
             ..Thermo::default()
         };
         Ok(())
@@ -79,7 +79,7 @@ impl Session<'_> {
             match word.as_str() {
                 "lost" => {
                     let how = args.next("error, warn or ignore")?;
-                    self.thermo.lost = match how.as_str() {
+                    self.watch.thermo.lost = match how.as_str() {
                         "error" => Lost::Error,
                         "warn" => Lost::Warn,
                         "ignore" => Lost::Ignore,
@@ -92,13 +92,13 @@ impl Session<'_> {
                         }
                     };
                 }
-                "norm" => self.thermo.normalize = Some(args.yes("norm")?),
+                "norm" => self.watch.thermo.normalize = Some(args.yes("norm")?),
                 "flush" => {
                     args.yes("flush")?;
                 }
                 "line" => {
                     let how = args.next("one, multi or yaml")?;
-                    self.thermo.line = match how.as_str() {
+                    self.watch.thermo.line = match how.as_str() {
                         "one" => Line::One,
                         "multi" => Line::Multi,
                         "yaml" => Line::Yaml,
@@ -123,17 +123,17 @@ impl Session<'_> {
         let column = what.as_str().parse::<usize>().ok();
         match what.as_str() {
             "none" => {
-                self.thermo.integer = None;
-                self.thermo.float = None;
-                self.thermo.single.clear();
+                self.watch.thermo.integer = None;
+                self.watch.thermo.float = None;
+                self.watch.thermo.single.clear();
             }
-            "int" => self.thermo.integer = Some(number_format(args.next("a format")?)?),
-            "float" => self.thermo.float = Some(number_format(args.next("a format")?)?),
+            "int" => self.watch.thermo.integer = Some(number_format(args.next("a format")?)?),
+            "float" => self.watch.thermo.float = Some(number_format(args.next("a format")?)?),
             "line" => {
                 let word = args.next("a format")?;
                 let formats =
                     Format::parse_line(word.as_str()).map_err(|e| Problem::at(word.span, e))?;
-                let columns = self.thermo.columns.len();
+                let columns = self.watch.thermo.columns.len();
                 if formats.len() < columns {
                     return Err(Problem::at(
                         word.span,
@@ -142,12 +142,12 @@ impl Session<'_> {
                 }
                 // the text between the conversions takes the place of the blank that joins columns
                 let trimmed = formats.into_iter().map(Format::without_following_blank);
-                self.thermo.single.extend(trimmed.enumerate());
+                self.watch.thermo.single.extend(trimmed.enumerate());
             }
             _ => match column {
-                Some(k) if (1..=self.thermo.columns.len()).contains(&k) => {
+                Some(k) if (1..=self.watch.thermo.columns.len()).contains(&k) => {
                     let format = number_format(args.next("a format")?)?;
-                    self.thermo.single.push((k - 1, format));
+                    self.watch.thermo.single.push((k - 1, format));
                 }
                 _ => {
                     let known = ["line", "int", "float", "none", "a column number"];

@@ -26,10 +26,10 @@ impl Session<'_> {
             ));
         }
         let style = args.next("a style")?;
-        let defined = self.variables.get(name).map(Kind::style);
+        let defined = self.formulas.variables.get(name).map(Kind::style);
         let kind = match style.as_str() {
             "delete" => {
-                self.variables.delete(name);
+                self.formulas.variables.delete(name);
                 return args.finish();
             }
             "index" => {
@@ -91,7 +91,7 @@ impl Session<'_> {
                 "write `variable {name} delete` before to define it anew"
             ))),
             _ => {
-                self.variables.set(name, kind);
+                self.formulas.variables.set(name, kind);
                 Ok(())
             }
         }
@@ -176,7 +176,7 @@ impl Session<'_> {
             ))
             .help(suggestion(name, [])));
         }
-        self.variables.set(
+        self.formulas.variables.set(
             name,
             Kind::Index {
                 values: values.to_vec(),

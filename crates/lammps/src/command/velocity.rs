@@ -80,9 +80,12 @@ fn options(args: &mut Args) -> Result<Options> {
 
 impl Session<'_> {
     pub(super) fn set_velocity(&mut self, args: &mut Args) -> Result<()> {
-        self.domain()?;
+        self.space.domain()?;
         let word = args.next("a group ID")?;
-        let members = self.group(word.as_str()).map_err(|p| p.or_at(word.span))?;
+        let members = self
+            .population
+            .group(word.as_str())
+            .map_err(|p| p.or_at(word.span))?;
         let style = args.next("set, create, ramp, scale or zero")?;
         match style.as_str() {
             "set" => self.velocity_set(args, &members),
@@ -102,7 +105,7 @@ impl Session<'_> {
                     _ => return Err(args.unknown(what, "the motion", ["linear", "angular"])),
                 };
                 options(args)?;
-                if members.count(self.count()) == 0 {
+                if members.count(self.population.count()) == 0 {
                     return Err(Problem::new("the group has no atoms"));
                 }
                 self.take_motion(&members, [!angular; 3], angular)
@@ -117,10 +120,10 @@ impl Session<'_> {
     /// Temperature of a group: `2 E / (k (D N − D))`.
     pub fn temperature_of(&self, members: &Members) -> Result<f64> {
         let kinetic = self.reduce(Mode::Sum, members, &Tree::Field(Field::Kinetic))?;
-        let n = members.count(self.count());
-        let degrees = (self.dimension * n) as f64 - self.dimension as f64;
+        let n = members.count(self.population.count());
+        let degrees = (self.space.dimension * n) as f64 - self.space.dimension as f64;
         Ok(if degrees > 0.0 {
-            2.0 * kinetic / (degrees * self.units.boltzmann())
+            2.0 * kinetic / (degrees * self.space.units.boltzmann())
         } else {
             0.0
         })
@@ -138,8 +141,8 @@ impl Session<'_> {
             ));
         }
         let factor = (wanted / now).sqrt();
-        for a in 0..self.dimension {
-            let mut v = self.raw(Quantity::Velocity(a))?;
+        for a in 0..self.space.dimension {
+            let mut v = self.population.raw(Quantity::Velocity(a))?;
             for i in (0..v.len()).filter(|i| members.contains(*i)) {
                 v[i] *= factor;
             }
@@ -152,10 +155,10 @@ impl Session<'_> {
         if let Some(i) = v.iter().position(|v| !v.is_finite()) {
             return Err(Problem::new(format!(
                 "the velocity of the atom with id {} is not finite",
-                self.ids.get(i)
+                self.population.ids.get(i)
             )));
         }
-        let atoms = self.store.particles_mut();
+        let atoms = self.population.store.particles_mut();
         Ok(atoms.write(Quantity::Velocity(axis), 0, v)?)
     }
 
@@ -164,12 +167,12 @@ impl Session<'_> {
         let wanted = args.number("the temperature")?;
         let seed = args.seed()?;
         let options = options(args)?;
-        let n = self.count();
-        let mass = self.raw(Quantity::Density)?;
+        let n = self.population.count();
+        let mass = self.population.raw(Quantity::Density)?;
         let x = self.positions()?;
         let mut park = Park::new(seed).ok_or_else(|| Problem::new("the seed must be positive"))?;
         match options.order {
-            Order::All if !matches!(self.ids, crate::atoms::Ids::Count(_)) => {
+            Order::All if !matches!(self.population.ids, crate::atoms::Ids::Count(_)) => {
                 return Err(Problem::new(
                     "`velocity create` with `loop all` needs atom ids from 1 on without gaps",
                 )
@@ -177,7 +180,7 @@ impl Session<'_> {
             }
             Order::Local => {
                 park.skip(WARM_UP);
-                if matches!(self.store, Store::Engine(_)) {
+                if matches!(self.population.store, Store::Engine(_)) {
                     self.console.note("`velocity create ... loop local` takes the atoms in order of id; LAMMPS has sorted them in space since the first run: its numbers are the same, other atoms get them");
                 }
             }
@@ -199,14 +202,14 @@ impl Session<'_> {
             let three = [draw(&mut park), draw(&mut park), draw(&mut park)];
             if mine {
                 let factor = 1.0 / mass[i].sqrt();
-                for a in 0..self.dimension {
+                for a in 0..self.space.dimension {
                     new[a][i] = three[a] * factor;
                 }
             }
         }
         let mut before = [const { Vec::new() }; 3];
         for a in 0..3 {
-            let old = self.raw(Quantity::Velocity(a))?;
+            let old = self.population.raw(Quantity::Velocity(a))?;
             let pick = |i: usize| {
                 if members.contains(i) {
                     new[a][i]
@@ -227,7 +230,7 @@ impl Session<'_> {
         self.scale_to(members, now, wanted)?;
         if options.sum {
             for (a, before) in before.iter().enumerate() {
-                let mut v = self.raw(Quantity::Velocity(a))?;
+                let mut v = self.population.raw(Quantity::Velocity(a))?;
                 for i in (0..n).filter(|i| members.contains(*i)) {
                     v[i] += before[i];
                 }
@@ -243,7 +246,7 @@ impl Session<'_> {
         let known = ["vx", "vy", "vz"];
         let axis = known.iter().position(|v| *v == word.as_str());
         let axis = axis.ok_or_else(|| args.unknown(word, "the velocity", known))?;
-        if axis >= self.dimension {
+        if axis >= self.space.dimension {
             return Err(Problem::at(
                 word.span,
                 "in two dimensions nothing moves along z",
@@ -253,7 +256,7 @@ impl Session<'_> {
         let along = args.axis()?;
         let ends = [args.number("clo")?, args.number("chi")?];
         let options = options(args)?;
-        let unit = self.length_unit(options.lattice_units)?;
+        let unit = self.space.length_unit(options.lattice_units)?;
         let ([lo, hi], [from, to]) = (speeds.map(|v| unit * v), ends.map(|c| unit * c));
         if from == to {
             return Err(Problem::new(
@@ -261,7 +264,7 @@ impl Session<'_> {
             ));
         }
         let x = self.positions()?;
-        let mut v = self.raw(Quantity::Velocity(axis))?;
+        let mut v = self.population.raw(Quantity::Velocity(axis))?;
         for i in (0..v.len()).filter(|i| members.contains(*i)) {
             let fraction = ((x[i][along] - from) / (to - from)).clamp(0.0, 1.0);
             let ramp = lo + fraction * (hi - lo);
@@ -281,8 +284,8 @@ impl Session<'_> {
         let Options {
             sum, lattice_units, ..
         } = options(args)?;
-        let unit = self.length_unit(lattice_units)?;
-        if self.dimension == 2
+        let unit = self.space.length_unit(lattice_units)?;
+        if self.space.dimension == 2
             && !matches!(
                 values[2],
                 None | Some(Input::Number(0.0) | Input::Variable(_))
@@ -299,32 +302,36 @@ impl Session<'_> {
                 Some(Input::Variable(name)) => Some(self.variable_tree(name)?), // not scaled, as in LAMMPS
             });
         }
-        let n = self.count();
+        let n = self.population.count();
         let mut new = vec![[0.0; BLOCK]; 3];
         let mut old = [0.0; BLOCK];
         for first in (0..n).step_by(BLOCK) {
             let m = BLOCK.min(n - first);
             for (tree, new) in trees.iter().zip(&mut new) {
                 if let Some(tree) = tree {
-                    tree.fill(&self.view()?, &self.clock(), first, &mut new[..m])?;
+                    tree.fill(&self.view()?, &self.progress.clock(), first, &mut new[..m])?;
                 }
             }
             for a in (0..3).filter(|a| trees[*a].is_some()) {
-                self.store
-                    .particles()
-                    .read(Quantity::Velocity(a), first, &mut old[..m])?;
+                self.population.store.particles().read(
+                    Quantity::Velocity(a),
+                    first,
+                    &mut old[..m],
+                )?;
                 for k in (0..m).filter(|k| members.contains(first + k)) {
                     old[k] = if sum { old[k] + new[a][k] } else { new[a][k] };
                     if !old[k].is_finite() {
                         return Err(Problem::new(format!(
                             "the velocity of atom {} is not finite",
-                            self.ids.get(first + k)
+                            self.population.ids.get(first + k)
                         )));
                     }
                 }
-                self.store
-                    .particles_mut()
-                    .write(Quantity::Velocity(a), first, &old[..m])?;
+                self.population.store.particles_mut().write(
+                    Quantity::Velocity(a),
+                    first,
+                    &old[..m],
+                )?;
             }
         }
         Ok(())

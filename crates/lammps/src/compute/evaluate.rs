@@ -21,10 +21,16 @@ impl Session<'_> {
     /// # Errors
     /// There is none.
     pub fn compute(&self, id: &str) -> Result<&Compute> {
-        self.computes.iter().find(|c| c.id == id).ok_or_else(|| {
-            Problem::new(format!("there is no compute `{id}`"))
-                .help(suggestion(id, self.computes.iter().map(|c| c.id.as_str())))
-        })
+        self.watch
+            .computes
+            .iter()
+            .find(|c| c.id == id)
+            .ok_or_else(|| {
+                Problem::new(format!("there is no compute `{id}`")).help(suggestion(
+                    id,
+                    self.watch.computes.iter().map(|c| c.id.as_str()),
+                ))
+            })
     }
 
     /// Per-atom values of `source`.
@@ -106,9 +112,9 @@ impl Session<'_> {
 
     /// Component `axis` of the way of each atom from where it was, or the length of the way (axis 3).
     fn displacements(&self, start: &Start, axis: usize) -> Result<Vec<f64>> {
-        let now = self.unwrapped()?;
+        let now = self.population.unwrapped()?;
         let way = |(i, x): (usize, &[f64; 3])| {
-            let from = start.ids.binary_search(&self.ids.get(i)).ok();
+            let from = start.ids.binary_search(&self.population.ids.get(i)).ok();
             let from = from.map_or(*x, |k| start.places[k]);
             let d = [0, 1, 2].map(|a| x[a] - from[a]);
             match d.get(axis) {
@@ -123,19 +129,19 @@ impl Session<'_> {
     fn stress(&self, place: usize, kinetic: bool, virial: bool) -> Result<Vec<f64>> {
         const AXES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
         let (a, b) = AXES[place];
-        let factor = self.units.pressure();
-        let mut stress = vec![0.0; self.count()];
+        let factor = self.space.units.pressure();
+        let mut stress = vec![0.0; self.population.count()];
         if virial {
-            stress = self.raw(Quantity::Virial(place))?;
+            stress = self.population.raw(Quantity::Virial(place))?;
         }
         if kinetic {
-            let rho = self.raw(Quantity::Density)?;
+            let rho = self.population.raw(Quantity::Density)?;
             let (v, w) = (
-                self.raw(Quantity::Velocity(a))?,
-                self.raw(Quantity::Velocity(b))?,
+                self.population.raw(Quantity::Velocity(a))?,
+                self.population.raw(Quantity::Velocity(b))?,
             );
             for (i, s) in stress.iter_mut().enumerate() {
-                *s += self.units.kinetic() * rho[i] * v[i] * w[i];
+                *s += self.space.units.kinetic() * rho[i] * v[i] * w[i];
             }
         }
         stress.iter_mut().for_each(|s| *s *= -factor);
@@ -145,7 +151,7 @@ impl Session<'_> {
     /// May output ask for the virials of atoms?
     pub fn stress_wanted(&self) -> bool {
         let asks = |c: &Compute| matches!(c.kind, ComputeKind::Stress { virial: true, .. });
-        self.computes.iter().any(asks)
+        self.watch.computes.iter().any(asks)
     }
 
     /// A list of numbers: `c_ID` or `f_ID`.
@@ -168,7 +174,7 @@ impl Session<'_> {
                 Ok(values)
             }
             Column::Fix(text, id, None) => {
-                let fix = self.fixes.iter().find(|f| f.id == *id).cloned();
+                let fix = self.fixes.all.iter().find(|f| f.id == *id).cloned();
                 match fix.as_ref().map(|f| &f.kind) {
                     Some(FixKind::Average(a)) if a.borrow().vector => {
                         Ok(a.borrow().result.iter().map(|r| r[0]).collect())
@@ -238,7 +244,7 @@ impl Session<'_> {
             (ComputeKind::Kinetic, []) => {
                 self.reduce(Mode::Sum, &compute.members, &Tree::Field(Field::Kinetic))
             }
-            (ComputeKind::Potential, []) => Ok(self.engine()?.energies()?.potential),
+            (ComputeKind::Potential, []) => Ok(self.population.engine()?.energies()?.potential),
             (ComputeKind::Temperature, []) => self.temperature_of(&compute.members),
             (ComputeKind::Center, [k]) if [1.0, 2.0, 3.0].contains(k) => {
                 Ok(self.rigid(&compute.members)?.center[*k as usize - 1])
@@ -286,8 +292,8 @@ impl Session<'_> {
     /// # Errors
     /// The values do not exist (yet).
     pub fn reduce(&self, mode: Mode, members: &Members, tree: &Tree) -> Result<f64> {
-        let (view, clock) = (self.view()?, self.clock());
-        let n = self.count();
+        let (view, clock) = (self.view()?, self.progress.clock());
+        let n = self.population.count();
         let mut total = mode.start();
         let mut buffer = [0.0; BLOCK];
         for first in (0..n).step_by(BLOCK) {
@@ -334,7 +340,7 @@ impl Session<'_> {
             _ => 2,
         };
         let group = arguments.first().ok_or_else(wrong)?;
-        let mut members = self.group(group)?;
+        let mut members = self.population.group(group)?;
         match arguments.len().checked_sub(plain) {
             Some(0) => {}
             Some(1) => members = self.inside(&members, &arguments[plain])?,
@@ -351,7 +357,7 @@ impl Session<'_> {
             Ok(what(&s.rigid(&members)?)[axis(&arguments[1])?])
         };
         match name {
-            "count" => Ok(members.count(self.count()) as f64),
+            "count" => Ok(members.count(self.population.count()) as f64),
             "mass" => self.reduce(Mode::Sum, &members, &density),
             "ke" => self.reduce(Mode::Sum, &members, &Tree::Field(Field::Kinetic)),
             "gyration" => Ok(self.rigid(&members)?.gyration),
@@ -383,12 +389,12 @@ impl Session<'_> {
     /// Unknown category.
     pub fn is_defined(&self, category: &str, id: &str) -> Result<bool> {
         Ok(match category {
-            "compute" => self.computes.iter().any(|c| c.id == id),
-            "fix" => self.fixes.iter().any(|f| f.id == id),
-            "dump" => self.dumps.iter().any(|d| d.id == id),
-            "group" => self.groups.iter().any(|(n, _)| n == id),
-            "region" => self.regions.iter().any(|(n, _)| n == id),
-            "variable" => self.variables.get(id).is_some(),
+            "compute" => self.watch.computes.iter().any(|c| c.id == id),
+            "fix" => self.fixes.all.iter().any(|f| f.id == id),
+            "dump" => self.watch.dumps.iter().any(|d| d.id == id),
+            "group" => self.population.groups.iter().any(|(n, _)| n == id),
+            "region" => self.space.regions.iter().any(|(n, _)| n == id),
+            "variable" => self.formulas.variables.get(id).is_some(),
             _ => {
                 let known = ["compute", "fix", "dump", "group", "region", "variable"];
                 return Err(

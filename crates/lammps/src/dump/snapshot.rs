@@ -17,7 +17,7 @@ impl Session<'_> {
     /// # Errors
     /// A variable cannot be evaluated.
     pub fn dumps_due(&mut self, step: u64) -> Result<bool> {
-        Ok(self.dumps.iter().any(|d| d.due(step)))
+        Ok(self.watch.dumps.iter().any(|d| d.due(step)))
     }
 
     /// Writes the dumps that are due at this step.
@@ -25,9 +25,9 @@ impl Session<'_> {
     /// # Errors
     /// A value does not exist; a file cannot be written.
     pub fn write_dumps(&mut self, at_start: bool) -> Result<()> {
-        for k in 0..self.dumps.len() {
+        for k in 0..self.watch.dumps.len() {
             let step = self.progress.step;
-            let dump = &self.dumps[k];
+            let dump = &self.watch.dumps[k];
             let due = dump.due(step) || (at_start && dump.first && dump.last_written.is_none());
             let write = due && dump.last_written != Some(step);
             if let Some((name, next)) = &dump.every_variable
@@ -40,13 +40,13 @@ impl Session<'_> {
                         "variable `{name}` of `dump_modify every` gives step {next}, which is not after step {step}"
                     )));
                 }
-                self.dumps[k].every_variable = Some((name, Some(next as u64)));
+                self.watch.dumps[k].every_variable = Some((name, Some(next as u64)));
             }
             if write {
                 self.shrink_box()?;
-                let mut dump = self.dumps.remove(k);
+                let mut dump = self.watch.dumps.remove(k);
                 let result = self.write_snapshot(&mut dump);
-                self.dumps.insert(k, dump);
+                self.watch.dumps.insert(k, dump);
                 result?;
             }
         }
@@ -89,7 +89,7 @@ impl Session<'_> {
         if dump.thresholds.is_empty() && dump.sort == (None, false) {
             return Ok(None);
         }
-        let n = self.count();
+        let n = self.population.count();
         let mut rows: Vec<u32> = (0..n as u32)
             .filter(|i| dump.members.contains(*i as usize))
             .collect();
@@ -111,9 +111,9 @@ impl Session<'_> {
 
     /// Our own picture of the damage.
     fn picture(&mut self, out: &mut Sink) -> Result<()> {
-        let (length_unit, time_unit) = self.units.labels();
+        let (length_unit, time_unit) = self.space.units.labels();
         let title = self.title.clone();
-        let Some(snapshot) = self.engine()?.snapshot() else {
+        let Some(snapshot) = self.population.engine()?.snapshot() else {
             return Err(Problem::new("there is no picture of this model"));
         };
         let options = PictureOptions {
@@ -135,14 +135,14 @@ impl Session<'_> {
         if dump.style == DumpStyle::Xyz {
             return Ok(format!("{atoms}\n Atoms. Timestep: {step}\n"));
         }
-        let domain = self.domain()?;
+        let domain = self.space.domain()?;
         let mut head = String::new();
         if dump.units && dump.last_written.is_none() {
-            head += &format!("ITEM: UNITS\n{}\n", self.units.name());
+            head += &format!("ITEM: UNITS\n{}\n", self.space.units.name());
         }
         if dump.time {
             let time = Format::parse("%.16g")
-                .map(|f| f.print(Value::Float(self.time())))
+                .map(|f| f.print(Value::Float(self.progress.time())))
                 .unwrap_or_default();
             head += &format!("ITEM: TIME\n{time}\n");
         }
@@ -169,7 +169,7 @@ impl Session<'_> {
         rows: Option<&[u32]>,
         out: &mut Sink,
     ) -> Result<()> {
-        let n = self.count();
+        let n = self.population.count();
         let atoms = rows.map_or_else(|| dump.members.count(n), <[u32]>::len);
         out.write(&self.head(dump, atoms)?)?;
         let cells = cells(dump)?;
@@ -186,7 +186,7 @@ impl Session<'_> {
             }
             return Ok(());
         }
-        let (view, clock) = (self.view()?, self.clock());
+        let (view, clock) = (self.view()?, self.progress.clock());
         let mut values = vec![vec![0.0; BLOCK]; trees.len()];
         for first in (0..n).step_by(BLOCK) {
             let m = BLOCK.min(n - first);

@@ -14,8 +14,8 @@ impl Script<'_> {
     /// # Errors
     /// A value cannot be computed or written.
     pub fn end_of_step(&mut self, at_start: bool) -> Result<()> {
-        for k in 0..self.session.fixes.len() {
-            let fix = self.session.fixes[k].clone();
+        for k in 0..self.session.fixes.all.len() {
+            let fix = self.session.fixes.all[k].clone();
             let step = self.session.progress.step;
             match &fix.kind {
                 FixKind::Momentum {
@@ -91,11 +91,12 @@ impl Session<'_> {
             }
             let factor = (before.square / after).sqrt();
             for a in 0..3 {
-                let mut v = self.raw(Quantity::Velocity(a))?;
+                let mut v = self.population.raw(Quantity::Velocity(a))?;
                 for i in (0..v.len()).filter(|i| members.contains(*i)) {
                     v[i] *= factor;
                 }
-                self.store
+                self.population
+                    .store
                     .particles_mut()
                     .write(Quantity::Velocity(a), 0, &v)?;
             }

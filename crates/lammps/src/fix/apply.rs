@@ -22,10 +22,10 @@ impl Session<'_> {
 
     /// Atoms that forces move: of `fix nve`, and carried ones, which they move on the axes left open.
     pub fn moving(&self) -> Option<Arc<Members>> {
-        let n = self.count();
+        let n = self.population.count();
         let mut moving: Option<Arc<Members>> = None;
         let moves = |f: &&Rc<Fix>| matches!(f.kind, FixKind::Nve | FixKind::Move { .. });
-        for fix in self.fixes.iter().filter(moves) {
+        for fix in self.fixes.all.iter().filter(moves) {
             moving = Some(match moving {
                 None => fix.members.clone(),
                 Some(m) => Arc::new(Members::collect(n, |i| {
@@ -43,13 +43,14 @@ impl Session<'_> {
     pub fn nobody_twice(&self) -> Result<()> {
         let all: Vec<_> = self
             .fixes
+            .all
             .iter()
             .filter(|f| matches!(f.kind, FixKind::Nve | FixKind::Move { .. }))
             .collect();
         for (k, a) in all.iter().enumerate() {
             for b in &all[..k] {
                 let both = |i: &usize| a.members.contains(*i) && b.members.contains(*i);
-                if let Some(i) = (0..self.count()).find(both) {
+                if let Some(i) = (0..self.population.count()).find(both) {
                     let styles = match (&a.kind, &b.kind) {
                         (FixKind::Nve, FixKind::Nve) => "`fix nve`",
                         _ => "`fix nve` and `fix move`",
@@ -58,7 +59,7 @@ impl Session<'_> {
                         "{styles} with the IDs `{}` and `{}` both move the atom with id {}",
                         b.id,
                         a.id,
-                        self.ids.get(i)
+                        self.population.ids.get(i)
                     ))
                     .help("LAMMPS would move such atoms twice in every step: `unfix` one, or give each a group of its own"));
                 }
@@ -72,8 +73,8 @@ impl Session<'_> {
     /// # Errors
     /// A variable cannot be evaluated.
     pub fn reflect(&mut self) -> Result<()> {
-        for k in 0..self.fixes.len() {
-            let fix = self.fixes[k].clone();
+        for k in 0..self.fixes.all.len() {
+            let fix = self.fixes.all[k].clone();
             let FixKind::Reflect(faces) = &fix.kind else {
                 continue;
             };
@@ -88,7 +89,7 @@ impl Session<'_> {
                     position,
                 };
                 let members = fix.members.clone();
-                self.engine()?.reflect(&wall, &members);
+                self.population.engine()?.reflect(&wall, &members);
             }
         }
         Ok(())
@@ -96,7 +97,7 @@ impl Session<'_> {
 
     /// Will a fix read values at this step?
     pub fn fixes_look(&self, step: u64) -> bool {
-        self.fixes.iter().any(|f| match &f.kind {
+        self.fixes.all.iter().any(|f| match &f.kind {
             FixKind::Print { every, .. } => step.is_multiple_of(*every),
             FixKind::Average(a) => a.borrow().samples_at(step),
             FixKind::Momentum { every, .. } => step.is_multiple_of(*every),
@@ -116,13 +117,13 @@ impl Session<'_> {
     /// # Errors
     /// No such fix, or one without values.
     pub fn fix_value(&mut self, id: &str, index: &[f64]) -> Result<f64> {
-        let Some(fix) = self.fixes.iter().find(|f| f.id == id).cloned() else {
+        let Some(fix) = self.fixes.all.iter().find(|f| f.id == id).cloned() else {
             return Err(Problem::new(format!("there is no fix `{id}`"))
-                .help(suggestion(id, self.fixes.iter().map(|f| f.id.as_str()))));
+                .help(suggestion(id, self.fixes.all.iter().map(|f| f.id.as_str()))));
         };
-        let number = self.fixes.iter().filter(|f| f.kind.acts());
+        let number = self.fixes.all.iter().filter(|f| f.kind.acts());
         let number = number.take_while(|f| f.id != id).count();
-        let reaction = |s: &Self| match &s.store {
+        let reaction = |s: &Self| match &s.population.store {
             Store::Engine(e) => e.reaction(number),
             Store::Atoms(_) => Reaction::default(),
         };

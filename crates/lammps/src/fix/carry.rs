@@ -16,16 +16,18 @@ impl Session<'_> {
     pub fn start_of_motion(&self) -> Result<Start> {
         Ok(Start {
             step: self.progress.step,
-            places: self.unwrapped()?,
-            ids: (0..self.count()).map(|i| self.ids.get(i)).collect(),
+            places: self.population.unwrapped()?,
+            ids: (0..self.population.count())
+                .map(|i| self.population.ids.get(i))
+                .collect(),
         })
     }
 
     /// Atoms that are carried in the coming run.
     pub fn carried(&self) -> Vec<u32> {
-        let n = self.count() as u32;
+        let n = self.population.count() as u32;
         let mut all = Vec::new();
-        for fix in &self.fixes {
+        for fix in &self.fixes.all {
             if let FixKind::Move { .. } = fix.kind {
                 all.extend((0..n).filter(|i| fix.members.contains(*i as usize)));
             }
@@ -39,14 +41,14 @@ impl Session<'_> {
     /// A variable cannot be evaluated.
     pub fn carry(&mut self, out: &mut Vec<Motion>) -> Result<()> {
         out.clear();
-        for k in 0..self.fixes.len() {
-            let fix = self.fixes[k].clone();
+        for k in 0..self.fixes.all.len() {
+            let fix = self.fixes.all[k].clone();
             let FixKind::Move { path, start } = &fix.kind else {
                 continue;
             };
             let elapsed = (self.progress.step - start.step.min(self.progress.step)) as f64
                 * self.progress.time_step;
-            let n = self.count();
+            let n = self.population.count();
             let mut told = [const { None }; 6];
             if let Path::Variable(x, v) = path {
                 for (values, input) in told.iter_mut().zip(x.iter().chain(v)) {
@@ -60,13 +62,13 @@ impl Session<'_> {
             let mut reference = [const { Vec::new() }; 3];
             let mut speed = [const { Vec::new() }; 3];
             for a in 0..3 {
-                reference[a] = self.raw(Quantity::Reference(a))?;
+                reference[a] = self.population.raw(Quantity::Reference(a))?;
                 if let Path::Variable(..) = path {
-                    speed[a] = self.raw(Quantity::Velocity(a))?;
+                    speed[a] = self.population.raw(Quantity::Velocity(a))?;
                 }
             }
             for i in (0..n).filter(|i| fix.members.contains(*i)) {
-                let Ok(from) = start.ids.binary_search(&self.ids.get(i)) else {
+                let Ok(from) = start.ids.binary_search(&self.population.ids.get(i)) else {
                     out.push([None; 3]);
                     continue;
                 };
@@ -94,7 +96,7 @@ impl Session<'_> {
                             (Some(x), None) => Some((x0[a] + x[i], speed[a][i])),
                             // as LAMMPS: the velocity is told, the place follows from it
                             (None, Some(v)) => {
-                                let here = self.one(Quantity::Position(a), i)?;
+                                let here = self.population.one(Quantity::Position(a), i)?;
                                 Some((here + v[i] * self.progress.time_step, v[i]))
                             }
                             (None, None) => None,

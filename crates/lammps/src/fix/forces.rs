@@ -17,8 +17,8 @@ impl Session<'_> {
     /// A variable cannot be evaluated.
     pub fn conditions(&mut self, out: &mut Vec<Condition>) -> Result<()> {
         out.clear();
-        for k in 0..self.fixes.len() {
-            let fix = self.fixes[k].clone();
+        for k in 0..self.fixes.all.len() {
+            let fix = self.fixes.all[k].clone();
             if fix.kind.acts() {
                 out.push(self.condition(&fix)?);
             }
@@ -114,7 +114,9 @@ impl Session<'_> {
 
     fn is_atom_style(&self, input: &Input) -> bool {
         match input {
-            Input::Variable(name) => matches!(self.variables.get(name), Some(Kind::Atom(_))),
+            Input::Variable(name) => {
+                matches!(self.formulas.variables.get(name), Some(Kind::Atom(_)))
+            }
             Input::Number(_) => false,
         }
     }
@@ -126,7 +128,7 @@ impl Session<'_> {
         inputs: &[Option<Input>; 3],
         region: Option<&str>,
     ) -> Result<Vec<[Option<f64>; 3]>> {
-        let n = self.count();
+        let n = self.population.count();
         let inside = match region {
             Some(name) => {
                 let region = self.region(name)?;

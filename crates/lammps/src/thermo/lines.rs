@@ -9,9 +9,10 @@ use crate::session::Session;
 
 impl Session<'_> {
     fn thermo_columns(&self) -> Vec<Column> {
-        let mut columns = self.thermo.columns.clone();
-        if self.thermo.add_volume
+        let mut columns = self.watch.thermo.columns.clone();
+        if self.watch.thermo.add_volume
             && self
+                .space
                 .domain
                 .as_ref()
                 .is_some_and(crate::domain::SimBox::moves)
@@ -23,7 +24,7 @@ impl Session<'_> {
 
     /// The line above the numbers.
     pub fn thermo_header(&mut self) {
-        match self.thermo.line {
+        match self.watch.thermo.line {
             Line::One => {}
             Line::Multi => return,
             Line::Yaml => {
@@ -70,7 +71,7 @@ impl Session<'_> {
             .enumerate()
             .map(|(k, (c, v))| self.thermo_text(k, c, *v))
             .collect();
-        match self.thermo.line {
+        match self.watch.thermo.line {
             Line::One => self.console.print(&texts.join(" ")),
             Line::Multi => return self.print_block(&columns, &texts),
             Line::Yaml => {
@@ -83,7 +84,7 @@ impl Session<'_> {
 
     /// What stands under the lines of a run.
     pub fn thermo_footer(&mut self) {
-        if self.thermo.line == Line::Yaml {
+        if self.watch.thermo.line == Line::Yaml {
             self.console.print("...");
         }
     }
@@ -91,6 +92,7 @@ impl Session<'_> {
     fn thermo_text(&self, index: usize, column: &Column, value: f64) -> String {
         let integer = column.is_integer();
         let user = self
+            .watch
             .thermo
             .single
             .iter()
@@ -98,16 +100,16 @@ impl Session<'_> {
             .find(|(k, _)| *k == index)
             .map(|(_, f)| f);
         let user = user.or(if integer {
-            self.thermo.integer.as_ref()
+            self.watch.thermo.integer.as_ref()
         } else {
-            self.thermo.float.as_ref()
+            self.watch.thermo.float.as_ref()
         });
         let value = if integer {
             Value::Integer(value as i64)
         } else {
             Value::Float(value)
         };
-        let fallback = match (integer, self.thermo.line) {
+        let fallback = match (integer, self.watch.thermo.line) {
             (true, Line::One) => "%10d ",
             (false, Line::One) => "% -14.8g",
             (true, Line::Multi) => "%14d",
@@ -153,7 +155,7 @@ impl Session<'_> {
             "elapsed" => (step - self.progress.begin.min(step)) as f64,
             "elaplong" => (step - self.progress.first.min(step)) as f64,
             "dt" => self.progress.time_step,
-            "time" => self.time(),
+            "time" => self.progress.time(),
             "cpu" => self.loop_seconds(),
             "spcpu" | "tpcpu" => {
                 let done = (step - self.progress.begin.min(step)) as f64;
@@ -174,26 +176,32 @@ impl Session<'_> {
                     0.0
                 }
             }
-            "atoms" => self.count() as f64,
+            "atoms" => self.population.count() as f64,
             "vol" => {
-                let d = self.domain()?;
-                d.edge(0) * d.edge(1) * if self.dimension == 3 { d.edge(2) } else { 1.0 }
+                let d = self.space.domain()?;
+                d.edge(0)
+                    * d.edge(1)
+                    * if self.space.dimension == 3 {
+                        d.edge(2)
+                    } else {
+                        1.0
+                    }
             }
-            "lx" | "ly" | "lz" => self.domain()?.edge(axis(bytes[1])),
-            "xlo" | "ylo" | "zlo" => self.domain()?.low[axis(bytes[0])],
-            "xhi" | "yhi" | "zhi" => self.domain()?.high[axis(bytes[0])],
+            "lx" | "ly" | "lz" => self.space.domain()?.edge(axis(bytes[1])),
+            "xlo" | "ylo" | "zlo" => self.space.domain()?.low[axis(bytes[0])],
+            "xhi" | "yhi" | "zhi" => self.space.domain()?.high[axis(bytes[0])],
             "temp" => self.temperature()?,
             "press" => self.pressure()?,
             "pxx" | "pyy" | "pzz" | "pxy" | "pxz" | "pyz" => {
                 self.pressure_component(axis(bytes[1]), axis(bytes[2]))?
             }
             "ke" => self.kinetic()?,
-            "pe" | "epair" | "evdwl" => self.engine()?.energies()?.potential,
-            "etotal" => self.kinetic()? + self.engine()?.energies()?.potential,
+            "pe" | "epair" | "evdwl" => self.population.engine()?.energies()?.potential,
+            "etotal" => self.kinetic()? + self.population.engine()?.energies()?.potential,
             "enthalpy" => {
                 let volume = self.thermo_value("vol")?;
-                let work = self.pressure()? * volume / self.units.pressure();
-                self.kinetic()? + self.engine()?.energies()?.potential + work
+                let work = self.pressure()? * volume / self.space.units.pressure();
+                self.kinetic()? + self.population.engine()?.energies()?.potential + work
             }
             // no bonded interactions, charges or tilted boxes
             _ => 0.0,

@@ -25,54 +25,58 @@ impl Session<'_> {
             Column::Compute(_, id, _) => id == "thermo_press",
             Column::Fix(..) | Column::Variable(_) => false,
         };
-        let formula = |name: &str| match self.variables.get(name) {
+        let formula = |name: &str| match self.formulas.variables.get(name) {
             Some(Kind::Equal(f) | Kind::Atom(f)) => WANTED.iter().any(|w| f.text.contains(w)),
             _ => false,
         };
-        self.thermo.columns.iter().any(column) || self.variables.names().any(formula)
+        self.watch.thermo.columns.iter().any(column) || self.formulas.variables.names().any(formula)
     }
 
     pub(super) fn temperature(&self) -> Result<f64> {
-        let degrees = (self.dimension * self.count()) as f64 - self.dimension as f64;
+        let degrees =
+            (self.space.dimension * self.population.count()) as f64 - self.space.dimension as f64;
         let kinetic = self.kinetic()?;
         Ok(if degrees > 0.0 {
-            2.0 * kinetic / (degrees * self.units.boltzmann())
+            2.0 * kinetic / (degrees * self.space.units.boltzmann())
         } else {
             0.0
         })
     }
 
     fn virial(&mut self) -> Result<[f64; 6]> {
-        match &mut self.store {
+        match &mut self.population.store {
             Store::Engine(e) => Ok(e.virial()?),
             Store::Atoms(_) => Ok([f64::NAN; 6]),
         }
     }
 
     pub(super) fn pressure(&mut self) -> Result<f64> {
-        let virial: f64 = self.virial()?[..self.dimension].iter().sum();
+        let virial: f64 = self.virial()?[..self.space.dimension].iter().sum();
         let volume = self.thermo_value("vol")?;
-        let moving = if self.count() > 1 {
+        let moving = if self.population.count() > 1 {
             self.kinetic()?
         } else {
             0.0
         };
-        Ok((2.0 * moving + virial) / (self.dimension as f64 * volume) * self.units.pressure())
+        Ok(
+            (2.0 * moving + virial) / (self.space.dimension as f64 * volume)
+                * self.space.units.pressure(),
+        )
     }
 
     pub(super) fn pressure_component(&mut self, a: usize, b: usize) -> Result<f64> {
-        if a.max(b) >= self.dimension {
+        if a.max(b) >= self.space.dimension {
             return Ok(0.0);
         }
         let place = COMPONENTS.iter().position(|c| *c == (a, b)).unwrap_or(0);
         let virial = self.virial()?[place];
         let volume = self.thermo_value("vol")?;
-        Ok((self.momentum_flux(a, b)? + virial) / volume * self.units.pressure())
+        Ok((self.momentum_flux(a, b)? + virial) / volume * self.space.units.pressure())
     }
 
     /// Σ ρ v_a v_b.
     fn momentum_flux(&self, a: usize, b: usize) -> Result<f64> {
-        let (atoms, n) = (self.store.particles(), self.count());
+        let (atoms, n) = (self.population.store.particles(), self.population.count());
         let mut sum = 0.0;
         let mut values = [[0.0; BLOCK]; 3];
         let quantities = [
@@ -89,7 +93,7 @@ impl Session<'_> {
                 .map(|i| values[0][i] * values[1][i] * values[2][i])
                 .sum::<f64>();
         }
-        Ok(self.units.kinetic() * sum)
+        Ok(self.space.units.kinetic() * sum)
     }
 
     /// # Errors
@@ -119,7 +123,7 @@ impl Session<'_> {
                 self.pressure_component(a, b)?
             }
             ("thermo_press", _) => self.pressure()?,
-            _ => self.engine()?.energies()?.potential,
+            _ => self.population.engine()?.energies()?.potential,
         }))
     }
 }

@@ -26,9 +26,9 @@ impl Session<'_> {
                 let index: Vec<f64> = i.iter().map(|i| *i as f64).collect();
                 self.fix_value(id, &index)?;
             }
-            Column::Variable(name) if self.variables.get(name).is_none() => {
+            Column::Variable(name) if self.formulas.variables.get(name).is_none() => {
                 return Err(Problem::new(format!("there is no variable `{name}`"))
-                    .help(suggestion(name, self.variables.names())));
+                    .help(suggestion(name, self.formulas.variables.names())));
             }
             Column::Compute(..) | Column::Variable(_) | Column::Keyword(_) => {}
         }
@@ -41,11 +41,12 @@ impl Session<'_> {
             Column::Keyword(k) => {
                 let value = self.thermo_value(k)?;
                 let normalize = self
+                    .watch
                     .thermo
                     .normalize
-                    .unwrap_or(self.units == crate::units::Units::Lj);
+                    .unwrap_or(self.space.units == crate::units::Units::Lj);
                 if normalize && keyword::is_extensive(k) {
-                    value / self.count().max(1) as f64
+                    value / self.population.count().max(1) as f64
                 } else {
                     value
                 }

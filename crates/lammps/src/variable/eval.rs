@@ -70,10 +70,10 @@ impl Session<'_> {
     }
 
     fn variable(&self, name: &str) -> Result<&Kind> {
-        self.variables.get(name).ok_or_else(|| {
+        self.formulas.variables.get(name).ok_or_else(|| {
             let p = Problem::new(format!("there is no variable `{name}`"));
-            p.help(match self.variables.names().next() {
-                Some(_) => suggestion(name, self.variables.names()),
+            p.help(match self.formulas.variables.names().next() {
+                Some(_) => suggestion(name, self.formulas.variables.names()),
                 None => format!(
                     "define it before: variable {name} equal ..., or give --var {name}=VALUE"
                 ),
@@ -83,20 +83,20 @@ impl Session<'_> {
 
     /// Runs `with` unless variable `name` is being evaluated already.
     fn guarded<T>(&mut self, name: &str, with: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
-        let place = self.variables.find(name).unwrap_or(usize::MAX);
-        if self.variables.evaluating.contains(&place) {
+        let place = self.formulas.variables.find(name).unwrap_or(usize::MAX);
+        if self.formulas.variables.evaluating.contains(&place) {
             return Err(Problem::new(format!(
                 "variable `{name}` needs its own value"
             )));
         }
-        if self.variables.evaluating.len() > 50 {
+        if self.formulas.variables.evaluating.len() > 50 {
             return Err(Problem::new(
                 "variables refer to each other in more than 50 levels",
             ));
         }
-        self.variables.evaluating.push(place);
+        self.formulas.variables.evaluating.push(place);
         let result = with(self);
-        self.variables.evaluating.pop();
+        self.formulas.variables.evaluating.pop();
         result
     }
 
@@ -153,7 +153,7 @@ impl Session<'_> {
                     *value = self.scalar(a)?;
                 }
                 let given = &values[..arguments.len().min(values.len())];
-                functions::apply(name, given, &self.clock()).map_err(Problem::new)?
+                functions::apply(name, given, &self.progress.clock()).map_err(Problem::new)?
             }
             Expr::Random { normal, arguments } => {
                 let [a, b, seed] = [&arguments[0], &arguments[1], &arguments[2]];
@@ -238,7 +238,7 @@ impl Session<'_> {
     /// There is no such atom.
     pub fn tree_at(&self, tree: &Tree, id: f64) -> Result<f64> {
         let found = if id >= 1.0 {
-            self.ids.find(id as u64)
+            self.population.ids.find(id as u64)
         } else {
             None
         };
@@ -246,13 +246,13 @@ impl Session<'_> {
             return Err(Problem::new(format!("there is no atom with id {id}")));
         };
         let mut value = [0.0];
-        tree.fill(&self.view()?, &self.clock(), index, &mut value)?;
+        tree.fill(&self.view()?, &self.progress.clock(), index, &mut value)?;
         Ok(value[0])
     }
 
     /// The generator for single numbers (0) or per-atom numbers (1): the first seed counts.
     fn generator(&mut self, which: usize, seed: f64) -> Result<Rc<RefCell<Ranmar>>> {
-        if let Some(g) = &self.random[which] {
+        if let Some(g) = &self.formulas.random[which] {
             return Ok(g.clone());
         }
         let g = Ranmar::new(seed as i64).ok_or_else(|| {
@@ -260,7 +260,9 @@ impl Session<'_> {
                 "the seed {seed} is not a whole number from 1 to 900000000"
             ))
         })?;
-        Ok(self.random[which].insert(Rc::new(RefCell::new(g))).clone())
+        Ok(self.formulas.random[which]
+            .insert(Rc::new(RefCell::new(g)))
+            .clone())
     }
 
     /// A variable as per-atom values.
