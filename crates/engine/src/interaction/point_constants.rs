@@ -16,6 +16,7 @@ pub enum PointConstants {
 
 impl PointConstants {
     /// n and 1/m of a point, from its `β/m`; 0 of laws without.
+    #[inline]
     pub(super) fn per_weight(&self, material: usize, by_weight: impl Fn() -> f64) -> [f64; 2] {
         match self {
             PointConstants::Solid(s) => [s[material].n, by_weight() / s[material].beta],
@@ -30,6 +31,7 @@ pub(super) fn unlike(solids: &[Solid]) -> bool {
 }
 
 /// `P / Σ k r0² s` at a slot: its own of `pressure`, else the law's, from `β/m`.
+#[inline]
 pub(super) fn pressure_factor<W: Law>(
     law: W,
     pressure: &[f64],

@@ -8,12 +8,12 @@ use crate::law::{BondFactors, Law};
 
 impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// Every directed bond of the list: row, line, slots.
-    pub(super) fn each_line(&self) -> impl Iterator<Item = (usize, usize, [usize; 2])> + '_ {
-        let rows = self.list.rows.iter().enumerate();
-        rows.flat_map(|(row, &i)| {
-            let partners = self.list.partners(row);
-            partners.map(move |(line, j)| (row, line, [i as usize, j]))
-        })
+    pub(super) fn each_line(&self, mut visit: impl FnMut(usize, usize, [usize; 2])) {
+        for (row, &i) in self.list.rows.iter().enumerate() {
+            for (line, j) in self.list.partners(row) {
+                visit(row, line, [i as usize, j]);
+            }
+        }
     }
 
     pub(super) fn is_whole(&self, row: usize, line: usize) -> bool {
@@ -35,9 +35,9 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             self.forces(body, u, &mut zeros(body.len), Sweep::Hold, None);
         }
         let view = self.view(&self.moved);
-        for (row, line, [i, j]) in self.each_line() {
+        self.each_line(|row, line, [i, j]| {
             if !self.is_whole(row, line) {
-                continue;
+                return;
             }
             let (xi, share) = view.constant(i, j);
             let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
@@ -63,7 +63,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
                 tangent.pull = tangent.pull.map(|p| p.map(|x| x * pair.ratio()));
             }
             visit(tangent);
-        }
+        });
     }
 
     pub(super) fn each_pull(&mut self, u: &Field<D>, visit: &mut dyn FnMut(BondForce<D>)) {
@@ -72,21 +72,23 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             self.share();
         }
         let view = self.view(&self.moved);
-        for (row, line, [i, j]) in self.each_line() {
+        self.each_line(|row, line, [i, j]| {
             let (pull, y) = view.pull_of(i, j, self.is_whole(row, line));
             if pull != 0.0 {
                 let force = y.map(|c| pull * c);
                 visit(BondForce { i, j, y, force });
             }
-        }
+        });
     }
 
     /// Every undirected bond of the reference family.
     pub(super) fn each_of_family(&self, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
         let view = self.view(&self.moved);
-        for (row, line, [i, j]) in self.each_line().filter(|(.., [i, j])| i <= j) {
-            let state = BondState::of(self.is_whole(row, line));
-            visit(i, j, view.constant(i, j).0, state);
-        }
+        self.each_line(|row, line, [i, j]| {
+            if i <= j {
+                let state = BondState::of(self.is_whole(row, line));
+                visit(i, j, view.constant(i, j).0, state);
+            }
+        });
     }
 }

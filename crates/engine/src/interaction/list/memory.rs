@@ -29,16 +29,16 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         };
         let view = self.view(&self.moved);
         let mut cut = vec![];
-        for (row, line, [i, j]) in self.each_line() {
+        self.each_line(|row, line, [i, j]| {
             if !self.is_whole(row, line) {
-                continue;
+                return;
             }
             let (xi, _) = view.constant(i, j);
             let to = self.is_periodic().then(|| at(j));
             if history::crossed(crosses, at(i), xi, to) {
                 cut.push((line, row % TILE));
             }
-        }
+        });
         for &(line, l) in &cut {
             history::set(&mut self.alive[line], l, false);
             if kind == CrackKind::Absent {
@@ -55,8 +55,9 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         match name {
             history::WHOLE => {
                 out.clear();
-                let bit = |(row, line, _)| f64::from(u8::from(self.is_whole(row, line)));
-                out.extend(self.each_line().map(bit));
+                self.each_line(|row, line, _| {
+                    out.push(f64::from(u8::from(self.is_whole(row, line))))
+                });
                 true
             }
             _ => history::read_critical(body, &self.critical, name, out),
@@ -67,8 +68,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         if name != history::WHOLE {
             return history::write_critical(body, &mut self.critical, name, values);
         }
-        let bonds = self.each_line().map(|(row, line, _)| (line, row % TILE));
-        let bonds: Vec<_> = bonds.collect();
+        let mut bonds = vec![];
+        self.each_line(|row, line, _| bonds.push((line, row % TILE)));
         if bonds.len() != values.len() {
             return false;
         }
