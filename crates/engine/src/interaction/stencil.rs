@@ -257,6 +257,11 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
         true
     }
 
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        self.check(body, &[u]);
+        Some(self.virial_of_pulls(body, u))
+    }
+
     fn gain(&self, slot: usize) -> f64 {
         if W::SHARES {
             self.pressure_factor(slot)

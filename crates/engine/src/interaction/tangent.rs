@@ -39,6 +39,38 @@ pub struct BondTangent<const D: usize> {
     pub channels: Vec<Channel<D>>,
 }
 
+/// A bond now.
+pub(super) struct Stretched<const D: usize> {
+    pub y: [f64; D],
+    r0: f64,
+    r: f64,
+    /// `(r − r0)/r`
+    g: f64,
+}
+
+impl<const D: usize> Stretched<D> {
+    pub fn new(xi: [f64; D], eta: [f64; D]) -> Self {
+        let y: [f64; D] = std::array::from_fn(|a| xi[a] + eta[a]);
+        let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+        let (r0, r) = (square(&xi).sqrt(), square(&y).sqrt());
+        let longer: f64 = (0..D).map(|a| (xi[a] + y[a]) * eta[a]).sum();
+        let g = longer / (r * (r + r0));
+        Stretched { y, r0, r, g }
+    }
+
+    /// Coefficient of y in the force density on its first end.
+    #[inline(always)]
+    pub fn tension<W: Law>(
+        &self,
+        law: W,
+        k: f64,
+        factors: BondFactors<f64>,
+        [p, q]: [[f64; 2]; 2],
+    ) -> f64 {
+        law.scaled_pull(k, self.g, p, q, factors)
+    }
+}
+
 impl<const D: usize> BondTangent<D> {
     /// Of a linear bond: without scalar and tension.
     pub fn direct(i: usize, j: usize, y: [f64; D], stiffness: [[f64; D]; D]) -> Self {
@@ -87,13 +119,10 @@ impl<const D: usize> BondTangent<D> {
         eta: [f64; D],
         fields: [[f64; 2]; 2],
     ) -> Self {
-        let y: [f64; D] = std::array::from_fn(|a| xi[a] + eta[a]);
-        let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
-        let (r0, r) = (square(&xi).sqrt(), square(&y).sqrt());
-        let longer: f64 = (0..D).map(|a| (xi[a] + y[a]) * eta[a]).sum();
-        let g = longer / (r * (r + r0));
+        let b = Stretched::new(xi, eta);
+        let Stretched { y, r0, r, g } = b;
         let [p, q] = fields;
-        let tension = law.scaled_pull(k, g, p, q, factors);
+        let tension = b.tension(law, k, factors, fields);
         // a law's pull is linear in g: its slope is a difference
         let slope = law.scaled_pull(k, 1.0, p, q, factors) - law.scaled_pull(k, 0.0, p, q, factors);
         let n = y.map(|c| c / r);

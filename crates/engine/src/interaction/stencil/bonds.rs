@@ -2,9 +2,13 @@
 
 use super::StencilInteraction;
 use crate::body::{Body, Field, Grid, zeros};
-use crate::execute::lane::TILE;
-use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep};
+use crate::execute::blocks::PerBlock;
+use crate::execute::lane::{Lane, TILE};
+use crate::execute::simd::Kernel;
+use crate::interaction::tangent::Stretched;
+use crate::interaction::{BondForce, BondState, BondTangent, Interaction, Sweep, add_virial};
 use crate::law::Law;
+use std::ops::Range;
 
 /// A point in its tile.
 pub(super) struct Place {
@@ -15,11 +19,45 @@ pub(super) struct Place {
     pub slot: usize,
 }
 
+/// Tiles that one thread takes at a time.
+const TILES: usize = 32;
+
+struct Virial<'a, const D: usize, W: Law> {
+    of: &'a StencilInteraction<D, W>,
+    body: &'a Body<D>,
+    u: &'a Field<D>,
+}
+
+impl<const D: usize, W: Law> Kernel for Virial<'_, D, W> {
+    type Out = [f64; 6];
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> [f64; 6] {
+        let last = self.of.tiles.len().min((block + 1) * TILES);
+        let mut virial = [0.0; 6];
+        self.of
+            .pulls_of(self.body, self.u, block * TILES..last, |bond| {
+                let factor = -0.5 * self.body.volume.at(bond.i);
+                add_virial(&mut virial, &bond.force, &bond.y, factor);
+            });
+        virial
+    }
+}
+
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// All points.
     pub(super) fn places<'a>(&'a self, grid: &'a Grid<D>) -> impl Iterator<Item = Place> + 'a {
-        let tiles = self.tiles.iter().map(|t| *t as usize).enumerate();
-        tiles.flat_map(move |(n, tile)| {
+        self.places_of(grid, 0..self.tiles.len())
+    }
+
+    /// Those of some tiles.
+    fn places_of<'a>(
+        &'a self,
+        grid: &'a Grid<D>,
+        tiles: Range<usize>,
+    ) -> impl Iterator<Item = Place> + 'a {
+        tiles.flat_map(move |n| {
+            let tile = self.tiles[n] as usize;
             let (first, sublattice) = (grid.tile_slot(tile), grid.tile_sublattice(tile));
             let owned = (0..TILE).filter(move |l| grid.is_owned(first + l));
             owned.map(move |lane| Place {
@@ -100,9 +138,27 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         visit: &mut dyn FnMut(BondForce<D>),
     ) {
         self.update_pressures(body, u);
+        self.pulls_of(body, u, 0..self.tiles.len(), visit);
+    }
+
+    /// Σ of distance times force over the pairs, on threads.
+    pub(super) fn virial_of_pulls(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 6] {
+        self.update_pressures(body, u);
+        let kernel = Virial { of: self, body, u };
+        PerBlock::sums(self.tiles.len().div_ceil(TILES)).sum(self.simd, &kernel)
+    }
+
+    /// What points of some tiles get from their bonds, as pressures are.
+    fn pulls_of(
+        &self,
+        body: &Body<D>,
+        u: &Field<D>,
+        tiles: Range<usize>,
+        mut visit: impl FnMut(BondForce<D>),
+    ) {
         let grid = body.grid();
         let original = body.originals();
-        for p in self.places(grid) {
+        for p in self.places_of(grid, tiles) {
             let bonds = self.bonds[p.sublattice]
                 .iter()
                 .zip(&self.partners[p.sublattice]);
@@ -119,23 +175,22 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 let xi = b.back.map(|x| -x);
                 let ends = [i, original(j)];
                 let mut pull = 0.0;
-                let y = std::array::from_fn(|a| xi[a] + eta[a]);
+                let bond = Stretched::new(xi, eta);
                 if alive {
                     let fields = [i, j].map(|s| self.field(s));
                     let factors = self.scale.of(p.n, b.number as usize, p.lane);
-                    pull =
-                        BondTangent::of_law(self.law, ends, b.k, factors, xi, eta, fields).tension;
+                    pull = bond.tension(self.law, b.k, factors, fields);
                 }
                 if let Some(repulsion) = &self.repulsion {
                     let materials = ends.map(|s| body.material_of(s));
-                    pull += repulsion.pull(&xi, &y, materials, self.volume);
+                    pull += repulsion.pull(&xi, &bond.y, materials, self.volume);
                 }
                 if pull != 0.0 {
                     visit(BondForce {
                         i,
                         j: ends[1],
-                        y,
-                        force: y.map(|c| pull * c),
+                        y: bond.y,
+                        force: bond.y.map(|c| pull * c),
                     });
                 }
             }
