@@ -108,7 +108,7 @@ pub fn spacing_without_pressure<const D: usize>(deck: &Deck) -> Result<(f64, f64
     let found = deck
         .spec
         .potential()
-        .and_then(|p| p.apply(Spacing::<D>(*kind, *spacing)));
+        .and_then(|p| p.apply(Spacing::<D>(*kind, *spacing)).ok().flatten());
     let found = found.ok_or_else(|| Failure::new("no spacing without pressure"))?;
     Ok((*spacing, found))
 }

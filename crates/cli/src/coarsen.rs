@@ -167,7 +167,8 @@ fn adds_force(kind: &ConditionKind) -> bool {
         ConditionKind::Displacement(_)
         | ConditionKind::Velocity(_)
         | ConditionKind::SetForce(_)
-        | ConditionKind::Damping(_) => false,
+        | ConditionKind::Damping(_)
+        | ConditionKind::Own(_) => false,
     }
 }
 
@@ -178,7 +179,8 @@ fn prescribes(kind: &ConditionKind) -> bool {
         ConditionKind::BodyForce(_)
         | ConditionKind::Traction { .. }
         | ConditionKind::SetForce(_)
-        | ConditionKind::Damping(_) => false,
+        | ConditionKind::Damping(_)
+        | ConditionKind::Own(_) => false,
     }
 }
 

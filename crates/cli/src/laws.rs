@@ -1,14 +1,15 @@
-//! `peridyne laws`: what a deck can name, read from its schema, so that nothing is forgotten.
+//! `peridyne laws`: what a deck can name, read from its schema and the descriptors of laws, so that nothing is forgotten.
 
 use crate::failure::{Failure, say};
+use peridyne::columns::Dimension;
+use peridyne::law::descriptor::{Bounds, Key, Need, Value};
+use peridyne::run::Shelf;
 use peridyne::space::lattice::LatticeKind;
-use serde_json::Value;
+use serde_json::Value as Json;
 use std::fmt::Write;
 
 /// Tables of names in this order, with where they stand; others follow.
-const ORDER: [(&str, &str); 15] = [
-    ("Law", "laws (material.law)"),
-    ("EndName", "ends of pair potentials at their cut-off (end)"),
+const ORDER: [(&str, &str); 13] = [
     ("Fracture", "fracture (material.fracture)"),
     (
         "ReleaseName",
@@ -40,7 +41,14 @@ const ORDER: [(&str, &str); 15] = [
 ];
 
 /// Said elsewhere, or plain.
-const LEFT_OUT: [&str; 5] = ["LatticeName", "AxisName", "PlaneName", "UnitName", "Mark"];
+const LEFT_OUT: [&str; 6] = [
+    "Law",
+    "LatticeName",
+    "AxisName",
+    "PlaneName",
+    "UnitName",
+    "Mark",
+];
 
 pub fn print() -> Result<(), Failure> {
     let schema = peridyne_io::deck::schema();
@@ -50,6 +58,7 @@ pub fn print() -> Result<(), Failure> {
         let known = ORDER.iter().any(|(o, _)| o == name) || LEFT_OUT.contains(&name.as_str());
         !known && (table.get("oneOf").is_some() || table.get("enum").is_some())
     });
+    say(&format!("laws (material.law)\n{}", laws()));
     let titled = ORDER.iter().map(|(name, title)| (*name, *title));
     for (name, title) in titled.chain(others.map(|(name, _)| (name.as_str(), name.as_str()))) {
         if let Some(table) = all.get(name) {
@@ -88,8 +97,69 @@ pub fn print() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Every law of the shelf with its keys; words that several laws share are explained at the first.
+fn laws() -> String {
+    let shelf = Shelf::standard();
+    let mut text = String::new();
+    let mut explained: Vec<&[(&str, &str)]> = vec![];
+    for d in shelf.descriptors() {
+        let source = match &*d.source {
+            "" => String::new(),
+            source => format!(" [{source}]"),
+        };
+        let _ = writeln!(text, "  {:<14} {}{source}", d.name, d.doc);
+        for key in d.taken() {
+            let _ = writeln!(text, "  {:<16} {}", "", explain(key));
+            if let Value::Word(words) = key.value
+                && !explained.contains(&words)
+            {
+                explained.push(words);
+                for (word, said) in words {
+                    let _ = writeln!(text, "  {:<18} {word}: {said}", "");
+                }
+            }
+        }
+    }
+    text
+}
+
+/// `young: Young's modulus E. (a pressure, positive; one of those)`.
+fn explain(key: &Key) -> String {
+    let number = |dimension: Dimension, bounds: &Bounds| match bounds {
+        b if *b == Bounds::ANY => format!("{dimension}"),
+        b => format!("{dimension}, {}", b.words()),
+    };
+    let value = match key.value {
+        Value::Number(dimension, bounds) => number(dimension, &bounds),
+        Value::List(count, dimension, bounds) => {
+            format!("{count} numbers, each {}", number(dimension, &bounds))
+        }
+        Value::Rows(columns) => {
+            let each = columns
+                .iter()
+                .map(|(name, d, b)| format!("{name} ({})", number(*d, b)));
+            format!("rows of {}", each.collect::<Vec<_>>().join(", "))
+        }
+        Value::Word(words) => {
+            let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
+            format!("one of {}", words.join(", "))
+        }
+        Value::Name => "a name".into(),
+        Value::Table => "a file".into(),
+    };
+    let need = match key.need {
+        Need::Given | Need::Refused => String::new(),
+        Need::Default(x) => format!("; {x} when left out"),
+        Need::Word(word) => format!("; {word} when left out"),
+        Need::Optional => "; may be left out".into(),
+        Need::OneOf => "; one of these is given".into(),
+        Need::TwoOf => "; two of these are given".into(),
+    };
+    format!("{}: {} ({value}{need})", key.name, key.doc)
+}
+
 /// One line for each name: what it is, and its keys; those that must be given are marked.
-fn names(table: &Value, all: &serde_json::Map<String, Value>) -> String {
+fn names(table: &Json, all: &serde_json::Map<String, Json>) -> String {
     let mut text = String::new();
     if let Some(keys) = keys(table, all) {
         let _ = writeln!(text, "  {keys}");
@@ -111,7 +181,7 @@ fn names(table: &Value, all: &serde_json::Map<String, Value>) -> String {
             .as_array()
             .into_iter()
             .flatten()
-            .filter_map(Value::as_str)
+            .filter_map(Json::as_str)
             .collect();
         if !plain.is_empty() {
             let _ = writeln!(text, "  {}", plain.join("   "));
@@ -131,7 +201,7 @@ fn names(table: &Value, all: &serde_json::Map<String, Value>) -> String {
 }
 
 /// Keys of a table or of the table that it refers to.
-fn keys(table: &Value, all: &serde_json::Map<String, Value>) -> Option<String> {
+fn keys(table: &Json, all: &serde_json::Map<String, Json>) -> Option<String> {
     let table = match table["$ref"].as_str() {
         Some(name) => all.get(name.rsplit('/').next()?)?,
         None => table,

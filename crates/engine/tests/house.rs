@@ -1,6 +1,11 @@
-//! The order of the house: folders of the engine import downwards only, and files import each other in a circle only
-//! inside one folder.
+//! The order of the house: folders of the engine import downwards only, files import each other in a circle only inside one
+//! folder, and what is one of many (a potential, a law, a field) is one file and a line in the list of its folder.
 
+use peridyne::law::descriptor::Shelved;
+use peridyne::law::material::{self, Material};
+use peridyne::law::potential::{self, Described};
+use peridyne::observe::observables;
+use std::any::type_name;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -249,4 +254,183 @@ fn a_circle_is_seen() {
     let found = circles(&modules(&folder));
     fs::remove_dir_all(&folder).unwrap();
     assert_eq!(found, [["a", "part/c"]]);
+}
+
+/// A name in code outside of the file that it belongs to and of the list of its folder, and why it may be there.
+const ELSEWHERE: &[(&str, &str, &str)] = &[
+    (
+        "lennard_jones",
+        "cli/src/upscale/crystal.rs",
+        "reduced units are those of this potential",
+    ),
+    (
+        "lennard_jones",
+        "theory/src/gradient/power_law.rs",
+        "its chain in exact fractions, which the papers print",
+    ),
+    (
+        "lennard_jones",
+        "lammps/src/command/molecular.rs",
+        "LAMMPS has another word for it",
+    ),
+    (
+        "morse",
+        "lammps/src/command/molecular.rs",
+        "a word of LAMMPS",
+    ),
+    (
+        "buckingham",
+        "lammps/src/command/molecular.rs",
+        "LAMMPS has another word for it",
+    ),
+    ("eam", "lammps/src/command/molecular.rs", "a word of LAMMPS"),
+    (
+        "eam",
+        "io/src/deck/lower/atoms.rs",
+        "a module: the format of files",
+    ),
+    (
+        "eam",
+        "io/src/deck/lower/mod.rs",
+        "a module: the format of files",
+    ),
+    ("eam", "io/src/read/mod.rs", "a module: the format of files"),
+    ("eam", "io/src/read/eam/setfl.rs", "the extension of files"),
+    ("eam", "io/src/read/eam/funcfl.rs", "the extension of files"),
+    (
+        "eam",
+        "io/src/write/setfl.rs",
+        "a module: the format of files",
+    ),
+];
+
+/// All names of everything on a list.
+#[derive(Default)]
+struct Listed(Vec<String>);
+
+impl Listed {
+    fn put(&mut self, name: &str, of: &str) {
+        let own = of.split('<').next().unwrap().rsplit("::").next().unwrap();
+        self.0.extend([name.to_string(), own.to_string()]);
+    }
+}
+
+impl potential::Kinds for Listed {
+    fn kind<P: Described>(&mut self) {
+        self.put(P::NAME, type_name::<P>());
+    }
+}
+
+impl material::Kinds for Listed {
+    fn law<M: Shelved + Material<1> + Material<2> + Material<3>>(&mut self) {
+        self.put(&M::descriptor().name, type_name::<M>());
+    }
+    fn solid<M: Shelved + Material<2> + Material<3>>(&mut self) {
+        self.put(&M::descriptor().name, type_name::<M>());
+    }
+}
+
+fn has_word(text: &str, word: &str) -> bool {
+    let letter = |c: char| c.is_alphanumeric() || c == '_';
+    text.match_indices(word).any(|(at, _)| {
+        !text[..at].ends_with(letter) && !text[at + word.len()..].starts_with(letter)
+    })
+}
+
+/// Code of all crates without tests, by the path from the folder of the crates.
+fn sources() -> BTreeMap<String, String> {
+    let mut all = BTreeMap::new();
+    for root in crates() {
+        let name = root
+            .parent()
+            .unwrap()
+            .file_name()
+            .unwrap()
+            .to_str()
+            .unwrap();
+        for file in modules(&root).values() {
+            let path = file.strip_prefix(&root).unwrap().to_str().unwrap();
+            all.insert(format!("{name}/src/{path}"), code(file));
+        }
+    }
+    all
+}
+
+/// Files of `folder` and others that know a name.
+fn touched(
+    sources: &BTreeMap<String, String>,
+    folder: &str,
+    word: &str,
+) -> (Vec<String>, Vec<String>) {
+    let known = sources.iter().filter(|(_, text)| has_word(text, word));
+    known
+        .map(|(path, _)| path.clone())
+        .partition(|path| path.starts_with(folder))
+}
+
+#[test]
+fn a_law_or_potential_is_a_file_and_a_line() {
+    let sources = sources();
+    let (mut potentials, mut laws) = (Listed::default(), Listed::default());
+    potential::each(&mut potentials);
+    material::each(&mut laws);
+    assert!(potentials.0.len() >= 12 && laws.0.len() >= 8);
+    let (mut wrong, mut used) = (vec![], BTreeSet::new());
+    for (listed, folder) in [
+        (potentials, "engine/src/law/potential/"),
+        (laws, "engine/src/law/material/"),
+    ] {
+        for word in &listed.0 {
+            let (own, others) = touched(&sources, folder, word);
+            let list = format!("{folder}mod.rs");
+            let files: Vec<&String> = own.iter().filter(|f| **f != list).collect();
+            if files.len() != 1 {
+                wrong.push(format!("{word} is known to {files:?}"));
+            }
+            for path in others {
+                match ELSEWHERE.iter().find(|(w, p, _)| w == word && *p == path) {
+                    Some(known) => drop(used.insert(known)),
+                    None => wrong.push(format!("{word} is known to {path}")),
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert_eq!(
+        used.len(),
+        ELSEWHERE.len(),
+        "one is gone: take it from the list"
+    );
+}
+
+#[test]
+fn a_field_of_points_is_a_file_and_a_line() {
+    let sources = sources();
+    let folder = "engine/src/observe/observables/";
+    let files = sources.keys().filter(|p| p.starts_with(folder)).count();
+    assert_eq!(
+        files,
+        observables::ALL.len() + 1,
+        "a file each, and their list"
+    );
+    let mut wrong = vec![];
+    for observable in observables::ALL {
+        let name = &*observable.declaration.name;
+        assert!(
+            sources.contains_key(&format!("{folder}{name}.rs")),
+            "{name}"
+        );
+        // by its module, that is; who wants its values asks for the column by name
+        let ways = [
+            format!("{name}::OBSERVABLE"),
+            format!("observables::{name}::"),
+        ];
+        for (path, text) in &sources {
+            let list = *path == format!("{folder}mod.rs");
+            if !list && ways.iter().any(|way| text.contains(way)) {
+                wrong.push(format!("{name} is known to {path}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }

@@ -375,11 +375,8 @@ fn tables_are_read_before_they_are_believed() {
         let mut table = fine.clone();
         change(&mut table);
         let mut spec = plate();
-        spec.materials[0].law = LawSpec::Atoms(PotentialSpec {
-            form: Form::Tabulated(std::sync::Arc::new(table)),
-            cutoff: f64::INFINITY,
-            end: End::Truncated,
-        });
+        let eam = peridyne::law::potential::tabulated::Eam::new(table);
+        spec.materials[0].law = LawSpec::Atoms(PotentialSpec::of(eam));
         build(&spec, Options::default()).err().map(|e| e.message)
     };
     for (change, said) in [

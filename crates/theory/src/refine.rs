@@ -181,7 +181,8 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::spec::{End, Form, LawSpec, LennardJones, PmbStiffness, PotentialSpec};
+    use peridyne::law::potential::lennard_jones::LennardJones;
+    use peridyne::spec::{End, LawSpec, PmbStiffness, PotentialSpec};
 
     fn bar(low: f64, high: f64, periodic: bool) -> Spec {
         let mut spec = Spec::new(
@@ -283,14 +284,13 @@ mod tests {
         told(&cloud, Kind::M, 1, "only an unperturbed lattice body");
         told(&spec, Kind::M, 40, "fewer levels");
         let mut atoms = spec.clone();
-        atoms.materials[0].law = LawSpec::Atoms(PotentialSpec {
-            form: Form::LennardJones(LennardJones {
+        atoms.materials[0].law = LawSpec::Atoms(
+            PotentialSpec::of(LennardJones {
                 epsilon: 1.0,
                 sigma: 1.0,
-            }),
-            cutoff: 2.5,
-            end: End::Shifted,
-        });
+            })
+            .ended(2.5, End::Shifted),
+        );
         told(&atoms, Kind::M, 1, "peridyne upscale");
         told(&bar(0.0, f64::INFINITY, true), Kind::M, 1, "whole cells");
     }

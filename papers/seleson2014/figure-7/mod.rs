@@ -3,11 +3,13 @@
 mod states;
 mod structureless;
 
+use peridyne::law::potential::Described;
+use peridyne::law::potential::mei::EamForm;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, FamilyChoice, Form, Horizon, Influence, LawSpec, Moduli, PmbStiffness, Spec,
+    BodySpec, FamilyChoice, Horizon, Influence, LawSpec, Moduli, PmbStiffness, Spec,
 };
 use peridyne_io::write::table::Table;
 
@@ -194,12 +196,13 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         spec.sets.clear();
         spec.initial.clear();
         spec.conditions.clear();
-        let Some(Form::Mei(mei)) = spec.potential().map(|p| &p.form) else {
+        let read = spec.potential().map(|p| EamForm::read(&p.parameters));
+        let Some(Ok(mei)) = read else {
             return Err(Failure::new("the deck has another potential"));
         };
         let mut noise = Noise(3);
         let u: Vec<f64> = (0..points).map(|_| 0.08 * h * noise.next()).collect();
-        let by_hand = structureless::forces(mei, h, &u);
+        let by_hand = structureless::forces(&mei, h, &u);
         let mut sim = build(&spec, Options::default()).map_err(|e| Failure::new(e.to_string()))?;
         let u: Vec<[f64; 3]> = u.iter().map(|u| [*u, 0.0, 0.0]).collect();
         worst = largest([worst, relative(&sim.forces_under(&u), &by_hand)]);

@@ -1,6 +1,6 @@
 //! The upscaled structureless EAM (3.4), (3.5) on a ring, with F′, f′ and φ′ differentiated by hand.
 
-use peridyne::spec::MeiSpec;
+use peridyne::law::potential::mei::EamForm;
 
 /// g and g′ of (3.9).
 fn cut(x: f64) -> [f64; 2] {
@@ -18,12 +18,13 @@ fn cut(x: f64) -> [f64; 2] {
 }
 
 /// f and f′ of (3.8), over ρ_e.
-fn density(s: &MeiSpec, r: f64) -> [f64; 2] {
-    let width = s.cutoff - s.near;
-    let [g, slope] = cut((r - s.near) / width);
+fn density(s: &EamForm, r: f64) -> [f64; 2] {
+    let [near, cutoff] = [s.near, s.cutoff].map(|x| s.nearest * x);
+    let width = cutoff - near;
+    let [g, slope] = cut((r - near) / width);
     let (mut sum, mut first) = (0.0, 0.0);
     for (l, c) in s.density.iter().enumerate() {
-        let term = c * (s.density_length / r).powi(l as i32);
+        let term = c * (s.nearest * s.density_length / r).powi(l as i32);
         sum += term;
         first -= l as f64 * term / r;
     }
@@ -31,18 +32,20 @@ fn density(s: &MeiSpec, r: f64) -> [f64; 2] {
 }
 
 /// φ′ of (3.7).
-fn pair_slope(s: &MeiSpec, r: f64) -> f64 {
-    let width = s.cutoff - s.near;
-    let [g, slope] = cut((r - s.near) / width);
-    let x = r / s.pair_length - 1.0;
+fn pair_slope(s: &EamForm, r: f64) -> f64 {
+    let [near, cutoff] = [s.near, s.cutoff].map(|x| s.nearest * x);
+    let width = cutoff - near;
+    let [g, slope] = cut((r - near) / width);
+    let pair_length = s.nearest * s.pair_length;
+    let x = r / pair_length - 1.0;
     let line = 1.0 + s.lambda * x;
     let decay = (-s.gamma * x).exp();
-    let first = (s.lambda - s.gamma * line) / s.pair_length;
+    let first = (s.lambda - s.gamma * line) / pair_length;
     -s.pair * decay * (first * g + line * slope / width)
 }
 
 /// F′ of (3.6), by ρ/ρ_e.
-fn embedding_slope(s: &MeiSpec, density: f64) -> f64 {
+fn embedding_slope(s: &EamForm, density: f64) -> f64 {
     let log = density.ln();
     let a = s.alpha / s.beta;
     // of [1 − a ln x] x^a: −a² ln x x^(a−1)
@@ -53,9 +56,10 @@ fn embedding_slope(s: &MeiSpec, density: f64) -> f64 {
         let q = p * s.gamma / s.beta;
         let line = 1.0 + (p - 1.0) * s.lambda - p * s.lambda / s.beta * log;
         let decay = (-(p - 1.0) * s.gamma).exp() * density.powf(q);
-        let width = s.cutoff - s.near;
+        let [near, cutoff] = [s.near, s.cutoff].map(|x| s.nearest * x);
+        let width = cutoff - near;
         let place = distance * s.nearest * (1.0 - log / s.beta);
-        let [g, slope] = cut((place - s.near) / width);
+        let [g, slope] = cut((place - near) / width);
         let inner = -distance * s.nearest / (s.beta * density) / width;
         sum += count
             * decay
@@ -65,7 +69,7 @@ fn embedding_slope(s: &MeiSpec, density: f64) -> f64 {
 }
 
 /// Force densities of a ring of points with the spacing h: the sums over n of (3.4), all functions per volume h.
-pub fn forces(s: &MeiSpec, h: f64, u: &[f64]) -> Vec<[f64; 3]> {
+pub fn forces(s: &EamForm, h: f64, u: &[f64]) -> Vec<[f64; 3]> {
     let n = u.len() as i64;
     let distance = |i: i64, o: i64| {
         let j = (i + o).rem_euclid(n) as usize;

@@ -1,9 +1,10 @@
 //! Table 1: the constants of the embedded-atom chain, and what they imply.
 
+use peridyne::law::potential::Described;
 use peridyne::law::potential::Potential;
-use peridyne::law::potential::mei::Mei;
+use peridyne::law::potential::mei::{EamForm, Mei};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{Form, PotentialSpec};
+use peridyne::spec::PotentialSpec;
 use peridyne_io::write::plot::Plot;
 use peridyne_io::write::table::Table;
 use peridyne_theory::crystal::Crystal;
@@ -22,9 +23,10 @@ experiment!(
 );
 
 fn mei(potential: Option<&PotentialSpec>) -> Result<Mei, Failure> {
-    match potential.map(|p| &p.form) {
-        Some(Form::Mei(mei)) => Ok(Mei::new((**mei).clone())),
-        _ => Err(Failure::new("the deck has another potential")),
+    let read = potential.map(|p| EamForm::read(&p.parameters));
+    match read {
+        Some(Ok(mei)) => Ok(Mei::new(mei)),
+        Some(Err(_)) | None => Err(Failure::new("the deck has another potential")),
     }
 }
 

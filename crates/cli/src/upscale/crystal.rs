@@ -3,6 +3,9 @@
 //! a pulse that crosses it — is found here.
 
 use crate::failure::Failure;
+use peridyne::law::descriptor::{Descriptor, Value};
+use peridyne::law::solid::linear::{EamLike, Linear, Lps, Pmb, Springs};
+use peridyne::run::Shelf;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{FamilyChoice, Spec};
 use peridyne_io::deck::{Deck, Dim, Flag};
@@ -12,7 +15,7 @@ use peridyne_theory::upscale::{self, REACH, equilibrium_spacing, lattice};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Without a deck")]
 pub struct CrystalArguments {
-    /// springs, structured_eam, lps, pmb, lennard_jones (lj), morse, buckingham, eam_form, setfl=FILE, funcfl=FILE.
+    /// springs, structured_eam, lps, pmb, or any potential that `peridyne laws` lists; those of files as setfl=FILE, funcfl=FILE.
     #[arg(long, value_name = "LAW", value_parser = law)]
     pub potential: Option<Law>,
     /// A constant of the law by the name it has in decks, e.g. `--with epsilon=1 --with sigma=1`; may be repeated.
@@ -65,61 +68,86 @@ pub struct CrystalArguments {
 /// A law of decks, and the file it reads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
-    key: &'static str,
+    descriptor: Descriptor,
     file: Option<String>,
+    solid: bool,
     /// seleson2014 (4.2)–(4.6): weights fall with the distance.
     structured: bool,
 }
 
+/// Other names of laws, and those in decks.
+const ALSO: [(&str, &str); 2] = [("structured_eam", EamLike::NAME), ("lj", REDUCED)];
+
+/// The law that reduced units are those of.
+const REDUCED: &str = "lennard_jones";
+
+/// Kinds of files; the law is the one that takes them.
+const FILES: [&str; 2] = ["setfl", "funcfl"];
+
+/// The key that takes a file.
+fn file_key(of: &Descriptor) -> Option<&'static str> {
+    let key = of.keys.iter().find(|k| k.value == Value::Table);
+    key.map(|k| k.name)
+}
+
 impl Law {
-    pub fn name(&self) -> &'static str {
-        self.key
+    pub fn name(&self) -> &str {
+        &self.descriptor.name
     }
 
     fn is_solid(&self) -> bool {
-        matches!(self.key, "springs" | "eam_like" | "lps" | "pmb")
+        self.solid
+    }
+
+    fn file_key(&self) -> Option<&'static str> {
+        file_key(&self.descriptor)
     }
 
     fn units(&self) -> &'static str {
-        match self.key {
-            "eam" => "metal",
-            "lennard_jones" => "lj",
-            _ => "none",
+        match self.file_key() {
+            Some(_) => "metal",
+            None if self.name() == REDUCED => "lj",
+            None => "none",
         }
     }
 }
 
 fn law(text: &str) -> Result<Law, String> {
-    let (name, file) = match text.split_once('=') {
+    let (written, file) = match text.split_once('=') {
         Some((name, file)) => (name, Some(file.to_string())),
         None => (text, None),
     };
-    let key = match name {
-        "springs" => "springs",
-        "structured_eam" | "eam_like" => "eam_like",
-        "lps" => "lps",
-        "pmb" => "pmb",
-        "lennard_jones" | "lj" => "lennard_jones",
-        "morse" => "morse",
-        "buckingham" => "buckingham",
-        "eam_form" => "eam_form",
-        "setfl" | "funcfl" | "eam" => "eam",
-        _ => {
-            return Err("expected springs, structured_eam, lps, pmb, lennard_jones, morse, buckingham, eam_form, \
-                 setfl=FILE or funcfl=FILE"
-                .into());
-        }
+    let shelf = Shelf::standard();
+    let mut of_files = shelf.descriptors().filter(|d| file_key(d).is_some());
+    let also = ALSO.iter().find(|(other, _)| *other == written);
+    let name = match FILES.contains(&written) {
+        true => of_files.next().map_or(written, |d| &d.name),
+        false => also.map_or(written, |(_, name)| name),
     };
-    match (key, &file) {
-        ("eam", None) => Err(format!("write {name}=FILE")),
-        ("eam", _) | (_, None) => Ok(Law {
-            key,
-            file,
-            structured: name == "structured_eam",
-        }),
-        _ => Err(format!(
-            "{name} reads no file: give its constants by --with KEY=VALUE"
+    let solids = [Springs::NAME, EamLike::NAME, Lps::NAME, Pmb::NAME];
+    let known = |name: &str| solids.contains(&name) || shelf.is_potential(name);
+    let Some(descriptor) = shelf.descriptor(name).filter(|_| known(name)) else {
+        let all = shelf
+            .descriptors()
+            .filter(|d| known(&d.name) && file_key(d).is_none());
+        let all: Vec<&str> = all.map(|d| d.name.as_ref()).collect();
+        return Err(format!(
+            "expected {}, structured_eam, setfl=FILE or funcfl=FILE",
+            all.join(", ")
+        ));
+    };
+    let law = Law {
+        descriptor: descriptor.clone(),
+        file,
+        solid: !shelf.is_potential(name),
+        structured: written == "structured_eam",
+    };
+    match (law.file_key(), &law.file) {
+        (Some(_), None) => Err(format!("write {written}=FILE")),
+        (None, Some(_)) => Err(format!(
+            "{written} reads no file: give its constants by --with KEY=VALUE"
         )),
+        (Some(_), Some(_)) | (None, None) => Ok(law),
     }
 }
 
@@ -134,7 +162,7 @@ fn flag(name: &str, key: &str, value: impl ToString) -> Flag {
 /// What the flags say by themselves.
 fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
     let needed = |name: &str, why: &str| Failure::input(format!("--{name} is missing: {why}"));
-    let key = law.key;
+    let key = law.name();
     let mut flags = vec![
         flag(
             "units",
@@ -143,10 +171,10 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
         ),
         flag("potential", &format!("material.law.{key}"), "{}"),
     ];
-    if let Some(file) = &law.file {
+    if let (Some(file), Some(of)) = (&law.file, law.file_key()) {
         // a name like 1.eam is still a name
         let name = format!("{file:?}");
-        flags.push(flag("potential", "material.law.eam.file", name));
+        flags.push(flag("potential", &format!("material.law.{key}.{of}"), name));
     }
     if law.structured {
         flags.push(flag("potential", "influence", "inverse"));
@@ -198,7 +226,7 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
             flags.push(flag("density", "material.density", 1))
         }
         (None, None) if plain => flags.push(flag("mass", "material.mass", 1)),
-        (None, None) if key == "eam" => {}
+        (None, None) if law.file.is_some() => {}
         (None, None) => {
             return Err(needed(
                 "mass",
@@ -217,7 +245,9 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
                 "a horizon in units of length does not say how many neighbours there are",
             ));
         }
-        None if key == "eam_form" && arguments.with.iter().all(|(k, _)| k != "nearest") => {
+        None if law.descriptor.key("nearest").is_some()
+            && arguments.with.iter().all(|(k, _)| k != "nearest") =>
+        {
             return Err(needed(
                 "spacing",
                 "the law is made for a nearest distance (or give it, --with nearest=LENGTH)",

@@ -2,6 +2,7 @@
 
 use super::Program;
 use super::condensed::Condensed;
+use super::own::{OwnForce, Seen};
 use crate::body::{Body, Field};
 use crate::space::Point;
 
@@ -15,6 +16,8 @@ pub enum LoadKind<const D: usize> {
     Replace(Program<D>),
     /// Force density −γ v, v as it is when forces are evaluated; γ per point of the list (mass / volume / time).
     Drag(Vec<f64>),
+    /// Force density of a function of the program.
+    Own(OwnForce),
 }
 
 impl<const D: usize> LoadKind<D> {
@@ -22,7 +25,7 @@ impl<const D: usize> LoadKind<D> {
     fn counts(&self, k: usize) -> bool {
         match self {
             LoadKind::Body(p) | LoadKind::Replace(p) => !p.leaves(k),
-            LoadKind::Damping(_) | LoadKind::Drag(_) => true,
+            LoadKind::Damping(_) | LoadKind::Drag(_) | LoadKind::Own(_) => true,
         }
     }
 }
@@ -99,7 +102,14 @@ impl<const D: usize> Load<D> {
     }
 
     /// Add the force density at time `t` to `f`; `v` is the velocity of the step's middle, `dt` 0 at the start of a run.
-    pub fn add(&mut self, body: &Body<D>, v: &Field<D>, f: &mut Field<D>, t: f64, dt: f64) {
+    pub fn add(
+        &mut self,
+        body: &Body<D>,
+        [u, v]: [&Field<D>; 2],
+        f: &mut Field<D>,
+        t: f64,
+        dt: f64,
+    ) {
         if let (LoadKind::Body(density), Some(condensed)) = (&self.kind, &mut self.condensed) {
             condensed.evaluate(density, t);
         }
@@ -108,6 +118,23 @@ impl<const D: usize> Load<D> {
             let i = s as usize;
             let mut power = 0.0;
             let counts = self.kind.counts(k);
+            let own = match &self.kind {
+                LoadKind::Own(force) => {
+                    let point =
+                        |c: &Field<D>| std::array::from_fn(|a| c.get(a).map_or(0.0, |c| c[i]));
+                    force.at(&Seen {
+                        reference: self.points[k],
+                        displacement: point(u),
+                        velocity: point(v),
+                        time: t,
+                        density: body.density.at(i),
+                    })
+                }
+                LoadKind::Body(_)
+                | LoadKind::Damping(_)
+                | LoadKind::Replace(_)
+                | LoadKind::Drag(_) => [0.0; 3],
+            };
             for a in 0..D {
                 if counts {
                     self.before[a] += f[a][i];
@@ -128,6 +155,7 @@ impl<const D: usize> Load<D> {
                     }
                     LoadKind::Replace(_) => 0.0,
                     LoadKind::Drag(gamma) => -gamma[k] * v[a][i],
+                    LoadKind::Own(_) => own[a],
                 };
                 f[a][i] += added;
                 self.last[k][a] = added;
@@ -164,7 +192,7 @@ impl<const D: usize> Load<D> {
             match &self.kind {
                 LoadKind::Damping(c) => visit(s as usize, c.at(0, k, &self.points[k], t)),
                 LoadKind::Drag(gamma) => visit(s as usize, gamma[k]),
-                LoadKind::Body(_) | LoadKind::Replace(_) => {}
+                LoadKind::Body(_) | LoadKind::Replace(_) | LoadKind::Own(_) => {}
             }
         }
     }

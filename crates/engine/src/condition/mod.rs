@@ -7,6 +7,7 @@ pub mod constraint;
 pub mod driven;
 pub mod indenter;
 pub mod load;
+pub mod own;
 pub mod reaction;
 pub(crate) mod still;
 

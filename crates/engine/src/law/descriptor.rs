@@ -44,12 +44,17 @@ pub struct Key {
 /// What a key takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value {
-    /// A number from the first bound (included if true) to the second.
     Number(Dimension, Bounds),
+    /// So many numbers.
+    List(usize, Dimension, Bounds),
     /// Rows of numbers, a dimension and bounds for each column.
     Rows(&'static [(&'static str, Dimension, Bounds)]),
     /// One of these.
     Word(&'static [(&'static str, &'static str)]),
+    /// Any word.
+    Name,
+    /// Tables of functions: in decks the name of a file that has them, eam/alloy (setfl) or .eam (funcfl).
+    Table,
 }
 
 /// Where a number may lie.
@@ -60,6 +65,8 @@ pub struct Bounds {
     pub inclusive: bool,
     /// Not beyond this.
     pub most: f64,
+    /// Nor this itself?
+    pub below: bool,
 }
 
 impl Bounds {
@@ -67,27 +74,32 @@ impl Bounds {
         least: f64::NEG_INFINITY,
         inclusive: false,
         most: f64::INFINITY,
+        below: false,
     };
     pub const POSITIVE: Bounds = Bounds {
         least: 0.0,
         inclusive: false,
         most: f64::INFINITY,
+        below: false,
     };
     pub const NOT_NEGATIVE: Bounds = Bounds {
         least: 0.0,
         inclusive: true,
         most: f64::INFINITY,
+        below: false,
     };
     /// From above 0 to 1.
     pub const PART: Bounds = Bounds {
         least: 0.0,
         inclusive: false,
         most: 1.0,
+        below: false,
     };
 
     pub fn hold(&self, x: f64) -> bool {
         let above = x > self.least || (self.inclusive && x == self.least);
-        above && x <= self.most && x.is_finite()
+        let under = x < self.most || (!self.below && x == self.most);
+        above && under && x.is_finite()
     }
 
     /// In words: `positive`, `from 0 on`, `above 0, at most 1`.
@@ -100,6 +112,7 @@ impl Bounds {
         };
         let high = match self.most {
             m if m == f64::INFINITY => String::new(),
+            m if self.below => format!("below {m}"),
             m => format!("at most {m}"),
         };
         match (low.is_empty(), high.is_empty()) {
@@ -119,8 +132,14 @@ pub enum Need {
     Default(f64),
     /// Left out it is this word.
     Word(&'static str),
+    /// It may be left out, which is no number.
+    Optional,
+    /// One of the keys with this need is given.
+    OneOf,
     /// Any two of the keys with this need are given.
     TwoOf,
+    /// It is not taken, though one might expect it; the key's text says why, after the name of the law.
+    Refused,
 }
 
 /// Isotropic elasticity: two of four.
@@ -133,7 +152,8 @@ pub const MODULI: [Key; 4] = [
             Bounds {
                 least: -1.0,
                 inclusive: false,
-                most: 0.5 - f64::EPSILON,
+                most: 0.5,
+                below: true,
             },
         ),
         need: Need::TwoOf,
@@ -167,11 +187,39 @@ pub const fn number(
     }
 }
 
+/// One of some words, the first when left out.
+pub const fn word(
+    name: &'static str,
+    words: &'static [(&'static str, &'static str)],
+    doc: &'static str,
+) -> Key {
+    Key {
+        name,
+        value: Value::Word(words),
+        need: Need::Word(words[0].0),
+        doc,
+    }
+}
+
 impl Key {
     /// The same with a default.
     pub const fn or(mut self, default: f64) -> Key {
         self.need = Need::Default(default);
         self
+    }
+
+    /// The same with another need.
+    pub const fn need(mut self, need: Need) -> Key {
+        self.need = need;
+        self
+    }
+
+    /// What it measures, where it is made of numbers.
+    pub fn dimension(&self) -> Option<Dimension> {
+        match self.value {
+            Value::Number(dimension, _) | Value::List(_, dimension, _) => Some(dimension),
+            Value::Rows(_) | Value::Word(_) | Value::Name | Value::Table => None,
+        }
     }
 }
 
@@ -192,11 +240,11 @@ pub fn moduli(parameters: &Parameters) -> Result<Moduli, String> {
         (Some(young), Some(poisson), ..) => Moduli { young, poisson },
         (Some(young), _, Some(k), _) => Moduli {
             young,
-            poisson: 0.5 - young / (6.0 * k),
+            poisson: (3.0 * k - young) / (6.0 * k),
         },
         (Some(young), _, _, Some(g)) => Moduli {
             young,
-            poisson: 0.5 * young / g - 1.0,
+            poisson: young / (2.0 * g) - 1.0,
         },
         (_, Some(poisson), Some(k), _) => Moduli {
             young: 3.0 * k * (1.0 - 2.0 * poisson),
@@ -219,82 +267,178 @@ pub fn moduli(parameters: &Parameters) -> Result<Moduli, String> {
     Ok(made)
 }
 
+/// The key that is wrong, empty if it is not one alone; and why.
+pub type Wrong = (String, String);
+
 impl Descriptor {
+    /// A law without keys and memory, whose customary influence function is constant.
+    pub fn new(name: &'static str, doc: &'static str) -> Descriptor {
+        Descriptor {
+            name: name.into(),
+            doc: doc.into(),
+            source: "".into(),
+            example: "".into(),
+            influence: Influence::Constant,
+            memory: Memory::Nothing,
+            keys: vec![],
+        }
+    }
+
+    pub fn source(mut self, source: &'static str) -> Descriptor {
+        self.source = source.into();
+        self
+    }
+
+    pub fn example(mut self, example: &'static str) -> Descriptor {
+        self.example = example.into();
+        self
+    }
+
+    pub fn influence(mut self, influence: Influence) -> Descriptor {
+        self.influence = influence;
+        self
+    }
+
+    pub fn keys(mut self, keys: &[Key]) -> Descriptor {
+        self.keys.extend_from_slice(keys);
+        self
+    }
+
+    /// A number that must be given.
+    pub fn number(
+        self,
+        name: &'static str,
+        dimension: Dimension,
+        bounds: Bounds,
+        doc: &'static str,
+    ) -> Descriptor {
+        self.keys(&[number(name, dimension, bounds, doc)])
+    }
+
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.keys.iter().find(|k| k.name == name)
+    }
+
+    /// Keys that may be given.
+    pub fn taken(&self) -> impl Iterator<Item = &Key> + Clone {
+        self.keys.iter().filter(|k| k.need != Need::Refused)
+    }
+
+    fn names(&self, need: Need) -> Vec<&'static str> {
+        let with = self.keys.iter().filter(|k| k.need == need);
+        with.map(|k| k.name).collect()
     }
 
     /// Do parameters fit the keys? Defaults are filled in.
     ///
     /// # Errors
     /// The key that does not fit, and why.
-    pub fn check(&self, parameters: &mut Parameters) -> Result<(), (String, String)> {
+    pub fn check(&self, parameters: &mut Parameters) -> Result<(), Wrong> {
         for (name, given) in &parameters.0 {
-            let wrong = |message: String| Err((name.clone(), message));
-            let Some(key) = self.key(name) else {
-                let known: Vec<&str> = self.keys.iter().map(|k| k.name).collect();
-                let known = known.join(", ");
-                return wrong(format!(
-                    "the law {} has no key `{name}`; it has {known}",
-                    self.name
-                ));
-            };
-            match (key.value, given) {
-                (Value::Number(_, bounds), Parameter::Number(x)) => {
-                    if !bounds.hold(*x) {
-                        let words = bounds.words();
-                        return wrong(format!("`{name}` is {x}, expected {words}"));
-                    }
+            let wrong = |message: String| (name.clone(), message);
+            match self.key(name) {
+                None => {
+                    let known: Vec<&str> = self.taken().map(|k| k.name).collect();
+                    let known = known.join(", ");
+                    return Err(wrong(format!(
+                        "the law {} has no key `{name}`; it has {known}",
+                        self.name
+                    )));
                 }
-                (Value::Rows(columns), Parameter::Rows(rows)) => {
-                    for row in rows {
-                        let fits = row.len() == columns.len()
-                            && row.iter().zip(columns).all(|(x, c)| c.2.hold(*x));
-                        if !fits {
-                            let of: Vec<String> = columns
-                                .iter()
-                                .map(|(name, _, b)| format!("{name} ({})", b.words()))
-                                .collect();
-                            return wrong(format!(
-                                "a row of `{name}` is {row:?}, expected [{}]",
-                                of.join(", ")
-                            ));
-                        }
-                    }
+                Some(key) if key.need == Need::Refused => {
+                    return Err(wrong(format!("{} {}", self.name, key.doc)));
                 }
-                (Value::Word(words), Parameter::Word(word)) => {
-                    if !words.iter().any(|(w, _)| w == word) {
-                        let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
-                        let words = words.join(", ");
-                        return wrong(format!("`{name}` is \"{word}\", expected one of {words}"));
-                    }
-                }
-                (Value::Number(..), _) => return wrong(format!("`{name}` is a number")),
-                (Value::Rows(_), _) => return wrong(format!("`{name}` is a list of rows")),
-                (Value::Word(_), _) => return wrong(format!("`{name}` is a word")),
+                Some(key) => key.value.check(name, given).map_err(wrong)?,
             }
         }
+        let given = |name: &&str| parameters.get(name).is_some();
+        let whole = |message: String| Err((String::new(), message));
+        let one_of = self.names(Need::OneOf);
+        let of: Vec<&str> = one_of.iter().copied().filter(given).collect();
+        match of.len() {
+            0 if !one_of.is_empty() => {
+                return whole(format!("{} needs one of {}", self.name, one_of.join(", ")));
+            }
+            0 | 1 => {}
+            _ => {
+                let both = of.join(" and ");
+                return whole(format!("{} has {both}: give one of them", self.name));
+            }
+        }
+        let two_of = self.names(Need::TwoOf);
+        if !two_of.is_empty() {
+            if two_of.iter().filter(|k| given(k)).count() != 2 {
+                return whole(format!("{} takes two of {}", self.name, two_of.join(", ")));
+            }
+            moduli(parameters).map_err(|message| (String::new(), message))?;
+        }
         for key in &self.keys {
-            if parameters.0.iter().any(|(name, _)| name == key.name) {
+            if parameters.get(key.name).is_some() {
                 continue;
             }
             let default = match key.need {
                 Need::Given => {
-                    return Err((
-                        key.name.into(),
-                        format!("the law {} needs `{}`", self.name, key.name),
-                    ));
+                    let message = format!("the law {} needs `{}`", self.name, key.name);
+                    return Err((key.name.into(), message));
                 }
-                Need::TwoOf => continue,
+                Need::Optional | Need::OneOf | Need::TwoOf | Need::Refused => continue,
                 Need::Default(x) => Parameter::Number(x),
                 Need::Word(word) => Parameter::Word(word.into()),
             };
             parameters.0.push((key.name.into(), default));
         }
-        if self.keys.iter().any(|k| k.need == Need::TwoOf) {
-            moduli(parameters).map_err(|message| (String::new(), message))?;
-        }
         Ok(())
+    }
+}
+
+impl Value {
+    fn check(&self, name: &str, given: &Parameter) -> Result<(), String> {
+        match (self, given) {
+            (Value::Number(_, bounds), Parameter::Number(x)) => match bounds.hold(*x) {
+                true => Ok(()),
+                false => Err(format!("`{name}` is {x}, expected {}", bounds.words())),
+            },
+            (Value::List(count, _, bounds), Parameter::List(list)) => {
+                if list.len() != *count {
+                    let found = list.len();
+                    return Err(format!("`{name}` has {found} numbers, expected {count}"));
+                }
+                match list.iter().find(|x| !bounds.hold(**x)) {
+                    None => Ok(()),
+                    Some(x) => Err(format!("`{name}` has {x}, expected {}", bounds.words())),
+                }
+            }
+            (Value::Rows(columns), Parameter::Rows(rows)) => {
+                let fits = |row: &&Vec<f64>| {
+                    let each = || row.iter().zip(*columns).all(|(x, c)| c.2.hold(*x));
+                    row.len() == columns.len() && each()
+                };
+                let Some(row) = rows.iter().find(|r| !fits(r)) else {
+                    return Ok(());
+                };
+                let of = columns.iter();
+                let of: Vec<String> = of
+                    .map(|(name, _, b)| format!("{name} ({})", b.words()))
+                    .collect();
+                let of = of.join(", ");
+                Err(format!("a row of `{name}` is {row:?}, expected [{of}]"))
+            }
+            (Value::Word(words), Parameter::Word(word)) => {
+                if words.iter().any(|(w, _)| w == word) {
+                    return Ok(());
+                }
+                let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
+                let words = words.join(", ");
+                Err(format!("`{name}` is \"{word}\", expected one of {words}"))
+            }
+            (Value::Name, Parameter::Word(_)) => Ok(()),
+            (Value::Table, Parameter::Table(table)) => table.check(),
+            (Value::Number(..), _) => Err(format!("`{name}` is a number")),
+            (Value::List(..), _) => Err(format!("`{name}` is a list of numbers")),
+            (Value::Rows(_), _) => Err(format!("`{name}` is a list of rows")),
+            (Value::Word(_) | Value::Name, _) => Err(format!("`{name}` is a word")),
+            (Value::Table, _) => Err(format!("`{name}` is a table of functions")),
+        }
     }
 }
 

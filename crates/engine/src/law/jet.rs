@@ -167,7 +167,7 @@ pub fn embedding<const N: usize>(potential: &impl Potential, rho: f64) -> [f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::LennardJones;
+    use crate::law::potential::lennard_jones::LennardJones;
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() <= 1e-13 * b.abs().max(1.0), "{a} is not {b}");

@@ -46,8 +46,23 @@ impl BondFactors<f64> {
     }
 }
 
-/// What one bond answers. Point fields (`i`, `j`: up to two numbers at either end) carry what differs from point to
-/// point: materials, weighted volumes, the pressure of the last share pass.
+/// What one bond answers, of laws that the fast families run. Point fields (`i`, `j`: up to two numbers at either end) carry what differs
+/// from point to point: materials, weighted volumes, the pressure of the last share pass.
+///
+/// # Contract
+/// These laws are linear in the stretch `s = (r − r0)/r0` of their bonds, and kernels, tangents and released energies take that for granted.
+/// Nothing checks it: a law that is otherwise compiles, and has wrong tangents and releases. Such laws are [`material::Material`]s.
+///
+/// With `S = Σ k r0² s` over the whole bonds of a point, `q` its [`pressure_factor`](Law::pressure_factor) and `P = q S` its pressure:
+/// - The force density on i is `Σ pull (ξ+η)`. `pull` is of first degree in `g = (r − r0)/r`: its slope is taken as a difference of two
+///   values. At `g = 0` and without pressures it is 0.
+/// - Laws with [`SHARES`](Law::SHARES) have P in field 0. `pull` is of first degree in it, with one slope for both ends that depends on no
+///   other field.
+/// - `pull` of i and of j is the same where fields and factors of the ends change places: action is reaction.
+/// - The energy density is `W = ½ q S² + Σ pair_energy(k r0² s²)`, `pair_energy` is proportional to its argument, and `pull` follows from
+///   W: a bond that breaks sets free what W loses with it, at any stretch.
+/// - All functions are pure, and every number of a lane is answered by itself. Nothing is remembered but what families keep for any law:
+///   which bonds are whole, and critical stretches.
 pub trait Law: Copy + Send + Sync + 'static {
     /// Does the force need a point scalar summed over the family first?
     const SHARES: bool;
@@ -57,7 +72,7 @@ pub trait Law: Copy + Send + Sync + 'static {
     /// The bond constant `k` from reference length and `ω ν V_j`.
     fn constant<L: Lane>(self, r0: L, inv_r0: L, weight: L) -> L;
 
-    /// Force density on i along `ξ + η`: the coefficient of `ξ + η`, with `g = (r − r0)/r`.
+    /// Force density on i along `ξ + η`: the coefficient of `ξ + η`, of first degree in `g = (r − r0)/r`.
     fn pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2]) -> L;
 
     /// The same of a bond with factors.
@@ -66,7 +81,7 @@ pub trait Law: Copy + Send + Sync + 'static {
         self.pull(k, g, i, j) * factors.pair
     }
 
-    /// Energy density at i of one bond, with `x = k r0² s²`.
+    /// Energy density at i of one bond, proportional to `x = k r0² s²`.
     fn pair_energy<L: Lane>(self, x: L, i: [L; 2], j: [L; 2]) -> L;
 
     /// Pressure factor at i: `P = factor · Σ k r0² s` (0 for laws that share nothing), from i's own fields.

@@ -1,10 +1,10 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
+use super::constitutive::AnyPotential;
 use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
 use crate::family::stencil::Stencil;
-use crate::law::potential::{Potential, Visitor, bulk::bulk};
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{Horizon, PotentialSpec, Spec, ThermalSpec};
@@ -41,12 +41,12 @@ pub(super) fn check_box(
 /// Warnings about the perfect crystal: pressure, and densities that the embedding energy does not know.
 pub(super) fn crystal(
     spec: &Spec,
-    potential: &PotentialSpec,
+    potential: &AnyPotential,
     kind: LatticeKind,
     spacing: f64,
 ) -> Result<Option<String>, BuildError> {
     let horizon = match (current_neighbours(spec), spec.horizon) {
-        (true, _) => Horizon::Length(potential.cut_off()),
+        (true, _) => Horizon::Length(potential.spec.cut_off()),
         (false, h) => h,
     };
     let length = horizon.length(spacing);
@@ -56,7 +56,7 @@ pub(super) fn crystal(
     }
     let volume = kind.site_volume() * spacing.powi(kind.dimension() as i32) * spec.section;
     let stencil = Stencil::new(kind, spacing, horizon);
-    let found = bulk(potential, &stencil, spacing, volume);
+    let found = potential.bulk(&stencil, spacing, volume)?;
     if found.density <= found.least_density {
         return Err(BuildError::ill_posed(
             "potential",
@@ -69,7 +69,7 @@ pub(super) fn crystal(
         .help("the length scale of the density does not fit this lattice: give density_length of its own"));
     }
     // pressure against that of a strain of a thousandth
-    let stiff = bulk(potential, &stencil, spacing * 0.999, volume);
+    let stiff = potential.bulk(&stencil, spacing * 0.999, volume)?;
     let scale = (stiff.pressure - found.pressure).abs();
     Ok((found.pressure.abs() > 1e-3 * scale).then(|| {
         format!(
@@ -88,28 +88,10 @@ const STRIDE: f64 = 0.02;
 /// Speed of the fastest atoms of a Maxwellian, in standard deviations of a component.
 const FASTEST: f64 = 4.0;
 
-/// The distance at which the pair energy has reached `energy` (length), if it ever does.
-struct Closest {
-    from: f64,
-    energy: f64,
-}
-
-impl Visitor for Closest {
-    type Out = Option<f64>;
-    fn visit<P: Potential>(self, potential: P) -> Option<f64> {
-        let steps = (0..300).map(|n| self.from * 0.99f64.powi(n));
-        steps
-            .map(|r| (r, potential.pair(r * r)))
-            .take_while(|(_, e)| e.is_finite())
-            .find(|(_, e)| *e >= self.energy)
-            .map(|(r, _)| r)
-    }
-}
-
 impl<const D: usize> Model<D> {
     /// The step that the atoms' speeds allow (time): none goes further than a small part of the shortest bond, nor of the
     /// distance to which two of the fastest come when they meet head on.
-    pub(super) fn step_of_speeds(&self, potential: &PotentialSpec) -> f64 {
+    pub(super) fn step_of_speeds(&self, potential: &AnyPotential) -> Result<f64, BuildError> {
         let slots = || self.body.slots.iter().map(|s| *s as usize);
         let mass = |s: usize| self.body.volume.at(s) * self.body.density.at(s);
         let total: f64 = slots().map(mass).sum();
@@ -124,7 +106,7 @@ impl<const D: usize> Model<D> {
         let fastest = slots().map(square).fold(0.0, f64::max).sqrt();
         let speed = fastest.max(FASTEST * (twice / (D as f64 * total)).sqrt());
         if speed == 0.0 {
-            return f64::INFINITY;
+            return Ok(f64::INFINITY);
         }
         let mut shortest = f64::INFINITY;
         self.interaction.each_bond(&self.body, &mut |_, _, xi, _| {
@@ -132,11 +114,9 @@ impl<const D: usize> Model<D> {
         });
         let shortest = shortest.sqrt();
         let heaviest = slots().map(mass).fold(0.0, f64::max);
-        let closest = potential.apply(Closest {
-            from: shortest.min(potential.cut_off()),
-            energy: heaviest * speed * speed,
-        });
-        STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed
+        let from = shortest.min(potential.spec.cut_off());
+        let closest = potential.closest(from, heaviest * speed * speed)?;
+        Ok(STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed)
     }
 
     /// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to

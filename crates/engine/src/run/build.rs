@@ -38,7 +38,7 @@ pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, Build
     build_with(spec, options, &Shelf::standard())
 }
 
-/// The same with laws of one's own.
+/// The same with laws, potentials, observables and forces of one's own.
 pub fn build_with(
     spec: &Spec,
     options: Options,
@@ -99,7 +99,8 @@ pub fn build_in<const D: usize>(
     if let (Some(potential), BodySpec::Lattice { kind, spacing, .. }) =
         (spec.potential(), &spec.body)
     {
-        warnings.extend(atoms::crystal(spec, potential, *kind, *spacing)?);
+        let potential = shelf.potential(potential)?;
+        warnings.extend(atoms::crystal(spec, &potential, *kind, *spacing)?);
     }
     let (mut constitutive, mut interaction) =
         bind(spec, &mut parts, &mut body, shelf, simd, &mut warnings)?;
@@ -231,6 +232,7 @@ pub fn build_in<const D: usize>(
         release: spec.release,
         stop: || false,
         constitutive,
+        shelf: shelf.clone(),
         interaction,
         body,
         loads: vec![],
@@ -271,7 +273,8 @@ pub fn build_in<const D: usize>(
     }
     initial(spec, &mut model)?;
     if let (TimeStep::Auto, Some(potential)) = (spec.schedule.time_step, spec.potential()) {
-        model.dt = model.dt.min(model.step_of_speeds(potential));
+        let potential = shelf.potential(potential)?;
+        model.dt = model.dt.min(model.step_of_speeds(&potential)?);
         model.info.time_step = model.dt;
     }
     model.check_fields(spec.fields.as_deref().unwrap_or_default())?;

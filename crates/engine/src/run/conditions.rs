@@ -17,6 +17,7 @@ fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Opt
         ConditionKind::Traction { value, area } => Some((value, Some(*area))),
         ConditionKind::SetForce(_)
         | ConditionKind::Damping(_)
+        | ConditionKind::Own(_)
         | ConditionKind::Displacement(_)
         | ConditionKind::Velocity(_) => None,
     }
@@ -109,6 +110,10 @@ impl<const D: usize> Model<D> {
                     &[Some(e.clone()), None, None],
                     &points,
                 )))),
+                ConditionKind::Own(name) => {
+                    let path = format!("conditions[{n}]");
+                    loads.push(load(LoadKind::Own(self.shelf.force(name, &path)?)))
+                }
                 ConditionKind::Traction { value, area } => {
                     let volume: f64 = slots.iter().map(|s| self.body.volume.at(*s as usize)).sum();
                     let face = |slot: u32| {
@@ -141,7 +146,7 @@ impl<const D: usize> Model<D> {
         }
         // damping looks at what was added, and a replaced force is replaced whatever else there is
         loads.sort_by_key(|l: &Load<D>| match l.kind {
-            LoadKind::Body(_) => 0,
+            LoadKind::Body(_) | LoadKind::Own(_) => 0,
             LoadKind::Damping(_) | LoadKind::Drag(_) => 1,
             LoadKind::Replace(_) => 2,
         });

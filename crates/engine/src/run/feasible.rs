@@ -6,7 +6,7 @@ use crate::execute::memory;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::space::ball_volume;
-use crate::spec::{Form, LawSpec, Spec, Stepper};
+use crate::spec::{LawSpec, Spec, Stepper};
 
 /// Steppers and instruction sets that there are not.
 pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError> {
@@ -72,17 +72,12 @@ pub(super) fn consistent(spec: &Spec) -> Result<(), BuildError> {
     for (n, m) in spec.materials.iter().enumerate() {
         let fits = match &m.law {
             LawSpec::Micromoduli(body) => body.check(),
-            LawSpec::Atoms(potential) => match &potential.form {
-                Form::Tabulated(table) => table.check(),
-                Form::LennardJones(_) | Form::Morse(_) | Form::Buckingham(_) | Form::Mei(_) => {
-                    Ok(())
-                }
-            },
             LawSpec::Pmb(_)
             | LawSpec::Lps(_)
             | LawSpec::LpsAsTyped { .. }
             | LawSpec::EamLike { .. }
             | LawSpec::Springs(_)
+            | LawSpec::Atoms(_)
             | LawSpec::Named(_) => Ok(()),
         };
         fits.map_err(|message| BuildError::invalid(format!("materials[{n}].law"), message))?;

@@ -1,6 +1,6 @@
 //! The running model: its state, and what may be asked of it.
 
-use super::constitutive::ConstitutiveModels;
+use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
 use super::probes::state::Probe;
@@ -58,6 +58,8 @@ pub struct Model<const D: usize> {
     pub(super) boltzmann: f64,
     /// Laws and constants, for what is computed pair by pair.
     pub(super) constitutive: ConstitutiveModels,
+    /// Observables and forces by their names.
+    pub(super) shelf: Shelf,
     pub(super) probes: Vec<Probe>,
     /// Named sets of point ids.
     pub(super) sets: Vec<(String, Vec<u32>)>,

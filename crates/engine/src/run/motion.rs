@@ -89,7 +89,7 @@ impl<const D: usize> Model<D> {
             indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
         }
         for load in &mut self.loads {
-            load.add(&self.body, &self.v, &mut self.f, t, dt);
+            load.add(&self.body, [&self.u, &self.v], &mut self.f, t, dt);
         }
         for d in &mut self.driven {
             d.add(&self.body, &self.u, &self.v, &mut self.f, t, dt);

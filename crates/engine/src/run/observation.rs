@@ -7,7 +7,7 @@ use crate::error::BuildError;
 use crate::expression::nearest;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondForce, BondState};
-use crate::observe::observables::{self, Needs, Observable};
+use crate::observe::observables::{Needs, Observable};
 use crate::observe::{Column, FamilyBond, Observed, PointForce, Snapshot, State, Values};
 use crate::space::Point;
 
@@ -228,7 +228,7 @@ impl<const D: usize> Model<D> {
         name: &str,
         path: &str,
     ) -> Result<Declaration, BuildError> {
-        if let Some(observable) = observables::named(name) {
+        if let Some(observable) = self.shelf.observable(name) {
             return match self.lacking(observable) {
                 None => Ok(observable.declaration.clone()),
                 Some(why) => Err(BuildError::unsupported(
@@ -259,7 +259,7 @@ impl<const D: usize> Model<D> {
     /// Everything that has a name and values.
     pub(super) fn declared(&mut self) -> Vec<Declaration> {
         let mut all = vec![];
-        for observable in observables::ALL {
+        for observable in self.shelf.observables().to_vec() {
             if self.lacking(observable).is_none() {
                 all.push(observable.declaration.clone());
             }
@@ -329,7 +329,7 @@ impl<const D: usize> Model<D> {
 
 impl<const D: usize> View<'_, D> {
     fn column(&mut self, name: &str) -> Option<Column> {
-        match observables::named(name) {
+        match self.model.shelf.observable(name) {
             Some(observable) if !self.model.may(observable) => None,
             Some(observable) => Some(Column {
                 declaration: observable.declaration.clone(),

@@ -35,6 +35,19 @@ pub enum BodySpec {
     Several(Vec<PieceSpec>),
 }
 
+impl BodySpec {
+    /// Sites of a lattice, one of them at the origin, inside a region.
+    pub fn lattice(kind: LatticeKind, spacing: f64, region: Region) -> BodySpec {
+        BodySpec::Lattice {
+            kind,
+            spacing,
+            origin: [0.0; 3],
+            region,
+            perturb: None,
+        }
+    }
+}
+
 /// A body among several.
 #[derive(Debug, Clone)]
 pub struct PieceSpec {

@@ -43,6 +43,8 @@ pub enum ConditionKind {
     SetForce([Option<Expression>; 3]),
     /// Viscous force density −c v (mass / volume / time).
     Damping(Expression),
+    /// The force of this name on the shelf that the model is built with.
+    Own(String),
 }
 
 /// A rigid sphere that pushes points out with force density `K (r − R)²` (`lammps-peri` item 13).

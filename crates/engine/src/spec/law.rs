@@ -1,6 +1,6 @@
 //! Materials: constitutive laws and their constants, fracture, and what bonds between them have.
 
-use super::{AnyLinearBody, PotentialSpec};
+use super::{AnyLinearBody, PotentialSpec, TableSpec};
 use std::sync::Arc;
 
 /// A material on a set of points.
@@ -160,8 +160,11 @@ pub struct Parameters(pub Vec<(String, Parameter)>);
 #[derive(Debug, Clone, PartialEq)]
 pub enum Parameter {
     Number(f64),
+    List(Vec<f64>),
     Rows(Vec<Vec<f64>>),
     Word(String),
+    /// The tables of an embedded-atom model.
+    Table(Arc<TableSpec>),
 }
 
 impl Parameters {
@@ -173,32 +176,81 @@ impl Parameters {
 
     /// And one more.
     pub fn with(mut self, key: &str, value: Parameter) -> Parameters {
-        self.0.push((key.into(), value));
+        self.set(key, value);
         self
     }
 
-    fn get(&self, key: &str) -> Option<&Parameter> {
+    /// In place of what the key had.
+    pub fn set(&mut self, key: &str, value: Parameter) {
+        match self.0.iter_mut().find(|(k, _)| k == key) {
+            Some((_, old)) => *old = value,
+            None => self.0.push((key.into(), value)),
+        }
+    }
+
+    pub fn get(&self, key: &str) -> Option<&Parameter> {
         self.0.iter().find(|(k, _)| k == key).map(|(_, p)| p)
     }
 
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.get(key)? {
             Parameter::Number(x) => Some(*x),
-            Parameter::Rows(_) | Parameter::Word(_) => None,
+            Parameter::List(_) | Parameter::Rows(_) | Parameter::Word(_) | Parameter::Table(_) => {
+                None
+            }
+        }
+    }
+
+    /// Numbers of the keys in order.
+    ///
+    /// # Errors
+    /// The first key that has none, in words.
+    pub fn all<const N: usize>(&self, keys: [&str; N]) -> Result<[f64; N], String> {
+        let mut found = [0.0; N];
+        for (x, key) in found.iter_mut().zip(keys) {
+            *x = self
+                .number(key)
+                .ok_or_else(|| format!("the number `{key}` is missing"))?;
+        }
+        Ok(found)
+    }
+
+    pub fn list(&self, key: &str) -> Option<&[f64]> {
+        match self.get(key)? {
+            Parameter::List(list) => Some(list),
+            Parameter::Number(_)
+            | Parameter::Rows(_)
+            | Parameter::Word(_)
+            | Parameter::Table(_) => None,
         }
     }
 
     pub fn rows(&self, key: &str) -> Option<&[Vec<f64>]> {
         match self.get(key)? {
             Parameter::Rows(rows) => Some(rows),
-            Parameter::Number(_) | Parameter::Word(_) => None,
+            Parameter::Number(_)
+            | Parameter::List(_)
+            | Parameter::Word(_)
+            | Parameter::Table(_) => None,
         }
     }
 
     pub fn word(&self, key: &str) -> Option<&str> {
         match self.get(key)? {
             Parameter::Word(word) => Some(word),
-            Parameter::Number(_) | Parameter::Rows(_) => None,
+            Parameter::Number(_)
+            | Parameter::List(_)
+            | Parameter::Rows(_)
+            | Parameter::Table(_) => None,
+        }
+    }
+
+    pub fn table(&self, key: &str) -> Option<&Arc<TableSpec>> {
+        match self.get(key)? {
+            Parameter::Table(table) => Some(table),
+            Parameter::Number(_) | Parameter::List(_) | Parameter::Rows(_) | Parameter::Word(_) => {
+                None
+            }
         }
     }
 }

@@ -32,9 +32,7 @@ pub use law::{
 };
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
-pub use potential::{
-    Buckingham, End, Form, LennardJones, MeiSpec, Morse, PotentialSpec, TableSpec,
-};
+pub use potential::{End, PotentialSpec, TableSpec};
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
 pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;

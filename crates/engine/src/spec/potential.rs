@@ -1,26 +1,23 @@
-//! Interatomic potentials as data: form, constants, cut-off. What they do stands in [`law::potential`](crate::law::potential).
+//! Interatomic potentials as data: a name, and constants by their keys. What they do stands in
+//! [`law::potential`](crate::law::potential), each in a file of its own.
 
-use std::sync::Arc;
+use super::Parameters;
 
 /// A potential of one kind of atom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PotentialSpec {
-    pub form: Form,
-    /// Cut-off of pair potentials (length), and how they end there; ∞: none.
-    pub cutoff: f64,
-    pub end: End,
+    pub name: String,
+    /// Of pair potentials also how they end: `cutoff`, `end`, `smooth_from`.
+    pub parameters: Parameters,
+    /// Distance beyond which it says nothing (length), once the name was looked up; ∞: none.
+    pub reach: f64,
 }
 
-/// All forms of potentials; adding one adds a variant here and an arm in [`PotentialSpec::apply`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum Form {
-    LennardJones(LennardJones),
-    Morse(Morse),
-    Buckingham(Buckingham),
-    /// Embedded-atom model in closed form.
-    Mei(Box<MeiSpec>),
-    /// Embedded-atom model from tables.
-    Tabulated(Arc<TableSpec>),
+impl PotentialSpec {
+    /// Distance beyond which it says nothing (length); ∞: none.
+    pub fn cut_off(&self) -> f64 {
+        self.reach
+    }
 }
 
 /// How a potential ends at its cut-off.
@@ -37,69 +34,8 @@ pub enum End {
     Smooth(f64),
 }
 
-/// `φ = 4ε [(σ/r)¹² − (σ/r)⁶]` (Jones 1924; seleson2009 (5.1)).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LennardJones {
-    /// Depth ε (energy).
-    pub epsilon: f64,
-    /// Distance σ of zero energy (length).
-    pub sigma: f64,
-}
-
-/// `φ = D [e^(−2α(r−r0)) − 2 e^(−α(r−r0))]` (Morse 1929).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Morse {
-    /// Depth D (energy).
-    pub depth: f64,
-    /// Stiffness α of the well (1 / length).
-    pub alpha: f64,
-    /// Distance r0 of least energy (length).
-    pub distance: f64,
-}
-
-/// `φ = A e^(−r/ρ) − C / r⁶` (Buckingham 1938).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Buckingham {
-    /// Strength A of the repulsion (energy).
-    pub strength: f64,
-    /// Its range ρ (length).
-    pub range: f64,
-    /// Dispersion constant C (energy · length⁶).
-    pub dispersion: f64,
-}
-
-/// The embedded-atom model in closed form of Mei, Davenport & Fernando (1991); distances in any unit of length, energies in any unit of energy.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeiSpec {
-    /// Cohesive energy Ec (energy).
-    pub cohesive: f64,
-    /// Energy φe of the pair term (energy).
-    pub pair: f64,
-    pub alpha: f64,
-    pub beta: f64,
-    pub gamma: f64,
-    pub lambda: f64,
-    /// c_0 … c_5.
-    pub density: [f64; 6],
-    /// fe/ρe: densities are in units of ρe.
-    pub density_scale: f64,
-    /// μ of the pair term (length).
-    pub pair_length: f64,
-    /// μf of the density (length).
-    pub density_length: f64,
-    /// r_n and r_c (length): where g begins to fall, and is 0.
-    pub near: f64,
-    pub cutoff: f64,
-    /// Shells of the crystal that F is made for: number of atoms s_m and distance p_m in units of `nearest`.
-    pub shells: Vec<(f64, f64)>,
-    /// Nearest distance of the crystal at equilibrium (length).
-    pub nearest: f64,
-    /// p_m is multiplied by this where it is not a distance.
-    pub shell_scale: f64,
-}
-
-/// An embedded-atom model from tables, as eam/alloy and eam files hold them (one element): values at `m Δρ` (F) and `m Δr` (f and
-/// r φ), m = 0, 1, …, at least five each.
+/// Functions of an embedded-atom model as tables, as eam/alloy and eam files hold them (one element): values at `m Δρ` (F) and `m Δr`
+/// (f and r φ), m = 0, 1, …, at least five each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableSpec {
     /// Δρ.

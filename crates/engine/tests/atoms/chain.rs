@@ -3,10 +3,10 @@
 use crate::sample::*;
 use peridyne::error::RunError;
 use peridyne::expression::Expression;
+use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
-use peridyne::spec::{End, Form, LennardJones, PotentialSpec};
 
 fn springs(points: usize, neighbours: u32) -> Spec {
     let mut spec = Spec::new(
@@ -197,14 +197,10 @@ fn zeta(m: u32, n: i32) -> f64 {
 
 /// seleson2009 (5.3): σ̄ and ε̄ stay, Δx = n a and M = N/n.
 fn lennard_jones(spacing: f64, m: u32, reduced_sigma: f64, reduced_epsilon: f64) -> PotentialSpec {
-    PotentialSpec {
-        form: Form::LennardJones(LennardJones {
-            epsilon: reduced_epsilon * spacing * zeta(m, 12) / zeta(m, 6).powi(2),
-            sigma: reduced_sigma * spacing * (zeta(m, 6) / zeta(m, 12)).powf(1.0 / 6.0),
-        }),
-        cutoff: f64::INFINITY,
-        end: End::Truncated,
-    }
+    PotentialSpec::of(LennardJones {
+        epsilon: reduced_epsilon * spacing * zeta(m, 12) / zeta(m, 6).powi(2),
+        sigma: reduced_sigma * spacing * (zeta(m, 6) / zeta(m, 12)).powf(1.0 / 6.0),
+    })
 }
 
 fn lj_chain(points: usize, spacing: f64, m: u32) -> Spec {
@@ -230,14 +226,8 @@ fn lj_chain(points: usize, spacing: f64, m: u32) -> Spec {
 fn forces_of_a_chain_are_those_of_the_paper() {
     let (n, m) = (40, 4);
     let spec = lj_chain(n, 1.0, m);
-    let Some(PotentialSpec {
-        form: Form::LennardJones(lj),
-        ..
-    }) = spec.potential()
-    else {
-        panic!()
-    };
-    let (eps, sigma) = (lj.epsilon, lj.sigma);
+    let lj = &spec.potential().unwrap().parameters;
+    let [eps, sigma] = lj.all(["epsilon", "sigma"]).unwrap();
     let mut sim = build(&spec, Options::default()).unwrap();
     let mut noise = Noise(9);
     let u: Vec<[f64; 3]> = (0..n).map(|_| [0.2 * noise.next(), 0.0, 0.0]).collect();
@@ -345,19 +335,15 @@ fn a_crossed_beginning_is_named() {
 fn eam_chain(h: f64, points: usize, density_length: f64) -> Spec {
     let shells = (1..=8).map(|m| (2.0, f64::from(m))).collect();
     let mut constants = mei(h, shells);
-    (constants.near, constants.cutoff) = (3.5 * h, 3.9 * h);
-    (constants.pair_length, constants.density_length) = (2.0 * h, density_length * h);
+    (constants.near, constants.cutoff) = (3.5, 3.9);
+    (constants.pair_length, constants.density_length) = (2.0, density_length);
     // energies are densities times the length of an atom
     (constants.cohesive, constants.pair) = (3.54 * h, 0.1217 * h);
     let mut spec = Spec::new(
         1,
         block(LatticeKind::Chain, h, points),
         63.546,
-        LawSpec::Atoms(PotentialSpec {
-            form: Form::Mei(Box::new(constants)),
-            cutoff: f64::INFINITY,
-            end: End::Truncated,
-        }),
+        LawSpec::Atoms(PotentialSpec::of(constants)),
     );
     spec.horizon = Horizon::Ratio(5);
     spec.family = FamilyChoice::Stencil;

@@ -1,14 +1,18 @@
 //! Potentials and bodies that the tests share.
 
 use peridyne::law::potential::Potential;
-use peridyne::law::potential::mei::Mei;
+use peridyne::law::potential::born_mayer::BornMayer;
+use peridyne::law::potential::buckingham::Buckingham;
+use peridyne::law::potential::lennard_jones::LennardJones;
+use peridyne::law::potential::mei::{EamForm, Mei};
+use peridyne::law::potential::morse::Morse;
+use peridyne::law::potential::tabulated::Eam;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
-use std::sync::Arc;
 
 /// The copper-like constants of seleson2014 Table 1, with lengths in nearest distances `h` and shells of `kind`.
-pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> MeiSpec {
-    MeiSpec {
+pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> EamForm {
+    EamForm {
         cohesive: 3.54,
         pair: 0.1217,
         alpha: 5.082,
@@ -17,10 +21,10 @@ pub fn mei(h: f64, shells: Vec<(f64, f64)>) -> MeiSpec {
         lambda: 12.06,
         density: [0.14095, -1.93222, 9.60043, -21.23718, 20.18581, -5.81656],
         density_scale: 1.0 / 12.0,
-        pair_length: h,
-        density_length: h,
-        near: 1.7 * h,
-        cutoff: 1.95 * h,
+        pair_length: 1.0,
+        density_length: 1.0,
+        near: 1.7,
+        cutoff: 1.95,
         shells,
         nearest: h,
         shell_scale: 1.0,
@@ -39,15 +43,25 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
     let cutoff = 1.95;
     let pairs = [
         (
+            "born_mayer",
+            PotentialSpec::of(BornMayer {
+                strength: 0.6,
+                sigma: 0.9,
+                range: 0.09,
+                dispersion: 1.1,
+                eighth: 0.05,
+            }),
+        ),
+        (
             "lj",
-            Form::LennardJones(LennardJones {
+            PotentialSpec::of(LennardJones {
                 epsilon: 1.2,
                 sigma: 0.9,
             }),
         ),
         (
             "morse",
-            Form::Morse(Morse {
+            PotentialSpec::of(Morse {
                 depth: 0.7,
                 alpha: 4.0,
                 distance: 1.02,
@@ -55,7 +69,7 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
         ),
         (
             "buckingham",
-            Form::Buckingham(Buckingham {
+            PotentialSpec::of(Buckingham {
                 strength: 4e4,
                 range: 0.09,
                 dispersion: 1.1,
@@ -73,11 +87,7 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
         for (end_name, end) in ends {
             all.push((
                 format!("{name}, {end_name}"),
-                PotentialSpec {
-                    form: form.clone(),
-                    cutoff,
-                    end,
-                },
+                form.clone().ended(cutoff, end),
             ));
         }
     }
@@ -96,17 +106,10 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
         cutoff: 1.95,
     };
     for (name, form) in [
-        ("closed form", Form::Mei(Box::new(constants))),
-        ("table", Form::Tabulated(Arc::new(table))),
+        ("closed form", PotentialSpec::of(constants)),
+        ("table", PotentialSpec::of(Eam::new(table))),
     ] {
-        all.push((
-            format!("eam, {name}"),
-            PotentialSpec {
-                form,
-                cutoff: f64::INFINITY,
-                end: End::Truncated,
-            },
-        ));
+        all.push((format!("eam, {name}"), form));
     }
     all
 }

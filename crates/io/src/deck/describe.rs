@@ -6,8 +6,8 @@ use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::spec::{
     BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Measure, Method, NamedLaw, Parameter, Part, PieceSpec, Plane, PmbStiffness,
-    ProbeSpec, Release, Spec, Stepper, TimeStep,
+    MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, ProbeSpec, Release, Spec,
+    Stepper, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -67,7 +67,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             let current = matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours);
             format!(
                 "potential  {}, {}, {}",
-                potential.name(),
+                potential.name,
                 if cutoff.is_finite() {
                     format!("cut-off {}", units.write(cutoff, Dim::LENGTH))
                 } else {
@@ -335,16 +335,23 @@ fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
     format!("within {}", sizes.join(" × "))
 }
 
-/// A law of the shelf with its constants.
-fn named(law: &NamedLaw, units: UnitSystem) -> String {
+/// A law with its constants.
+fn law(law: &LawSpec, units: UnitSystem) -> String {
     let shelf = Shelf::standard();
-    let Some(descriptor) = shelf.descriptor(&law.name) else {
-        return law.name.clone();
+    let Some((descriptor, parameters)) = shelf.written(law) else {
+        return "a law of its own".into();
     };
-    let mut said = law.name.replace('_', "-");
-    for (key, given) in &law.parameters.0 {
+    let mut said = descriptor.name.replace('_', "-");
+    if law.potential().is_some() {
+        return said;
+    }
+    for (key, given) in &parameters.0 {
         let value = match (descriptor.key(key).map(|k| k.value), given) {
             (Some(Value::Number(dimension, _)), Parameter::Number(x)) => units.write(*x, dimension),
+            (Some(Value::List(_, dimension, _)), Parameter::List(list)) => {
+                let each = list.iter().map(|x| units.write(*x, dimension));
+                format!("[{}]", each.collect::<Vec<_>>().join(", "))
+            }
             (Some(Value::Rows(columns)), Parameter::Rows(rows)) => {
                 let row = |row: &Vec<f64>| {
                     let each = row.iter().zip(columns);
@@ -355,7 +362,9 @@ fn named(law: &NamedLaw, units: UnitSystem) -> String {
             }
             (_, Parameter::Word(word)) => word.clone(),
             (_, Parameter::Number(x)) => super::units::short(*x),
+            (_, Parameter::List(list)) => format!("{list:?}"),
             (_, Parameter::Rows(rows)) => format!("{rows:?}"),
+            (_, Parameter::Table(_)) => "tables".into(),
         };
         said += &format!(", {} = {value}", key.replace('_', " "));
     }
@@ -363,39 +372,7 @@ fn named(law: &NamedLaw, units: UnitSystem) -> String {
 }
 
 fn material(m: &MaterialSpec, units: UnitSystem) -> String {
-    let pressure = |p: f64| units.write(p, Dim::PRESSURE);
-    let law = match &m.law {
-        LawSpec::Springs(PmbStiffness::Young(e)) => format!("linear springs, E = {}", pressure(*e)),
-        LawSpec::Springs(PmbStiffness::Bulk(k)) => format!("linear springs, K = {}", pressure(*k)),
-        LawSpec::Springs(PmbStiffness::Micromodulus(c)) => {
-            format!("linear springs, c = {}", units.write(*c, Dim::MICROMODULUS))
-        }
-        LawSpec::Atoms(_) => "atoms".to_string(),
-        LawSpec::Micromoduli(_) => "given micromoduli".to_string(),
-        LawSpec::Named(law) => named(law, units),
-        LawSpec::Pmb(PmbStiffness::Young(e)) => format!("pmb, E = {}", pressure(*e)),
-        LawSpec::Pmb(PmbStiffness::Bulk(k)) => format!("pmb, K = {}", pressure(*k)),
-        LawSpec::Pmb(PmbStiffness::Micromodulus(c)) => {
-            format!("pmb, c = {}", units.write(*c, Dim::MICROMODULUS))
-        }
-        LawSpec::Lps(moduli) => format!(
-            "lps, E = {}, ν = {}",
-            pressure(moduli.young),
-            super::units::short(moduli.poisson)
-        ),
-        LawSpec::LpsAsTyped { bulk, shear } => format!(
-            "lps as typed, K = {}, G = {}",
-            pressure(*bulk),
-            pressure(*shear)
-        ),
-        LawSpec::EamLike { pair, volume } => {
-            format!(
-                "eam-like, k = {}, p = {}",
-                pressure(*pair),
-                pressure(*volume)
-            )
-        }
-    };
+    let law = law(&m.law, units);
     let fracture = match m.fracture {
         None => "unbreakable".to_string(),
         Some(f) => {

@@ -1,19 +1,18 @@
 //! The deck as written: one struct per table, nothing interpreted yet.
 
-mod atoms;
 mod condition;
 mod crack;
-mod named;
+mod law;
 mod names;
 mod output;
 mod region;
 mod run;
+mod thermal;
 mod units;
 use super::value::{At, Named, Number, Or, Vector, Written};
-pub use atoms::{Buckingham, Eam, EamForm, EndName, LennardJones, Morse, Thermal};
 pub use condition::{Condition, Contact, Indenter, Initial};
 pub use crack::{BondFactor, FlatShape, Precrack};
-pub use named::{AnyLaw, Given, NamedLaw};
+pub use law::{Given, Law};
 pub use names::*;
 pub use output::Output;
 pub use region::{Mark, Periodic, Set, Shape};
@@ -21,6 +20,7 @@ pub use run::{MethodName, Probe, ReleaseName, Run, Safety, SolverName, Statics};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+pub use thermal::Thermal;
 pub use units::{UnitName, Units};
 
 /// A peridyne deck.
@@ -162,7 +162,7 @@ pub struct Interface {
     /// Names of the two bodies.
     pub bodies: At<Vec<At<String>>>,
     /// pmb; moduli are those of a full family of the first body at this horizon.
-    pub law: At<AnyLaw>,
+    pub law: At<Law>,
     /// { m_ratio = 3 } in spacings of the first body, or a length; that of the first body when left out.
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// constant when left out.
@@ -179,57 +179,8 @@ pub struct Material {
     pub density: Option<Number>,
     /// Mass of a point, instead of the density; of atoms taken from an eam file when left out.
     pub mass: Option<Number>,
-    pub law: At<AnyLaw>,
+    pub law: At<Law>,
     pub fracture: Option<At<Fracture>>,
-}
-
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Law {
-    /// Bond-based, prototype microelastic brittle: f = c ω ν V s. One of young, bulk, micromodulus; Poisson ratio 1/4, plane
-    /// stress 1/3.
-    Pmb(Elastic),
-    /// Linear peridynamic solid, state-based: W = ½ κ θ² + β/(2m) Σ ω ν V e². Two of young, poisson, bulk, shear.
-    Lps(Elastic),
-    /// The linear peridynamic solid with the three-dimensional formulas in any dimension: bulk and shear.
-    LpsAsTyped(Elastic),
-    /// W = E(θ) + bonds, with the two stiffnesses.
-    EamLike(EamLike),
-    /// Linear springs, the bond-based law linearised about the reference: one of young, bulk, micromodulus.
-    Springs(Elastic),
-    /// The blocks of a linear body, which is the body's file (.npz).
-    Micromoduli,
-    /// Atoms: 4ε [(σ/r)¹² − (σ/r)⁶]. Neighbours of atoms are the current ones, or with family = "stencil" those of the lattice.
-    LennardJones(LennardJones),
-    /// Atoms: D [e^(−2α(r−r0)) − 2 e^(−α(r−r0))].
-    Morse(Morse),
-    /// Atoms: A e^(−r/ρ) − C/r⁶.
-    Buckingham(Buckingham),
-    /// Atoms: embedded-atom model from a table, eam/alloy (setfl) or .eam (funcfl).
-    Eam(Eam),
-    /// Atoms: embedded-atom model in closed form (Mei, Davenport & Fernando 1991).
-    EamForm(Box<EamForm>),
-    /// A law of the shelf.
-    #[serde(skip)]
-    Named(NamedLaw),
-}
-
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Elastic {
-    pub young: Option<Number>,
-    pub poisson: Option<Number>,
-    pub bulk: Option<Number>,
-    pub shear: Option<Number>,
-    /// pmb only, force / volume².
-    pub micromodulus: Option<Number>,
-}
-
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EamLike {
-    pub pair: Number,
-    pub volume: Number,
 }
 
 /// One of critical_stretch and energy.

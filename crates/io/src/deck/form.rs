@@ -2,6 +2,7 @@
 
 use super::error::DeckError;
 use super::source::Source;
+use peridyne::run::Shelf;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -17,39 +18,6 @@ const SEVERAL: [&str; 6] = [
 
 /// Tables that it has one of.
 const ONE: [&str; 6] = ["run", "statics", "output", "thermal", "constants", "sets"];
-
-/// Laws by their keys that must be given, as one would write them.
-const LAWS: [(&str, &str); 10] = [
-    ("pmb", "{ young = \"72 GPa\" }"),
-    ("lps", "{ young = \"72 GPa\", poisson = 0.22 }"),
-    (
-        "lps_as_typed",
-        "{ bulk = \"14.9 GPa\", shear = \"8.9 GPa\" }",
-    ),
-    ("eam_like", "{ pair = \"1 GPa\", volume = \"1 GPa\" }"),
-    ("springs", "{ young = \"72 GPa\" }"),
-    ("lennard_jones", "{ epsilon = 1, sigma = 1, cutoff = 2.5 }"),
-    (
-        "morse",
-        "{ depth = \"0.34 eV\", alpha = \"1.36/Å\", distance = \"2.87 Å\", cutoff = \"8 Å\" }",
-    ),
-    (
-        "buckingham",
-        "{ strength = \"1000 eV\", range = \"0.3 Å\", dispersion = \"10 eV*Å^6\", cutoff = \"8 Å\" }",
-    ),
-    ("eam", "{ file = \"Cu.eam.alloy\" }"),
-    ("eam_form", "{ cohesive = 1, pair = 1, … }"),
-];
-
-/// Is it a law with keys of its own?
-pub(super) fn is_law(name: &str) -> bool {
-    laws().any(|law| law == name)
-}
-
-/// Their names.
-pub(super) fn laws() -> impl Iterator<Item = &'static str> {
-    LAWS.iter().map(|(law, _)| *law).chain(["micromoduli"])
-}
 
 pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
     let error = |at: &Spanned<DeValue>, message: String, help: String| {
@@ -89,12 +57,16 @@ pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
     let Some(material) = at.get_ref().as_table() else {
         return Ok(());
     };
+    let shelf = Shelf::standard();
     let inner = material.values().filter_map(|m| m.get_ref().as_table());
     for table in std::iter::once(material).chain(inner) {
         let Some(law) = table.get("law") else {
             continue;
         };
-        let known = |name: &str| LAWS.iter().find(|(law, _)| *law == name);
+        let known = |name: &str| {
+            let found = shelf.descriptor(name).filter(|d| !d.keys.is_empty());
+            found.map(|d| (&d.name, &d.example))
+        };
         if let DeValue::String(name) = law.get_ref()
             && let Some((name, keys)) = known(name)
         {

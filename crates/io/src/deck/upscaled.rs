@@ -1,7 +1,9 @@
 //! The deck of an upscaled model: the old deck with the numbers of the new specification.
 
 use super::{Deck, Dim};
-use peridyne::spec::{BodySpec, Form, Horizon, Spec, TimeStep};
+use peridyne::law::descriptor;
+use peridyne::run::Shelf;
+use peridyne::spec::{BodySpec, Horizon, Spec, TimeStep};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -52,11 +54,14 @@ fn beside(deck: &Deck, table: &mut Table) -> Vec<(PathBuf, String)> {
         }
     };
     place(inner(table, "body").and_then(|b| b.get_mut("file")));
-    let eam = material(table).and_then(|m| inner(m, "law"));
-    place(
-        eam.and_then(|l| inner(l, "eam"))
-            .and_then(|e| e.get_mut("file")),
-    );
+    let shelf = Shelf::standard();
+    let law = material(table).and_then(|m| inner(m, "law"));
+    for (name, constants) in law.into_iter().flatten() {
+        let keys = shelf.descriptor(name).into_iter().flat_map(|d| &d.keys);
+        for key in keys.filter(|k| k.value == descriptor::Value::Table) {
+            place(constants.get_mut(key.name));
+        }
+    }
     files
 }
 
@@ -132,7 +137,7 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
         material.remove("mass");
         material.insert("density".into(), density);
         let law = inner(material, "law").ok_or("the material has no law")?;
-        law_numbers(law, deck, coarse, factor);
+        law_numbers(law, deck, coarse);
     }
     let run = inner(&mut table, "run").ok_or("the deck has no run")?;
     if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
@@ -155,59 +160,26 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
     })
 }
 
-/// The numbers of the coarse potential into the law's table.
-fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec, factor: u32) {
-    let Some(potential) = coarse.potential() else {
+/// The numbers of the coarse potential that are others into the law's table.
+fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec) {
+    let shelf = Shelf::standard();
+    let (Some(fine), Some(coarse)) = (deck.spec.potential(), coarse.potential()) else {
         return;
     };
-    let plain = |value: f64, dim: Dim| Value::Float(value / deck.units.plain_factor(dim));
-    let (length, energy) = (Dim::LENGTH, Dim::ENERGY);
-    let Some((_, Value::Table(inside))) = law.iter_mut().next() else {
+    let (Some(descriptor), Some((_, Value::Table(inside)))) =
+        (shelf.descriptor(&coarse.name), law.iter_mut().next())
+    else {
         return;
     };
-    let mut set = |key: &str, value: Value| {
-        inside.insert(key.to_string(), value);
-    };
-    match &potential.form {
-        Form::LennardJones(p) => {
-            set("epsilon", plain(p.epsilon, energy));
-            set("sigma", plain(p.sigma, length));
-        }
-        Form::Morse(p) => {
-            set("depth", plain(p.depth, energy));
-            set("alpha", plain(p.alpha, Dim::INVERSE_LENGTH));
-            set("distance", plain(p.distance, length));
-        }
-        Form::Buckingham(p) => {
-            set("strength", plain(p.strength, energy));
-            set("range", plain(p.range, length));
-            set("dispersion", plain(p.dispersion, Dim([8, 1, -2, 0])));
-        }
-        Form::Mei(p) => {
-            set("cohesive", plain(p.cohesive, energy));
-            set("pair", plain(p.pair, energy));
-            set("nearest", plain(p.nearest, length));
-        }
-        Form::Tabulated(_) => {
-            // beyond what the deck had already
-            let n = f64::from(factor);
-            let old = |inside: &Table, key: &str| {
-                let value = inside.get(key);
-                value
-                    .and_then(|v| v.as_float().or(v.as_integer().map(|i| i as f64)))
-                    .unwrap_or(1.0)
-            };
-            let d = deck.spec.dimension as i32;
-            let (l, e) = (old(inside, "length_scale"), old(inside, "energy_scale"));
-            inside.insert("length_scale".into(), Value::Float(l * n));
-            inside.insert("energy_scale".into(), Value::Float(e * n.powi(d)));
-            return;
-        }
-    }
-    if potential.cutoff.is_finite() {
-        set("cutoff", plain(potential.cutoff, length));
-        if let peridyne::spec::End::Smooth(near) = potential.end {
-            set("smooth_from", plain(near, length));
+    for key in &descriptor.keys {
+        let Some(new) = coarse.parameters.number(key.name) else {
+            continue;
+        };
+        if let Some(dimension) = key.dimension()
+            && fine.parameters.number(key.name) != Some(new)
+        {
+            let factor = deck.units.plain_factor(dimension);
+            inside.insert(key.name.to_string(), Value::Float(new / factor));
         }
     }
 }

@@ -108,6 +108,9 @@ pub enum CrystalError {
         "waves, stability and upscaling are not known of the law {0}: they take pmb, lps, springs and potentials"
     )]
     Shelved(String),
+    /// A name that the engine does not have, or constants that do not fit it.
+    #[error("{0}")]
+    Potential(String),
     /// The horizon is in another unit, most likely.
     #[error("{0}")]
     TooManyBonds(String),

@@ -181,7 +181,7 @@ fn shells<const D: usize>(
 mod tests {
     use super::*;
     use peridyne::law::number::Number;
-    use peridyne::spec::LennardJones;
+    use peridyne::law::potential::lennard_jones::LennardJones;
 
     /// Johnson-like embedded atom: f = e^{−βr}, F = −√ρ + 0.1 ρ, φ = A e^{−αr}.
     #[derive(Clone)]

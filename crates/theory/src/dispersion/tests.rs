@@ -3,9 +3,10 @@ use crate::crystal::{LatticeSolid, Reach};
 use crate::gradient::linear::LinearChain;
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
+use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::law::solid::eam_like::Solid;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{Horizon, LennardJones};
+use peridyne::spec::Horizon;
 use std::f64::consts::PI;
 
 fn crystals() -> Vec<Crystal<3>> {

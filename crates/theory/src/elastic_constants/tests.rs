@@ -2,9 +2,10 @@ use super::*;
 use crate::crystal::{LatticeSolid, Reach, dimer};
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
+use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::law::solid::eam_like::Solid;
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{Calibration, Horizon, LawSpec, LennardJones, PmbStiffness};
+use peridyne::spec::{Calibration, Horizon, LawSpec, PmbStiffness};
 
 /// f = e^{−βr}, F = −√ρ, φ = A e^{−αr}.
 #[derive(Clone)]

@@ -322,12 +322,15 @@ pub fn of_spec(
     }
     let (kind, spacing) = upscale::lattice(spec)?;
     match (spec.potential(), kind) {
-        (Some(potential), LatticeKind::Chain) => potential.apply(OfPotential {
-            spec,
-            spacing,
-            stretches,
-            terms,
-        }),
+        (Some(potential), LatticeKind::Chain) => {
+            let of = OfPotential {
+                spec,
+                spacing,
+                stretches,
+                terms,
+            };
+            potential.apply(of).map_err(CrystalError::Potential)?
+        }
         _ => Err(UpscaleError::NoChain),
     }
 }

@@ -4,7 +4,7 @@ use super::{lattice, reach};
 use crate::crystal::{Crystal, Reach, potential::equilibrium};
 use peridyne::law::potential::{Potential, Visitor};
 use peridyne::space::lattice::LatticeKind;
-use peridyne::spec::{Form, PotentialSpec, Spec};
+use peridyne::spec::Spec;
 
 /// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
 /// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
@@ -12,19 +12,13 @@ pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
     struct At {
         kind: LatticeKind,
         reach: Reach,
-        length: f64,
-        made_for: Option<f64>,
     }
     impl Visitor for At {
         type Out = Option<f64>;
         fn visit<P: Potential>(self, potential: P) -> Option<f64> {
-            let At {
-                kind,
-                reach,
-                length,
-                made_for,
-            } = self;
-            let range = [FROM, TO].map(|x| x * length / kind.nearest());
+            let At { kind, reach } = self;
+            let range = [FROM, TO].map(|x| x * potential.length() / kind.nearest());
+            let made_for = potential.made_for().map(|d| d / kind.nearest());
             match kind.dimension() {
                 1 => best::<1>(&potential, kind, reach, range, made_for),
                 2 => best::<2>(&potential, kind, reach, range, made_for),
@@ -34,30 +28,9 @@ pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
     }
     let (kind, _) = lattice(spec).ok()?;
     let potential = spec.potential()?;
-    potential.apply(At {
-        kind,
-        reach: reach(spec),
-        length: length(potential),
-        // its embedding energy says nothing far from there
-        made_for: match &potential.form {
-            Form::Mei(p) => Some(p.nearest / kind.nearest()),
-            Form::LennardJones(_) | Form::Morse(_) | Form::Buckingham(_) | Form::Tabulated(_) => {
-                None
-            }
-        },
-    })
-}
-
-/// A length of a potential in the order of the nearest distance.
-fn length(potential: &PotentialSpec) -> f64 {
-    match &potential.form {
-        Form::LennardJones(p) => p.sigma,
-        Form::Morse(p) => p.distance,
-        // repulsion over attraction balances at several ranges
-        Form::Buckingham(p) => 8.0 * p.range,
-        Form::Mei(p) => p.nearest,
-        Form::Tabulated(_) => 0.5 * potential.cut_off(),
-    }
+    let reach = reach(spec);
+    // a potential that is not known has no crystal
+    potential.apply(At { kind, reach }).ok().flatten()
 }
 
 /// Steps inwards, each by this factor, from the first factor times the length to the last.
@@ -104,9 +77,11 @@ fn best<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::spec::{BodySpec, Buckingham, End, FamilyChoice, Horizon, LawSpec, LennardJones};
+    use peridyne::law::potential::buckingham::Buckingham;
+    use peridyne::law::potential::lennard_jones::LennardJones;
+    use peridyne::spec::{BodySpec, End, FamilyChoice, Horizon, LawSpec, PotentialSpec};
 
-    fn spec(kind: LatticeKind, form: Form, cutoff: f64) -> Spec {
+    fn spec(kind: LatticeKind, potential: PotentialSpec, cutoff: f64) -> Spec {
         let body = BodySpec::Sites {
             kind,
             spacing: 1.0,
@@ -114,17 +89,13 @@ mod tests {
             quarters: vec![[0; 3]],
             volume: None,
         };
-        let law = LawSpec::Atoms(PotentialSpec {
-            form,
-            cutoff,
-            end: End::Truncated,
-        });
+        let law = LawSpec::Atoms(potential.ended(cutoff, End::Truncated));
         Spec::new(kind.dimension(), body, 1.0, law)
     }
 
     #[test]
     fn lennard_jones_crystals_rest_where_tables_say() {
-        let lj = Form::LennardJones(LennardJones {
+        let lj = PotentialSpec::of(LennardJones {
             epsilon: 0.3,
             sigma: 2.0,
         });
@@ -144,7 +115,7 @@ mod tests {
     #[test]
     fn the_inner_collapse_of_buckingham_is_no_rest() {
         let form = |dispersion| {
-            Form::Buckingham(Buckingham {
+            PotentialSpec::of(Buckingham {
                 strength: 1000.0,
                 range: 0.3,
                 dispersion,

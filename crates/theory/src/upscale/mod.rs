@@ -3,8 +3,11 @@
 //! | law | what is kept | what changes |
 //! |---|---|---|
 //! | springs, pmb, lps, eam-like on a lattice | horizon δ, moduli | m_ratio = N/n (seleson2009 (A.2), seleson2014 (4.10)) |
-//! | Lennard-Jones on fixed neighbours, without cut-off | σ̄, ε̄, reach | M = N/n (seleson2009 (5.3)) |
+//! | a potential whose form allows it (Lennard-Jones) on fixed neighbours, without cut-off | σ̄, ε̄, reach | M = N/n (seleson2009 (5.3)) |
 //! | any other potential | energy density under every homogeneous strain, number of shells | lengths times n, energies times n^D (seleson2014 (3.3)) |
+//!
+//! What a constant of a potential is multiplied by follows from its dimension, and stands with the potential
+//! ([`Described::scaled`](peridyne::law::potential::Described::scaled), `keeping_reach`).
 //!
 //! [`upscale_keeping`] asks for one of the two: [`Keep::Shells`] goes with every law.
 
@@ -15,13 +18,11 @@ pub use equilibrium_spacing::equilibrium_spacing;
 
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
 use peridyne::family::stencil::Stencil;
-use peridyne::law::potential::{Potential, Visitor};
+use peridyne::law::potential::{KeptReach, Potential, Visitor};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
-    BodySpec, End, FamilyChoice, Form, Horizon, LawSpec, PmbStiffness, PotentialSpec, Schedule,
-    Spec, TimeStep,
+    BodySpec, FamilyChoice, Horizon, LawSpec, PmbStiffness, PotentialSpec, Schedule, Spec, TimeStep,
 };
-use std::sync::Arc;
 
 /// How many cut-offs of reference neighbours an upscaled potential keeps: those that a compression of a tenth brings in.
 pub const REACH: f64 = 1.1;
@@ -144,14 +145,6 @@ fn divisors(n: u32) -> String {
     }
 }
 
-/// Σ over neighbours of (distance/spacing)^−p.
-fn lattice_sum(stencil: &Stencil, p: i32) -> f64 {
-    let all = &stencil.offsets[0];
-    all.iter()
-        .map(|o| (o.squared as f64 / 16.0).powf(-0.5 * f64::from(p)))
-        .sum()
-}
-
 /// The model at `factor` times the spacing, by the rule of its law.
 ///
 /// # Errors
@@ -209,30 +202,23 @@ pub fn upscale_keeping(
     let shells = keep == Some(Keep::Shells);
     let rule = match &spec.materials[0].law {
         LawSpec::Atoms(potential) => {
-            let fixed = !current(spec) && potential.cutoff.is_infinite();
-            match &potential.form {
-                Form::LennardJones(lj) if fixed && !shells => {
-                    coarse.horizon = divided(spec.horizon)?;
-                    let sums = |spacing: f64, horizon| {
-                        let stencil = Stencil::new(kind, spacing, horizon);
-                        (lattice_sum(&stencil, 6), lattice_sum(&stencil, 12))
-                    };
-                    let (a6, a12) = sums(fine, spec.horizon);
-                    let (b6, b12) = sums(fine * n, coarse.horizon);
-                    let mut lj = *lj;
-                    lj.sigma *= n * ((b6 / b12) / (a6 / a12)).powf(1.0 / 6.0);
-                    lj.epsilon *=
-                        n.powi(kind.dimension() as i32) * (b12 / (b6 * b6)) / (a12 / (a6 * a6));
-                    coarse.materials[0].law = LawSpec::Atoms(PotentialSpec {
-                        form: Form::LennardJones(lj),
-                        ..potential.clone()
-                    });
+            let fixed = !current(spec) && potential.cut_off().is_infinite();
+            let kept = match fixed && !shells {
+                true => keeping_reach(potential, (kind, fine, n), spec.horizon, &divided)?,
+                false => None,
+            };
+            match kept {
+                Some((potential, horizon)) => {
+                    coarse.horizon = horizon;
+                    coarse.materials[0].law = LawSpec::Atoms(potential);
                     Rule::Reduced
                 }
-                _ if keep == Some(Keep::Reach) => return Err(UpscaleError::NoReach),
-                _ => {
+                None if keep == Some(Keep::Reach) => return Err(UpscaleError::NoReach),
+                None => {
                     let energy = n.powi(kind.dimension() as i32);
-                    coarse.materials[0].law = LawSpec::Atoms(scaled(potential, n, energy));
+                    let scaled = potential.scaled(n, energy);
+                    coarse.materials[0].law =
+                        LawSpec::Atoms(scaled.map_err(CrystalError::Potential)?);
                     coarse.horizon = match current(spec) {
                         true => Horizon::Length(REACH * n * potential.cut_off()),
                         false => grown(spec.horizon),
@@ -268,54 +254,30 @@ pub fn upscale_keeping(
     Ok((coarse, rule))
 }
 
-/// A potential with lengths times `length` and energies times `energy`.
-pub fn scaled(potential: &PotentialSpec, length: f64, energy: f64) -> PotentialSpec {
-    let form = match &potential.form {
-        Form::LennardJones(p) => {
-            let mut p = *p;
-            p.sigma *= length;
-            p.epsilon *= energy;
-            Form::LennardJones(p)
-        }
-        Form::Morse(p) => {
-            let mut p = *p;
-            p.depth *= energy;
-            p.alpha /= length;
-            p.distance *= length;
-            Form::Morse(p)
-        }
-        Form::Buckingham(p) => {
-            let mut p = *p;
-            p.strength *= energy;
-            p.range *= length;
-            p.dispersion *= energy * length.powi(6);
-            Form::Buckingham(p)
-        }
-        Form::Mei(p) => {
-            let mut s = (**p).clone();
-            s.cohesive *= energy;
-            s.pair *= energy;
-            for l in [
-                &mut s.pair_length,
-                &mut s.density_length,
-                &mut s.near,
-                &mut s.cutoff,
-                &mut s.nearest,
-            ] {
-                *l *= length;
-            }
-            Form::Mei(Box::new(s))
-        }
-        Form::Tabulated(p) => Form::Tabulated(Arc::new(p.scaled(length, energy))),
+/// The potential with the same reach at `n` times the spacing, and its horizon; `None`: its form does not allow that.
+fn keeping_reach(
+    potential: &PotentialSpec,
+    (kind, fine, n): (LatticeKind, f64, f64),
+    horizon: Horizon,
+    divided: &dyn Fn(Horizon) -> Result<Horizon, UpscaleError>,
+) -> Result<Option<(PotentialSpec, Horizon)>, UpscaleError> {
+    let before = Stencil::new(kind, fine, horizon);
+    let with = |after: &Stencil| {
+        let found = potential.keeping_reach(&KeptReach {
+            factor: n,
+            dimension: kind.dimension(),
+            fine: &before,
+            coarse: after,
+        });
+        found.map_err(CrystalError::Potential)
     };
-    PotentialSpec {
-        form,
-        cutoff: potential.cutoff * length,
-        end: match potential.end {
-            End::Smooth(near) => End::Smooth(near * length),
-            other => other,
-        },
+    // does its form allow it at all?
+    if with(&before)?.is_none() {
+        return Ok(None);
     }
+    let horizon = divided(horizon)?;
+    let after = Stencil::new(kind, fine * n, horizon);
+    Ok(with(&after)?.map(|p| (p, horizon)))
 }
 
 struct OfPotential<const D: usize> {
@@ -341,12 +303,13 @@ pub fn crystal<const D: usize>(
     match spec.potential() {
         Some(potential) => {
             let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
-            let (crystal, reference) = potential.apply(OfPotential::<D> {
+            let of = OfPotential::<D> {
                 kind,
                 spacing,
                 mass: density * volume,
                 reach: reach(spec),
-            })?;
+            };
+            let (crystal, reference) = potential.apply(of).map_err(CrystalError::Potential)??;
             Ok((crystal, Some(reference)))
         }
         None => {

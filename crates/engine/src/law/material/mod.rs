@@ -4,6 +4,7 @@
 //! The force density on a point is `f_i = Σ_j ν V_j (T_i⟨ξ⟩ − T_j⟨−ξ⟩)` (Silling et al. 2007, (18)): each end answers for itself,
 //! so action is reaction whatever the law says.
 
+pub mod bonds;
 pub mod correspondence;
 pub mod elastic_plastic;
 pub mod numbers;
@@ -12,8 +13,30 @@ pub mod tensor;
 pub mod viscoelastic;
 
 use crate::columns::Declaration;
+use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
 pub use numbers::Numbers;
+
+/// All that come with the engine, a line each.
+pub fn each(kinds: &mut impl Kinds) {
+    kinds.solid::<elastic_plastic::ElasticPlastic>();
+    kinds.law::<viscoelastic::Viscoelastic>();
+    kinds.solid::<correspondence::Correspondence>();
+    kinds.law::<softening::Softening>();
+}
+
+/// Who wants to see all of them ([`each`]).
+pub trait Kinds {
+    /// One of every dimension.
+    fn law<M>(&mut self)
+    where
+        M: Shelved + Material<1> + Material<2> + Material<3>;
+
+    /// One that means nothing on a line.
+    fn solid<M>(&mut self)
+    where
+        M: Shelved + Material<2> + Material<3>;
+}
 
 /// A bond as a law sees it from one of its ends.
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,8 @@
 //! What a potential says of a perfect crystal: energy, density and pressure per atom.
 
-use super::{Potential, Visitor};
+use super::Potential;
 use crate::family::stencil::Stencil;
 use crate::law::number::Dual;
-use crate::spec::PotentialSpec;
 
 /// One atom of a perfect crystal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,76 +17,56 @@ pub struct Bulk {
     pub pressure: f64,
 }
 
-struct Sum<'a> {
-    stencil: &'a Stencil,
-    spacing: f64,
-    volume: f64,
-}
-
-impl Visitor for Sum<'_> {
-    type Out = Bulk;
-    fn visit<P: Potential>(self, p: P) -> Bulk {
-        let limit = p.cutoff().powi(2);
-        let d = self.stencil.kind.dimension() as f64;
-        let atoms = self.stencil.offsets.len() as f64;
-        // Σ r² dφ/dq and Σ r² df/dq: the virial of a uniform expansion
-        let (mut pair, mut density, mut virial, mut spread) = (0.0, 0.0, 0.0, 0.0);
-        for o in self.stencil.offsets.iter().flatten() {
-            let q = self.spacing * self.spacing * o.squared as f64 / 16.0;
-            if q >= limit {
-                continue;
-            }
-            let phi = p.pair(Dual::variable(q));
-            pair += phi.value;
-            virial += q * phi.slope;
-            if P::EMBEDDED {
-                let f = p.density(Dual::variable(q));
-                density += f.value;
-                spread += q * f.slope;
-            }
+/// Sums over the neighbours that `stencil` has, `volume` per atom (length^D times the section).
+pub fn bulk<P: Potential>(p: &P, stencil: &Stencil, spacing: f64, volume: f64) -> Bulk {
+    let limit = p.cutoff().powi(2);
+    let d = stencil.kind.dimension() as f64;
+    let atoms = stencil.offsets.len() as f64;
+    // Σ r² dφ/dq and Σ r² df/dq: the virial of a uniform expansion
+    let (mut pair, mut density, mut virial, mut spread) = (0.0, 0.0, 0.0, 0.0);
+    for o in stencil.offsets.iter().flatten() {
+        let q = spacing * spacing * o.squared as f64 / 16.0;
+        if q >= limit {
+            continue;
         }
-        let (mut energy, density) = (0.5 * pair / atoms, density / atoms);
-        let mut per_atom = virial / atoms;
+        let phi = p.pair(Dual::variable(q));
+        pair += phi.value;
+        virial += q * phi.slope;
         if P::EMBEDDED {
-            let f = p.embedding(Dual::variable(density));
-            energy += f.value;
-            per_atom += 2.0 * f.slope * spread / atoms;
-        }
-        Bulk {
-            energy,
-            density,
-            least_density: p.least_density(),
-            pressure: -per_atom / (d * self.volume),
+            let f = p.density(Dual::variable(q));
+            density += f.value;
+            spread += q * f.slope;
         }
     }
-}
-
-/// Sums over the neighbours that `stencil` has, `volume` per atom (length^D times the section).
-pub fn bulk(potential: &PotentialSpec, stencil: &Stencil, spacing: f64, volume: f64) -> Bulk {
-    potential.apply(Sum {
-        stencil,
-        spacing,
-        volume,
-    })
+    let (mut energy, density) = (0.5 * pair / atoms, density / atoms);
+    let mut per_atom = virial / atoms;
+    if P::EMBEDDED {
+        let f = p.embedding(Dual::variable(density));
+        energy += f.value;
+        per_atom += 2.0 * f.slope * spread / atoms;
+    }
+    Bulk {
+        energy,
+        density,
+        least_density: p.least_density(),
+        pressure: -per_atom / (d * volume),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::potential::lennard_jones::LennardJones;
     use crate::space::lattice::LatticeKind;
-    use crate::spec::{End, Form, Horizon, LennardJones};
+    use crate::spec::Horizon;
 
     #[test]
     fn a_chain_at_its_sigma_is_in_equilibrium_and_pressure_is_the_slope_of_energy() {
         let z = |n: i32| (1..=4).map(|j| (j as f64).powi(-n)).sum::<f64>();
         let sigma = (z(6) / (2.0 * z(12))).powf(1.0 / 6.0);
-        let potential = PotentialSpec {
-            form: Form::LennardJones(LennardJones {
-                epsilon: 1.3,
-                sigma,
-            }),
-            cutoff: f64::INFINITY,
-            end: End::Truncated,
+        let potential = LennardJones {
+            epsilon: 1.3,
+            sigma,
         };
         let stencil = Stencil::new(LatticeKind::Chain, 1.0, Horizon::Ratio(4));
         let at = |a: f64| bulk(&potential, &stencil, a, a);

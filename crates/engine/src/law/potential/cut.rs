@@ -1,8 +1,114 @@
 //! Ends of pair potentials: cut, shifted to zero energy, shifted to zero energy and force, or switched off smoothly.
 
 use super::Potential;
+use crate::columns::Dimension;
+use crate::law::descriptor::{Bounds, Key, Need, Wrong, number, word};
 use crate::law::number::{Dual, Number};
-use crate::spec::End;
+use crate::spec::{End, Parameter, Parameters};
+
+/// Keys of the end of a pair potential.
+pub const KEYS: [Key; 3] = [
+    number(
+        "cutoff",
+        Dimension::LENGTH,
+        Bounds::POSITIVE,
+        "Needed where neighbours are the current ones.",
+    )
+    .need(Need::Optional),
+    word(
+        "end",
+        &[
+            ("truncated", "Cut (when left out)."),
+            ("shifted", "No jump of the energy."),
+            ("shifted_force", "No jump of the force either."),
+            ("smooth", "Switched off smoothly."),
+        ],
+        "How a pair potential ends at its cut-off.",
+    ),
+    number(
+        "smooth_from",
+        Dimension::LENGTH,
+        Bounds::POSITIVE,
+        "Where a smooth end begins; 0.9 of the cut-off when left out.",
+    )
+    .need(Need::Optional),
+];
+
+/// Where a potential ends (length; ∞: nowhere), and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ends {
+    pub cutoff: f64,
+    pub end: End,
+}
+
+impl Ends {
+    pub const NONE: Ends = Ends {
+        cutoff: f64::INFINITY,
+        end: End::Truncated,
+    };
+
+    /// Of parameters; [`Ends::NONE`] where their law has no such keys.
+    ///
+    /// # Errors
+    /// The key that is wrong, and why.
+    pub fn of(parameters: &Parameters) -> Result<Ends, Wrong> {
+        let Some(word) = parameters.word("end") else {
+            return Ok(Ends::NONE);
+        };
+        let wrong = |key: &str, message: &str| Err((key.to_string(), message.to_string()));
+        let from = parameters.number("smooth_from");
+        let Some(cutoff) = parameters.number("cutoff") else {
+            return match (from, word) {
+                (Some(_), _) => wrong("smooth_from", "smooth_from needs a cutoff"),
+                (None, "truncated") => Ok(Ends::NONE),
+                (None, _) => wrong("end", "this end needs a cutoff"),
+            };
+        };
+        if from.is_some() && word != "smooth" {
+            return wrong(
+                "smooth_from",
+                "smooth_from belongs to a smooth end: write end = \"smooth\"",
+            );
+        }
+        let end = match word {
+            "shifted" => End::Shifted,
+            "shifted_force" => End::ShiftedForce,
+            "smooth" => End::Smooth(from.unwrap_or(0.9 * cutoff)),
+            _ => End::Truncated,
+        };
+        match end {
+            End::Smooth(near) if near >= cutoff => {
+                wrong("cutoff", "the smooth end begins beyond the cut-off")
+            }
+            _ => Ok(Ends { cutoff, end }),
+        }
+    }
+
+    /// The other way round.
+    pub fn put(&self, parameters: &mut Parameters) {
+        let word = match self.end {
+            End::Truncated => "truncated",
+            End::Shifted => "shifted",
+            End::ShiftedForce => "shifted_force",
+            End::Smooth(_) => "smooth",
+        };
+        parameters.set("end", Parameter::Word(word.into()));
+        if self.cutoff.is_finite() {
+            parameters.set("cutoff", Parameter::Number(self.cutoff));
+        }
+        if let End::Smooth(near) = self.end {
+            parameters.set("smooth_from", Parameter::Number(near));
+        }
+    }
+}
+
+/// Numbers of the keys in order.
+///
+/// # Errors
+/// The first key that has none.
+pub fn numbers<const N: usize>(p: &Parameters, keys: [&str; N]) -> Result<[f64; N], Wrong> {
+    p.all(keys).map_err(|message| (String::new(), message))
+}
 
 /// `g` of seleson2014 (3.9): 1 below x = 0, 0 above x = 1, `g′ = −30 x² (1 − x)²` in between.
 #[inline(always)]
@@ -26,8 +132,8 @@ pub struct Cut<P> {
 }
 
 impl<P: Potential> Cut<P> {
-    /// `potential`, ended at `cutoff` (length; ∞ leaves it whole).
-    pub fn new(potential: P, cutoff: f64, end: End) -> Self {
+    /// `potential`, ended.
+    pub fn new(potential: P, Ends { cutoff, end }: Ends) -> Self {
         let mut cut = Cut {
             potential,
             cutoff,
@@ -53,6 +159,14 @@ impl<P: Potential> Potential for Cut<P> {
 
     fn cutoff(&self) -> f64 {
         self.cutoff.min(self.potential.cutoff())
+    }
+
+    fn length(&self) -> f64 {
+        self.potential.length()
+    }
+
+    fn made_for(&self) -> Option<f64> {
+        self.potential.made_for()
     }
 
     #[inline(always)]

@@ -1,19 +1,34 @@
 //! Interatomic potentials: `E_i = F(ρ_i) + ½ Σ_j φ(r_ij)`, `ρ_i = Σ_j f(r_ij)` (seleson2014 (2.1), (2.2)).
 //!
 //! A potential is written once, as a function of `q = r²` over any [`Number`]; forces, elastic constants, dispersion
-//! and gradient coefficients follow by differentiation of that one text. A pair potential is one file with `pair`.
+//! and gradient coefficients follow by differentiation of that one text. It is one file, with its constants and what decks say of
+//! them ([`Described`]), and a line in [`each`].
 
+pub mod born_mayer;
 pub mod buckingham;
 pub mod bulk;
 pub mod cut;
+mod described;
 pub mod lennard_jones;
 pub mod mei;
 pub mod morse;
 pub mod tabulated;
 
+pub use described::{Described, KeptReach, Kinds, Visitor};
+pub(crate) use described::{look_up, make};
+
 use super::number::Number;
-use crate::spec::{Form, PotentialSpec};
 use std::sync::Arc;
+
+/// All that come with the engine, a line each.
+pub fn each(kinds: &mut impl Kinds) {
+    kinds.kind::<lennard_jones::LennardJones>();
+    kinds.kind::<morse::Morse>();
+    kinds.kind::<buckingham::Buckingham>();
+    kinds.kind::<born_mayer::BornMayer>();
+    kinds.kind::<tabulated::Eam>();
+    kinds.kind::<mei::EamForm>();
+}
 
 /// An interatomic potential of one kind of atom.
 pub trait Potential: Clone + Send + Sync + 'static {
@@ -21,7 +36,19 @@ pub trait Potential: Clone + Send + Sync + 'static {
     const EMBEDDED: bool = false;
 
     /// The distance beyond which nothing is said (length); ∞: none.
-    fn cutoff(&self) -> f64;
+    fn cutoff(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// A length in the order of the nearest distance of its crystals.
+    fn length(&self) -> f64 {
+        0.5 * self.cutoff()
+    }
+
+    /// The nearest distance of the crystal that it is made for, if it says nothing far from there (length).
+    fn made_for(&self) -> Option<f64> {
+        None
+    }
 
     /// Pair energy φ (energy) of `q = r²`.
     fn pair<N: Number>(&self, q: N) -> N;
@@ -48,53 +75,16 @@ pub trait Potential: Clone + Send + Sync + 'static {
     }
 }
 
-/// What is done with a potential of a known kind.
-pub trait Visitor {
-    type Out;
-    fn visit<P: Potential>(self, potential: P) -> Self::Out;
-}
-
-impl PotentialSpec {
-    pub fn name(&self) -> &'static str {
-        match &self.form {
-            Form::LennardJones(_) => "lennard_jones",
-            Form::Morse(_) => "morse",
-            Form::Buckingham(_) => "buckingham",
-            Form::Mei(_) => "mei",
-            Form::Tabulated(_) => "eam",
-        }
-    }
-
-    /// Distance beyond which it says nothing (length); ∞: none.
-    pub fn cut_off(&self) -> f64 {
-        struct CutOff;
-        impl Visitor for CutOff {
-            type Out = f64;
-            fn visit<P: Potential>(self, potential: P) -> f64 {
-                potential.cutoff()
-            }
-        }
-        self.apply(CutOff)
-    }
-
-    /// The only match on the form.
-    pub fn apply<V: Visitor>(&self, visitor: V) -> V::Out {
-        use cut::Cut;
-        let (cutoff, end) = (self.cutoff, self.end);
-        match &self.form {
-            Form::LennardJones(p) => visitor.visit(Cut::new(*p, cutoff, end)),
-            Form::Morse(p) => visitor.visit(Cut::new(*p, cutoff, end)),
-            Form::Buckingham(p) => visitor.visit(Cut::new(*p, cutoff, end)),
-            Form::Mei(p) => visitor.visit(mei::Mei::new((**p).clone())),
-            Form::Tabulated(p) => visitor.visit(Arc::new(tabulated::Tabulated::new(p))),
-        }
-    }
-}
-
 impl<P: Potential> Potential for Arc<P> {
     const EMBEDDED: bool = P::EMBEDDED;
     fn cutoff(&self) -> f64 {
         (**self).cutoff()
+    }
+    fn length(&self) -> f64 {
+        (**self).length()
+    }
+    fn made_for(&self) -> Option<f64> {
+        (**self).made_for()
     }
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {

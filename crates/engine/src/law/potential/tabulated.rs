@@ -1,9 +1,105 @@
 //! Embedded-atom models from tables, as eam/alloy and eam files hold them (one element).
 
-use super::Potential;
+use super::cut::{Ends, numbers};
+use super::{Described, Potential};
+use crate::columns::Dimension;
+use crate::law::descriptor::{Bounds, Descriptor, Key, Need, Value, Wrong, number};
 use crate::law::number::Number;
 use crate::law::spline::{Spline, Twin};
-use crate::spec::TableSpec;
+use crate::spec::{Parameter, Parameters, TableSpec};
+use std::sync::Arc;
+
+/// Tables, and what their lengths and energies are multiplied by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Eam {
+    pub table: Arc<TableSpec>,
+    pub length_scale: f64,
+    pub energy_scale: f64,
+}
+
+impl Eam {
+    /// The tables as they are.
+    pub fn new(table: TableSpec) -> Eam {
+        Eam {
+            table: Arc::new(table),
+            length_scale: 1.0,
+            energy_scale: 1.0,
+        }
+    }
+}
+
+impl Described for Eam {
+    const NAME: &'static str = "eam";
+    type Made = Arc<Tabulated>;
+
+    fn descriptor() -> Descriptor {
+        let scale = |name, doc| number(name, Dimension::NUMBER, Bounds::POSITIVE, doc).or(1.0);
+        Descriptor::new(
+            Self::NAME,
+            "Atoms: embedded-atom model from a table, eam/alloy (setfl) or .eam (funcfl).",
+        )
+        .source("Daw & Baskes 1984")
+        .example("{ file = \"Cu.eam.alloy\" }")
+        .keys(&[
+            Key {
+                name: "file",
+                value: Value::Table,
+                need: Need::Given,
+                doc: "Relative to the deck; names that end in .eam are funcfl files. In eV and Å.",
+            },
+            Key {
+                name: "element",
+                value: Value::Name,
+                need: Need::Optional,
+                doc: "Needed where the file has several.",
+            },
+            scale(
+                "length_scale",
+                "Lengths of the table are multiplied by this; 1 when left out.",
+            ),
+            scale(
+                "energy_scale",
+                "Energies of the table are multiplied by this; 1 when left out.",
+            ),
+        ])
+    }
+
+    fn read(p: &Parameters) -> Result<Self, Wrong> {
+        let Some(table) = p.table("file").cloned() else {
+            return Err(("file".into(), "the tables are missing".into()));
+        };
+        let [length_scale, energy_scale] = numbers(p, ["length_scale", "energy_scale"])?;
+        Ok(Eam {
+            table,
+            length_scale,
+            energy_scale,
+        })
+    }
+
+    fn parameters(&self) -> Parameters {
+        let scales = [
+            ("length_scale", self.length_scale),
+            ("energy_scale", self.energy_scale),
+        ];
+        Parameters::numbers(&scales).with("file", Parameter::Table(self.table.clone()))
+    }
+
+    fn made(self, _: Ends) -> Arc<Tabulated> {
+        let scaled = self.table.scaled(self.length_scale, self.energy_scale);
+        Arc::new(Tabulated::new(&scaled))
+    }
+
+    fn reach(&self) -> f64 {
+        self.length_scale * self.table.cutoff
+    }
+
+    fn scaled(parameters: &mut Parameters, length: f64, energy: f64) {
+        for (key, factor) in [("length_scale", length), ("energy_scale", energy)] {
+            let old = parameters.number(key).unwrap_or(1.0);
+            parameters.set(key, Parameter::Number(old * factor));
+        }
+    }
+}
 
 /// F(ρ), f(r) and r φ(r) as piecewise cubics.
 #[derive(Debug, Clone, PartialEq)]

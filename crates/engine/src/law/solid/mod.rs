@@ -2,3 +2,4 @@
 
 pub mod bond_based;
 pub mod eam_like;
+pub mod linear;

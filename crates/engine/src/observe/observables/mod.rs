@@ -78,6 +78,22 @@ pub struct Observable {
     pub of: fn(&mut dyn State) -> Option<Values>,
 }
 
+impl Observable {
+    /// A column that every model has; its values are of this many points, in order of their ids.
+    pub const fn new(
+        declaration: Declaration,
+        of: fn(&mut dyn State) -> Option<Values>,
+    ) -> Observable {
+        Observable {
+            declaration,
+            equation: "",
+            source: "",
+            needs: Needs::Nothing,
+            of,
+        }
+    }
+}
+
 /// What a model must have for an observable to exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {

@@ -1,9 +1,10 @@
 //! Constants of all materials of a body, from the spec.
 
+use super::shelf::{AnyPotential, Shelf};
 use crate::error::BuildError;
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{AnyLinearBody, LawSpec, PmbStiffness, PotentialSpec, Spec};
+use crate::spec::{AnyLinearBody, LawSpec, PmbStiffness, Spec};
 use std::sync::Arc;
 
 /// Constants of all materials.
@@ -13,7 +14,7 @@ pub(in crate::run) enum Laws {
     Solid(Vec<Solid>),
     /// Micromodulus of linear springs.
     Springs(f64),
-    Atoms(PotentialSpec),
+    Atoms(AnyPotential),
     /// Of the points in order of their ids.
     Micromoduli(Arc<AnyLinearBody>),
 }
@@ -30,6 +31,7 @@ pub(super) fn constants<const D: usize>(
     horizon: f64,
     moments: Moments,
     continuum: Moments,
+    shelf: &Shelf,
 ) -> Result<Constants, BuildError> {
     let at = |n: usize, key: &str| format!("materials[{n}].{key}");
     let mut bond = vec![];
@@ -145,7 +147,7 @@ pub(super) fn constants<const D: usize>(
         .help("give all materials the micromoduli of the same body"));
     }
     let laws = if let Some(potential) = atoms.pop() {
-        Laws::Atoms(potential.clone())
+        Laws::Atoms(shelf.potential(potential)?)
     } else if let Some(body) = given.pop() {
         Laws::Micromoduli(body.clone())
     } else if let Some(c) = springs.pop() {

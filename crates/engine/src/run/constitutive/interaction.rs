@@ -4,11 +4,8 @@ use super::shelf::Place;
 use super::{ConstitutiveModel, Laws};
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
-use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::family::links::Links;
-use crate::interaction::atoms::current::CurrentAtoms;
-use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::interaction::linear::LinearInteraction;
 use crate::interaction::list::{ListInteraction, ListParts};
 use crate::interaction::micromoduli::MicromoduliInteraction;
@@ -16,7 +13,6 @@ use crate::interaction::pairs::BondTable;
 use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
-use crate::law::potential::{Potential, Visitor};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
 use crate::law::solid::eam_like::{EamLike, Solid};
 use std::sync::Arc;
@@ -90,17 +86,9 @@ impl ConstitutiveModel {
             }
             Laws::Atoms(potential) => match (&body.layout, &self.stencil) {
                 (Layout::Grid(_), Some(_)) => {
-                    let links = self.links(body)?;
-                    Ok(potential.apply(Fixed {
-                        body,
-                        links,
-                        simd: self.simd,
-                    }))
+                    potential.bind(body, Some(self.links(body)?), self.simd)
                 }
-                _ => Ok(potential.apply(Current {
-                    body,
-                    simd: self.simd,
-                })),
+                _ => potential.bind(body, None, self.simd),
             },
             Laws::Bond(c) => {
                 let c: Vec<f64> = c
@@ -286,32 +274,5 @@ impl ConstitutiveModel {
             simd: self.simd,
         };
         Ok(Box::new(ListInteraction::of_pairs(parts, pairs.clone())))
-    }
-}
-
-/// Makes a potential an interaction on fixed lattice neighbours.
-struct Fixed<'a, const D: usize> {
-    body: &'a Body<D>,
-    links: Links<D>,
-    simd: Simd,
-}
-
-impl<const D: usize> Visitor for Fixed<'_, D> {
-    type Out = Box<dyn Interaction<D>>;
-    fn visit<P: Potential>(self, potential: P) -> Self::Out {
-        Box::new(FixedAtoms::new(self.body, self.links, potential, self.simd))
-    }
-}
-
-/// Makes a potential an interaction on current neighbours.
-struct Current<'a, const D: usize> {
-    body: &'a Body<D>,
-    simd: Simd,
-}
-
-impl<const D: usize> Visitor for Current<'_, D> {
-    type Out = Box<dyn Interaction<D>>;
-    fn visit<P: Potential>(self, potential: P) -> Self::Out {
-        Box::new(CurrentAtoms::new(self.body, potential, self.simd))
     }
 }

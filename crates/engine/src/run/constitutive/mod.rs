@@ -18,6 +18,7 @@ use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
 pub(super) use pairs::contact_stiffness;
+pub(super) use shelf::AnyPotential;
 pub use shelf::Shelf;
 use std::sync::Arc;
 use toughness::toughness;
@@ -131,7 +132,7 @@ impl ConstitutiveModel {
             Calibration::Continuum => continuum,
             Calibration::Discrete => discrete,
         };
-        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, continuum)?;
+        let Constants { laws, contact } = constants::<D>(spec, horizon, moments, continuum, shelf)?;
         let toughness = spec
             .materials
             .iter()

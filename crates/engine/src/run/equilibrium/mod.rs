@@ -9,7 +9,7 @@ use self::state::StaticState;
 use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
-use crate::condition::load::LoadKind;
+use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
@@ -92,6 +92,14 @@ impl<const D: usize> Model<D> {
             .loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::Replace(_)));
+        let own = |l: &Load<D>| matches!(l.kind, LoadKind::Own(_));
+        if self.loads.iter().any(own) {
+            return Err(BuildError::unsupported(
+                "conditions",
+                "a force of the program has no tangent, which equilibrium needs",
+            )
+            .help("take velocity Verlet, or write the force as expressions of x, y, z and t"));
+        }
         let wrong = match (moving, replaced) {
             (true, _) => Some("a prescribed velocity has no meaning in statics"),
             (_, true) => {

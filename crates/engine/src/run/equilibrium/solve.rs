@@ -41,7 +41,7 @@ impl<const D: usize> Model<D> {
         let mut f = zeros(self.body.len);
         let (v, t) = (zeros(self.body.len), self.time());
         for load in &mut self.loads {
-            load.add(&self.body, &v, &mut f, t, 0.0);
+            load.add(&self.body, [&self.u, &v], &mut f, t, 0.0);
         }
         f
     }

@@ -104,7 +104,9 @@ impl<const D: usize> Model<D> {
             Driven::Indenter(_) => true,
             Driven::Load(l) => replaces(l),
         });
+        let own = |l: &Load<D>| matches!(l.kind, LoadKind::Own(_));
         let what = match () {
+            () if self.loads.iter().any(own) => "a force of the program",
             () if self.loads.iter().any(replaces) => "a force that replaces all others",
             () if !self.indenters.is_empty() || driven => "an indenter or a force from outside",
             () if self.contact.is_some() => "contact",

@@ -3,19 +3,16 @@
 use super::atoms::AtomsPotential;
 use super::bodies;
 use super::context::{Context, Result};
-use crate::deck::document::{
-    AnyLaw, Document, Elastic, Fracture, Given, Law, Material, NamedLaw, ReleaseName,
-};
+use crate::deck::document::{Document, Fracture, Law, Material, ReleaseName};
 use crate::deck::units::{Dim, short};
-use crate::deck::value::{At, Number};
-use peridyne::law::descriptor::Value;
+use crate::deck::value::At;
+use peridyne::law::solid::linear::{Linear, Micromoduli};
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, Moduli, Parameter,
-    Parameters, PieceSpec, PmbStiffness, Release, SetSpec,
+    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, PieceSpec, Release,
+    SetSpec,
 };
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 pub(super) fn materials(
     context: &Context,
@@ -178,143 +175,29 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
     }
 }
 
-/// A law of the shelf, checked and with its defaults.
-fn shelved(context: &Context, span: &Range<usize>, named: &NamedLaw) -> Result<LawSpec> {
-    let shelf = Shelf::standard();
-    let Some(descriptor) = shelf.descriptor(&named.name) else {
-        return Err(context.error(span, format!("there is no law named {}", named.name)));
-    };
-    let mut parameters = Parameters::default();
-    let mut spans = vec![];
-    for (name, given) in &named.given {
-        let Some(key) = descriptor.key(name) else {
-            return Err(context.error(span, format!("the law has no key `{name}`")));
-        };
-        let (value, place) = match (given, key.value) {
-            (Given::Number(number), Value::Number(dimension, _)) => {
-                let x = context.finite(number, dimension)?;
-                (Parameter::Number(x), &number.span)
-            }
-            (Given::Rows(rows), Value::Rows(columns)) => {
-                let row = |row: &Vec<Number>| {
-                    if row.len() != columns.len() {
-                        let names: Vec<&str> = columns.iter().map(|c| c.0).collect();
-                        let message = format!(
-                            "a row of `{name}` has {} numbers, expected [{}]",
-                            row.len(),
-                            names.join(", ")
-                        );
-                        return Err(context.error(&rows.span, message));
-                    }
-                    let each = row.iter().zip(columns);
-                    each.map(|(x, c)| context.finite(x, c.1)).collect()
-                };
-                let rows_read = rows.value.iter().map(row).collect::<Result<_>>()?;
-                (Parameter::Rows(rows_read), &rows.span)
-            }
-            (Given::Word(word), _) => (Parameter::Word(word.value.clone()), &word.span),
-            (Given::Number(_) | Given::Rows(_), _) => {
-                return Err(context.error(span, format!("`{name}` has another form")));
-            }
-        };
-        parameters = parameters.with(name, value);
-        spans.push((name, place));
-    }
-    let help = || {
-        format!(
-            "write for example law = {{ {} = {} }}",
-            named.name, descriptor.example
-        )
-    };
-    if let Err((key, message)) = descriptor.check(&mut parameters) {
-        let place = spans.iter().find(|(name, _)| **name == key);
-        let place = place.map_or(span, |(_, place)| *place);
-        return Err(context.error_with(place, message, help()));
-    }
-    let mut law = LawSpec::named(&named.name, parameters);
-    if let Err(e) = shelf.look_up(&mut law) {
-        return Err(context.error_with(span, e.message, help()));
-    }
-    Ok(law)
-}
-
 pub(super) fn law(
     context: &Context,
-    law: &At<AnyLaw>,
+    written: &At<Law>,
     potential: Option<&AtomsPotential>,
 ) -> Result<LawSpec> {
-    let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
-    match &law.value.0 {
-        Law::Pmb(e) => pmb(context, &law.span, e, "pmb").map(LawSpec::Pmb),
-        Law::Lps(e) => moduli(context, &law.span, e).map(LawSpec::Lps),
-        Law::LpsAsTyped(e) => match e {
-            Elastic {
-                bulk: Some(bulk),
-                shear: Some(shear),
-                young: None,
-                poisson: None,
-                micromodulus: None,
-            } => Ok(LawSpec::LpsAsTyped {
-                bulk: pressure(bulk, "the bulk modulus")?,
-                shear: pressure(shear, "the shear modulus")?,
-            }),
-            _ => Err(context.error(&law.span, "lps_as_typed takes bulk and shear")),
-        },
-        Law::Springs(e) => {
-            let pmb = pmb(context, &law.span, e, "springs")?;
-            Ok(LawSpec::Springs(pmb))
-        }
-        Law::LennardJones(_)
-        | Law::Morse(_)
-        | Law::Buckingham(_)
-        | Law::Eam(_)
-        | Law::EamForm(_) => match potential {
+    let name = &*written.value.name;
+    if Shelf::standard().is_potential(name) {
+        return match potential {
             Some(potential) => Ok(LawSpec::Atoms(potential.spec.clone())),
-            None => Err(context.error(&law.span, "the potential of the deck was not read")),
-        },
-        Law::Micromoduli => match &context.micromoduli {
+            None => Err(context.error(&written.span, "the potential of the deck was not read")),
+        };
+    }
+    if name == Micromoduli::NAME {
+        return match &context.micromoduli {
             Some(body) => Ok(LawSpec::Micromoduli(body.clone())),
             None => Err(context.error_with(
-                &law.span,
+                &written.span,
                 "there are no micromoduli: the body is no linear body from a file",
                 "write body = { file = \"coarse.npz\" }, as `peridyne coarsen` makes it",
             )),
-        },
-        Law::Named(named) => shelved(context, &law.span, named),
-        Law::EamLike(e) => Ok(LawSpec::EamLike {
-            pair: pressure(&e.pair, "the stiffness of the pairs")?,
-            volume: context.finite(&e.volume, Dim::PRESSURE)?,
-        }),
+        };
     }
-}
-
-/// The one stiffness of a bond-based law.
-fn pmb(context: &Context, span: &Range<usize>, e: &Elastic, name: &str) -> Result<PmbStiffness> {
-    let pressure = |number: &Number, what: &str| context.positive(number, Dim::PRESSURE, what);
-    if let Some(wrong) = e.poisson.as_ref().or(e.shear.as_ref()) {
-        let help =
-            "Poisson's ratio of a bond-based law is 1/4 (plane stress 1/3); use lps to choose it";
-        return Err(context.error_with(&wrong.span, format!("{name} takes one modulus"), help));
-    }
-    let stiffness = [
-        ("young", e.young.as_ref()),
-        ("bulk", e.bulk.as_ref()),
-        ("micromodulus", e.micromodulus.as_ref()),
-    ];
-    let given = stiffness.map(|(name, n)| (name, n.is_some()));
-    let which = context.one_of(span, name, &given)?;
-    let Some(number) = stiffness[which].1 else {
-        return Err(context.error(span, format!("{name} needs a stiffness")));
-    };
-    Ok(match which {
-        0 => PmbStiffness::Young(pressure(number, "Young's modulus")?),
-        1 => PmbStiffness::Bulk(pressure(number, "the bulk modulus")?),
-        _ => PmbStiffness::Micromodulus(context.positive(
-            number,
-            Dim::MICROMODULUS,
-            "the micromodulus",
-        )?),
-    })
+    super::law::solid(context, written)
 }
 
 /// Volume of every point (length^D), if it is the same.
@@ -333,68 +216,6 @@ fn point_volume(body: &BodySpec, dimension: usize) -> Option<f64> {
             pieces.iter().all(same).then_some(first)
         }
     }
-}
-
-/// Two of the four moduli make the other two (three-dimensional solid).
-fn moduli(context: &Context, span: &Range<usize>, e: &Elastic) -> Result<Moduli> {
-    if let Some(c) = &e.micromodulus {
-        return Err(context.error(
-            &c.span,
-            "lps takes two of young, poisson, bulk, shear, not a micromodulus",
-        ));
-    }
-    let get = |n: &Option<Number>, what: &str| {
-        n.as_ref()
-            .map(|n| context.positive(n, Dim::PRESSURE, what))
-            .transpose()
-    };
-    let (young, bulk, shear) = (
-        get(&e.young, "Young's modulus")?,
-        get(&e.bulk, "the bulk modulus")?,
-        get(&e.shear, "the shear modulus")?,
-    );
-    let poisson = e
-        .poisson
-        .as_ref()
-        .map(|n| context.finite(n, Dim::NUMBER))
-        .transpose()?;
-    let moduli = match (young, poisson, bulk, shear) {
-        (Some(young), Some(poisson), None, None) => Moduli { young, poisson },
-        (None, None, Some(bulk), Some(shear)) => Moduli::from_bulk_shear(bulk, shear),
-        (Some(young), None, Some(bulk), None) => Moduli {
-            young,
-            poisson: (3.0 * bulk - young) / (6.0 * bulk),
-        },
-        (Some(young), None, None, Some(shear)) => Moduli {
-            young,
-            poisson: young / (2.0 * shear) - 1.0,
-        },
-        (None, Some(poisson), Some(bulk), None) => Moduli {
-            young: 3.0 * bulk * (1.0 - 2.0 * poisson),
-            poisson,
-        },
-        (None, Some(poisson), None, Some(shear)) => Moduli {
-            young: 2.0 * shear * (1.0 + poisson),
-            poisson,
-        },
-        _ => {
-            let help = "write for example lps = { young = \"65 GPa\", poisson = 0.2 }";
-            return Err(context.error_with(
-                span,
-                "lps takes two of young, poisson, bulk, shear",
-                help,
-            ));
-        }
-    };
-    if !(moduli.poisson > -1.0 && moduli.poisson < 0.5) {
-        let span = e.poisson.as_ref().map_or(span, |n| &n.span);
-        let message = format!(
-            "Poisson's ratio must lie between -1 and 0.5, it is {}",
-            short(moduli.poisson)
-        );
-        return Err(context.error(span, message));
-    }
-    Ok(moduli)
 }
 
 /// When bonds of all materials let go.

@@ -5,6 +5,7 @@ mod bodies;
 mod body;
 mod context;
 mod interface;
+mod law;
 mod material;
 mod motion;
 mod periods;
@@ -33,7 +34,7 @@ use context::{Context, Result};
 use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon, Influence,
-    LawSpec, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
+    MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
 };
 use std::path::Path;
 
@@ -123,9 +124,15 @@ pub(super) fn lower(
             None | Some(FamilyName::Auto | FamilyName::Neighbours)
         );
     if document.family == Some(FamilyName::Neighbours) && !current {
+        let shelf = Shelf::standard();
+        let all = shelf.descriptors().map(|d| &*d.name);
+        let potentials: Vec<&str> = all.filter(|name| shelf.is_potential(name)).collect();
         return Err(context.error(
             &document.body.span,
-            "family = \"neighbours\" belongs to interatomic potentials (lennard_jones, morse, eam, …)",
+            format!(
+                "family = \"neighbours\" belongs to interatomic potentials ({})",
+                potentials.join(", ")
+            ),
         ));
     }
     let mut initial = Vec::new();
@@ -348,20 +355,12 @@ fn influence(named: Option<InfluenceName>, materials: &[MaterialSpec]) -> Influe
         Some(InfluenceName::Conical) => Influence::Conical,
         Some(InfluenceName::Gaussian) => Influence::Gaussian,
         Some(InfluenceName::CubicSpline) => Influence::CubicSpline,
-        None => match materials.first().map(|m| &m.law) {
-            Some(LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. }) => Influence::Inverse,
-            Some(LawSpec::Named(law)) => Shelf::standard()
-                .descriptor(&law.name)
-                .map_or(Influence::Constant, |d| d.influence),
-            Some(
-                LawSpec::Pmb(_)
-                | LawSpec::EamLike { .. }
-                | LawSpec::Springs(_)
-                | LawSpec::Atoms(_)
-                | LawSpec::Micromoduli(_),
-            )
-            | None => Influence::Constant,
-        },
+        None => {
+            let first = materials.first().map(|m| &m.law);
+            let shelf = Shelf::standard();
+            let written = first.and_then(|law| shelf.written(law));
+            written.map_or(Influence::Constant, |(d, _)| d.influence)
+        }
     }
 }
 

@@ -2,10 +2,13 @@ use super::*;
 use crate::crystal::Crystal;
 use crate::exact::{Q, q};
 use crate::gradient::comparison::compare;
+use peridyne::law::potential::buckingham::Buckingham;
 use peridyne::law::potential::cut::Cut;
-use peridyne::law::potential::mei::Mei;
+use peridyne::law::potential::cut::Ends;
+use peridyne::law::potential::mei::{EamForm, Mei};
+use peridyne::law::potential::morse::Morse;
 use peridyne::law::potential::tabulated::Tabulated;
-use peridyne::spec::{Buckingham, End, MeiSpec, Morse, TableSpec};
+use peridyne::spec::{End, TableSpec};
 
 /// A chain at a stretch whose law is a sum of powers: the polynomials in y″, y‴, … with the power of y′ put in.
 fn at_stretch(e: &Expansion<Q>, stretch: &Q) -> Expansion<Q> {
@@ -129,7 +132,7 @@ fn meets_the_points(name: &str, chain: &impl Chain<f64>, stretch: f64, lengths: 
 }
 
 fn mei(distance: f64) -> Mei {
-    Mei::new(MeiSpec {
+    Mei::new(EamForm {
         cohesive: 3.54,
         pair: 0.1287,
         alpha: 5.0857,
@@ -138,10 +141,10 @@ fn mei(distance: f64) -> Mei {
         lambda: 5.7874,
         density: [0.64085, -6.83764, 26.75616, -47.16495, 36.18925, -8.60834],
         density_scale: 1.0 / 12.0,
-        pair_length: 2.0 * distance,
-        density_length: distance,
-        near: 1.75 * distance,
-        cutoff: 1.95 * distance,
+        pair_length: 2.0,
+        density_length: 1.0,
+        near: 1.75,
+        cutoff: 1.95,
         shells: vec![(2.0, 1.0)],
         nearest: distance,
         shell_scale: 1.0,
@@ -156,24 +159,26 @@ fn equations_meet_the_points_to_the_next_order() {
         alpha: 1.3,
         distance: 1.1,
     };
-    let chain = PotentialChain::new(
-        Cut::new(morse, f64::INFINITY, End::Truncated),
-        1.0,
-        horizon(3),
-    );
+    let chain = PotentialChain::new(Cut::new(morse, Ends::NONE), 1.0, horizon(3));
     meets_the_points("Morse", &chain.unwrap(), 1.05, &[12.0; 4]);
     let buckingham = Buckingham {
         strength: 400.0,
         range: 0.2,
         dispersion: 2.0,
     };
-    let whole = Cut::new(buckingham, f64::INFINITY, End::Truncated);
+    let whole = Cut::new(buckingham, Ends::NONE);
     let chain = PotentialChain::new(whole, 1.0, horizon(2)).unwrap();
     meets_the_points("Buckingham", &chain, 1.1, &[12.0; 3]);
     let chain = PotentialChain::new(mei(1.0), 1.0, Reach::Cutoff).unwrap();
     meets_the_points("embedded atoms", &chain, 1.0, &[30.0, 24.0, 12.0]);
     // a smooth end that acts on the second neighbours
-    let smooth = Cut::new(morse, 3.5, End::Smooth(1.2));
+    let smooth = Cut::new(
+        morse,
+        Ends {
+            cutoff: 3.5,
+            end: End::Smooth(1.2),
+        },
+    );
     let chain = PotentialChain::new(smooth, 1.0, Reach::Cutoff).unwrap();
     meets_the_points("smooth Morse", &chain, 1.0, &[60.0; 2]);
     // within one piece of each table
@@ -214,7 +219,7 @@ fn small_strains_of_an_unstretched_chain_are_linear() {
             assert!((found / c - 1.0).abs() < 1e-11, "{p}: {found} {c}");
         }
     }
-    check(Cut::new(morse, f64::INFINITY, End::Truncated), 1.2, horizon);
+    check(Cut::new(morse, Ends::NONE), 1.2, horizon);
     check(mei(1.0), 1.02, Reach::Cutoff);
     // powers of metres leave the range of numbers, sums in units of the spacing do not
     check(mei(2.5e-10), 2.5e-10, Reach::Cutoff);
@@ -245,8 +250,7 @@ fn states_without_an_equation_say_why() {
                 range: 1.0,
                 dispersion: 0.0,
             },
-            f64::INFINITY,
-            End::Truncated,
+            Ends::NONE,
         ),
         1.0,
         Reach::Cutoff,

@@ -1,6 +1,7 @@
 use super::*;
+use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::space::region::Region;
-use peridyne::spec::{End, Form, Horizon, LennardJones, PmbStiffness, PotentialSpec};
+use peridyne::spec::{End, Horizon, PmbStiffness, PotentialSpec};
 
 fn block(d: usize, n: [i32; 3], m: u32) -> Spec {
     let kind = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][d - 1];
@@ -117,14 +118,13 @@ fn state_based_plates_and_blocks_are_exact_with_factors_of_any_sign() {
 #[test]
 fn refused_with_a_reason() {
     let mut spec = block(2, [10, 10, 1], 2);
-    spec.materials[0].law = LawSpec::Atoms(PotentialSpec {
-        form: Form::LennardJones(LennardJones {
+    spec.materials[0].law = LawSpec::Atoms(
+        PotentialSpec::of(LennardJones {
             epsilon: 1.0,
             sigma: 1.0,
-        }),
-        cutoff: 2.5,
-        end: End::Shifted,
-    });
+        })
+        .ended(2.5, End::Shifted),
+    );
     let refused = |spec: &Spec| correct(spec, SurfaceMethod::Exact).unwrap_err();
     assert_eq!(refused(&spec), SurfaceError::Law);
     spec.materials[0].law = LPS;

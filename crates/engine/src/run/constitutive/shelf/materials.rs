@@ -1,5 +1,6 @@
-//! The shelf: laws by their names, each a file of its own and a line here. A program may put its own beside them.
+//! Laws of `law/material` on a body.
 
+use super::{Entry, Runs, Shelf};
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
@@ -10,11 +11,7 @@ use crate::interaction::material::{
 };
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
-use crate::law::descriptor::{Descriptor, Given, Memory, Shelved};
-use crate::law::material::correspondence::Correspondence;
-use crate::law::material::elastic_plastic::ElasticPlastic;
-use crate::law::material::softening::Softening;
-use crate::law::material::viscoelastic::Viscoelastic;
+use crate::law::descriptor::{Given, Memory, Shelved};
 use crate::law::material::{Material, Numbers};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
@@ -39,64 +36,36 @@ pub(crate) struct Place<'a, const D: usize> {
 type Bound<const D: usize> = Result<Box<dyn Interaction<D>>, BuildError>;
 type Binder<const D: usize> = fn(&Chosen, Place<D>) -> Bound<D>;
 
-/// A law on the shelf.
-#[derive(Clone)]
-struct Entry {
-    descriptor: Descriptor,
-    linear: fn(&Parameters) -> Result<LawSpec, String>,
-    brittle_energy: fn(&Parameters, f64) -> f64,
+/// How a law of `law/material` is made and put on bodies.
+pub(super) struct Materials {
+    pub linear: fn(&Parameters) -> Result<LawSpec, String>,
+    pub brittle_energy: fn(&Parameters, f64) -> f64,
     /// [`Binder`]s of one, two and three dimensions.
     binders: [Arc<dyn Any + Send + Sync>; 3],
 }
 
-/// Laws that a spec can name.
-#[derive(Clone)]
-pub struct Shelf {
-    entries: Vec<Arc<Entry>>,
-}
-
-impl Default for Shelf {
-    fn default() -> Shelf {
-        Shelf::standard()
-    }
-}
-
-impl Shelf {
-    /// The laws that come with the engine.
-    pub fn standard() -> Shelf {
-        Shelf { entries: vec![] }
-            .with_solid::<ElasticPlastic>()
-            .with::<Viscoelastic>()
-            .with_solid::<Correspondence>()
-            .with::<Softening>()
-    }
-
-    /// And one more; it takes the place of one of the same name.
-    pub fn with<M>(self) -> Shelf
+impl Materials {
+    pub fn of<M>() -> Materials
     where
         M: Shelved + Material<1> + Material<2> + Material<3>,
     {
-        let line: Arc<dyn Any + Send + Sync> = Arc::new(bind::<1, M> as Binder<1>);
-        self.put::<M>(line)
+        let line = Arc::new(bind::<1, M> as Binder<1>);
+        Materials::with::<M>(line)
     }
 
-    /// The same of a law that means nothing on a line.
-    pub fn with_solid<M>(self) -> Shelf
+    /// Of a law that means nothing on a line.
+    pub fn of_solid<M>() -> Materials
     where
         M: Shelved + Material<2> + Material<3>,
     {
-        self.put::<M>(Arc::new(()))
+        Materials::with::<M>(Arc::new(()))
     }
 
-    fn put<M>(mut self, line: Arc<dyn Any + Send + Sync>) -> Shelf
+    fn with<M>(line: Arc<dyn Any + Send + Sync>) -> Materials
     where
         M: Shelved + Material<2> + Material<3>,
     {
-        let descriptor = M::descriptor();
-        self.entries
-            .retain(|e| e.descriptor.name != descriptor.name);
-        self.entries.push(Arc::new(Entry {
-            descriptor,
+        Materials {
             linear: M::linear,
             brittle_energy: M::brittle_energy,
             binders: [
@@ -104,68 +73,6 @@ impl Shelf {
                 Arc::new(bind::<2, M> as Binder<2>),
                 Arc::new(bind::<3, M> as Binder<3>),
             ],
-        }));
-        self
-    }
-
-    pub fn descriptors(&self) -> impl Iterator<Item = &Descriptor> {
-        self.entries.iter().map(|e| &e.descriptor)
-    }
-
-    /// What a law says of itself.
-    pub fn descriptor(&self, name: &str) -> Option<&Descriptor> {
-        self.entry(name).map(|e| &e.descriptor)
-    }
-
-    fn entry(&self, name: &str) -> Option<&Arc<Entry>> {
-        self.entries.iter().find(|e| e.descriptor.name == name)
-    }
-
-    /// Look up the laws that materials name: their parameters with defaults, and the linear laws of the same elasticity.
-    ///
-    /// # Errors
-    /// No such law, or parameters that do not fit it.
-    pub fn resolve(&self, spec: &mut Spec) -> Result<(), BuildError> {
-        for (n, m) in spec.materials.iter_mut().enumerate() {
-            self.look_up(&mut m.law)
-                .map_err(|e| e.at(format!("materials[{n}].law")))?;
-        }
-        Ok(())
-    }
-
-    /// Look up the law of one material; laws that need none are left alone.
-    ///
-    /// # Errors
-    /// As of [`Shelf::resolve`].
-    pub fn look_up(&self, law: &mut LawSpec) -> Result<(), BuildError> {
-        let LawSpec::Named(law) = law else {
-            return Ok(());
-        };
-        let Some(entry) = self.entry(&law.name) else {
-            let known: Vec<&str> = self.descriptors().map(|d| d.name.as_ref()).collect();
-            let message = format!(
-                "there is no law named {}; the shelf has {}",
-                law.name,
-                known.join(", ")
-            );
-            return Err(BuildError::unknown("law", law.name.clone(), message));
-        };
-        let invalid = |message: String| BuildError::invalid("law", message);
-        let checked = entry.descriptor.check(&mut law.parameters);
-        checked.map_err(|(_, message)| invalid(message))?;
-        let linear = (entry.linear)(&law.parameters).map_err(invalid)?;
-        law.linear = Some(Box::new(linear));
-        Ok(())
-    }
-
-    /// The fracture energy of a brittle bond with the critical stretch of this law's (see [`Shelved::brittle_energy`]).
-    pub(crate) fn brittle_energy(&self, law: &LawSpec, energy: f64) -> f64 {
-        match law {
-            LawSpec::Named(law) => match self.entry(&law.name) {
-                Some(entry) => (entry.brittle_energy)(&law.parameters, energy),
-                None => energy,
-            },
-            _ => energy,
         }
     }
 }
@@ -192,7 +99,7 @@ struct Made {
 ///
 /// # Errors
 /// They name different ones.
-pub(super) fn chosen<const D: usize>(
+pub(in crate::run::constitutive) fn chosen<const D: usize>(
     spec: &Spec,
     shelf: &Shelf,
     moments: Moments,
@@ -254,7 +161,10 @@ impl Chosen {
 
     /// The law on a body.
     pub fn bind<const D: usize>(&self, place: Place<D>) -> Bound<D> {
-        let binder = self.entry.binders.get(D - 1);
+        let binder = match &self.entry.runs {
+            Runs::Material(m) => m.binders.get(D - 1),
+            Runs::Linear { .. } | Runs::Atoms(_) => None,
+        };
         match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
             Some(binder) => binder(self, place),
             None => Err(BuildError::unsupported(
@@ -264,7 +174,7 @@ impl Chosen {
                     self.entry.descriptor.name
                 ),
             )
-            .help("on a line take pmb, lps or viscoelastic")),
+            .help("on a line take a law such as pmb or lps")),
         }
     }
 }

@@ -1,27 +1,17 @@
-//! Laws of the shelf in a deck: their keys are those of their descriptors.
+//! The law of a material as written: a name of the shelf, and its keys by its descriptor.
 
-use super::Law;
-use crate::deck::form;
 use crate::deck::value::{At, Number, Written};
 use peridyne::law::descriptor::{Descriptor, Key, Need, Value};
 use peridyne::run::Shelf;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::value::{StrDeserializer, StringDeserializer};
-use serde::de::{
-    Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error, MapAccess, VariantAccess,
-    Visitor,
-};
+use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
 use serde_json::json;
 use std::borrow::Cow;
 use std::fmt;
 
-/// Any law: one with keys of its own, or one of the shelf.
+/// A law as written.
 #[derive(Debug)]
-pub struct AnyLaw(pub Law);
-
-/// A law of the shelf as written.
-#[derive(Debug)]
-pub struct NamedLaw {
+pub struct Law {
     pub name: String,
     pub given: Vec<(String, Given)>,
 }
@@ -29,50 +19,72 @@ pub struct NamedLaw {
 #[derive(Debug)]
 pub enum Given {
     Number(Number),
+    List(At<Vec<Number>>),
     Rows(At<Vec<Vec<Number>>>),
     Word(At<String>),
 }
 
-impl<'de> Deserialize<'de> for AnyLaw {
+impl Law {
+    /// The word that a key has.
+    pub fn word(&self, key: &str) -> Option<&At<String>> {
+        self.given.iter().find_map(|(name, given)| match given {
+            Given::Word(word) if name == key => Some(word),
+            _ => None,
+        })
+    }
+}
+
+/// A law without keys is its name alone.
+fn plain(descriptor: &Descriptor) -> bool {
+    descriptor.keys.is_empty()
+}
+
+fn unknown<E: Error>(shelf: &Shelf, name: &str) -> E {
+    let known: Vec<String> = shelf
+        .descriptors()
+        .map(|d| format!("`{}`", d.name))
+        .collect();
+    E::custom(format!(
+        "unknown variant `{name}`, expected one of {}",
+        known.join(", ")
+    ))
+}
+
+impl<'de> Deserialize<'de> for Law {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct LawVisitor;
         impl<'de> Visitor<'de> for LawVisitor {
-            type Value = AnyLaw;
+            type Value = Law;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("a law such as { lps = { … } }")
             }
-            fn visit_str<E: Error>(self, v: &str) -> Result<AnyLaw, E> {
-                Law::deserialize(StrDeserializer::new(v)).map(AnyLaw)
+            fn visit_str<E: Error>(self, name: &str) -> Result<Law, E> {
+                let shelf = Shelf::standard();
+                match shelf.descriptor(name) {
+                    Some(descriptor) if plain(descriptor) => Ok(Law {
+                        name: name.into(),
+                        given: vec![],
+                    }),
+                    Some(_) => Err(E::custom(format!("the law {name} needs its constants"))),
+                    None => Err(unknown(&shelf, name)),
+                }
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<AnyLaw, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Law, A::Error> {
                 let Some(name) = map.next_key::<String>()? else {
                     return Err(A::Error::custom("a law has a name: { lps = { … } }"));
                 };
                 let shelf = Shelf::standard();
-                let law = match shelf.descriptor(&name) {
-                    Some(descriptor) => {
-                        let given = map.next_value_seed(Constants(descriptor))?;
-                        Law::Named(NamedLaw {
-                            name: name.clone(),
-                            given,
-                        })
+                let given = match shelf.descriptor(&name) {
+                    Some(descriptor) if plain(descriptor) => {
+                        return Err(A::Error::custom(
+                            "this law has no constants: write its name alone",
+                        ));
                     }
-                    None if form::is_law(&name) => Law::deserialize(Tagged {
-                        name: name.clone(),
-                        map: &mut map,
-                    })?,
-                    None => {
-                        let shelved = shelf.descriptors().map(|d| d.name.to_string());
-                        let known = form::laws().map(str::to_string).chain(shelved);
-                        let known: Vec<String> = known.map(|n| format!("`{n}`")).collect();
-                        return Err(A::Error::custom(format!(
-                            "unknown variant `{name}`, expected one of {}",
-                            known.join(", ")
-                        )));
-                    }
+                    Some(descriptor) => map.next_value_seed(Constants(descriptor))?,
+                    None => return Err(unknown(&shelf, &name)),
                 };
                 match map.next_key::<String>()? {
-                    None => Ok(AnyLaw(law)),
+                    None => Ok(Law { name, given }),
                     Some(more) => Err(A::Error::custom(format!(
                         "a material has one law, this has `{name}` and `{more}`"
                     ))),
@@ -102,20 +114,20 @@ impl<'de> Visitor<'de> for Constants<'_> {
         let mut all: Vec<(String, Given)> = vec![];
         while let Some(name) = map.next_key::<String>()? {
             let Some(key) = self.0.key(&name) else {
-                let known: Vec<String> = self
-                    .0
-                    .keys
-                    .iter()
-                    .map(|k| format!("`{}`", k.name))
-                    .collect();
+                let known: Vec<String> = self.0.taken().map(|k| format!("`{}`", k.name)).collect();
                 return Err(A::Error::custom(format!(
                     "unknown field `{name}`, expected one of {}",
                     known.join(", ")
                 )));
             };
+            if key.need == Need::Refused {
+                return Err(A::Error::custom(format!("{} {}", self.0.name, key.doc)));
+            }
             let given = match key.value {
                 Value::Number(..) => Given::Number(map.next_value()?),
+                Value::List(..) => Given::List(map.next_value()?),
                 Value::Rows(_) => Given::Rows(map.next_value()?),
+                Value::Name | Value::Table => Given::Word(map.next_value()?),
                 Value::Word(words) => {
                     let word: At<String> = map.next_value()?;
                     if !words.iter().any(|(w, _)| *w == word.value) {
@@ -140,71 +152,25 @@ impl<'de> Visitor<'de> for Constants<'_> {
     }
 }
 
-/// A map of one entry as an enum.
-struct Tagged<'a, A> {
-    name: String,
-    map: &'a mut A,
-}
-
-impl<'de, A: MapAccess<'de>> Deserializer<'de> for Tagged<'_, A> {
-    type Error = A::Error;
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, A::Error> {
-        visitor.visit_enum(self)
-    }
-    serde::forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf option unit unit_struct
-        newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
-    }
-}
-
-impl<'de, 'a, A: MapAccess<'de>> EnumAccess<'de> for Tagged<'a, A> {
-    type Error = A::Error;
-    type Variant = Content<'a, A>;
-    fn variant_seed<V: DeserializeSeed<'de>>(
-        self,
-        seed: V,
-    ) -> Result<(V::Value, Content<'a, A>), A::Error> {
-        let variant = seed.deserialize(StringDeserializer::new(self.name))?;
-        Ok((variant, Content(self.map)))
-    }
-}
-
-struct Content<'a, A>(&'a mut A);
-
-impl<'de, A: MapAccess<'de>> VariantAccess<'de> for Content<'_, A> {
-    type Error = A::Error;
-    fn unit_variant(self) -> Result<(), A::Error> {
-        Err(A::Error::custom(
-            "this law has no constants: write its name alone",
-        ))
-    }
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, A::Error> {
-        self.0.next_value_seed(seed)
-    }
-    fn tuple_variant<V: Visitor<'de>>(self, _: usize, _: V) -> Result<V::Value, A::Error> {
-        Err(A::Error::custom("the constants of a law are a table"))
-    }
-    fn struct_variant<V: Visitor<'de>>(
-        self,
-        _: &'static [&'static str],
-        _: V,
-    ) -> Result<V::Value, A::Error> {
-        Err(A::Error::custom("the constants of a law are a table"))
-    }
-}
-
-impl JsonSchema for AnyLaw {
+impl JsonSchema for Law {
     fn schema_name() -> Cow<'static, str> {
         "Law".into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let number = generator.subschema_for::<Written>();
-        let mut schema = Law::json_schema(generator);
         let shelf = Shelf::standard();
         let laws = shelf.descriptors().map(|d| {
+            let description = format!("{} [{}]", d.doc, d.source);
+            if plain(d) {
+                return json!({ "type": "string", "const": d.name, "description": description });
+            }
             let key = |k: &Key| {
                 let mut value = match k.value {
                     Value::Number(..) => number.clone().to_value(),
+                    Value::List(..) => json!({
+                        "type": "array",
+                        "items": number.clone().to_value(),
+                    }),
                     Value::Rows(_) => json!({
                         "type": "array",
                         "items": { "type": "array", "items": number.clone().to_value() },
@@ -213,16 +179,17 @@ impl JsonSchema for AnyLaw {
                         let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
                         json!({ "type": "string", "enum": words })
                     }
+                    Value::Name | Value::Table => json!({ "type": "string" }),
                 };
                 value["description"] = json!(k.doc);
                 (k.name.to_string(), value)
             };
             let needed = d.keys.iter().filter(|k| k.need == Need::Given);
             let needed: Vec<&str> = needed.map(|k| k.name).collect();
-            let keys: serde_json::Map<String, serde_json::Value> = d.keys.iter().map(key).collect();
+            let keys: serde_json::Map<String, serde_json::Value> = d.taken().map(key).collect();
             json!({
                 "type": "object",
-                "description": format!("{} ({})", d.doc, d.source),
+                "description": description,
                 "properties": { &*d.name: {
                     "type": "object",
                     "properties": keys,
@@ -234,13 +201,6 @@ impl JsonSchema for AnyLaw {
             })
         });
         let laws: Vec<serde_json::Value> = laws.collect();
-        if let Some(all) = schema
-            .get_mut("oneOf")
-            .and_then(serde_json::Value::as_array_mut)
-        {
-            all.extend(laws);
-            return schema;
-        }
-        json_schema!({ "anyOf": laws })
+        json_schema!({ "oneOf": laws })
     }
 }

@@ -1,0 +1,86 @@
+//! Laws of bonds that know nothing but their own stretch: two functions, and all else follows.
+
+use super::{Along, Bond, End, Material};
+use crate::law::descriptor::{Descriptor, Given, Key, Shelved};
+use crate::law::number::Number;
+use crate::law::solid::linear::{ONE_STIFFNESS, stiffness};
+use crate::spec::{LawSpec, Parameters, Plane};
+use std::marker::PhantomData;
+
+/// Bonds that answer along themselves with `T = ½ c ω t(s)` and store `½ c ω |ξ| w(s)` at either end, `w′ = t`, `t = s + …` for small
+/// stretches. c is the micromodulus that one of young, bulk, micromodulus gives; `K` numbers beside it are read by the functions.
+pub trait BondLaw<const K: usize>: Send + Sync + 'static {
+    /// Keys of those numbers.
+    const NUMBERS: [Key; K];
+
+    /// Without the keys.
+    fn descriptor() -> Descriptor;
+
+    /// t(s)
+    fn tension<N: Number>(numbers: [N; K], stretch: N) -> N;
+
+    /// w(s)
+    fn energy<N: Number>(numbers: [N; K], stretch: N) -> N;
+}
+
+/// Such a law on a body.
+pub struct Bonds<L, const K: usize> {
+    /// ½ c and the numbers of each material.
+    materials: Vec<([f64; 1], [f64; K])>,
+    law: PhantomData<L>,
+}
+
+type Constants<N, const K: usize> = ([N; 1], [N; K]);
+type Ends<'a, N, const K: usize> = End<'a, Constants<N, K>, [N; 0], [N; 0]>;
+
+impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> {
+    type Constants<N: Number> = Constants<N, K>;
+    type Form<N: Number> = [N; 0];
+    type Sum<N: Number> = [N; 0];
+    type Point<N: Number> = [N; 0];
+    type Past<N: Number> = [N; 0];
+    type Memory<N: Number> = [N; 0];
+    type State<N: Number> = Along<N>;
+    const PASSES: usize = 0;
+
+    fn constants(&self, material: usize, _: f64) -> Constants<f64, K> {
+        self.materials[material]
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, K>) -> Along<N> {
+        let ([c], numbers) = *end.constants;
+        Along(c * bond.omega * L::tension(numbers, bond.stretch) * bond.inv_current)
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, K>) -> N {
+        let ([c], numbers) = *end.constants;
+        c * bond.omega * bond.length * L::energy(numbers, bond.stretch)
+    }
+}
+
+impl<L: BondLaw<K>, const K: usize> Shelved for Bonds<L, K> {
+    fn descriptor() -> Descriptor {
+        L::descriptor().keys(&ONE_STIFFNESS).keys(&L::NUMBERS)
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        stiffness(parameters).map(LawSpec::Pmb)
+    }
+
+    fn make(_: usize, _: Plane, all: &[Given]) -> Result<Self, (usize, String)> {
+        let of = |(n, given): (usize, &Given)| {
+            let wrong = |message: String| (n, message);
+            let c = given
+                .micromodulus
+                .ok_or_else(|| wrong("the law has no micromodulus".into()))?;
+            let numbers = given.parameters.all(L::NUMBERS.map(|k| k.name));
+            Ok(([0.5 * c], numbers.map_err(wrong)?))
+        };
+        Ok(Bonds {
+            materials: all.iter().enumerate().map(of).collect::<Result<_, _>>()?,
+            law: PhantomData,
+        })
+    }
+}

@@ -1,0 +1,145 @@
+//! Potentials by their names, on a body.
+
+use super::{Entry, Runs, Shelf};
+use crate::body::Body;
+use crate::error::BuildError;
+use crate::execute::simd::Simd;
+use crate::family::links::Links;
+use crate::family::stencil::Stencil;
+use crate::interaction::Interaction;
+use crate::interaction::atoms::current::CurrentAtoms;
+use crate::interaction::atoms::fixed::FixedAtoms;
+use crate::law::descriptor::Wrong;
+use crate::law::potential::bulk::{Bulk, bulk};
+use crate::law::potential::{Described, Potential, look_up, make};
+use crate::space::lattice::LatticeKind;
+use crate::spec::{Parameters, PotentialSpec};
+use std::any::Any;
+use std::sync::Arc;
+
+type Bound<const D: usize> = Result<Box<dyn Interaction<D>>, Wrong>;
+/// Fixed neighbours where there are links.
+type Binder<const D: usize> = fn(&Parameters, &Body<D>, Option<Links<D>>, Simd) -> Bound<D>;
+
+/// What the engine does with a kind of potential.
+pub(super) struct Atoms {
+    pub look_up: fn(Parameters) -> Result<PotentialSpec, Wrong>,
+    pub on_lattice: fn(&mut Parameters, LatticeKind, f64),
+    bulk: fn(&Parameters, &Stencil, f64, f64) -> Result<Bulk, Wrong>,
+    closest: fn(&Parameters, f64, f64) -> Result<Option<f64>, Wrong>,
+    /// [`Binder`]s of one, two and three dimensions.
+    binders: [Arc<dyn Any + Send + Sync>; 3],
+}
+
+impl Atoms {
+    pub fn of<P: Described>() -> Atoms {
+        Atoms {
+            look_up: look_up::<P>,
+            on_lattice: P::on_lattice,
+            bulk: |p, stencil, spacing, volume| Ok(bulk(&make::<P>(p)?, stencil, spacing, volume)),
+            closest: |p, from, energy| Ok(closest(&make::<P>(p)?, from, energy)),
+            binders: [
+                Arc::new(bind::<1, P> as Binder<1>),
+                Arc::new(bind::<2, P> as Binder<2>),
+                Arc::new(bind::<3, P> as Binder<3>),
+            ],
+        }
+    }
+}
+
+fn bind<const D: usize, P: Described>(
+    parameters: &Parameters,
+    body: &Body<D>,
+    links: Option<Links<D>>,
+    simd: Simd,
+) -> Bound<D> {
+    let potential = make::<P>(parameters)?;
+    Ok(match links {
+        Some(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
+        None => Box::new(CurrentAtoms::new(body, potential, simd)),
+    })
+}
+
+/// The distance at which the pair energy has reached `energy`, from `from` inwards (length), if it ever does.
+fn closest(potential: &impl Potential, from: f64, energy: f64) -> Option<f64> {
+    let steps = (0..300).map(|n| from * 0.99f64.powi(n));
+    steps
+        .map(|r| (r, potential.pair(r * r)))
+        .take_while(|(_, e)| e.is_finite())
+        .find(|(_, e)| *e >= energy)
+        .map(|(r, _)| r)
+}
+
+/// A potential with its constants.
+#[derive(Clone)]
+pub(crate) struct AnyPotential {
+    entry: Arc<Entry>,
+    pub spec: PotentialSpec,
+}
+
+impl std::fmt::Debug for AnyPotential {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.spec.fmt(f)
+    }
+}
+
+impl Shelf {
+    /// The potential that a spec names.
+    pub(crate) fn potential(&self, spec: &PotentialSpec) -> Result<AnyPotential, BuildError> {
+        let entry = self.entry(&spec.name).filter(|e| e.atoms().is_some());
+        match entry {
+            Some(entry) => Ok(AnyPotential {
+                entry: entry.clone(),
+                spec: spec.clone(),
+            }),
+            None => Err(BuildError::unknown(
+                "materials[0].law",
+                spec.name.clone(),
+                format!("there is no potential named {}", spec.name),
+            )),
+        }
+    }
+}
+
+impl Entry {
+    pub(super) fn atoms(&self) -> Option<&Atoms> {
+        match &self.runs {
+            Runs::Atoms(atoms) => Some(atoms),
+            Runs::Linear { .. } | Runs::Material(_) => None,
+        }
+    }
+}
+
+impl AnyPotential {
+    fn with<T>(&self, of: impl FnOnce(&Atoms) -> Result<T, Wrong>) -> Result<T, BuildError> {
+        let none = || (String::new(), format!("{} is no potential", self.spec.name));
+        let found = self.entry.atoms().ok_or_else(none).and_then(of);
+        found.map_err(|(_, message)| BuildError::invalid("materials[0].law", message))
+    }
+
+    /// An atom of a perfect crystal.
+    pub fn bulk(&self, stencil: &Stencil, spacing: f64, volume: f64) -> Result<Bulk, BuildError> {
+        self.with(|a| (a.bulk)(&self.spec.parameters, stencil, spacing, volume))
+    }
+
+    /// The distance at which the pair energy has reached `energy`, from `from` inwards (length), if it ever does.
+    pub fn closest(&self, from: f64, energy: f64) -> Result<Option<f64>, BuildError> {
+        self.with(|a| (a.closest)(&self.spec.parameters, from, energy))
+    }
+
+    /// On fixed neighbours where there are links, else on current ones.
+    pub fn bind<const D: usize>(
+        &self,
+        body: &Body<D>,
+        links: Option<Links<D>>,
+        simd: Simd,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        self.with(|a| {
+            let binder = a.binders.get(D - 1);
+            match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
+                Some(binder) => binder(&self.spec.parameters, body, links, simd),
+                None => Err((String::new(), format!("there are no {D} dimensions"))),
+            }
+        })
+    }
+}

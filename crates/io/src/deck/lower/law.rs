@@ -1,0 +1,143 @@
+//! A written law as a law: its keys by its descriptor.
+
+use super::context::{Context, Result};
+use crate::deck::document::{Given, Law};
+use crate::deck::error::DeckError;
+use crate::deck::value::{At, Number};
+use peridyne::columns::Dimension;
+use peridyne::error::BuildError;
+use peridyne::law::descriptor::{Key, Value};
+use peridyne::run::Shelf;
+use peridyne::spec::{LawSpec, NamedLaw, Parameter, Parameters, TableSpec};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A law whose keys were read.
+pub(super) struct ReadLaw<'a> {
+    written: &'a At<Law>,
+    pub law: NamedLaw,
+    shelf: Shelf,
+}
+
+/// Reads the keys of a law; `table` reads the file of one that takes tables.
+pub(super) fn read<'a>(
+    context: &Context,
+    written: &'a At<Law>,
+    table: impl Fn(&At<String>) -> Result<Arc<TableSpec>>,
+) -> Result<ReadLaw<'a>> {
+    let shelf = Shelf::standard();
+    let name = &written.value.name;
+    let Some(descriptor) = shelf.descriptor(name) else {
+        return Err(context.error(&written.span, format!("there is no law named {name}")));
+    };
+    let mut parameters = Parameters::default();
+    for (name, given) in &written.value.given {
+        let Some(key) = descriptor.key(name) else {
+            let message = format!("the law has no key `{name}`");
+            return Err(context.error(&written.span, message));
+        };
+        let value = match (given, key.value) {
+            (Given::Number(number), Value::Number(dimension, _)) => {
+                Parameter::Number(context.finite(number, dimension)?)
+            }
+            (Given::List(list), Value::List(_, dimension, _)) => {
+                let each = list.value.iter().map(|x| context.finite(x, dimension));
+                Parameter::List(each.collect::<Result<_>>()?)
+            }
+            (Given::Rows(rows), Value::Rows(columns)) => {
+                let rows = rows
+                    .value
+                    .iter()
+                    .map(|row| of_row(context, key, rows, row, columns));
+                Parameter::Rows(rows.collect::<Result<_>>()?)
+            }
+            (Given::Word(file), Value::Table) => Parameter::Table(table(file)?),
+            (Given::Word(word), _) => Parameter::Word(word.value.clone()),
+            (Given::Number(_) | Given::List(_) | Given::Rows(_), _) => {
+                let message = format!("`{name}` has another form");
+                return Err(context.error(&written.span, message));
+            }
+        };
+        parameters.set(name, value);
+    }
+    let law = NamedLaw {
+        name: name.clone(),
+        parameters,
+        linear: None,
+    };
+    Ok(ReadLaw {
+        written,
+        law,
+        shelf,
+    })
+}
+
+type Column = (&'static str, Dimension, peridyne::law::descriptor::Bounds);
+
+fn of_row(
+    context: &Context,
+    key: &Key,
+    rows: &At<Vec<Vec<Number>>>,
+    row: &[Number],
+    columns: &[Column],
+) -> Result<Vec<f64>> {
+    if row.len() != columns.len() {
+        let names: Vec<&str> = columns.iter().map(|c| c.0).collect();
+        let message = format!(
+            "a row of `{}` has {} numbers, expected [{}]",
+            key.name,
+            row.len(),
+            names.join(", ")
+        );
+        return Err(context.error(&rows.span, message));
+    }
+    let each = row.iter().zip(columns);
+    each.map(|(x, c)| context.finite(x, c.1)).collect()
+}
+
+impl Given {
+    fn span(&self) -> &Range<usize> {
+        match self {
+            Given::Number(x) => &x.span,
+            Given::List(list) => &list.span,
+            Given::Rows(rows) => &rows.span,
+            Given::Word(word) => &word.span,
+        }
+    }
+}
+
+impl ReadLaw<'_> {
+    /// The law, checked and with its defaults.
+    pub fn look_up(self, context: &Context) -> Result<LawSpec> {
+        let mut law = LawSpec::Named(self.law);
+        let looked = self.shelf.look_up(&mut law);
+        looked.map_err(|e| refused(context, self.written, &self.shelf, &e))?;
+        Ok(law)
+    }
+}
+
+/// What is wrong with a key of a law, or with all of them.
+fn refused(context: &Context, written: &At<Law>, shelf: &Shelf, error: &BuildError) -> DeckError {
+    let law = &written.value;
+    let given = law.given.iter().find(|(name, _)| *name == error.path);
+    let message = &*error.message;
+    let span = given.map_or(&written.span, |(_, given)| given.span());
+    match shelf
+        .descriptor(&law.name)
+        .filter(|d| !d.example.is_empty())
+    {
+        Some(d) => {
+            let help = format!("write for example law = {{ {} = {} }}", d.name, d.example);
+            context.error_with(span, message, help)
+        }
+        None => context.error(span, message),
+    }
+}
+
+/// The law of a material that is no potential.
+pub(super) fn solid(context: &Context, written: &At<Law>) -> Result<LawSpec> {
+    read(context, written, |file| {
+        Err(context.error(&file.span, "a law of atoms is not known here"))
+    })?
+    .look_up(context)
+}
