@@ -16,14 +16,21 @@ impl Console for Paper {
 
 /// A bar whose halves, `gap` spacings apart, are of type 1 and 2; line 14 is the first of `coefficients`.
 fn run(style: &str, coefficients: &str, gap: f64, more: &str) -> Result<Paper, Box<ScriptError>> {
+    run_script(&script(style, coefficients, gap, more))
+}
+
+fn script(style: &str, coefficients: &str, gap: f64, more: &str) -> String {
     let (low, high) = (2.6 + gap, 5.6 + gap);
-    let text = format!(
+    format!(
         "units si\natom_style peri\natom_modify map array\nboundary s s s\nlattice sc 0.0005\n\
          region box block -1 20 -1 4 -1 4 units lattice\nregion a block -0.1 2.6 -0.1 2.1 -0.1 2.1\n\
          region b block {low} {high} -0.1 2.1 -0.1 2.1\ncreate_box 2 box\ncreate_atoms 1 region a\n\
          create_atoms 2 region b\ntimestep 1e-7\npair_style peri/{style}\n{coefficients}\n\
          set group all density 2200\nset group all volume 1.25e-10\nfix 1 all nve\n{more}\nrun 20\n"
-    );
+    )
+}
+
+fn run_script(text: &str) -> Result<Paper, Box<ScriptError>> {
     let mut paper = Paper::default();
     let output = tempfile::tempdir().unwrap();
     let options = Options {
@@ -32,7 +39,7 @@ fn run(style: &str, coefficients: &str, gap: f64, more: &str) -> Result<Paper, B
     };
     run_text(
         "in.bar",
-        &text,
+        text,
         &options,
         &mut ModelHost::default(),
         &mut paper,
@@ -148,8 +155,10 @@ fn ves_and_eps_are_for_one_material_in_space() {
         let error = run(style, &unlike, 0.0, "").map(|_| ()).unwrap_err();
         assert!(error.message.contains("unlike coefficients"), "{error}");
         assert!(error.message.contains("types 2 and 2"), "{error}");
-        let flat = format!("dimension 2\n{coefficients}");
-        let error = run(style, &flat, 0.0, "").map(|_| ()).unwrap_err();
+        let flat = script(style, coefficients, 0.0, "")
+            .replace("boundary s s s", "dimension 2\nboundary s s p")
+            .replace("lattice sc", "lattice sq");
+        let error = run_script(&flat).map(|_| ()).unwrap_err();
         assert!(error.message.contains("two dimensions"), "{error}");
         let short = coefficients.rsplit_once(' ').unwrap().0;
         let error = run(style, short, 0.0, "").map(|_| ()).unwrap_err();
