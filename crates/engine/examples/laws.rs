@@ -1,19 +1,18 @@
 //! Time per directed bond and step of laws of the shelf beside the linear solid, whole steps in 3-D, on one thread or as many as asked for:
-//! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`.
+//! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`. A word
+//! `cells=20` makes the cube smaller than the 60 cells along an edge that no cache holds.
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 use std::time::Instant;
 
-/// Cells along an edge of the cube, whose family has 122 bonds.
-const CELLS: i32 = 60;
-
-fn spec(law: LawSpec, breaks: bool, family: FamilyChoice) -> Spec {
+/// A cube of so many cells along an edge, whose families have 122 bonds.
+fn spec(cells: i32, law: LawSpec, breaks: bool, family: FamilyChoice) -> Spec {
     let mut quarters = vec![];
-    for z in 0..CELLS {
-        for y in 0..CELLS {
-            for x in 0..CELLS {
+    for z in 0..cells {
+        for y in 0..cells {
+            for x in 0..cells {
                 quarters.push([4 * x, 4 * y, 4 * z]);
             }
         }
@@ -87,6 +86,11 @@ fn main() {
     if threads.is_some() {
         words.remove(0);
     }
+    let size = words.iter().position(|w| w.starts_with("cells="));
+    let cells = size.map_or(60, |n| {
+        let word = words.remove(n);
+        word["cells=".len()..].parse().expect("a number of cells")
+    });
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(1))
         .build()
@@ -106,7 +110,7 @@ fn main() {
                         if breaks { "breaks" } else { "intact" }
                     );
                     if words.iter().all(|w| row.contains(w.as_str())) {
-                        let spec = spec(law.clone(), breaks, family);
+                        let spec = spec(cells, law.clone(), breaks, family);
                         pool.install(|| time(&row, &spec, simd));
                     }
                 }

@@ -85,8 +85,6 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     fn memory(&self) -> usize;
     /// Where number `n` of `count` of a bond's eight is remembered, side by side.
     fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize;
-    /// Fetch what groups soon ask for that asked for this, where the machine cannot know.
-    fn ahead(_: *const f64) {}
     /// The same of the bonds that lead back.
     ///
     /// # Safety

@@ -10,9 +10,6 @@ use crate::family::stencil::Stencil;
 use crate::interaction::material::numbers_of;
 use crate::law::material::Numbers;
 
-/// How many groups ahead of use what bonds remember is fetched.
-const AHEAD: usize = 4;
-
 /// Consecutive slots.
 #[derive(Clone, Copy)]
 pub struct Run(usize);
@@ -67,8 +64,8 @@ pub struct LatticeFamily<const D: usize> {
     /// Bits per group.
     width: usize,
     slots: usize,
-    /// From column to column of what bonds remember.
-    stride: usize,
+    /// What slots lack so that tiles begin at whole eights.
+    phase: usize,
 }
 
 impl<const D: usize> LatticeFamily<D> {
@@ -121,7 +118,7 @@ impl<const D: usize> LatticeFamily<D> {
             links,
             grid: grid.clone(),
             slots: body.len,
-            stride: Layout::columns(1, body.len).stride,
+            phase: TILE - grid.tile_slot(0) % TILE,
         }
     }
 
@@ -133,6 +130,13 @@ impl<const D: usize> LatticeFamily<D> {
     #[inline(always)]
     fn first(&self, group: usize) -> usize {
         self.grid.tile_slot(self.links.tiles[group] as usize)
+    }
+
+    /// Of what the bond `k` of a slot remembers: the bonds of a tile lie together, each with its eight slots side by side.
+    #[inline(always)]
+    fn place_of(&self, slot: usize, k: usize, n: usize, count: usize) -> usize {
+        let at = slot + self.phase;
+        ((at / TILE * self.width + k) * count + n) * TILE + at % TILE
     }
 
     #[inline(always)]
@@ -216,16 +220,12 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         Layout::columns(numbers, self.slots)
     }
     fn memory(&self) -> usize {
-        self.width * self.stride
+        // a load that begins inside a tile goes beyond it
+        (self.slots / TILE + 3) * self.width * TILE
     }
     #[inline(always)]
     fn own(&self, group: usize, k: usize, n: usize, count: usize) -> usize {
-        (k * count + n) * self.stride + self.first(group)
-    }
-    #[inline(always)]
-    fn ahead(place: *const f64) {
-        // a column for each of a hundred bonds: more streams than a machine follows
-        prefetch(place.wrapping_add(AHEAD * TILE));
+        self.place_of(self.first(group), k, n, count)
     }
     #[inline(always)]
     unsafe fn back<L: Lane>(
@@ -239,17 +239,30 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     ) -> L {
         let back = self.back[self.sublattice(group)][k] as usize;
         let slot = self.ends(group, k).0 + part;
+        let inside = (slot + self.phase) % TILE;
+        let place = self.place_of(slot, back, n, count);
         // SAFETY: the caller's promise
         unsafe {
-            let place = memory.at((back * count + n) * self.stride + slot);
-            Self::ahead(place);
-            L::load(place)
+            let near = L::load(memory.at(place));
+            if L::N == 1 || inside == 0 {
+                return near;
+            }
+            // the last slots are those of the next tile
+            let tile = self.width * count * TILE;
+            let next = memory.at(place + tile - TILE);
+            // a stride for each of a hundred bonds: more than a machine follows
+            prefetch(next.wrapping_add(tile).wrapping_add(TILE - 1));
+            L::select(L::dead(0xff >> inside), L::load(next), near)
         }
     }
     fn fill_images(&self, images: &[(u32, u32)], memory: &mut [f64], count: usize) {
-        for column in memory.chunks_mut(self.stride).take(self.width * count) {
-            for &(copy, original) in images {
-                column[copy as usize] = column[original as usize];
+        for &(copy, original) in images {
+            for k in 0..self.width {
+                for n in 0..count {
+                    let [to, from] =
+                        [copy, original].map(|s| self.place_of(s as usize, k, n, count));
+                    memory[to] = memory[from];
+                }
             }
         }
     }

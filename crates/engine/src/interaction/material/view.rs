@@ -192,9 +192,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         for n in 0..count {
             // SAFETY: numbers for every bond
             unsafe {
-                let place = self.memory.at(self.family.own(number, k, n, count) + part);
-                F::ahead(place);
-                out.set(n, L::load(place));
+                let place = self.family.own(number, k, n, count) + part;
+                out.set(n, L::load(self.memory.at(place)));
             }
         }
         out

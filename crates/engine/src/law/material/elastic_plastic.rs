@@ -44,27 +44,27 @@ const YIELD: usize = 3;
 const HARDENING: usize = 4;
 const BALL: usize = 5; // 1/m that the yield surface has; 0: the point's own
 
-/// Numbers of a point; answers read the first four.
-const P: usize = 0; // nκθ/m = n²κ (θ/n)/m
-const ALPHA: usize = 1; // β/m
-const MEAN: usize = 2; // μ
-const REST: usize = 3; // part of the trial deviator that flows
-const FLOW: usize = 4; // Δε̄
-const DILATED: usize = 5; // θ/n
+/// Numbers of a point; partners read the first two.
+const ALONG: usize = 0; // of |ξ| in a force state, nκθ/m + αρμ, with ρ the part of the deviator that flows
+const STIFF: usize = 1; // of e − e^p in it, α (1 − ρ)
+const ALPHA: usize = 2; // β/m
+const MEAN: usize = 3; // μ
+const REST: usize = 4; // ρ
+const FLOW: usize = 5; // Δε̄
+const DILATED: usize = 6; // θ/n
+
+type Ends<'a, N> = End<'a, [N; 6], [N; 7], [N; 1]>;
 
 impl ElasticPlastic {
     /// `e^d` before the step's flow.
     #[inline(always)]
-    fn trial<N: Number, const D: usize>(bond: &Bond<N, D>, end: &End<[N; 6], [N; 6], [N; 1]>) -> N {
+    fn trial<N: Number, const D: usize>(bond: &Bond<N, D>, end: &Ends<N>) -> N {
         bond.extension() - end.memory[0] - end.point[MEAN] * bond.length
     }
 
     /// `e − e^p` after it.
     #[inline(always)]
-    fn elastic<N: Number, const D: usize>(
-        bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 6], [N; 1]>,
-    ) -> N {
+    fn elastic<N: Number, const D: usize>(bond: &Bond<N, D>, end: &Ends<N>) -> N {
         let flow = end.point[REST] * Self::trial(bond, end);
         bond.extension() - end.memory[0] - flow
     }
@@ -76,7 +76,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     type Form<N: Number> = N;
     /// `Σ ω|ξ|e`, `Σ ω|ξ|(e − e^p)`, `Σ ω (e − e^p)²`, `Σ ω|ξ|²`.
     type Sum<N: Number> = [N; 4];
-    type Point<N: Number> = [N; 6];
+    type Point<N: Number> = [N; 7];
     /// ε̄
     type Past<N: Number> = [N; 1];
     /// e^p
@@ -119,12 +119,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn share<N: Number>(
-        &self,
-        _: usize,
-        bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 6], [N; 1]>,
-    ) -> [N; 4] {
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &Ends<N>) -> [N; 4] {
         let (weight, e) = (bond.omega * bond.length, bond.extension());
         let elastic = e - end.memory[0];
         [
@@ -141,12 +136,11 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         _: usize,
         site: &Site<[N; 6], N, [N; 1]>,
         [dilated, elastic, square, whole]: [N; 4],
-        point: &mut [N; 6],
+        point: &mut [N; 7],
     ) {
         let (c, per_m) = (site.constants, *site.form);
         let zero = N::constant(0.0);
         point[DILATED] = per_m * dilated;
-        point[P] = c[BULK] * per_m * point[DILATED];
         point[ALPHA] = c[BETA] * per_m;
         let mean = zero.choose(whole, elastic.div(whole), zero);
         point[MEAN] = mean;
@@ -162,18 +156,23 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         let shear = point[ALPHA].div(c[RADIUS] * per_ball);
         let rest = (beyond * shear).div((shear + c[HARDENING]) * norm);
         let flow = beyond.div((shear + c[HARDENING]) * scale);
-        point[REST] = limit.choose(norm, rest, zero);
+        let rest = limit.choose(norm, rest, zero);
+        point[REST] = rest;
         point[FLOW] = limit.choose(norm, flow, zero);
+        let flows = point[ALPHA] * rest;
+        point[STIFF] = point[ALPHA] - flows;
+        point[ALONG] = flows.fma(mean, c[BULK] * per_m * point[DILATED]);
     }
 
     #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 6], [N; 1]>) -> Along<N> {
-        let t = end.point[ALPHA].fma(Self::elastic(bond, end), end.point[P] * bond.length);
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+        let elastic = bond.extension() - end.memory[0];
+        let t = end.point[STIFF].fma(elastic, end.point[ALONG] * bond.length);
         Along(bond.omega * t * bond.inv_current)
     }
 
     #[inline(always)]
-    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &End<[N; 6], [N; 6], [N; 1]>) -> N {
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> N {
         let e = Self::elastic(bond, end);
         N::constant(0.5) * end.point[ALPHA] * bond.omega * e * e
     }
@@ -183,24 +182,19 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         &self,
         site: &Site<[N; 6], N, [N; 1]>,
         _: [N; 4],
-        point: &[N; 6],
+        point: &[N; 7],
     ) -> N {
         let dilated = point[DILATED];
         (N::constant(0.5) * site.constants[BULK] * dilated).fma(dilated, work(site, point))
     }
 
     #[inline(always)]
-    fn moves<N: Number>(&self, point: &[N; 6]) -> bool {
+    fn moves<N: Number>(&self, point: &[N; 7]) -> bool {
         (N::constant(0.0) - point[FLOW]).any_below(0.0)
     }
 
     #[inline(always)]
-    fn advance<N: Number>(
-        &self,
-        bond: &Bond<N, D>,
-        end: &End<[N; 6], [N; 6], [N; 1]>,
-        memory: &mut [N; 1],
-    ) -> N {
+    fn advance<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>, memory: &mut [N; 1]) -> N {
         memory[0] = end.memory[0] + end.point[REST] * Self::trial(bond, end);
         N::constant(0.0)
     }
@@ -209,7 +203,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     fn remember<N: Number>(
         &self,
         site: &Site<[N; 6], N, [N; 1]>,
-        point: &[N; 6],
+        point: &[N; 7],
         past: &mut [N; 1],
     ) -> N {
         past[0] = site.past[0] + point[FLOW];
@@ -219,7 +213,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
 
 /// `∫σ_y dε̄` of the step's flow: what it dissipates, by the trapezoidal rule, which is exact for linear hardening.
 #[inline(always)]
-fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 6]) -> N {
+fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 7]) -> N {
     let c = site.constants;
     let middle = N::constant(0.5).fma(point[FLOW], site.past[0]);
     c[HARDENING].fma(middle, c[YIELD]) * point[FLOW]

@@ -15,12 +15,15 @@ pub mod viscoelastic;
 use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
+use crate::spec::Parameters;
 pub use numbers::Numbers;
 
 /// All that come with the engine, a line each.
 pub fn each(kinds: &mut impl Kinds) {
     kinds.solid::<elastic_plastic::ElasticPlastic>();
-    kinds.law::<viscoelastic::Viscoelastic>();
+    kinds.law_or_smaller::<viscoelastic::Viscoelastic, viscoelastic::Viscoelastic<1>>(
+        viscoelastic::one_branch,
+    );
     kinds.solid::<correspondence::Correspondence>();
     kinds.law::<softening::Softening>();
 }
@@ -31,6 +34,15 @@ pub trait Kinds {
     fn law<M>(&mut self)
     where
         M: Shelved + Material<1> + Material<2> + Material<3>;
+
+    /// One that a smaller law S takes the place of where that fits the parameters of all materials.
+    fn law_or_smaller<M, S>(&mut self, _fits: fn(&Parameters) -> bool)
+    where
+        M: Shelved + Material<1> + Material<2> + Material<3>,
+        S: Shelved + Material<1> + Material<2> + Material<3>,
+    {
+        self.law::<M>();
+    }
 
     /// One that means nothing on a line.
     fn solid<M>(&mut self)

@@ -238,7 +238,12 @@ static BRANCH: [(&str, Dimension, Bounds); 2] = [
     ("relaxation time", Dimension::TIME, Bounds::POSITIVE),
 ];
 
-impl Shelved for Viscoelastic {
+/// Does a law of one branch do?
+pub fn one_branch(parameters: &Parameters) -> bool {
+    parameters.rows("branches").is_some_and(|r| r.len() == 1)
+}
+
+impl<const B: usize> Shelved for Viscoelastic<B> {
     fn descriptor() -> Descriptor {
         let mut keys = MODULI.to_vec();
         keys.push(Key {
@@ -267,9 +272,9 @@ impl Shelved for Viscoelastic {
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: String| Err((n, message));
             let rows = m.parameters.rows("branches").unwrap_or(&[]);
-            if rows.is_empty() || rows.len() > BRANCHES {
+            if rows.is_empty() || rows.len() > B {
                 return refused(format!(
-                    "there are {} branches, expected one to {BRANCHES}",
+                    "there are {} branches, expected one to {B}",
                     rows.len()
                 ));
             }

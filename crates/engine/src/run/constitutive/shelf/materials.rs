@@ -40,9 +40,13 @@ type Binder<const D: usize> = fn(&Chosen, Place<D>) -> Bound<D>;
 pub(super) struct Materials {
     pub linear: fn(&Parameters) -> Result<LawSpec, String>,
     pub brittle_energy: fn(&Parameters, f64) -> f64,
-    /// [`Binder`]s of one, two and three dimensions.
-    binders: [Arc<dyn Any + Send + Sync>; 3],
+    binders: Binders,
+    /// A smaller law, and whether it fits the parameters of a material.
+    smaller: Option<(fn(&Parameters) -> bool, Binders)>,
 }
+
+/// [`Binder`]s of one, two and three dimensions.
+type Binders = [Arc<dyn Any + Send + Sync>; 3];
 
 impl Materials {
     pub fn of<M>() -> Materials
@@ -51,6 +55,15 @@ impl Materials {
     {
         let line = Arc::new(bind::<1, M> as Binder<1>);
         Materials::with::<M>(line)
+    }
+
+    /// The same with a smaller law where that fits.
+    pub fn or_smaller<S>(self, fits: fn(&Parameters) -> bool) -> Materials
+    where
+        S: Shelved + Material<1> + Material<2> + Material<3>,
+    {
+        let smaller = Some((fits, Materials::of::<S>().binders));
+        Materials { smaller, ..self }
     }
 
     /// Of a law that means nothing on a line.
@@ -73,6 +86,7 @@ impl Materials {
                 Arc::new(bind::<2, M> as Binder<2>),
                 Arc::new(bind::<3, M> as Binder<3>),
             ],
+            smaller: None,
         }
     }
 }
@@ -162,7 +176,16 @@ impl Chosen {
     /// The law on a body.
     pub fn bind<const D: usize>(&self, place: Place<D>) -> Bound<D> {
         let binder = match &self.entry.runs {
-            Runs::Material(m) => m.binders.get(D - 1),
+            Runs::Material(m) => {
+                let all = |fits: fn(&Parameters) -> bool| {
+                    self.materials.iter().all(|made| fits(&made.parameters))
+                };
+                let binders = match &m.smaller {
+                    Some((fits, smaller)) if all(*fits) => smaller,
+                    Some(_) | None => &m.binders,
+                };
+                binders.get(D - 1)
+            }
             Runs::Linear { .. } | Runs::Atoms(_) => None,
         };
         match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {

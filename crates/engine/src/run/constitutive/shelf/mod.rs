@@ -68,6 +68,15 @@ impl material::Kinds for Shelf {
         self.put(M::descriptor(), Runs::Material(Materials::of::<M>()));
     }
 
+    fn law_or_smaller<M, S>(&mut self, fits: fn(&Parameters) -> bool)
+    where
+        M: Shelved + Material<1> + Material<2> + Material<3>,
+        S: Shelved + Material<1> + Material<2> + Material<3>,
+    {
+        let runs = Materials::of::<M>().or_smaller::<S>(fits);
+        self.put(M::descriptor(), Runs::Material(runs));
+    }
+
     fn solid<M>(&mut self)
     where
         M: Shelved + Material<2> + Material<3>,
