@@ -45,8 +45,8 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
         (
             "born_mayer",
             PotentialSpec::of(BornMayer {
-                strength: 0.6,
-                sigma: 0.9,
+                strength: 0.56,
+                sigma: 1.0,
                 range: 0.09,
                 dispersion: 1.1,
                 eighth: 0.05,

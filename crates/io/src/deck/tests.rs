@@ -205,7 +205,7 @@ fn the_header_says_what_was_understood() {
     for part in [
         "impact",
         "cubic lattice of 0.5 mm, within 74 mm × 2.5 mm × 74 mm",
-        "pmb, K = 14.9 GPa",
+        "pmb, bulk = 14.9 GPa",
         "2200 kg/m^3",
         "3 spacings",
         "2000 steps of 0.1 µs",
