@@ -4,4 +4,5 @@ mod chain;
 mod crystal;
 mod relax;
 mod sample;
+mod scaled;
 mod tangents;
