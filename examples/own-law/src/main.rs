@@ -11,7 +11,7 @@ use peridyne::space::{lattice::LatticeKind, region::Region};
 use peridyne::spec::*;
 
 /// Bonds that stiffen, `T = ½ c ω (s + b s³)`.
-struct Stiffening;
+pub struct Stiffening;
 
 impl BondLaw<1> for Stiffening {
     const NUMBERS: [Key; 1] =

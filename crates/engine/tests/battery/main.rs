@@ -8,6 +8,10 @@ mod cracks;
 mod equivalence;
 mod mechanics;
 mod motion;
+/// The law of a user, who has no other way in than this crate's face.
+#[allow(dead_code)]
+#[path = "../../../../examples/own-law/src/main.rs"]
+mod own_law;
 mod repeat;
 mod sample;
 mod shifted;

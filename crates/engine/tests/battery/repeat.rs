@@ -3,7 +3,7 @@
 use crate::allocations;
 use crate::sample::*;
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, Simulation, build};
+use peridyne::run::{Options, Simulation};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 

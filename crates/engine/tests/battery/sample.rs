@@ -1,7 +1,10 @@
 //! Small bodies of every material on every lattice.
 
+use crate::own_law::Stiffening;
+use peridyne::error::BuildError;
 use peridyne::expression::Expression;
-use peridyne::run::{Options, Simulation, build};
+use peridyne::law::material::bonds::Bonds;
+use peridyne::run::{Options, Shelf, Simulation, build_with};
 use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
@@ -63,6 +66,10 @@ pub fn materials() -> Vec<Material> {
     let softening = |young: f64| {
         let all = Parameters::numbers(&[("young", young), ("onset", 0.1)]);
         LawSpec::named("softening", all)
+    };
+    let stiffening = |young: f64, cubic: f64| {
+        let all = Parameters::numbers(&[("young", young), ("cubic", cubic)]);
+        LawSpec::named("stiffening", all)
     };
     let lps = |young, poisson| LawSpec::Lps(Moduli { young, poisson });
     let young = |e| LawSpec::Pmb(PmbStiffness::Young(e));
@@ -139,6 +146,12 @@ pub fn materials() -> Vec<Material> {
             fracture: Some(3.0),
             ..one("softening", softening(3.0), Influence::Constant)
         },
+        two(
+            "a user's, mixed",
+            stiffening(3.0, 4.0),
+            stiffening(1.0, 0.0),
+            Influence::Inverse,
+        ),
         Material {
             fracture: Some(3.0),
             ..two(
@@ -339,6 +352,15 @@ pub const CONTACT: ContactSpec = ContactSpec {
     stiffness: ContactStiffness::Laws,
     friction: 0.0,
 };
+
+/// With the laws of the engine, and that of [`crate::own_law`].
+pub fn build(spec: &Spec, options: Options) -> Result<Box<dyn Simulation>, BuildError> {
+    build_with(
+        spec,
+        options,
+        &Shelf::standard().with::<Bonds<Stiffening, 1>>(),
+    )
+}
 
 pub fn made(spec: &Spec) -> Box<dyn Simulation> {
     build(spec, Options::default()).unwrap()

@@ -2,7 +2,7 @@
 
 use crate::sample::*;
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, build};
+use peridyne::run::Options;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 use std::collections::HashMap;

@@ -3,7 +3,7 @@
 use crate::sample::*;
 use crate::waves::{chain, chain_omega2};
 use peridyne::error::RunError;
-use peridyne::run::{Options, build};
+use peridyne::run::Options;
 use peridyne::spec::*;
 
 /// The true limit of the step of a chain of 60 points.

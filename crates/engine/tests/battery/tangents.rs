@@ -1,7 +1,7 @@
 //! The linear body of every law is the derivative of its forces, about any state, and what it must be mechanically.
 
-use super::sample::{Case, H, cases};
-use peridyne::run::{Options, Simulation, build};
+use super::sample::{Case, H, build, cases};
+use peridyne::run::{Options, Simulation};
 use peridyne::space::Point;
 use peridyne::spec::{FamilyChoice, Spec, TimeStep};
 
