@@ -107,7 +107,11 @@ fn work(l: &Ledger) -> f64 {
 #[test]
 fn the_ledger_of_intact_bodies_closes_to_second_order() {
     for kind in [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic] {
-        for name in ["pmb", "lps mixed", "viscoelastic", "softening"] {
+        let mut laws = vec!["pmb", "lps mixed", "viscoelastic", "softening"];
+        if kind != LatticeKind::Chain {
+            laws.push("hypoelastic");
+        }
+        for name in laws {
             for (what, conditions) in loads() {
                 let place = block(kind);
                 let case = Case::of(name, place);
@@ -216,11 +220,16 @@ fn what_breaking_bodies_lose_is_of_second_order() {
             "lps",
             "lps mixed",
             "correspondence",
+            "hypoelastic",
             "viscoelastic",
             "viscoelastic mixed",
         ];
         for name in laws {
             for (family, release) in WAYS {
+                // a family that loses bonds between two steps has its stress by another path than its energy
+                if name == "hypoelastic" && release == Release::AfterForce {
+                    continue;
+                }
                 let place = block(kind);
                 let case = Case::of(name, place);
                 let residual = |n: usize| {

@@ -166,7 +166,7 @@ fn power(f: &[Point], volumes: &[f64], way: &[Point]) -> f64 {
 #[test]
 fn force_is_the_derivative_of_energy() {
     let mut worst: f64 = 0.0;
-    for case in cases() {
+    for case in cases().into_iter().filter(|c| c.material.potential) {
         let n = at_rest(&case.spec()).vectors("reference").len();
         let whole = (at_rest(&case.spec()), Random(5).vectors(n, case.d(), LARGE));
         let periodic = worn(&case, case.periodic());

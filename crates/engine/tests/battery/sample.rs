@@ -24,6 +24,8 @@ pub struct Material {
     pub lives: fn(usize, Plane) -> bool,
     /// Of materials that cannot be without.
     pub fracture: Option<f64>,
+    /// Is its energy a potential? Laws of rates have the work that was done.
+    pub potential: bool,
 }
 
 /// The table of materials: a line here buys all batteries.
@@ -34,6 +36,7 @@ pub fn materials() -> Vec<Material> {
         influence,
         lives: |_, _| true,
         fracture: None,
+        potential: true,
     };
     let two = |name, a, b, influence| Material {
         name,
@@ -41,6 +44,7 @@ pub fn materials() -> Vec<Material> {
         influence,
         lives: |_, _| true,
         fracture: None,
+        potential: true,
     };
     let elastic =
         |young: f64, poisson: f64| Parameters::numbers(&[("young", young), ("poisson", poisson)]);
@@ -140,6 +144,15 @@ pub fn materials() -> Vec<Material> {
                 correspondence(3.0, "neo_hookean"),
                 correspondence(1.0, "neo_hookean"),
                 Influence::Conical,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            potential: false,
+            ..one(
+                "hypoelastic",
+                LawSpec::named("hypoelastic", elastic(3.0, 0.3)),
+                Influence::Inverse,
             )
         },
         Material {

@@ -1,16 +1,9 @@
-//! Correspondence (Silling et al. 2007): any classical stress P(F), with control of zero-energy modes (Silling 2017).
-//!
-//! `H = (Σ ω ν V η⊗ξ) K⁻¹`, `F = 1 + H`, `T⟨ξ⟩ = ω (P K⁻¹ ξ + g z)` with the part of the deformation that F does not see,
-//! `z = η − Hξ`, and `g = G_z β/m`, `β = D(D+2) μ`: a control of G_z = 1 resists it as the linear peridynamic solid of the same shear
-//! modulus would. `Σ ω ν V z⊗ξ = 0`, so it does no work on F: `W = ψ(F) + (g/2) Σ ω ν V z²`.
-//! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
+//! Correspondence (Silling et al. 2007): any classical stress P(F) that is the slope of a stored energy ψ(F), by [`non_ordinary`].
 
+use super::non_ordinary::{self, Answers, Form};
 use super::tensor::{self, Matrix};
 use super::{Bond, Columns, End, Free, Material, Site};
-use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{
-    self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
-};
+use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
@@ -47,11 +40,7 @@ const LAME: usize = 0;
 const SHEAR: usize = 1;
 const CONTROL: usize = 2; // G_z β
 
-/// `K⁻¹`, 1/m, and 1 where K can be inverted.
-type Form<N, const D: usize> = (Matrix<N, D>, [N; 2]);
-/// `P K⁻¹ − g H`, g.
-type Point<N, const D: usize> = (Matrix<N, D>, N);
-type Ends<'a, N, const D: usize> = End<'a, [N; 3], Point<N, D>, [N; 0]>;
+type Ends<'a, N, const D: usize> = End<'a, [N; 3], Answers<N, D>, [N; 0]>;
 
 /// Steps of Newton's method for the thickness: from the linear estimate six reach round-off for stretches of 0.3 to 3.
 const THICKNESS_STEPS: usize = 6;
@@ -179,7 +168,7 @@ impl<const D: usize> Material<D> for Correspondence {
     type Form<N: Number> = Form<N, D>;
     /// `Σ ω ν V η⊗ξ`
     type Sum<N: Number> = Matrix<N, D>;
-    type Point<N: Number> = Point<N, D>;
+    type Point<N: Number> = Answers<N, D>;
     type Past<N: Number> = [N; 0];
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Free<N, D>;
@@ -188,40 +177,28 @@ impl<const D: usize> Material<D> for Correspondence {
     const FORM_OF_WHOLE: bool = true;
 
     fn columns(&self) -> Columns {
-        let point = Declaration::of_points(
-            "force_state_gradient",
-            Shape::Tensor,
-            Dimension([-6, 1, -2, 0]),
-            "P K⁻¹ − g H: what the force state of a bond is linear in ξ with (Silling et al. 2007).",
-        );
         Columns {
-            point: vec![point.derived()],
+            point: vec![non_ordinary::column()],
             ..Columns::default()
         }
     }
 
     fn constants(&self, material: usize, _: f64) -> [f64; 3] {
         let m = &self.materials[material];
-        let d = D as f64;
-        [m.lame, m.shear, m.control * d * (d + 2.0) * m.shear]
+        [
+            m.lame,
+            m.shear,
+            non_ordinary::control::<D>(m.control, m.shear),
+        ]
     }
 
     fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
-        let (inverse, whole) = tensor::inverse(shape);
-        let sound = if whole { 1.0 } else { 0.0 };
-        (inverse, [super::inverse_weight(&shape), sound])
+        non_ordinary::form(shape)
     }
 
     #[inline(always)]
     fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
-        let mut sum = tensor::zero();
-        for r in 0..D {
-            let eta = bond.omega * bond.eta[r];
-            for c in 0..D {
-                sum[r][c] = eta * bond.xi[c];
-            }
-        }
-        sum
+        non_ordinary::share(bond)
     }
 
     #[inline(always)]
@@ -230,41 +207,21 @@ impl<const D: usize> Material<D> for Correspondence {
         _: usize,
         site: &Site<[N; 3], Form<N, D>, [N; 0]>,
         sum: Matrix<N, D>,
-        point: &mut Point<N, D>,
+        point: &mut Answers<N, D>,
     ) {
-        let (inverse, [per_m, sound]) = site.form;
-        let h = tensor::product(&sum, inverse);
+        let h = non_ordinary::gradient(site.form, &sum);
         let (p, _) = self.stress(site.constants, &h);
-        let along = tensor::product(&p, inverse);
-        let g = site.constants[CONTROL] * *per_m;
-        // where F is not known P may be anything
-        let (half, zero) = (N::constant(0.5), N::constant(0.0));
-        for r in 0..D {
-            for c in 0..D {
-                point.0[r][c] = sound.choose(half, zero, along[r][c]) - g * h[r][c];
-            }
-        }
-        point.1 = g;
+        *point = non_ordinary::answers(site.form, &p, &h, site.constants[CONTROL]);
     }
 
     #[inline(always)]
     fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
-        let (along, g) = end.point;
-        let mut t = tensor::times(along, &bond.xi);
-        for a in 0..D {
-            t[a] = bond.omega * g.fma(bond.eta[a], t[a]);
-        }
-        Free(t)
+        non_ordinary::answer(bond, end.point)
     }
 
-    /// `(g/2) ω η²`, of which the point takes back what F sees.
     #[inline(always)]
     fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
-        let mut square = bond.eta[0] * bond.eta[0];
-        for a in 1..D {
-            square = bond.eta[a].fma(bond.eta[a], square);
-        }
-        N::constant(0.5) * end.point.1 * bond.omega * square
+        non_ordinary::bond_energy(bond, end.point)
     }
 
     #[inline(always)]
@@ -272,14 +229,11 @@ impl<const D: usize> Material<D> for Correspondence {
         &self,
         site: &Site<[N; 3], Form<N, D>, [N; 0]>,
         sum: Matrix<N, D>,
-        point: &Point<N, D>,
+        point: &Answers<N, D>,
     ) -> N {
-        let (inverse, [_, sound]) = site.form;
-        let h = tensor::product(&sum, inverse);
+        let h = non_ordinary::gradient(site.form, &sum);
         let (_, energy) = self.stress(site.constants, &h);
-        // H K Hᵀ = S Hᵀ
-        let seen = N::constant(0.5) * point.1 * tensor::contraction(&sum, &h);
-        sound.choose(N::constant(0.5), N::constant(0.0), energy) - seen
+        non_ordinary::point_energy(site.form, &sum, &h, point, energy)
     }
 }
 
@@ -301,15 +255,7 @@ impl Shelved for Correspondence {
             need: Need::Word("linear"),
             doc: "Classical law P(F).",
         });
-        keys.push(
-            descriptor::number(
-                "control",
-                Dimension::NUMBER,
-                Bounds::NOT_NEGATIVE,
-                "Stiffness G_z against deformations that F does not see, 1: that of the linear peridynamic solid.",
-            )
-            .or(0.1),
-        );
+        keys.push(non_ordinary::control_key());
         Descriptor {
             name: "correspondence".into(),
             doc: "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.".into(),

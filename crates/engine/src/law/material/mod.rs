@@ -7,6 +7,8 @@
 pub mod bonds;
 pub mod correspondence;
 pub mod elastic_plastic;
+pub mod hypoelastic;
+pub mod non_ordinary;
 pub mod numbers;
 pub mod softening;
 pub mod tensor;
@@ -25,6 +27,7 @@ pub fn each(kinds: &mut impl Kinds) {
         viscoelastic::one_branch,
     );
     kinds.solid::<correspondence::Correspondence>();
+    kinds.solid::<hypoelastic::Hypoelastic>();
     kinds.law::<softening::Softening>();
 }
 
@@ -207,7 +210,8 @@ pub struct Columns {
 /// - For every pass p below [`Material::PASSES`]: `S = Σ ν V_j share(p, bond, …)`, then `settle(p, …, S, point)`. Passes begin with a
 ///   `point` of zeros; `share` sees the own point as the pass before left it. Then every bond answers from both ends.
 /// - [`Material::energy`] and [`Material::point_energy`] add up to a strain energy density `W_i`; with the memory held, the force state is
-///   its derivative, `T_i⟨ξ⟩ = ∂W_i/∂(ξ+η) / (ν V_j)`. Energies of broken bonds and tests of force against energy rely on it.
+///   its derivative, `T_i⟨ξ⟩ = ∂W_i/∂(ξ+η) / (ν V_j)`. Energies of broken bonds and tests of force against energy rely on it. A law of
+///   rates, which has no potential, has the work of its force state since the reference instead, to second order in the step.
 /// - A rigid motion leaves `T` at rest and energies at 0, and turns `T` with the body.
 /// - A step ends with [`Material::advance`] for every whole bond and [`Material::remember`] for every point, at its end's displacements. The
 ///   answers of before must be those of after with a step of no length: they see the memory of before, and the constants know the step.

@@ -163,6 +163,42 @@ pub fn cofactor_beyond<N: Number, const D: usize>(h: &Matrix<N, D>) -> Matrix<N,
     out
 }
 
+/// R − 1 and U − 1 of `1 + H = R U`, without cancellation, for stretches from 0.1 to 10: Newton's iteration `X′ = ½(X + X⁻ᵀ)` for R
+/// (Higham 1986), which squares its error in each step.
+#[inline(always)]
+pub fn polar<N: Number, const D: usize>(h: &Matrix<N, D>) -> (Matrix<N, D>, Matrix<N, D>) {
+    let half = N::constant(0.5);
+    let mut turn = *h;
+    for _ in 0..POLAR_STEPS {
+        let beyond = dilation(&turn);
+        let inverse = (N::constant(1.0) + beyond).recip();
+        let cofactors = cofactor_beyond(&turn);
+        for r in 0..D {
+            for c in 0..D {
+                // X⁻ᵀ − 1 = ((cof X − 1) − (det X − 1) 1)/det X
+                let mut x = cofactors[r][c];
+                if r == c {
+                    x = x - beyond;
+                }
+                turn[r][c] = half * inverse.fma(x, turn[r][c]);
+            }
+        }
+    }
+    // Rᵀ(1 + H) − 1, of which rounding leaves only the symmetric part
+    let more = transposed_product(&turn, h);
+    let mut stretch = *h;
+    for r in 0..D {
+        for c in 0..D {
+            let ends = (h[r][c] + turn[c][r]) + (h[c][r] + turn[r][c]);
+            stretch[r][c] = half * (ends + (more[r][c] + more[c][r]));
+        }
+    }
+    (turn, stretch)
+}
+
+/// From a stretch of 10 to round-off.
+const POLAR_STEPS: usize = 9;
+
 /// Inverse of a symmetric matrix that is not negative, by its eigenvalues: of those below 1e-6 of the largest the inverse is 0. False: there
 /// are such, or all are 0.
 pub fn inverse<const D: usize>(a: Matrix<f64, D>) -> (Matrix<f64, D>, bool) {
@@ -251,6 +287,52 @@ mod tests {
         for (found, exact) in beyond.iter().flatten().zip([0.15, -0.3, 0.1, 0.2]) {
             assert!((found - exact).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn rotations_and_stretches_are_told_apart() {
+        let (s, c) = 2.9f64.sin_cos();
+        let turn = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]];
+        for size in [1e-9, 0.3, 9.0] {
+            // eigenvalues between 0.1 and 10
+            let v = [
+                [0.7 * size, 0.1 * size, 0.0],
+                [0.1 * size, -0.08 * size, 0.02 * size],
+                [0.0, 0.02 * size, 0.2 * size],
+            ];
+            let mut u = v;
+            (0..3).for_each(|a| u[a][a] += 1.0);
+            for turn in [turn, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]] {
+                let mut h = product(&turn, &u);
+                (0..3).for_each(|a| h[a][a] -= 1.0);
+                let still = turn[0][0] == 1.0;
+                if still {
+                    h = v;
+                }
+                let (found, stretch) = polar(&h);
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let one = if a == b { 1.0 } else { 0.0 };
+                        let off = (found[a][b] - (turn[a][b] - one)).abs();
+                        let off = off.max((stretch[a][b] - v[a][b]).abs());
+                        // without a rotation nothing is lost to the 1
+                        let scale = if still { size } else { 1.0 + size };
+                        assert!(
+                            off < 3e-15 * scale,
+                            "{size} {turn:?}: {found:?} {stretch:?}"
+                        );
+                    }
+                }
+            }
+        }
+        // in the plane
+        let (turn, stretch) = polar(&[[0.0, 2.0], [0.0, 0.0]]);
+        let root = 0.5f64.sqrt();
+        assert!((turn[0][1] - root).abs() < 1e-15 && (turn[0][0] + 1.0 - root).abs() < 1e-15);
+        assert!(
+            (stretch[0][1] - root).abs() < 1e-15
+                && (stretch[1][1] + 1.0 - 3.0 * root).abs() < 1e-15
+        );
     }
 
     #[test]

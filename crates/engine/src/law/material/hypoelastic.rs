@@ -1,0 +1,419 @@
+//! Hypoelastic correspondence: a stress that grows with the rate of deformation, as rate forms of classical codes have it, by
+//! [`non_ordinary`].
+//!
+//! With `F = RU` the Cauchy stress seen from the turned material, `σ_u = Rᵀ σ R`, has the rate `σ̇_u = λ tr(d) 1 + 2μ d` of the unrotated
+//! rate of deformation `d = Rᵀ D R = sym(U̇ U⁻¹)`: the rate of Green & Naghdi (1965), as Flanagan & Taylor (1987) integrate it. A step adds
+//! `λ tr(Δε) 1 + 2μ Δε` with `Δε = sym(ΔU Ū⁻¹)`: no rotation, however large, is seen. `P = J σ F⁻ᵀ = R σ_u cof(U)`.
+//! In one direction `σ = (λ + 2μ) ln F`. In simple shear it does not oscillate (Dienes 1979).
+//!
+//! Such a law has no potential: what it has for energy is the work of its stress, `ẇ = J σ_u : d`, by the trapezoidal rule, which a closed path
+//! does not give back in full. Energy is balanced with it to second order in the step; where bonds let go after the force, to first order, as
+//! their family then has its stress by another path than its energy.
+
+use super::non_ordinary::{self, Answers, Form};
+use super::tensor::{self, Matrix};
+use super::{Bond, Columns, End, Free, Material, Site};
+use crate::columns::{Declaration, Dimension, Shape};
+use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value};
+use crate::law::number::Number;
+use crate::spec::{Influence, LawSpec, Parameters, Plane};
+
+/// Where in a step Ū is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Increment {
+    /// The mean of both ends, `½(U + U′)`: of second order (Hughes & Winget 1980).
+    Middle,
+    /// The end: of first order.
+    End,
+}
+
+/// Constants of one material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HypoelasticConstants {
+    /// Lamé's λ and shear modulus μ.
+    pub lame: f64,
+    pub shear: f64,
+    /// G_z of [`non_ordinary`] (–).
+    pub control: f64,
+}
+
+/// See the module. All materials have the same kind of increment.
+#[derive(Debug, Clone)]
+pub struct Hypoelastic {
+    pub increment: Increment,
+    /// Per material.
+    pub materials: Vec<HypoelasticConstants>,
+}
+
+const LAME: usize = 0;
+const SHEAR: usize = 1;
+const CONTROL: usize = 2; // G_z β
+
+/// U − 1 and σ_u at the end of the last step, and the work so far.
+pub type Past<N, const D: usize> = ([Matrix<N, D>; 2], N);
+/// And what they are at the end of this step.
+type Point<N, const D: usize> = (Answers<N, D>, Past<N, D>);
+type Ends<'a, N, const D: usize> = End<'a, [N; 3], Point<N, D>, [N; 0]>;
+
+/// `sym(ΔU Ū⁻¹)` of `ΔU = dv` and `Ū = 1 + v`.
+#[inline(always)]
+fn increment<N: Number, const D: usize>(dv: &Matrix<N, D>, v: &Matrix<N, D>) -> Matrix<N, D> {
+    let cofactors = tensor::cofactor_beyond(v);
+    let half = N::constant(0.5) * (N::constant(1.0) + tensor::dilation(v)).recip();
+    let more = tensor::product(dv, &cofactors);
+    let mut out = *dv;
+    for r in 0..D {
+        for c in 0..D {
+            out[r][c] = half * ((dv[r][c] + more[r][c]) + (dv[c][r] + more[c][r]));
+        }
+    }
+    out
+}
+
+impl Hypoelastic {
+    /// P at `F = 1 + H`, and what is remembered then.
+    #[inline(always)]
+    pub fn stress<N: Number, const D: usize>(
+        &self,
+        c: &[N; 3],
+        past: &Past<N, D>,
+        h: &Matrix<N, D>,
+    ) -> (Matrix<N, D>, Past<N, D>) {
+        let ([v0, s0], work) = past;
+        let (half, two) = (N::constant(0.5), N::constant(2.0));
+        let (turn, v) = tensor::polar(h);
+        let (mut dv, mut middle) = (v, v);
+        for r in 0..D {
+            for k in 0..D {
+                dv[r][k] = v[r][k] - v0[r][k];
+                middle[r][k] = half.fma(dv[r][k], v0[r][k]);
+            }
+        }
+        let mean = increment(&dv, &middle);
+        let strain = match self.increment {
+            Increment::Middle => mean,
+            Increment::End => increment(&dv, &v),
+        };
+        let pressure = c[LAME] * tensor::trace(&strain);
+        let mut s = *s0;
+        for r in 0..D {
+            for k in 0..D {
+                s[r][k] = (two * c[SHEAR]).fma(strain[r][k], s0[r][k]);
+            }
+            s[r][r] = s[r][r] + pressure;
+        }
+        // J σ : Δε at both ends
+        let one = N::constant(1.0);
+        let before = (one + tensor::dilation(v0)) * tensor::contraction(s0, &mean);
+        let after = (one + tensor::dilation(&v)) * tensor::contraction(&s, &mean);
+        let work = half.fma(before + after, *work);
+        // R σ cof(U)
+        let more = tensor::product(&turn, &s);
+        let mut turned = s;
+        for r in 0..D {
+            for k in 0..D {
+                turned[r][k] = s[r][k] + more[r][k];
+            }
+        }
+        let more = tensor::product(&turned, &tensor::cofactor_beyond(&v));
+        let mut p = turned;
+        for r in 0..D {
+            for k in 0..D {
+                p[r][k] = turned[r][k] + more[r][k];
+            }
+        }
+        (p, ([v, s], work))
+    }
+}
+
+impl<const D: usize> Material<D> for Hypoelastic {
+    type Constants<N: Number> = [N; 3];
+    type Form<N: Number> = Form<N, D>;
+    /// `Σ ω ν V η⊗ξ`
+    type Sum<N: Number> = Matrix<N, D>;
+    type Point<N: Number> = Point<N, D>;
+    type Past<N: Number> = Past<N, D>;
+    type Memory<N: Number> = [N; 0];
+    type State<N: Number> = Free<N, D>;
+    const PASSES: usize = 1;
+    const STRETCHES: bool = false;
+    const FORM_OF_WHOLE: bool = true;
+
+    fn columns(&self) -> Columns {
+        Columns {
+            past: vec![
+                Declaration::of_points(
+                    "biot_strain",
+                    Shape::Tensor,
+                    Dimension::NUMBER,
+                    "U − 1 of the right stretch U of the family's deformation gradient.",
+                ),
+                Declaration::of_points(
+                    "unrotated_stress",
+                    Shape::Tensor,
+                    Dimension::PRESSURE,
+                    "Cauchy stress seen from the turned material, Rᵀ σ R.",
+                ),
+                Declaration::of_points(
+                    "stress_work",
+                    Shape::Scalar,
+                    Dimension::PRESSURE,
+                    "Work of the stress so far per reference volume, ∫ J σ : D dt.",
+                ),
+            ],
+            point: vec![non_ordinary::column()],
+            ..Columns::default()
+        }
+    }
+
+    fn constants(&self, material: usize, _: f64) -> [f64; 3] {
+        let m = &self.materials[material];
+        [
+            m.lame,
+            m.shear,
+            non_ordinary::control::<D>(m.control, m.shear),
+        ]
+    }
+
+    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
+        non_ordinary::form(shape)
+    }
+
+    #[inline(always)]
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
+        non_ordinary::share(bond)
+    }
+
+    #[inline(always)]
+    fn settle<N: Number>(
+        &self,
+        _: usize,
+        site: &Site<[N; 3], Form<N, D>, Past<N, D>>,
+        sum: Matrix<N, D>,
+        point: &mut Point<N, D>,
+    ) {
+        let h = non_ordinary::gradient(site.form, &sum);
+        let (p, now) = self.stress(site.constants, site.past, &h);
+        point.0 = non_ordinary::answers(site.form, &p, &h, site.constants[CONTROL]);
+        point.1 = now;
+        for m in 0..2 {
+            for r in 0..D {
+                for c in 0..D {
+                    let before = site.past.0[m][r][c];
+                    point.1.0[m][r][c] = non_ordinary::known(site.form, now.0[m][r][c], before);
+                }
+            }
+        }
+        point.1.1 = non_ordinary::known(site.form, now.1, site.past.1);
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
+        non_ordinary::answer(bond, &end.point.0)
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
+        non_ordinary::bond_energy(bond, &end.point.0)
+    }
+
+    #[inline(always)]
+    fn point_energy<N: Number>(
+        &self,
+        site: &Site<[N; 3], Form<N, D>, Past<N, D>>,
+        sum: Matrix<N, D>,
+        point: &Point<N, D>,
+    ) -> N {
+        let h = non_ordinary::gradient(site.form, &sum);
+        non_ordinary::point_energy(site.form, &sum, &h, &point.0, point.1.1)
+    }
+
+    #[inline(always)]
+    fn remember<N: Number>(
+        &self,
+        _: &Site<[N; 3], Form<N, D>, Past<N, D>>,
+        point: &Point<N, D>,
+        past: &mut Past<N, D>,
+    ) -> N {
+        *past = point.1;
+        N::constant(0.0)
+    }
+}
+
+impl Shelved for Hypoelastic {
+    fn descriptor() -> Descriptor {
+        let mut keys = MODULI.to_vec();
+        keys.push(Key {
+            name: "increment",
+            value: Value::Word(&[
+                (
+                    "middle",
+                    "Ū = ½(U + U′), of second order in the step (Hughes & Winget 1980)",
+                ),
+                ("end", "Ū = U′ at the end of the step, of first order"),
+            ]),
+            need: Need::Word("middle"),
+            doc: "The stretch Ū in the increment of strain sym(ΔU Ū⁻¹).",
+        });
+        keys.push(non_ordinary::control_key());
+        Descriptor {
+            name: "hypoelastic".into(),
+            doc: "Correspondence in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            source: "Green & Naghdi 1965; Flanagan & Taylor 1987; Silling et al. 2007".into(),
+            example: "{ young = \"200 GPa\", poisson = 0.3 }".into(),
+            influence: Influence::Constant,
+            memory: Memory::Path,
+            keys,
+        }
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        descriptor::moduli(parameters).map(LawSpec::Lps)
+    }
+
+    fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let word = |m: &Given| match m.parameters.word("increment") {
+            Some("middle") => Some(Increment::Middle),
+            Some("end") => Some(Increment::End),
+            Some(_) | None => None,
+        };
+        let Some(increment) = materials.first().and_then(word) else {
+            return Err((0, "the increment is middle or end".into()));
+        };
+        let mut made = vec![];
+        for (n, m) in materials.iter().enumerate() {
+            let refused = |message: &str| Err((n, message.to_string()));
+            if d == 2 && plane == Plane::Stress {
+                return refused(
+                    "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\", or take correspondence",
+                );
+            }
+            if word(m) != Some(increment) {
+                return refused("all materials of a body have the same kind of increment");
+            }
+            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
+            made.push(HypoelasticConstants {
+                lame: moduli.lame(),
+                shear: moduli.shear(),
+                control: m.parameters.number("control").unwrap_or(0.0),
+            });
+        }
+        Ok(Hypoelastic {
+            increment,
+            materials: made,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAMBDA: f64 = 1.3;
+    const MU: f64 = 0.7;
+
+    /// P after `steps` equal steps along `path` from 0 to 1, which gives H.
+    fn along<const D: usize>(
+        increment: Increment,
+        steps: u32,
+        path: impl Fn(f64) -> Matrix<f64, D>,
+    ) -> (Matrix<f64, D>, Past<f64, D>) {
+        let law = Hypoelastic {
+            increment,
+            materials: vec![],
+        };
+        let mut past = ([[[0.0; D]; D]; 2], 0.0);
+        let mut p = [[0.0; D]; D];
+        for n in 1..=steps {
+            let h = path(f64::from(n) / f64::from(steps));
+            (p, past) = law.stress(&[LAMBDA, MU, 0.0], &past, &h);
+        }
+        (p, past)
+    }
+
+    /// Simple shear of γ: the closed form of Dienes (1979), `tan β = γ/2`, which neither rule reaches but in the limit.
+    #[test]
+    fn simple_shear_is_that_of_dienes() {
+        let gamma = 4.0;
+        let beta = f64::atan(0.5 * gamma);
+        let ln = beta.cos().ln();
+        let (s2, c2) = (2.0 * beta).sin_cos();
+        let normal = 4.0 * MU * (c2 * ln + beta * s2 - beta.sin().powi(2));
+        let shear = 2.0 * MU * c2 * (2.0 * beta - 2.0 * (2.0 * beta).tan() * ln - beta.tan());
+        // J = 1: σ = P Fᵀ
+        let cauchy = |increment, steps| {
+            let (p, _) = along(increment, steps, |t| [[0.0, gamma * t], [0.0, 0.0]]);
+            [p[0][0] + gamma * p[0][1], p[0][1], p[1][1]]
+        };
+        let off = |increment, steps| {
+            let [xx, xy, yy] = cauchy(increment, steps);
+            let apart = (xx - normal).abs().max((xy - shear).abs());
+            apart.max((yy + normal).abs())
+        };
+        for (increment, order) in [(Increment::Middle, 4.0), (Increment::End, 2.0)] {
+            let errors = [200, 400, 800].map(|n| off(increment, n));
+            let falls = [errors[0] / errors[1], errors[1] / errors[2]];
+            assert!(
+                falls.iter().all(|f| (f / order - 1.0).abs() < 0.03),
+                "{increment:?}: {errors:?}"
+            );
+        }
+        assert!(off(Increment::Middle, 6400) < 1e-6);
+    }
+
+    /// Uniaxial strain: σ = (λ + 2μ) ln F, in space too; the work is that of the stress.
+    #[test]
+    fn a_line_has_logarithmic_strain() {
+        let stretch: f64 = 1.6;
+        let path = |t: f64| {
+            [
+                [(stretch - 1.0) * t, 0.0, 0.0],
+                [0.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0],
+            ]
+        };
+        let exact = (LAMBDA + 2.0 * MU) * stretch.ln();
+        // ∫ σ dF
+        let work = (LAMBDA + 2.0 * MU) * (stretch * stretch.ln() - stretch + 1.0);
+        let errors = [20, 40, 80].map(|n| {
+            let (p, past) = along(Increment::Middle, n, path);
+            assert!((past.0[1][1][1] - LAMBDA * p[0][0] / (LAMBDA + 2.0 * MU)).abs() < 1e-14);
+            [p[0][0] - exact, past.1 - work]
+        });
+        for k in 0..2 {
+            let falls = [errors[0][k] / errors[1][k], errors[1][k] / errors[2][k]];
+            assert!(
+                falls.iter().all(|f| (f / 4.0 - 1.0).abs() < 0.01),
+                "{errors:?}"
+            );
+        }
+    }
+
+    /// Rotations are not seen, however large a step is; and what is turned has its stress turned.
+    #[test]
+    fn steps_may_turn() {
+        let (s, c) = 2.3f64.sin_cos();
+        let turn = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]];
+        let h = [[0.1, -0.2, 0.05], [0.3, 0.2, 0.1], [-0.1, 0.15, -0.2]];
+        let mut f = h;
+        (0..3).for_each(|a| f[a][a] += 1.0);
+        let mut turned = tensor::product(&turn, &f);
+        (0..3).for_each(|a| turned[a][a] -= 1.0);
+        let (p, past) = along(Increment::Middle, 1, |_| h);
+        let (q, turned) = along(Increment::Middle, 1, |_| turned);
+        let expected = tensor::product(&turn, &p);
+        for r in 0..3 {
+            for k in 0..3 {
+                assert!(
+                    (q[r][k] - expected[r][k]).abs() < 1e-14,
+                    "{q:?} {expected:?}"
+                );
+            }
+        }
+        assert!((past.1 - turned.1).abs() < 1e-15);
+        let mut rigid = turn;
+        (0..3).for_each(|a| rigid[a][a] -= 1.0);
+        let (p, _) = along(Increment::Middle, 1, |_| rigid);
+        assert!(p.iter().flatten().all(|x| x.abs() < 1e-15), "{p:?}");
+    }
+}
