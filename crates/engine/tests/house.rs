@@ -259,6 +259,16 @@ fn a_circle_is_seen() {
 /// A name in code outside of the file that it belongs to and of the list of its folder, and why it may be there.
 const ELSEWHERE: &[(&str, &str, &str)] = &[
     (
+        "elastic_plastic",
+        "lammps/src/model/types.rs",
+        "the law of LAMMPS's peri/eps",
+    ),
+    (
+        "viscoelastic",
+        "lammps/src/model/types.rs",
+        "the law of LAMMPS's peri/ves",
+    ),
+    (
         "lennard_jones",
         "cli/src/upscale/crystal.rs",
         "reduced units are those of this potential",

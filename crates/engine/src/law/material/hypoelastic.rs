@@ -258,7 +258,7 @@ impl Shelved for Hypoelastic {
         keys.push(non_ordinary::control_key());
         Descriptor {
             name: "hypoelastic".into(),
-            doc: "Correspondence in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            doc: "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
             source: "Green & Naghdi 1965; Flanagan & Taylor 1987; Silling et al. 2007".into(),
             example: "{ young = \"200 GPa\", poisson = 0.3 }".into(),
             influence: Influence::Constant,
@@ -285,7 +285,7 @@ impl Shelved for Hypoelastic {
             let refused = |message: &str| Err((n, message.to_string()));
             if d == 2 && plane == Plane::Stress {
                 return refused(
-                    "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\", or take correspondence",
+                    "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\"",
                 );
             }
             if word(m) != Some(increment) {
