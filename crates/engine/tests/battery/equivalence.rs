@@ -200,3 +200,53 @@ fn interface_bonds_follow_their_rule() {
         );
     }
 }
+
+/// A solid that does not yield, and one that does not relax, are the linear solid: whole, and torn.
+#[test]
+fn solids_that_do_not_flow_are_linear() {
+    for kind in [LatticeKind::Square, LatticeKind::Cubic] {
+        let place = places()
+            .into_iter()
+            .find(|p| p.kind == kind && (p.plane == Plane::Strain || kind == LatticeKind::Cubic))
+            .unwrap();
+        let moduli = || Parameters::numbers(&[("young", 3.0), ("poisson", 0.2)]);
+        let plastic = moduli().with("yield_stress", Parameter::Number(1e9));
+        let rows = vec![vec![1e-300, 1.0]];
+        let viscous = moduli().with("branches", Parameter::Rows(rows));
+        let laws = [
+            LawSpec::Lps(Moduli {
+                young: 3.0,
+                poisson: 0.2,
+            }),
+            LawSpec::named("elastic_plastic", plastic),
+            LawSpec::named("viscoelastic", viscous),
+        ];
+        let torn = laws.map(|law| {
+            let mut spec = Case::of("lps", place).spec();
+            spec.materials[0].law = law;
+            breaking(&mut spec, 0.06);
+            let mut sim = at_rest(&spec);
+            let n = sim.vectors("reference").len();
+            let mut random = Random(7);
+            sim.set_displacements(&random.vectors(n, spec.dimension, 0.12 * H));
+            sim.start(true);
+            sim.start(true);
+            assert!(sim.broken() > 0);
+            let u = random.vectors(n, spec.dimension, 0.12 * H);
+            sim.set_displacements(&u);
+            let mut scalars = sim.scalars("dilatation");
+            scalars.extend(sim.scalars("energy_density"));
+            (sim.broken(), sim.forces_under(&u), scalars)
+        });
+        let [linear, others @ ..] = torn;
+        for (broken, forces, scalars) in others {
+            assert_eq!(broken, linear.0, "{kind:?}");
+            let off = distance(&forces, &linear.1) / largest(&linear.1);
+            assert!(off < 1e-12, "{kind:?}: forces {off:e}");
+            let top = linear.2.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+            for (a, b) in scalars.iter().zip(&linear.2) {
+                assert!((a - b).abs() < 1e-12 * top, "{kind:?}: {a} is not {b}");
+            }
+        }
+    }
+}

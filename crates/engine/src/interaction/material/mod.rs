@@ -257,15 +257,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         room: &Room,
         out: Option<&mut PointEnergies>,
     ) -> [f64; 2] {
-        let fields = out.map(|out| {
-            out.zeros(body.len);
-            EnergyFields {
-                strain: Shared(out.strain.as_mut_ptr()),
-                repulsion: Shared(out.repulsion.as_mut_ptr()),
-                share: Shared(out.dilatation.as_mut_ptr()),
-                weight: Shared(out.whole.as_mut_ptr()),
-            }
-        });
+        let fields = out.map(|out| EnergyFields::of(out, body.len));
         let kernel = Energies {
             view: self.view(u, room),
             pushed: self.pushed(body),
@@ -277,12 +269,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     fn seen(&self, body: &Body<D>, u: &Field<D>, room: &Room, out: &mut PointEnergies) {
         self.energies(body, u, room, Some(&mut *out));
-        for &s in &body.slots {
-            let i = s as usize;
-            if out.whole[i] > 0.0 {
-                out.dilatation[i] *= D as f64 / out.whole[i];
-            }
-        }
+        self.dilate(out);
     }
 
     /// Test and break, and what points lose.

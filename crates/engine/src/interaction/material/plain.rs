@@ -27,6 +27,50 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         all
     }
 
+    /// Dilatations from `Σ ω ν V |ξ|² s` over the whole bonds: over the weighted volume of those that count, broken or not, where the law
+    /// takes it so, else over that of the whole ones; and what part of it is whole, or how much.
+    pub(super) fn dilate(&self, out: &mut PointEnergies) {
+        let of_family = M::PASSES > 0 && !M::FORM_OF_WHOLE;
+        let points = (0..self.family.groups()).flat_map(|g| (0..TILE).map(move |l| (g, l)));
+        for (group, l) in points.filter(|(g, l)| self.family.is_point(*g, *l)) {
+            let i = self.family.rows(group).slot(l);
+            let whole = out.whole[i];
+            let weight = if of_family {
+                let gone = |k: &usize| {
+                    let byte = self.family.byte(group, *k);
+                    (self.counted[byte] & !self.alive[byte]) >> l & 1 == 1
+                };
+                let of_bond = |k: usize| {
+                    let [omega, weight, square] = self.weight_of(group, k, l);
+                    omega * weight * square
+                };
+                let bonds = 0..self.family.bonds(group);
+                whole + bonds.filter(gone).map(of_bond).sum::<f64>()
+            } else {
+                whole
+            };
+            if weight > 0.0 {
+                out.dilatation[i] *= D as f64 / weight;
+            }
+            if of_family && weight > 0.0 {
+                out.whole[i] /= weight;
+            }
+        }
+    }
+
+    /// ω, `ν V` and |ξ|² of a bond.
+    fn weight_of(&self, group: usize, k: usize, l: usize) -> [f64; 3] {
+        let rows = self.family.rows(group).from(l);
+        // SAFETY: a bond of the family
+        let r = unsafe {
+            let place = self.family.place::<f64>(rows);
+            let ends = self.family.ends(group, k).from(l);
+            let alive = <f64 as crate::execute::lane::Lane>::dead(1);
+            self.family.reference::<f64>(group, k, &place, ends, alive)
+        };
+        [r.omega, r.weight, r.length * r.length]
+    }
+
     /// Energies under a homogeneous displacement gradient.
     pub(super) fn strained(
         &self,
@@ -94,11 +138,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
                 out.strain[slot] = energy;
                 out.whole[slot] = whole;
-                if whole > 0.0 {
-                    out.dilatation[slot] = D as f64 * share / whole;
-                }
+                out.dilatation[slot] = share;
             }
         }
+        self.dilate(out);
     }
 
     /// Forces bond by bond, in order of slots.
