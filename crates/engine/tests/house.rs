@@ -312,16 +312,6 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "io/src/write/setfl.rs",
         "a module: the format of files",
     ),
-    (
-        "elastic_plastic",
-        "lammps/src/model/types.rs",
-        "what pair_style peri/eps is",
-    ),
-    (
-        "viscoelastic",
-        "lammps/src/model/types.rs",
-        "what pair_style peri/ves is",
-    ),
 ];
 
 /// All names of everything on a list.

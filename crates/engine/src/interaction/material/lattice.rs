@@ -7,7 +7,6 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE, prefetch};
 use crate::family::links::Links;
 use crate::family::stencil::Stencil;
-use crate::interaction::material::numbers_of;
 use crate::law::material::Numbers;
 
 /// Consecutive slots.
@@ -41,9 +40,10 @@ impl Slots for Run {
 
 /// A bond of the stencil.
 #[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
 struct Offset<const D: usize> {
     shift: isize,
+    /// The bond that leads back, among those of the sublattice where it ends.
+    back: usize,
     xi: [f64; D],
     length: f64,
     inv_length: f64,
@@ -52,14 +52,24 @@ struct Offset<const D: usize> {
     weight: f64,
 }
 
+/// Where a group is.
+#[derive(Debug, Clone, Copy)]
+struct GroupOf {
+    /// Its first slot.
+    first: usize,
+    /// Its first offset, and how many there are.
+    offset: usize,
+    bonds: usize,
+    sublattice: usize,
+}
+
 /// All bonds of a lattice body.
 #[derive(Debug, Clone)]
 pub struct LatticeFamily<const D: usize> {
     links: Links<D>,
-    /// Per sublattice.
-    offsets: Vec<Vec<Offset<D>>>,
-    /// Per sublattice: the bond that leads back, among those of the sublattice where a bond ends.
-    back: Vec<Vec<u32>>,
+    /// Those of one sublattice after those of another.
+    offsets: Vec<Offset<D>>,
+    groups: Vec<GroupOf>,
     grid: Grid<D>,
     /// Bits per group.
     width: usize,
@@ -79,41 +89,42 @@ impl<const D: usize> LatticeFamily<D> {
         let links = Links::new(body, grid, stencil);
         let volume = body.volume.uniform().unwrap_or(1.0);
         let h = grid.lattice.spacing;
-        let made = stencil
-            .offsets
-            .iter()
-            .zip(&links.links)
-            .map(|(list, links)| {
-                let all = list.iter().zip(links).map(|(o, link)| {
-                    let square = h * h * (o.squared as f64 / 16.0);
-                    let length = square.sqrt();
-                    let [omega, fraction] = weight(length);
-                    Offset {
-                        shift: link.shift,
-                        xi: link.xi,
-                        length,
-                        inv_length: 1.0 / length,
-                        two_by_square: 2.0 / square,
-                        omega,
-                        weight: fraction * volume,
-                    }
-                });
-                all.collect::<Vec<_>>()
-            });
-        let offsets: Vec<Vec<Offset<D>>> = made.collect();
-        let back = stencil.offsets.iter().enumerate().map(|(from, list)| {
-            let of = |o: &crate::family::stencil::Offset| {
+        let mut offsets = vec![];
+        let mut starts = vec![];
+        for (from, (list, links)) in stencil.offsets.iter().zip(&links.links).enumerate() {
+            starts.push(offsets.len());
+            for (o, link) in list.iter().zip(links) {
+                let square = h * h * (o.squared as f64 / 16.0);
+                let length = square.sqrt();
+                let [omega, fraction] = weight(length);
                 let there = |b: &crate::family::stencil::Offset| {
                     b.to == from && (0..3).all(|a| b.cell[a] == -o.cell[a])
                 };
-                let place = stencil.offsets[o.to].iter().position(there);
-                place.expect("every bond of a stencil leads back") as u32
-            };
-            list.iter().map(of).collect()
-        });
+                let back = stencil.offsets[o.to].iter().position(there);
+                offsets.push(Offset {
+                    shift: link.shift,
+                    back: back.expect("every bond of a stencil leads back"),
+                    xi: link.xi,
+                    length,
+                    inv_length: 1.0 / length,
+                    two_by_square: 2.0 / square,
+                    omega,
+                    weight: fraction * volume,
+                });
+            }
+        }
+        let group = |tile: &u32| {
+            let sublattice = grid.tile_sublattice(*tile as usize);
+            GroupOf {
+                first: grid.tile_slot(*tile as usize),
+                offset: starts[sublattice],
+                bonds: stencil.offsets[sublattice].len(),
+                sublattice,
+            }
+        };
         LatticeFamily {
-            back: back.collect(),
-            width: offsets.iter().map(Vec::len).max().unwrap_or(0),
+            groups: links.tiles.iter().map(group).collect(),
+            width: stencil.offsets.iter().map(Vec::len).max().unwrap_or(0),
             offsets,
             links,
             grid: grid.clone(),
@@ -123,13 +134,8 @@ impl<const D: usize> LatticeFamily<D> {
     }
 
     #[inline(always)]
-    fn sublattice(&self, group: usize) -> usize {
-        self.grid.tile_sublattice(self.links.tiles[group] as usize)
-    }
-
-    #[inline(always)]
     fn first(&self, group: usize) -> usize {
-        self.grid.tile_slot(self.links.tiles[group] as usize)
+        self.groups[group].first
     }
 
     /// Of what the bond `k` of a slot remembers: the bonds of a tile lie together, each with its eight slots side by side.
@@ -141,7 +147,7 @@ impl<const D: usize> LatticeFamily<D> {
 
     #[inline(always)]
     fn offset(&self, group: usize, k: usize) -> &Offset<D> {
-        &self.offsets[self.sublattice(group)][k]
+        &self.offsets[self.groups[group].offset + k]
     }
 }
 
@@ -158,7 +164,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     }
     #[inline(always)]
     fn bonds(&self, group: usize) -> usize {
-        self.offsets[self.sublattice(group)].len()
+        self.groups[group].bonds
     }
     #[inline(always)]
     fn ends(&self, group: usize, k: usize) -> Run {
@@ -177,7 +183,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         self.grid.is_owned(self.first(group) + l)
     }
     fn is_bond(&self, group: usize, k: usize, l: usize) -> bool {
-        let link = &self.links.links[self.sublattice(group)][k];
+        let link = &self.links.links[self.groups[group].sublattice][k];
         link.partner(&self.grid, self.first(group) + l).is_some()
     }
 
@@ -192,7 +198,11 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         _: Run,
         dead: L::Mask,
     ) -> Reference<L, D> {
-        let o = self.offset(group, k);
+        // SAFETY: a bond of the group
+        let o = unsafe {
+            let of = self.groups.get_unchecked(group);
+            self.offsets.get_unchecked(of.offset + k)
+        };
         let mut xi = [L::splat(0.0); D];
         for a in 0..D {
             xi[a] = L::splat(o.xi[a]);
@@ -237,12 +247,13 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
         n: usize,
         count: usize,
     ) -> L {
-        let back = self.back[self.sublattice(group)][k] as usize;
-        let slot = self.ends(group, k).0 + part;
-        let inside = (slot + self.phase) % TILE;
-        let place = self.place_of(slot, back, n, count);
         // SAFETY: the caller's promise
         unsafe {
+            let of = self.groups.get_unchecked(group);
+            let offset = self.offsets.get_unchecked(of.offset + k);
+            let slot = of.first.wrapping_add_signed(offset.shift) + part;
+            let inside = (slot + self.phase) % TILE;
+            let place = self.place_of(slot, offset.back, n, count);
             let near = L::load(memory.at(place));
             if L::N == 1 || inside == 0 {
                 return near;
@@ -275,6 +286,6 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     }
 
     fn bytes(&self) -> usize {
-        self.links.bytes() + numbers_of(&self.offsets) + 4 * self.width
+        self.links.bytes() + size_of_val(&*self.offsets) + size_of_val(&*self.groups)
     }
 }

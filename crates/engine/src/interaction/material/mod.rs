@@ -94,10 +94,6 @@ pub struct MaterialParts<'a, const D: usize, F, M> {
     pub simd: Simd,
 }
 
-fn numbers_of<T>(of: &[Vec<T>]) -> usize {
-    of.iter().map(|o| size_of::<T>() * o.len()).sum()
-}
-
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
     pub fn new(parts: MaterialParts<D, F, M>) -> Self {
         let MaterialParts {
