@@ -245,7 +245,7 @@ fn forces_from_outside_are_refused_where_they_cannot_be() {
             Err(error) => error.to_string(),
             Ok(mut sim) => {
                 sim.start(true);
-                sim.step().err().expect("it has no tangent").to_string()
+                sim.step().expect_err("it has no tangent").to_string()
             }
         };
         assert!(error.contains("a force of the program"), "{error}");
