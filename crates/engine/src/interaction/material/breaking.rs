@@ -194,13 +194,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             if bits >> l & 1 == 0 {
                 continue;
             }
-            // SAFETY: a whole bond of the group
-            let r = unsafe {
-                let place = self.family.place::<f64>(at);
-                let ends = self.family.ends(group, k).from(l);
-                self.family
-                    .reference::<f64>(group, k, &place, ends, f64::dead(1))
-            };
+            let r = self.family.plain(group, k, l);
             let weight = r.omega * r.weight;
             for a in 0..D {
                 for b in 0..D {

@@ -101,16 +101,20 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     /// Copies what bonds of original points remember to those of their images.
     fn fill_images(&self, images: &[(u32, u32)], memory: &mut [f64], count: usize);
 
-    /// ξ and `ν V_j` of one bond, plainly.
-    fn bond(&self, group: usize, k: usize, l: usize) -> ([f64; D], f64) {
-        let ends = self.ends(group, k).from(l);
+    /// One bond in the reference, whole or not.
+    fn plain(&self, group: usize, k: usize, l: usize) -> Reference<f64, D> {
+        let (rows, ends) = (self.rows(group).from(l), self.ends(group, k).from(l));
         // SAFETY: a bond of this family
         unsafe {
-            let at = self.place::<f64>(self.rows(group).from(l));
-            let alive = f64::dead(1);
-            let r = self.reference::<f64>(group, k, &at, ends, alive);
-            (r.xi, r.weight)
+            let at = self.place::<f64>(rows);
+            self.reference::<f64>(group, k, &at, ends, f64::dead(1))
         }
+    }
+
+    /// ξ and `ν V_j` of one bond.
+    fn bond(&self, group: usize, k: usize, l: usize) -> ([f64; D], f64) {
+        let r = self.plain(group, k, l);
+        (r.xi, r.weight)
     }
 
     /// Group and place in it of a slot; `None`: no point.

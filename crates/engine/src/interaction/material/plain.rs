@@ -11,17 +11,9 @@ use crate::law::material::{Bond, End, Material, Numbers, Site};
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
     /// ξ, ω and `ν V` of the whole bonds of a point, with their places.
     pub(super) fn bonds_of(&self, group: usize, l: usize) -> Vec<(usize, [f64; D], f64, f64)> {
-        use crate::execute::lane::Lane;
-        let rows = self.family.rows(group).from(l);
         let mut all = vec![];
         for k in (0..self.family.bonds(group)).filter(|k| self.is_whole(group, *k, l)) {
-            // SAFETY: a bond of the family
-            let r = unsafe {
-                let place = self.family.place::<f64>(rows);
-                let ends = self.family.ends(group, k).from(l);
-                self.family
-                    .reference::<f64>(group, k, &place, ends, f64::dead(1))
-            };
+            let r = self.family.plain(group, k, l);
             all.push((k, r.xi, r.omega, r.weight));
         }
         all
@@ -41,8 +33,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     (self.counted[byte] & !self.alive[byte]) >> l & 1 == 1
                 };
                 let of_bond = |k: usize| {
-                    let [omega, weight, square] = self.weight_of(group, k, l);
-                    omega * weight * square
+                    let r = self.family.plain(group, k, l);
+                    r.omega * r.weight * (r.length * r.length)
                 };
                 let bonds = 0..self.family.bonds(group);
                 whole + bonds.filter(gone).map(of_bond).sum::<f64>()
@@ -56,19 +48,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 out.whole[i] /= weight;
             }
         }
-    }
-
-    /// ω, `ν V` and |ξ|² of a bond.
-    fn weight_of(&self, group: usize, k: usize, l: usize) -> [f64; 3] {
-        let rows = self.family.rows(group).from(l);
-        // SAFETY: a bond of the family
-        let r = unsafe {
-            let place = self.family.place::<f64>(rows);
-            let ends = self.family.ends(group, k).from(l);
-            let alive = <f64 as crate::execute::lane::Lane>::dead(1);
-            self.family.reference::<f64>(group, k, &place, ends, alive)
-        };
-        [r.omega, r.weight, r.length * r.length]
     }
 
     /// Energies under a homogeneous displacement gradient.

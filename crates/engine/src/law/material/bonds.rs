@@ -42,6 +42,7 @@ impl<L: BondLaw<K>, const K: usize, const D: usize> Material<D> for Bonds<L, K> 
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Along<N>;
     const PASSES: usize = 0;
+    const ALIKE: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> Constants<f64, K> {
         self.materials[material]

@@ -219,7 +219,7 @@ pub struct Columns {
 pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Numbers of a material that its functions read.
     type Constants<N: Number>: Numbers<N>;
-    /// What a point knows of its reference family.
+    /// What a point knows of its reference family; at most 32 numbers.
     type Form<N: Number>: Numbers<N>;
     /// What bonds give to their point.
     type Sum<N: Number>: Numbers<N>;
