@@ -36,7 +36,7 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Write the force density of all bonds (and repulsion inside the family) into `f`, slot by slot; advance the
     /// bonds' memory if asked to. Images of `u` must be fresh. What is `seen` are the energies of the bonds that are
-    /// whole before any breaks, as [observe](Interaction::observe) gives them, at less cost.
+    /// whole before any breaks, with the memory that they have afterwards, as [observe](Interaction::observe) gives them, at less cost.
     ///
     /// # Panics
     /// If the body is another one than that of [`made_for`](Interaction::made_for), or a field does not have its length.

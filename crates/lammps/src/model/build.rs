@@ -98,11 +98,7 @@ impl ModelHost {
         write_velocities(simulation.as_mut(), setup.dimension, &setup.atoms)?;
         let highest = setup.pair.types();
         let moduli = types.moduli();
-        let of = |kind: usize| {
-            let [bulk, shear] = *moduli.get(types.material_of(kind))?;
-            // these two know no part of a family in their energies
-            Some([bulk, if shelved { 0.0 } else { shear }])
-        };
+        let of = |kind: usize| moduli.get(types.material_of(kind)).copied();
         Ok(Prepared {
             notes: notes(setup, &types, simulation.as_ref()),
             moduli: (1..=highest).filter_map(of).collect(),

@@ -338,6 +338,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         tally
     }
 
+    fn swap_bonds(&mut self, (alive, form): &mut (Vec<u8>, Store)) {
+        std::mem::swap(&mut self.alive, alive);
+        std::mem::swap(&mut self.form, form);
+    }
+
     /// What points know of their families, from the bonds in `bits`.
     fn look(&mut self, body: &Body<D>) {
         let count = <M::Form<f64> as Numbers<f64>>::COUNT;
@@ -407,11 +412,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         let motion = sweep.motion();
         let dt = motion.map_or(self.step, |m| m.steps[0]);
         let room = self.take_room(u, dt);
-        if let Some(seen) = seen {
-            // as an observer sees it: what is pending of the step is not done
-            self.seen(body, u, &self.look_room(u), seen);
-        }
         let breaks = motion.filter(|_| !self.critical.is_empty());
+        // of a watched step: the bonds before any breaks
+        let mut whole = seen
+            .as_ref()
+            .map(|_| (self.alive.clone(), self.form.clone()));
         let mut total = Tally::default();
         if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
             total += self.tear(body, u, &room, m.v, -m.steps[0]);
@@ -428,6 +433,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         }
         if motion.is_some() {
             total += self.remember(body, u, &room);
+        }
+        if let (Some(seen), Some(whole)) = (seen, &mut whole) {
+            // what the step remembers is part of this instant, what breaks in it is of the next
+            self.swap_bonds(whole);
+            self.seen(body, u, &self.look_room(u), seen);
+            self.swap_bonds(whole);
         }
         if breaks.is_some() {
             std::mem::swap(&mut self.critical, &mut self.next);
