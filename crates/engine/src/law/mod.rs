@@ -15,6 +15,7 @@ pub mod number;
 pub mod potential;
 pub mod solid;
 pub mod spline;
+pub mod terms;
 
 use crate::execute::lane::Lane;
 

@@ -1,8 +1,8 @@
-//! Correspondence (Silling et al. 2007): any classical stress P(F) that is the slope of a stored energy ψ(F), by [`non_ordinary`].
+//! Correspondence (Silling et al. 2007): any classical stress P(F) that is the slope of a stored energy ψ(F), by
+//! [`non_ordinary`](super::non_ordinary).
 
-use super::non_ordinary::{self, Answers, Form};
+use super::non_ordinary::{Classical, Stressed};
 use super::tensor::{self, Matrix};
-use super::{Bond, Columns, End, Free, Material, Site};
 use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
@@ -22,8 +22,6 @@ pub struct CorrespondenceConstants {
     /// Lamé's λ of the solid and shear modulus μ.
     pub lame: f64,
     pub shear: f64,
-    /// G_z (–).
-    pub control: f64,
 }
 
 /// See the module. All materials have the same kind of stress.
@@ -38,21 +36,30 @@ pub struct Correspondence {
 
 const LAME: usize = 0;
 const SHEAR: usize = 1;
-const CONTROL: usize = 2; // G_z β
-
-type Ends<'a, N, const D: usize> = End<'a, [N; 3], Answers<N, D>, [N; 0]>;
 
 /// Steps of Newton's method for the thickness: from the linear estimate six reach round-off for stretches of 0.3 to 3.
 const THICKNESS_STEPS: usize = 6;
 
-impl Correspondence {
-    /// P and ψ at `F = 1 + H`, without cancellation.
+impl<const D: usize> Classical<D> for Correspondence {
+    type Constants<N: Number> = [N; 2];
+    type Past<N: Number> = [N; 0];
+
+    fn constants(&self, material: usize, _: f64) -> [f64; 2] {
+        let m = &self.materials[material];
+        [m.lame, m.shear]
+    }
+
+    fn shear(&self, material: usize) -> f64 {
+        self.materials[material].shear
+    }
+
     #[inline(always)]
-    pub fn stress<N: Number, const D: usize>(
+    fn stress<N: Number>(
         &self,
-        c: &[N; 3],
+        c: &[N; 2],
+        past: &[N; 0],
         h: &Matrix<N, D>,
-    ) -> (Matrix<N, D>, N) {
+    ) -> Stressed<N, [N; 0], D> {
         let (half, two) = (N::constant(0.5), N::constant(2.0));
         let mut f = *h;
         for a in 0..D {
@@ -67,7 +74,7 @@ impl Correspondence {
             }
         }
         let strain = tensor::trace(&twice);
-        match self.stress {
+        let (stress, energy) = match self.stress {
             Stress::Linear => {
                 let lame = if self.plane_stress {
                     (two * c[LAME] * c[SHEAR]).div(two.fma(c[SHEAR], c[LAME]))
@@ -118,6 +125,11 @@ impl Correspondence {
                 let energy = half * c[SHEAR] * shear + half * pull * volume;
                 (p, energy)
             }
+        };
+        Stressed {
+            stress,
+            energy,
+            past: *past,
         }
     }
 }
@@ -151,7 +163,7 @@ const NEAR: f64 = 0.2;
 
 /// x = ln λ₃² with no stress across: `μ (e^x − 1) + λ (ln J₂ + x/2) = 0`.
 #[inline(always)]
-fn thickness<N: Number>(c: &[N; 3], plane: N) -> N {
+fn thickness<N: Number>(c: &[N; 2], plane: N) -> N {
     let (half, two) = (N::constant(0.5), N::constant(2.0));
     let mut x = (N::constant(0.0) - two * c[LAME] * plane).div(two.fma(c[SHEAR], c[LAME]));
     for _ in 0..THICKNESS_STEPS {
@@ -161,80 +173,6 @@ fn thickness<N: Number>(c: &[N; 3], plane: N) -> N {
         x = x - rest.div(slope);
     }
     x
-}
-
-impl<const D: usize> Material<D> for Correspondence {
-    type Constants<N: Number> = [N; 3];
-    type Form<N: Number> = Form<N, D>;
-    /// `Σ ω ν V η⊗ξ`
-    type Sum<N: Number> = Matrix<N, D>;
-    type Point<N: Number> = Answers<N, D>;
-    type Past<N: Number> = [N; 0];
-    type Memory<N: Number> = [N; 0];
-    type State<N: Number> = Free<N, D>;
-    const PASSES: usize = 1;
-    const STRETCHES: bool = false;
-    const FORM_OF_WHOLE: bool = true;
-
-    fn columns(&self) -> Columns {
-        Columns {
-            point: vec![non_ordinary::column()],
-            ..Columns::default()
-        }
-    }
-
-    fn constants(&self, material: usize, _: f64) -> [f64; 3] {
-        let m = &self.materials[material];
-        [
-            m.lame,
-            m.shear,
-            non_ordinary::control::<D>(m.control, m.shear),
-        ]
-    }
-
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
-        non_ordinary::form(shape)
-    }
-
-    #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
-        non_ordinary::share(bond)
-    }
-
-    #[inline(always)]
-    fn settle<N: Number>(
-        &self,
-        _: usize,
-        site: &Site<[N; 3], Form<N, D>, [N; 0]>,
-        sum: Matrix<N, D>,
-        point: &mut Answers<N, D>,
-    ) {
-        let h = non_ordinary::gradient(site.form, &sum);
-        let (p, _) = self.stress(site.constants, &h);
-        *point = non_ordinary::answers(site.form, &p, &h, site.constants[CONTROL]);
-    }
-
-    #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
-        non_ordinary::answer(bond, end.point)
-    }
-
-    #[inline(always)]
-    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
-        non_ordinary::bond_energy(bond, end.point)
-    }
-
-    #[inline(always)]
-    fn point_energy<N: Number>(
-        &self,
-        site: &Site<[N; 3], Form<N, D>, [N; 0]>,
-        sum: Matrix<N, D>,
-        point: &Answers<N, D>,
-    ) -> N {
-        let h = non_ordinary::gradient(site.form, &sum);
-        let (_, energy) = self.stress(site.constants, &h);
-        non_ordinary::point_energy(site.form, &sum, &h, point, energy)
-    }
 }
 
 impl Shelved for Correspondence {
@@ -255,7 +193,6 @@ impl Shelved for Correspondence {
             need: Need::Word("linear"),
             doc: "Classical law P(F).",
         });
-        keys.push(non_ordinary::control_key());
         Descriptor {
             name: "correspondence".into(),
             doc: "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.".into(),
@@ -292,7 +229,6 @@ impl Shelved for Correspondence {
             made.push(CorrespondenceConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
-                control: m.parameters.number("control").unwrap_or(0.0),
             });
         }
         Ok(Correspondence {
@@ -334,21 +270,22 @@ mod tests {
                     plane_stress,
                     materials: vec![],
                 };
-                let c = [1.3, 0.7, 0.0];
-                let (p, _) = law.stress(&c, &h);
+                let c = [1.3, 0.7];
+                let p = law.stress(&c, &[], &h).stress;
                 for r in 0..2 {
                     for s in 0..2 {
                         let at = |step: f64| {
                             let mut h = h;
                             h[r][s] += step;
-                            law.stress(&c, &h).1
+                            law.stress(&c, &[], &h).energy
                         };
                         let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
                         assert!((slope - p[r][s]).abs() < 1e-9, "{law:?} {r}{s}: {slope}");
                     }
                 }
                 let small = 1e-9;
-                let (p, energy) = law.stress(&c, &[[small, 0.0], [0.0, 0.0]]);
+                let strained = law.stress(&c, &[], &[[small, 0.0], [0.0, 0.0]]);
+                let (p, energy) = (strained.stress, strained.energy);
                 let lame = if plane_stress {
                     2.0 * 1.3 * 0.7 / (1.3 + 1.4)
                 } else {

@@ -1,5 +1,5 @@
 //! Hypoelastic correspondence: a stress that grows with the rate of deformation, as rate forms of classical codes have it, by
-//! [`non_ordinary`].
+//! [`non_ordinary`](super::non_ordinary).
 //!
 //! With `F = RU` the Cauchy stress seen from the turned material, `σ_u = Rᵀ σ R`, has the rate `σ̇_u = λ tr(d) 1 + 2μ d` of the unrotated
 //! rate of deformation `d = Rᵀ D R = sym(U̇ U⁻¹)`: the rate of Green & Naghdi (1965), as Flanagan & Taylor (1987) integrate it. A step adds
@@ -10,9 +10,8 @@
 //! does not give back in full. Energy is balanced with it to second order in the step; where bonds let go after the force, to first order, as
 //! their family then has its stress by another path than its energy.
 
-use super::non_ordinary::{self, Answers, Form};
+use super::non_ordinary::{Classical, Stressed};
 use super::tensor::{self, Matrix};
-use super::{Bond, Columns, End, Free, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value};
 use crate::law::number::Number;
@@ -33,8 +32,6 @@ pub struct HypoelasticConstants {
     /// Lamé's λ and shear modulus μ.
     pub lame: f64,
     pub shear: f64,
-    /// G_z of [`non_ordinary`] (–).
-    pub control: f64,
 }
 
 /// See the module. All materials have the same kind of increment.
@@ -47,14 +44,9 @@ pub struct Hypoelastic {
 
 const LAME: usize = 0;
 const SHEAR: usize = 1;
-const CONTROL: usize = 2; // G_z β
 
 /// U − 1 and σ_u at the end of the last step, and the work so far.
-pub type Past<N, const D: usize> = ([Matrix<N, D>; 2], N);
-/// And what they are at the end of this step.
-type Point<N, const D: usize> = (Answers<N, D>, Past<N, D>);
-type Ends<'a, N, const D: usize> = End<'a, [N; 3], Point<N, D>, [N; 0]>;
-
+type Past<N, const D: usize> = ([Matrix<N, D>; 2], N);
 /// `sym(ΔU Ū⁻¹)` of `ΔU = dv` and `Ū = 1 + v`.
 #[inline(always)]
 fn increment<N: Number, const D: usize>(dv: &Matrix<N, D>, v: &Matrix<N, D>) -> Matrix<N, D> {
@@ -70,15 +62,49 @@ fn increment<N: Number, const D: usize>(dv: &Matrix<N, D>, v: &Matrix<N, D>) -> 
     out
 }
 
-impl Hypoelastic {
-    /// P at `F = 1 + H`, and what is remembered then.
+impl<const D: usize> Classical<D> for Hypoelastic {
+    type Constants<N: Number> = [N; 2];
+    type Past<N: Number> = Past<N, D>;
+
+    fn columns(&self) -> Vec<Declaration> {
+        vec![
+            Declaration::of_points(
+                "biot_strain",
+                Shape::Tensor,
+                Dimension::NUMBER,
+                "U − 1 of the right stretch U of the family's deformation gradient.",
+            ),
+            Declaration::of_points(
+                "unrotated_stress",
+                Shape::Tensor,
+                Dimension::PRESSURE,
+                "Cauchy stress seen from the turned material, Rᵀ σ R.",
+            ),
+            Declaration::of_points(
+                "stress_work",
+                Shape::Scalar,
+                Dimension::PRESSURE,
+                "Work of the stress so far per reference volume, ∫ J σ : D dt.",
+            ),
+        ]
+    }
+
+    fn constants(&self, material: usize, _: f64) -> [f64; 2] {
+        let m = &self.materials[material];
+        [m.lame, m.shear]
+    }
+
+    fn shear(&self, material: usize) -> f64 {
+        self.materials[material].shear
+    }
+
     #[inline(always)]
-    pub fn stress<N: Number, const D: usize>(
+    fn stress<N: Number>(
         &self,
-        c: &[N; 3],
+        c: &[N; 2],
         past: &Past<N, D>,
         h: &Matrix<N, D>,
-    ) -> (Matrix<N, D>, Past<N, D>) {
+    ) -> Stressed<N, Past<N, D>, D> {
         let ([v0, s0], work) = past;
         let (half, two) = (N::constant(0.5), N::constant(2.0));
         let (turn, v) = tensor::polar(h);
@@ -122,121 +148,11 @@ impl Hypoelastic {
                 p[r][k] = turned[r][k] + more[r][k];
             }
         }
-        (p, ([v, s], work))
-    }
-}
-
-impl<const D: usize> Material<D> for Hypoelastic {
-    type Constants<N: Number> = [N; 3];
-    type Form<N: Number> = Form<N, D>;
-    /// `Σ ω ν V η⊗ξ`
-    type Sum<N: Number> = Matrix<N, D>;
-    type Point<N: Number> = Point<N, D>;
-    type Past<N: Number> = Past<N, D>;
-    type Memory<N: Number> = [N; 0];
-    type State<N: Number> = Free<N, D>;
-    const PASSES: usize = 1;
-    const STRETCHES: bool = false;
-    const FORM_OF_WHOLE: bool = true;
-
-    fn columns(&self) -> Columns {
-        Columns {
-            past: vec![
-                Declaration::of_points(
-                    "biot_strain",
-                    Shape::Tensor,
-                    Dimension::NUMBER,
-                    "U − 1 of the right stretch U of the family's deformation gradient.",
-                ),
-                Declaration::of_points(
-                    "unrotated_stress",
-                    Shape::Tensor,
-                    Dimension::PRESSURE,
-                    "Cauchy stress seen from the turned material, Rᵀ σ R.",
-                ),
-                Declaration::of_points(
-                    "stress_work",
-                    Shape::Scalar,
-                    Dimension::PRESSURE,
-                    "Work of the stress so far per reference volume, ∫ J σ : D dt.",
-                ),
-            ],
-            point: vec![non_ordinary::column()],
-            ..Columns::default()
+        Stressed {
+            stress: p,
+            energy: work,
+            past: ([v, s], work),
         }
-    }
-
-    fn constants(&self, material: usize, _: f64) -> [f64; 3] {
-        let m = &self.materials[material];
-        [
-            m.lame,
-            m.shear,
-            non_ordinary::control::<D>(m.control, m.shear),
-        ]
-    }
-
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
-        non_ordinary::form(shape)
-    }
-
-    #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N, D>) -> Matrix<N, D> {
-        non_ordinary::share(bond)
-    }
-
-    #[inline(always)]
-    fn settle<N: Number>(
-        &self,
-        _: usize,
-        site: &Site<[N; 3], Form<N, D>, Past<N, D>>,
-        sum: Matrix<N, D>,
-        point: &mut Point<N, D>,
-    ) {
-        let h = non_ordinary::gradient(site.form, &sum);
-        let (p, now) = self.stress(site.constants, site.past, &h);
-        point.0 = non_ordinary::answers(site.form, &p, &h, site.constants[CONTROL]);
-        point.1 = now;
-        for m in 0..2 {
-            for r in 0..D {
-                for c in 0..D {
-                    let before = site.past.0[m][r][c];
-                    point.1.0[m][r][c] = non_ordinary::known(site.form, now.0[m][r][c], before);
-                }
-            }
-        }
-        point.1.1 = non_ordinary::known(site.form, now.1, site.past.1);
-    }
-
-    #[inline(always)]
-    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> Free<N, D> {
-        non_ordinary::answer(bond, &end.point.0)
-    }
-
-    #[inline(always)]
-    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N, D>) -> N {
-        non_ordinary::bond_energy(bond, &end.point.0)
-    }
-
-    #[inline(always)]
-    fn point_energy<N: Number>(
-        &self,
-        site: &Site<[N; 3], Form<N, D>, Past<N, D>>,
-        sum: Matrix<N, D>,
-        point: &Point<N, D>,
-    ) -> N {
-        let h = non_ordinary::gradient(site.form, &sum);
-        non_ordinary::point_energy(site.form, &sum, &h, &point.0, point.1.1)
-    }
-
-    #[inline(always)]
-    fn remember<N: Number>(
-        &self,
-        _: &Site<[N; 3], Form<N, D>, Past<N, D>>,
-        point: &Point<N, D>,
-        past: &mut Past<N, D>,
-    ) -> N {
-        *past = point.1;
-        N::constant(0.0)
     }
 }
 
@@ -255,7 +171,6 @@ impl Shelved for Hypoelastic {
             need: Need::Word("middle"),
             doc: "The stretch Ū in the increment of strain sym(ΔU Ū⁻¹).",
         });
-        keys.push(non_ordinary::control_key());
         Descriptor {
             name: "hypoelastic".into(),
             doc: "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
@@ -295,7 +210,6 @@ impl Shelved for Hypoelastic {
             made.push(HypoelasticConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
-                control: m.parameters.number("control").unwrap_or(0.0),
             });
         }
         Ok(Hypoelastic {
@@ -326,7 +240,8 @@ mod tests {
         let mut p = [[0.0; D]; D];
         for n in 1..=steps {
             let h = path(f64::from(n) / f64::from(steps));
-            (p, past) = law.stress(&[LAMBDA, MU, 0.0], &past, &h);
+            let now = law.stress(&[LAMBDA, MU], &past, &h);
+            (p, past) = (now.stress, now.past);
         }
         (p, past)
     }

@@ -18,6 +18,7 @@ use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
 use crate::spec::Parameters;
+pub use non_ordinary::NonOrdinary;
 pub use numbers::Numbers;
 
 /// All that come with the engine, a line each.
@@ -26,8 +27,8 @@ pub fn each(kinds: &mut impl Kinds) {
     kinds.law_or_smaller::<viscoelastic::Viscoelastic, viscoelastic::Viscoelastic<1>>(
         viscoelastic::one_branch,
     );
-    kinds.solid::<correspondence::Correspondence>();
-    kinds.solid::<hypoelastic::Hypoelastic>();
+    kinds.solid::<NonOrdinary<correspondence::Correspondence>>();
+    kinds.solid::<NonOrdinary<hypoelastic::Hypoelastic>>();
     kinds.law::<softening::Softening>();
 }
 

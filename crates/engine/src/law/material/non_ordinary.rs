@@ -1,5 +1,5 @@
-//! What laws have in common that take the deformation gradient of a family (Silling et al. 2007), with control of zero-energy modes
-//! (Silling 2017).
+//! Laws that take the deformation gradient of a family (Silling et al. 2007), with control of zero-energy modes (Silling 2017): any
+//! [`Classical`] law on any family.
 //!
 //! `H = (Σ ω ν V η⊗ξ) K⁻¹`, `F = 1 + H`, `T⟨ξ⟩ = ω (P K⁻¹ ξ + g z)` with the part of the deformation that F does not see,
 //! `z = η − Hξ`, and `g = G_z β/m`, `β = D(D+2) μ`: a control of G_z = 1 resists it as the linear peridynamic solid of the same shear
@@ -7,124 +7,244 @@
 //! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
 
 use super::tensor::{self, Matrix};
-use super::{Bond, Free};
+use super::{Bond, Columns, End, Free, Material, Numbers, Site};
 use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Bounds, Key};
+use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Shelved};
 use crate::law::number::Number;
+use crate::spec::{LawSpec, Parameters, Plane};
+
+/// A law of the deformation gradient alone. With [`Shelved`] it is [`NonOrdinary`] on the shelf.
+pub trait Classical<const D: usize>: Send + Sync + 'static {
+    /// Numbers of a material that its stress reads.
+    type Constants<N: Number>: Numbers<N>;
+    /// What a point remembers.
+    type Past<N: Number>: Numbers<N>;
+
+    /// What a point remembers, in the order of its numbers.
+    fn columns(&self) -> Vec<Declaration> {
+        vec![]
+    }
+
+    /// Constants of a material for a step of length `dt`; 0: time stands still.
+    fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
+
+    /// Shear modulus of small strains (pressure).
+    fn shear(&self, material: usize) -> f64;
+
+    /// At `F = 1 + H`, without cancellation where H is small.
+    fn stress<N: Number>(
+        &self,
+        constants: &Self::Constants<N>,
+        past: &Self::Past<N>,
+        h: &Matrix<N, D>,
+    ) -> Stressed<N, Self::Past<N>, D>;
+}
+
+/// What a classical law answers to a deformation gradient.
+#[derive(Debug, Clone, Copy)]
+pub struct Stressed<N, P, const D: usize> {
+    /// First Piola–Kirchhoff stress P.
+    pub stress: Matrix<N, D>,
+    /// What is stored, or the work done where nothing is (energy / volume).
+    pub energy: N,
+    /// What is remembered then.
+    pub past: P,
+}
+
+/// A classical law on a family.
+#[derive(Debug, Clone)]
+pub struct NonOrdinary<L> {
+    pub law: L,
+    /// G_z of each material (–).
+    pub control: Vec<f64>,
+}
 
 /// `K⁻¹`, 1/m, and 1 where K can be inverted.
-pub type Form<N, const D: usize> = (Matrix<N, D>, [N; 2]);
+type Form<N, const D: usize> = (Matrix<N, D>, [N; 2]);
 /// `P K⁻¹ − g H`, g.
-pub type Answers<N, const D: usize> = (Matrix<N, D>, N);
-
-/// `G_z β` (pressure).
-pub fn control<const D: usize>(part: f64, shear: f64) -> f64 {
-    let d = D as f64;
-    part * d * (d + 2.0) * shear
-}
-
-pub fn form<const D: usize>(shape: [[f64; D]; D]) -> Form<f64, D> {
-    let (inverse, whole) = tensor::inverse(shape);
-    let sound = if whole { 1.0 } else { 0.0 };
-    (inverse, [super::inverse_weight(&shape), sound])
-}
-
-/// `ω η⊗ξ`
-#[inline(always)]
-pub fn share<N: Number, const D: usize>(bond: &Bond<N, D>) -> Matrix<N, D> {
-    let mut sum = tensor::zero();
-    for r in 0..D {
-        let eta = bond.omega * bond.eta[r];
-        for c in 0..D {
-            sum[r][c] = eta * bond.xi[c];
-        }
-    }
-    sum
-}
+type Answers<N, const D: usize> = (Matrix<N, D>, N);
+/// `G_z β`, and what the stress reads.
+type Constants<N, C> = (N, C);
+/// What the bonds answer with, and what is remembered at the end of the step.
+type Point<N, P, const D: usize> = (Answers<N, D>, P);
+type EndOf<'a, N, L, const D: usize> = End<
+    'a,
+    Constants<N, <L as Classical<D>>::Constants<N>>,
+    Point<N, <L as Classical<D>>::Past<N>, D>,
+    [N; 0],
+>;
+type SiteOf<'a, N, L, const D: usize> = Site<
+    'a,
+    Constants<N, <L as Classical<D>>::Constants<N>>,
+    Form<N, D>,
+    <L as Classical<D>>::Past<N>,
+>;
 
 /// H from the sum of the shares.
 #[inline(always)]
-pub fn gradient<N: Number, const D: usize>(form: &Form<N, D>, sum: &Matrix<N, D>) -> Matrix<N, D> {
+fn gradient<N: Number, const D: usize>(form: &Form<N, D>, sum: &Matrix<N, D>) -> Matrix<N, D> {
     tensor::product(sum, &form.0)
 }
 
 /// `x` of a point whose bonds span the space, else `otherwise`: where F is not known a stress may be anything.
 #[inline(always)]
-pub fn known<N: Number, const D: usize>(form: &Form<N, D>, x: N, otherwise: N) -> N {
+fn known<N: Number, const D: usize>(form: &Form<N, D>, x: N, otherwise: N) -> N {
     form.1[1].choose(N::constant(0.5), otherwise, x)
 }
 
-/// What the bonds of a point answer with, under P and H; `control` is `G_z β`.
-#[inline(always)]
-pub fn answers<N: Number, const D: usize>(
-    form: &Form<N, D>,
-    stress: &Matrix<N, D>,
-    h: &Matrix<N, D>,
-    control: N,
-) -> Answers<N, D> {
-    let along = tensor::product(stress, &form.0);
-    let g = control * form.1[0];
-    let mut out = along;
-    for r in 0..D {
-        for c in 0..D {
-            out[r][c] = known(form, along[r][c], N::constant(0.0)) - g * h[r][c];
+impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
+    type Constants<N: Number> = Constants<N, L::Constants<N>>;
+    type Form<N: Number> = Form<N, D>;
+    /// `Σ ω ν V η⊗ξ`
+    type Sum<N: Number> = Matrix<N, D>;
+    type Point<N: Number> = Point<N, L::Past<N>, D>;
+    type Past<N: Number> = L::Past<N>;
+    type Memory<N: Number> = [N; 0];
+    type State<N: Number> = Free<N, D>;
+    const PASSES: usize = 1;
+    const STRETCHES: bool = false;
+    const FORM_OF_WHOLE: bool = true;
+
+    fn columns(&self) -> Columns {
+        let answers = Declaration::of_points(
+            "force_state_gradient",
+            Shape::Tensor,
+            Dimension([-6, 1, -2, 0]),
+            "P K⁻¹ − g H: what the force state of a bond is linear in ξ with (Silling et al. 2007).",
+        );
+        Columns {
+            past: self.law.columns(),
+            point: vec![answers.derived()],
+            ..Columns::default()
         }
     }
-    (out, g)
-}
 
-#[inline(always)]
-pub fn answer<N: Number, const D: usize>(bond: &Bond<N, D>, answers: &Answers<N, D>) -> Free<N, D> {
-    let (along, g) = answers;
-    let mut t = tensor::times(along, &bond.xi);
-    for a in 0..D {
-        t[a] = bond.omega * g.fma(bond.eta[a], t[a]);
+    fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64> {
+        let d = D as f64;
+        let beta = d * (d + 2.0) * self.law.shear(material);
+        let control = self.control[material] * beta;
+        (control, self.law.constants(material, dt))
     }
-    Free(t)
-}
 
-/// `(g/2) ω η²`, of which the point takes back what F sees.
-#[inline(always)]
-pub fn bond_energy<N: Number, const D: usize>(bond: &Bond<N, D>, answers: &Answers<N, D>) -> N {
-    let mut square = bond.eta[0] * bond.eta[0];
-    for a in 1..D {
-        square = bond.eta[a].fma(bond.eta[a], square);
+    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
+        let (inverse, whole) = tensor::inverse(shape);
+        let sound = if whole { 1.0 } else { 0.0 };
+        (inverse, [super::inverse_weight(&shape), sound])
     }
-    N::constant(0.5) * answers.1 * bond.omega * square
-}
 
-/// That of the point, of which `energy` is ψ.
-#[inline(always)]
-pub fn point_energy<N: Number, const D: usize>(
-    form: &Form<N, D>,
-    sum: &Matrix<N, D>,
-    h: &Matrix<N, D>,
-    answers: &Answers<N, D>,
-    energy: N,
-) -> N {
-    // H K Hᵀ = S Hᵀ
-    let seen = N::constant(0.5) * answers.1 * tensor::contraction(sum, h);
-    known(form, energy, N::constant(0.0)) - seen
-}
+    /// `ω η⊗ξ`
+    #[inline(always)]
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &EndOf<N, L, D>) -> Matrix<N, D> {
+        let mut sum = tensor::zero();
+        for r in 0..D {
+            let eta = bond.omega * bond.eta[r];
+            for c in 0..D {
+                sum[r][c] = eta * bond.xi[c];
+            }
+        }
+        sum
+    }
 
-/// The column of [`Answers`].
-pub fn column() -> Declaration {
-    let column = Declaration::of_points(
-        "force_state_gradient",
-        Shape::Tensor,
-        Dimension([-6, 1, -2, 0]),
-        "P K⁻¹ − g H: what the force state of a bond is linear in ξ with (Silling et al. 2007).",
-    );
-    column.derived()
+    #[inline(always)]
+    fn settle<N: Number>(
+        &self,
+        _: usize,
+        site: &SiteOf<N, L, D>,
+        sum: Matrix<N, D>,
+        point: &mut Self::Point<N>,
+    ) {
+        let (form, (control, constants)) = (site.form, site.constants);
+        let h = gradient(form, &sum);
+        let now = self.law.stress(constants, site.past, &h);
+        let along = tensor::product(&now.stress, &form.0);
+        let g = *control * form.1[0];
+        let ((out, slope), past) = point;
+        *slope = g;
+        for r in 0..D {
+            for c in 0..D {
+                out[r][c] = known(form, along[r][c], N::constant(0.0)) - g * h[r][c];
+            }
+        }
+        for n in 0..<L::Past<N> as Numbers<N>>::COUNT {
+            past.set(n, known(form, now.past.get(n), site.past.get(n)));
+        }
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> Free<N, D> {
+        let (along, g) = &end.point.0;
+        let mut t = tensor::times(along, &bond.xi);
+        for a in 0..D {
+            t[a] = bond.omega * g.fma(bond.eta[a], t[a]);
+        }
+        Free(t)
+    }
+
+    /// `(g/2) ω η²`, of which the point takes back what F sees.
+    #[inline(always)]
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> N {
+        let mut square = bond.eta[0] * bond.eta[0];
+        for a in 1..D {
+            square = bond.eta[a].fma(bond.eta[a], square);
+        }
+        N::constant(0.5) * end.point.0.1 * bond.omega * square
+    }
+
+    #[inline(always)]
+    fn point_energy<N: Number>(
+        &self,
+        site: &SiteOf<N, L, D>,
+        sum: Matrix<N, D>,
+        point: &Self::Point<N>,
+    ) -> N {
+        let h = gradient(site.form, &sum);
+        let energy = self.law.stress(&site.constants.1, site.past, &h).energy;
+        // H K Hᵀ = S Hᵀ
+        let seen = N::constant(0.5) * point.0.1 * tensor::contraction(&sum, &h);
+        known(site.form, energy, N::constant(0.0)) - seen
+    }
+
+    #[inline(always)]
+    fn remember<N: Number>(
+        &self,
+        _: &SiteOf<N, L, D>,
+        point: &Self::Point<N>,
+        past: &mut L::Past<N>,
+    ) -> N {
+        *past = point.1;
+        N::constant(0.0)
+    }
 }
 
 /// The key of `G_z`.
-pub const fn control_key() -> Key {
-    descriptor::number(
-        "control",
-        Dimension::NUMBER,
-        Bounds::NOT_NEGATIVE,
-        "Stiffness G_z against deformations that F does not see, 1: that of the linear peridynamic solid.",
-    )
-    .or(0.1)
+const CONTROL: Key = descriptor::number(
+    "control",
+    Dimension::NUMBER,
+    Bounds::NOT_NEGATIVE,
+    "Stiffness G_z against deformations that F does not see, 1: that of the linear peridynamic solid.",
+)
+.or(0.1);
+
+impl<L: Shelved> Shelved for NonOrdinary<L> {
+    fn descriptor() -> Descriptor {
+        let mut descriptor = L::descriptor();
+        descriptor.keys.push(CONTROL);
+        descriptor
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        L::linear(parameters)
+    }
+
+    fn brittle_energy(parameters: &Parameters, energy: f64) -> f64 {
+        L::brittle_energy(parameters, energy)
+    }
+
+    fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let control = |m: &Given| m.parameters.number(CONTROL.name).unwrap_or(0.0);
+        Ok(NonOrdinary {
+            law: L::make(d, plane, materials)?,
+            control: materials.iter().map(control).collect(),
+        })
+    }
 }

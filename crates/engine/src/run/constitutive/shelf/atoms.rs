@@ -12,6 +12,7 @@ use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::law::descriptor::Wrong;
 use crate::law::potential::bulk::{Bulk, bulk};
 use crate::law::potential::{Described, Potential, look_up, make};
+use crate::law::terms::{OfSites, Sites};
 use crate::space::lattice::LatticeKind;
 use crate::spec::{Parameters, PotentialSpec};
 use std::any::Any;
@@ -27,6 +28,7 @@ pub(super) struct Atoms {
     pub on_lattice: fn(&mut Parameters, LatticeKind, f64),
     bulk: fn(&Parameters, &Stencil, f64, f64) -> Result<Bulk, Wrong>,
     closest: fn(&Parameters, f64, f64) -> Result<Option<f64>, Wrong>,
+    sites: fn(&Parameters) -> Result<Box<dyn Sites>, Wrong>,
     /// [`Binder`]s of one, two and three dimensions.
     binders: [Arc<dyn Any + Send + Sync>; 3],
 }
@@ -38,6 +40,7 @@ impl Atoms {
             on_lattice: P::on_lattice,
             bulk: |p, stencil, spacing, volume| Ok(bulk(&make::<P>(p)?, stencil, spacing, volume)),
             closest: |p, from, energy| Ok(closest(&make::<P>(p)?, from, energy)),
+            sites: |p| Ok(Box::new(OfSites(make::<P>(p)?))),
             binders: [
                 Arc::new(bind::<1, P> as Binder<1>),
                 Arc::new(bind::<2, P> as Binder<2>),
@@ -98,6 +101,17 @@ impl Shelf {
                 format!("there is no potential named {}", spec.name),
             )),
         }
+    }
+}
+
+impl Shelf {
+    /// A potential as terms of sites ([`crate::law::terms`]).
+    ///
+    /// # Errors
+    /// No potential of this shelf has the name, or the constants do not fit it.
+    pub fn sites(&self, spec: &PotentialSpec) -> Result<Box<dyn Sites>, BuildError> {
+        let potential = self.potential(spec)?;
+        potential.with(|a| (a.sites)(&potential.spec.parameters))
     }
 }
 

@@ -1,0 +1,248 @@
+//! What every [`Interaction`] answers.
+
+use super::MaterialInteraction;
+use super::family::{Family, Slots};
+use super::sweeps::Forces;
+use crate::body::{Body, Field, Identity};
+use crate::columns::Declaration;
+use crate::execute::blocks::{Shared, run_blocks};
+use crate::interaction::{
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+};
+use crate::law::material::Material;
+use crate::spec::{CrackKind, Release};
+
+impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialInteraction<D, F, M> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
+    fn family(&self) -> &'static str {
+        self.kind
+    }
+
+    unsafe fn forces_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        let motion = sweep.motion();
+        let dt = motion.map_or(self.step, |m| m.steps[0]);
+        let room = self.take_room(u, dt);
+        let breaks = motion.filter(|_| !self.critical.is_empty());
+        // of a watched step: the bonds before any breaks
+        let mut whole = seen
+            .as_ref()
+            .map(|_| (self.alive.clone(), self.form.clone()));
+        let mut total = Tally::default();
+        if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
+            total += self.tear(body, u, &room, m.v, -m.steps[0]);
+        }
+        self.settle(body, u, &room);
+        let kernel = Forces {
+            view: self.view(u, &room),
+            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            pushed: self.pushed(body),
+        };
+        run_blocks(self.simd, &kernel, self.sums.blocks());
+        if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
+            total += self.tear(body, u, &room, m.v, m.steps[1]);
+        }
+        if motion.is_some() {
+            total += self.remember(body, u, &room);
+        }
+        if let (Some(seen), Some(whole)) = (seen, &mut whole) {
+            // what the step remembers is part of this instant, what breaks in it is of the next
+            self.swap_bonds(whole);
+            self.seen(body, u, &self.look_room(u), seen);
+            self.swap_bonds(whole);
+        }
+        if breaks.is_some() {
+            std::mem::swap(&mut self.critical, &mut self.next);
+            body.fill_images(&mut self.critical);
+        }
+        self.room = room;
+        total
+    }
+
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let room = self.take_room(u, self.step);
+        let sums = self.energies(body, u, &room, None);
+        self.room = room;
+        sums
+    }
+
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        self.seen(body, u, &self.look_room(u), out);
+    }
+
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
+        self.strained(body, gradient, out);
+    }
+
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        self.each_tangent(body, u, visit);
+    }
+
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let original = body.originals();
+        self.each_counted(|group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let end = self.family.ends(group, k).slot(l);
+            let j = original(end);
+            // a bond between a point and its own image counts from one side only
+            if i < j || (i == j && end > i) {
+                let state = match self.is_whole(group, k, l) {
+                    true => BondState::Whole,
+                    false => BondState::Broken,
+                };
+                visit(i, j, self.family.bond(group, k, l).0, state);
+            }
+        });
+    }
+
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        self.each_pull(body, u, visit);
+        true
+    }
+
+    fn damage(&self, body: &Body<D>, out: &mut [f64]) {
+        let mut family = vec![0.0; body.len];
+        let mut whole = vec![0.0; body.len];
+        let original = body.originals();
+        self.each_counted(|group, k, l| {
+            let i = self.family.rows(group).slot(l);
+            let volume = body.volume.at(original(self.family.ends(group, k).slot(l)));
+            family[i] += volume;
+            if self.is_whole(group, k, l) {
+                whole[i] += volume;
+            }
+        });
+        for (i, damage) in out.iter_mut().enumerate() {
+            *damage = match family[i] > 0.0 {
+                true => 1.0 - whole[i] / family[i],
+                false => 0.0,
+            };
+        }
+    }
+
+    fn cut(
+        &mut self,
+        body: &Body<D>,
+        kind: CrackKind,
+        crosses: &(dyn Fn([f64; D], [f64; D]) -> bool + Sync),
+    ) -> u64 {
+        let original = body.originals();
+        let mut cut = vec![];
+        self.each_counted(|group, k, l| {
+            if !self.is_whole(group, k, l) {
+                return;
+            }
+            let (xi, _) = self.family.bond(group, k, l);
+            let at = |slot: usize| -> [f64; D] {
+                let x = body.position(slot);
+                std::array::from_fn(|a| x[a])
+            };
+            let from = at(self.family.rows(group).slot(l));
+            // a bond through a periodic face is in two places; either end must see the same
+            let to = at(original(self.family.ends(group, k).slot(l)));
+            if crosses(from, std::array::from_fn(|a| from[a] + xi[a]))
+                || crosses(std::array::from_fn(|a| to[a] - xi[a]), to)
+            {
+                cut.push((self.family.byte(group, k), 1u8 << l));
+            }
+        });
+        for (byte, bit) in &cut {
+            self.alive[*byte] &= !bit;
+            if kind == CrackKind::Absent {
+                self.counted[*byte] &= !bit;
+            }
+        }
+        if kind == CrackKind::Absent {
+            self.directed -= cut.len() as u64;
+        }
+        if self.prepared {
+            self.look(body);
+        }
+        cut.len() as u64
+    }
+
+    fn prepare(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
+        self.prepared = true;
+        self.look(body);
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.directed
+    }
+
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
+        let Some((group, l)) = self.family.find(slot) else {
+            return 0;
+        };
+        (0..self.family.bonds(group))
+            .filter(|k| self.counted[self.family.byte(group, *k)] >> l & 1 == 1)
+            .count()
+    }
+
+    fn near_horizon(&self) -> u64 {
+        self.near_horizon
+    }
+
+    fn in_family(&self, body: &Body<D>, i: usize, j: usize) -> bool {
+        let Some((group, l)) = self.family.find(i) else {
+            return false;
+        };
+        let original = body.originals();
+        (0..self.family.bonds(group)).any(|k| {
+            self.family.is_bond(group, k, l) && original(self.family.ends(group, k).slot(l)) == j
+        })
+    }
+
+    fn columns(&self) -> Vec<Declaration> {
+        self.declared()
+    }
+
+    fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
+        self.check(body, &[u]);
+        self.read_named(body, u, name, out)
+    }
+
+    fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
+        self.check(body, &[]);
+        self.write_named(body, name, values)
+    }
+
+    fn memory(&self) -> (&[u8], &[f64]) {
+        (&self.alive, &self.critical)
+    }
+
+    fn bytes(&self) -> usize {
+        self.family.bytes()
+            + self.alive.len()
+            + self.counted.len()
+            + self.breaks.len()
+            + self.torn.len()
+            + self.material.len()
+            + self.form.bytes()
+            + self.point.bytes()
+            + self.past.bytes()
+            + 8 * (self.memory.len() + self.room.records.len())
+            + 8 * (self.critical.len() + self.next.len())
+    }
+}
