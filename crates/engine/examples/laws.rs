@@ -76,6 +76,7 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         ("viscoelastic, 4 branches", branches(4)),
         ("correspondence, linear", correspondence("linear")),
         ("correspondence, neo_hookean", correspondence("neo_hookean")),
+        ("hypoelastic", LawSpec::named("hypoelastic", elastic())),
         ("softening", LawSpec::named("softening", softening)),
     ]
 }

@@ -7,7 +7,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE, prefetch};
 use crate::family::links::Links;
 use crate::family::stencil::Stencil;
-use crate::law::material::Numbers;
+use crate::law::material::{Numbers, Source};
 
 /// Consecutive slots.
 #[derive(Clone, Copy)]
@@ -29,12 +29,18 @@ impl Slots for Run {
     }
     #[inline(always)]
     unsafe fn load<L: Lane, N: Numbers<L>>(self, rows: Rows) -> N {
-        let mut out = N::constant(0.0);
-        for n in 0..N::COUNT {
-            // SAFETY: the caller's promise
-            unsafe { out.set(n, L::load(rows.data.at(n * rows.layout.stride + self.0))) };
-        }
-        out
+        N::read(&RunOf(rows, self.0), 0)
+    }
+}
+
+/// The numbers of a run, made where they are there.
+struct RunOf(Rows, usize);
+
+impl<L: Lane> Source<L> for RunOf {
+    #[inline(always)]
+    fn number(&self, n: usize) -> L {
+        // SAFETY: the promise of `load`
+        unsafe { L::load(self.0.data.at(n * self.0.layout.stride + self.1)) }
     }
 }
 

@@ -7,7 +7,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::interaction::bond::relative_square_stretch;
-use crate::law::material::{Bond, End, Material, Numbers, Site};
+use crate::law::material::{Bond, End, Material, Numbers, Sink, Site};
 use crate::law::number::Number;
 
 /// Groups per block of work.
@@ -295,9 +295,17 @@ pub fn mirrored<N: Number, const D: usize>(bond: &Bond<N, D>) -> Bond<N, D> {
 /// Rows of the store's family, and nobody else writes them.
 #[inline(always)]
 pub unsafe fn save<L: Lane, S: Slots, N: Numbers<L>>(rows: Rows, slots: S, value: &N) {
-    for n in 0..N::COUNT {
-        let x = value.get(n);
-        // SAFETY: the caller's promise
+    value.write(&mut RowsOf(rows, slots), 0);
+}
+
+/// The numbers of a group, made where nobody else writes them.
+struct RowsOf<S>(Rows, S);
+
+impl<L: Lane, S: Slots> Sink<L> for RowsOf<S> {
+    #[inline(always)]
+    fn put(&mut self, n: usize, x: L) {
+        let RowsOf(rows, slots) = self;
+        // SAFETY: the promise of `save`
         unsafe {
             if rows.layout.records {
                 let all = x.to_array();

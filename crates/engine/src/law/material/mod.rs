@@ -19,7 +19,7 @@ use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
 use crate::spec::Parameters;
 pub use non_ordinary::NonOrdinary;
-pub use numbers::Numbers;
+pub use numbers::{Numbers, Sink, Source};
 
 /// All that come with the engine, a line each.
 pub fn each(kinds: &mut impl Kinds) {

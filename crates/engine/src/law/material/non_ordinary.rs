@@ -7,7 +7,7 @@
 //! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
 
 use super::tensor::{self, Matrix};
-use super::{Bond, Columns, End, Free, Material, Numbers, Site};
+use super::{Bond, Columns, End, Free, Material, Numbers, Site, Source};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Shelved};
 use crate::law::number::Number;
@@ -92,6 +92,20 @@ fn known<N: Number, const D: usize>(form: &Form<N, D>, x: N, otherwise: N) -> N 
     form.1[1].choose(N::constant(0.5), otherwise, x)
 }
 
+/// What is remembered: the new where F is known, else what was before.
+struct Either<'a, N, P, const D: usize> {
+    form: &'a Form<N, D>,
+    now: &'a P,
+    before: &'a P,
+}
+
+impl<N: Number, P: Numbers<N>, const D: usize> Source<N> for Either<'_, N, P, D> {
+    #[inline(always)]
+    fn number(&self, n: usize) -> N {
+        known(self.form, self.now.get(n), self.before.get(n))
+    }
+}
+
 impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     type Constants<N: Number> = Constants<N, L::Constants<N>>;
     type Form<N: Number> = Form<N, D>;
@@ -165,9 +179,12 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
                 out[r][c] = known(form, along[r][c], N::constant(0.0)) - g * h[r][c];
             }
         }
-        for n in 0..<L::Past<N> as Numbers<N>>::COUNT {
-            past.set(n, known(form, now.past.get(n), site.past.get(n)));
-        }
+        let either = Either {
+            form,
+            now: &now.past,
+            before: site.past,
+        };
+        *past = <L::Past<N> as Numbers<N>>::read(&either, 0);
     }
 
     #[inline(always)]

@@ -2,9 +2,23 @@
 
 use crate::law::number::Number;
 
+/// Where numbers come from, by their places.
+pub trait Source<N> {
+    fn number(&self, n: usize) -> N;
+}
+
+/// Where they go.
+pub trait Sink<N> {
+    fn put(&mut self, n: usize, x: N);
+}
+
 /// A fixed count of numbers, in one order.
 pub trait Numbers<N>: Copy {
     const COUNT: usize;
+
+    /// All of them, from place `first` on. Part by part: what nobody looks at is then not read, however many there are.
+    fn read(source: &impl Source<N>, first: usize) -> Self;
+    fn write(&self, sink: &mut impl Sink<N>, first: usize);
 
     fn constant(x: f64) -> Self;
     /// Number `n`, below the count.
@@ -16,6 +30,15 @@ pub trait Numbers<N>: Copy {
 
 impl<N: Number> Numbers<N> for N {
     const COUNT: usize = 1;
+
+    #[inline(always)]
+    fn read(source: &impl Source<N>, first: usize) -> N {
+        source.number(first)
+    }
+    #[inline(always)]
+    fn write(&self, sink: &mut impl Sink<N>, first: usize) {
+        sink.put(first, *self);
+    }
 
     #[inline(always)]
     fn constant(x: f64) -> N {
@@ -37,6 +60,21 @@ impl<N: Number> Numbers<N> for N {
 
 impl<N: Copy, A: Numbers<N>, const C: usize> Numbers<N> for [A; C] {
     const COUNT: usize = C * A::COUNT;
+
+    #[inline(always)]
+    fn read(source: &impl Source<N>, first: usize) -> Self {
+        let mut out = [A::constant(0.0); C];
+        for c in 0..C {
+            out[c] = A::read(source, first + c * A::COUNT);
+        }
+        out
+    }
+    #[inline(always)]
+    fn write(&self, sink: &mut impl Sink<N>, first: usize) {
+        for c in 0..C {
+            self[c].write(sink, first + c * A::COUNT);
+        }
+    }
 
     #[inline(always)]
     fn constant(x: f64) -> Self {
@@ -61,6 +99,16 @@ impl<N: Copy, A: Numbers<N>, const C: usize> Numbers<N> for [A; C] {
 
 impl<N: Copy, A: Numbers<N>, B: Numbers<N>> Numbers<N> for (A, B) {
     const COUNT: usize = A::COUNT + B::COUNT;
+
+    #[inline(always)]
+    fn read(source: &impl Source<N>, first: usize) -> Self {
+        (A::read(source, first), B::read(source, first + A::COUNT))
+    }
+    #[inline(always)]
+    fn write(&self, sink: &mut impl Sink<N>, first: usize) {
+        self.0.write(sink, first);
+        self.1.write(sink, first + A::COUNT);
+    }
 
     #[inline(always)]
     fn constant(x: f64) -> Self {
