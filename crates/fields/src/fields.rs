@@ -1,0 +1,496 @@
+//! Fields at points, made of sums.
+
+use crate::accumulate::BOND;
+use crate::bonds::Block;
+use crate::frame::Frame;
+use crate::kernel::dot;
+
+/// A field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Quantity {
+    Density,
+    Momentum,
+    Velocity,
+    Temperature,
+    Energy,
+    InternalEnergy,
+    PotentialEnergy,
+    StressKinetic,
+    StressPotential,
+    Stress,
+    Churning,
+    HeatKinetic,
+    HeatPotential,
+    HeatChurning,
+    ChurningSource,
+}
+
+/// Powers of units; mass and energy are apart, as users write them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Powers {
+    pub mass: i32,
+    pub energy: i32,
+    pub length: i32,
+    pub time: i32,
+    pub temperature: i32,
+}
+
+impl Quantity {
+    pub const ALL: [Quantity; 15] = [
+        Quantity::Density,
+        Quantity::Momentum,
+        Quantity::Velocity,
+        Quantity::Temperature,
+        Quantity::Energy,
+        Quantity::InternalEnergy,
+        Quantity::PotentialEnergy,
+        Quantity::StressKinetic,
+        Quantity::StressPotential,
+        Quantity::Stress,
+        Quantity::Churning,
+        Quantity::HeatKinetic,
+        Quantity::HeatPotential,
+        Quantity::HeatChurning,
+        Quantity::ChurningSource,
+    ];
+
+    /// Short name, in columns of tables.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Quantity::Density => "rho",
+            Quantity::Momentum => "p",
+            Quantity::Velocity => "v",
+            Quantity::Temperature => "T",
+            Quantity::Energy => "e",
+            Quantity::InternalEnergy => "e_int",
+            Quantity::PotentialEnergy => "e_pot",
+            Quantity::StressKinetic => "sK",
+            Quantity::StressPotential => "sU",
+            Quantity::Stress => "s",
+            Quantity::Churning => "z",
+            Quantity::HeatKinetic => "qK",
+            Quantity::HeatPotential => "qU",
+            Quantity::HeatChurning => "qC",
+            Quantity::ChurningSource => "zv",
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Density => "mass density",
+            Quantity::Momentum => "momentum density",
+            Quantity::Velocity => "velocity",
+            Quantity::Temperature => "kinetic temperature",
+            Quantity::Energy => "energy density",
+            Quantity::InternalEnergy => "internal energy density",
+            Quantity::PotentialEnergy => "potential energy density",
+            Quantity::StressKinetic => "kinetic stress",
+            Quantity::StressPotential => "potential stress",
+            Quantity::Stress => "Cauchy stress",
+            Quantity::Churning => "churning tensor",
+            Quantity::HeatKinetic => "kinetic heat flux",
+            Quantity::HeatPotential => "potential heat flux",
+            Quantity::HeatChurning => "churning heat flux",
+            Quantity::ChurningSource => "churning heat source",
+        }
+    }
+
+    /// Of chapter 4.
+    pub fn equation(self) -> &'static str {
+        match self {
+            Quantity::Density => "(4.0.60)",
+            Quantity::Momentum => "(4.0.62)",
+            Quantity::Velocity => "(4.0.67)",
+            Quantity::Temperature => "3/2 n k T = 1/2 sum m u^2 phi, n = sum phi",
+            Quantity::Energy => "(4.0.63)",
+            Quantity::InternalEnergy => "(4.0.11)",
+            Quantity::PotentialEnergy => "(4.0.63), without velocities",
+            Quantity::StressKinetic => "(4.0.78)",
+            Quantity::StressPotential => "(4.0.84)",
+            Quantity::Stress => "(4.0.83), kinetic + potential",
+            Quantity::Churning => "(4.0.116)",
+            Quantity::HeatKinetic => "(4.0.104)",
+            Quantity::HeatPotential => "(4.0.114)",
+            Quantity::HeatChurning => "(4.0.115)",
+            Quantity::ChurningSource => "(4.0.120), z^ab dv^b/dx^a",
+        }
+    }
+
+    /// Numbers at a point: 1, 3, or 9 row by row, the first index that of the divergence.
+    pub fn components(self) -> usize {
+        match self {
+            Quantity::Density
+            | Quantity::Temperature
+            | Quantity::Energy
+            | Quantity::InternalEnergy
+            | Quantity::PotentialEnergy
+            | Quantity::ChurningSource => 1,
+            Quantity::Momentum
+            | Quantity::Velocity
+            | Quantity::HeatKinetic
+            | Quantity::HeatPotential
+            | Quantity::HeatChurning => 3,
+            Quantity::StressKinetic
+            | Quantity::StressPotential
+            | Quantity::Stress
+            | Quantity::Churning => 9,
+        }
+    }
+
+    pub fn powers(self) -> Powers {
+        let of = |mass, energy, length, time, temperature| Powers {
+            mass,
+            energy,
+            length,
+            time,
+            temperature,
+        };
+        match self {
+            Quantity::Density => of(1, 0, -3, 0, 0),
+            Quantity::Momentum => of(1, 0, -2, -1, 0),
+            Quantity::Velocity => of(0, 0, 1, -1, 0),
+            Quantity::Temperature => of(0, 0, 0, 0, 1),
+            Quantity::Energy
+            | Quantity::InternalEnergy
+            | Quantity::PotentialEnergy
+            | Quantity::StressKinetic
+            | Quantity::StressPotential
+            | Quantity::Stress
+            | Quantity::Churning => of(0, 1, -3, 0, 0),
+            Quantity::HeatKinetic | Quantity::HeatPotential | Quantity::HeatChurning => {
+                of(0, 1, -2, -1, 0)
+            }
+            Quantity::ChurningSource => of(0, 1, -3, -1, 0),
+        }
+    }
+
+    /// Does it need velocities?
+    pub fn moves(self) -> bool {
+        match self {
+            Quantity::Density
+            | Quantity::PotentialEnergy
+            | Quantity::StressPotential
+            | Quantity::Churning => false,
+            Quantity::Momentum
+            | Quantity::Velocity
+            | Quantity::Temperature
+            | Quantity::Energy
+            | Quantity::InternalEnergy
+            | Quantity::StressKinetic
+            | Quantity::Stress
+            | Quantity::HeatKinetic
+            | Quantity::HeatPotential
+            | Quantity::HeatChurning
+            | Quantity::ChurningSource => true,
+        }
+    }
+}
+
+/// Why a field is not there.
+pub const NO_VELOCITIES: &str = "the frame has no velocities";
+
+/// Exact rates at fixed points, from velocities and forces of the instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rates {
+    /// `∂ρ/∂t`, `∂π/∂t`, `∂e/∂t`.
+    pub density: f64,
+    pub momentum: [f64; 3],
+    pub energy: f64,
+}
+
+/// Sums over the whole frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Totals {
+    pub mass: f64,
+    pub momentum: [f64; 3],
+    pub kinetic: f64,
+    /// Of the potential.
+    pub energy: f64,
+    /// `Σ m v⊗v` (energy).
+    pub flow: [f64; 9],
+    /// `Σ x_jk ⊗ f_jk` over pairs (energy): `−∫σ_U`.
+    pub virial: [f64; 9],
+    /// `∫z` (energy): 0, up to round-off.
+    pub churning: [f64; 9],
+    /// Were all particles visited? Far from all points some are not; then energy and virial are of those that were.
+    pub complete: bool,
+}
+
+impl Totals {
+    pub(crate) fn new(frame: &Frame) -> Totals {
+        let mut all = Totals {
+            mass: frame.mass.iter().sum(),
+            momentum: [0.0; 3],
+            kinetic: 0.0,
+            energy: 0.0,
+            flow: [0.0; 9],
+            virial: [0.0; 9],
+            churning: [0.0; 9],
+            complete: true,
+        };
+        for (v, m) in frame.velocity.iter().flatten().zip(&frame.mass) {
+            all.kinetic += 0.5 * m * dot(*v, *v);
+            (0..3).for_each(|a| all.momentum[a] += m * v[a]);
+            (0..9).for_each(|n| all.flow[n] += m * v[n / 3] * v[n % 3]);
+        }
+        all
+    }
+
+    pub(crate) fn take(&mut self, block: &Block, seen: bool) {
+        self.complete &= seen;
+        for n in 0..9 {
+            self.virial[n] += block.virial[0][n];
+            self.churning[n] += block.virial[1][n];
+        }
+    }
+}
+
+/// Fields of a part of the potential.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    pub name: String,
+    pub stress: Vec<f64>,
+    pub churning: Vec<f64>,
+    /// q_U; empty without velocities.
+    pub heat: Vec<f64>,
+    pub energy: Vec<f64>,
+}
+
+/// Fields at points. What is not defined at a point is not a number there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fields {
+    pub points: Vec<[f64; 3]>,
+    /// In the order of [`Quantity::ALL`]; empty where the frame does not allow it.
+    columns: Vec<Vec<f64>>,
+    /// One for each part of the potential, if they were to be kept apart.
+    pub parts: Vec<Part>,
+    /// Where they were asked for.
+    pub rates: Vec<Rates>,
+    pub totals: Totals,
+    /// On the particles, where those were visited.
+    pub force: Vec<[f64; 3]>,
+}
+
+/// What the sums of particles hold, one after the other.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Layout {
+    pub parts: usize,
+    pub moving: bool,
+    pub rates: bool,
+}
+
+impl Layout {
+    /// Numbers times φ: n, m, U; m v, m v⊗v, m v² v, U v; F, ε̇.
+    pub fn width(&self) -> usize {
+        2 + self.parts + if self.moving { 15 } else { 0 } + if self.rates { 4 } else { 0 }
+    }
+
+    /// Numbers times ∇φ: m, m v; m v⊗v, ε v.
+    pub fn slopes(&self) -> usize {
+        match (self.moving, self.rates) {
+            (false, _) => 0,
+            (true, false) => 4,
+            (true, true) => 13,
+        }
+    }
+
+    pub fn stride(&self) -> usize {
+        self.width() + 3 * self.slopes()
+    }
+}
+
+/// Sums at the points.
+pub(crate) struct Sums {
+    pub bonds: Vec<f64>,
+    pub particles: Vec<f64>,
+}
+
+/// Places in xx, yy, zz, yz, xz, xy of the nine components.
+const SYMMETRIC: [usize; 9] = [0, 5, 4, 5, 1, 3, 4, 3, 2];
+
+fn three(s: &[f64]) -> [f64; 3] {
+    [s[0], s[1], s[2]]
+}
+
+impl Fields {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Components point by point; `None` if the frame does not allow it.
+    pub fn get(&self, quantity: Quantity) -> Option<&[f64]> {
+        let place = Quantity::ALL.iter().position(|q| *q == quantity)?;
+        let column = &self.columns[place];
+        (column.len() == self.len() * quantity.components()).then_some(column)
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn finish(
+        points: Vec<[f64; 3]>,
+        names: Vec<String>,
+        layout: Layout,
+        sums: &Sums,
+        drift: [f64; 3],
+        boltzmann: f64,
+        totals: Totals,
+        force: Vec<[f64; 3]>,
+    ) -> Fields {
+        let apart = layout.parts > 1;
+        let part = |name: String| Part {
+            name,
+            stress: vec![],
+            churning: vec![],
+            heat: vec![],
+            energy: vec![],
+        };
+        let mut fields = Fields {
+            columns: vec![vec![]; Quantity::ALL.len()],
+            parts: match apart {
+                true => names.into_iter().map(part).collect(),
+                false => vec![],
+            },
+            rates: vec![],
+            totals,
+            force,
+            points,
+        };
+        for p in 0..fields.points.len() {
+            let bonds = &sums.bonds[p * layout.parts * BOND..][..layout.parts * BOND];
+            let own = &sums.particles[p * layout.stride()..][..layout.stride()];
+            fields.point(&layout, bonds, own, drift, boltzmann);
+        }
+        fields
+    }
+
+    fn put(&mut self, quantity: Quantity, values: &[f64]) {
+        if let Some(place) = Quantity::ALL.iter().position(|q| *q == quantity) {
+            self.columns[place].extend_from_slice(values);
+        }
+    }
+
+    fn point(
+        &mut self,
+        layout: &Layout,
+        bonds: &[f64],
+        own: &[f64],
+        drift: [f64; 3],
+        boltzmann: f64,
+    ) {
+        use Quantity as Q;
+        let (count, density) = (own[0], own[1]);
+        let potential: f64 = own[2..2 + layout.parts].iter().sum();
+        // sums of all parts: σ_U, Σ x (D·v), z
+        let mut all = [0.0; BOND];
+        for part in bonds.chunks_exact(BOND) {
+            (0..BOND).for_each(|n| all[n] += part[n]);
+        }
+        let stress: [f64; 9] = std::array::from_fn(|n| all[n]);
+        let churning: [f64; 9] = std::array::from_fn(|n| all[12 + n]);
+        self.put(Q::Density, &[density]);
+        self.put(Q::PotentialEnergy, &[potential]);
+        self.put(Q::StressPotential, &stress);
+        self.put(Q::Churning, &churning);
+        let empty = !(density > 0.0);
+        // from the drift
+        let rest = &own[2 + layout.parts..];
+        let velocity = match layout.moving && !empty {
+            true => three(rest).map(|p| p / density),
+            false => [f64::NAN; 3],
+        };
+        for (k, part) in self.parts.iter_mut().enumerate() {
+            let b = &bonds[k * BOND..][..BOND];
+            part.stress.extend_from_slice(&b[..9]);
+            part.churning.extend_from_slice(&b[12..]);
+            part.energy.push(own[2 + k]);
+            if layout.moving {
+                part.heat.extend(heat(b, velocity));
+            }
+        }
+        if !layout.moving {
+            return;
+        }
+        let momentum: [f64; 3] = std::array::from_fn(|a| rest[a] + density * drift[a]);
+        self.put(Q::Momentum, &momentum);
+        let whole: [f64; 3] = std::array::from_fn(|a| velocity[a] + drift[a]);
+        self.put(Q::Velocity, &whole);
+        let (v, flow) = (velocity, &rest[3..9]);
+        let square = dot(v, v);
+        // Σ m u⊗u φ = Σ m v⊗v φ − ρ v⊗v
+        let kinetic: [f64; 9] =
+            std::array::from_fn(|n| density * v[n / 3] * v[n % 3] - flow[SYMMETRIC[n]]);
+        let random = -(kinetic[0] + kinetic[4] + kinetic[8]);
+        self.put(Q::Temperature, &[random / (3.0 * boltzmann * count)]);
+        self.put(Q::InternalEnergy, &[0.5 * random + potential]);
+        let speed = dot(whole, whole);
+        let energy = match empty {
+            // nothing is there, and so is its energy
+            true => potential,
+            false => 0.5 * random + potential + 0.5 * density * speed,
+        };
+        self.put(Q::Energy, &[energy]);
+        self.put(Q::StressKinetic, &kinetic);
+        self.put(
+            Q::Stress,
+            &std::array::from_fn::<f64, 9, _>(|n| kinetic[n] + stress[n]),
+        );
+        let trace = flow[0] + flow[1] + flow[2];
+        let (third, carried) = (&rest[9..12], &rest[12..15]);
+        let heat_kinetic: [f64; 3] = std::array::from_fn(|a| {
+            let along: f64 = (0..3).map(|b| flow[SYMMETRIC[3 * a + b]] * v[b]).sum();
+            // Σ ½ m u² u φ, and the potential energy that is carried along
+            let motion = third[a] - v[a] * trace - 2.0 * along + 2.0 * density * square * v[a];
+            0.5 * motion + carried[a] - potential * v[a]
+        });
+        self.put(Q::HeatKinetic, &heat_kinetic);
+        self.put(Q::HeatPotential, &heat(&all, v));
+        let churned: [f64; 3] =
+            std::array::from_fn(|a| (0..3).map(|b| churning[3 * a + b] * whole[b]).sum());
+        self.put(Q::HeatChurning, &churned);
+        let slopes = &own[layout.width()..];
+        // ∂v_b/∂x_a = (∂π_b/∂x_a − v_b ∂ρ/∂x_a)/ρ
+        let source: f64 = (0..9)
+            .map(|n| {
+                let (a, b) = (n / 3, n % 3);
+                let slope = (slopes[3 * (1 + b) + a] - v[b] * slopes[a]) / density;
+                churning[n] * slope
+            })
+            .sum();
+        self.put(Q::ChurningSource, &[source]);
+        if layout.rates {
+            self.rates.push(rates(&rest[15..], slopes, drift));
+        }
+    }
+}
+
+/// `q_U^a = Σ x^a (D·v) β − v^b B^ab`, B = z − σ_U.
+fn heat(bonds: &[f64], v: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|a| {
+        let back: f64 = (0..3)
+            .map(|b| (bonds[12 + 3 * a + b] - bonds[3 * a + b]) * v[b])
+            .sum();
+        bonds[9 + a] - back
+    })
+}
+
+/// `∂ρ/∂t = −Σ m v·∇φ`, `∂π/∂t = Σ (F φ − m v v·∇φ)`, `∂e/∂t = Σ (ε̇ φ − ε v·∇φ)`.
+fn rates(own: &[f64], slopes: &[f64], drift: [f64; 3]) -> Rates {
+    let slope = |m: usize, a: usize| slopes[3 * m + a];
+    let density = (0..3)
+        .map(|a| -slope(1 + a, a) - drift[a] * slope(0, a))
+        .sum();
+    let momentum = std::array::from_fn(|b| {
+        let carried: f64 = (0..3).map(|a| slope(4 + SYMMETRIC[3 * a + b], a)).sum();
+        own[b] - carried
+    });
+    let carried: f64 = (0..3).map(|a| slope(10 + a, a)).sum();
+    Rates {
+        density,
+        momentum,
+        energy: own[3] - carried,
+    }
+}

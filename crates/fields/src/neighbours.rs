@@ -1,0 +1,244 @@
+//! Who is near whom, in any cell: bins of fractional coordinates, walked through as often as the reach asks, so that every image of a
+//! particle is found once also in a cell smaller than the reach.
+
+use crate::FieldsError;
+use crate::frame::Frame;
+
+/// A particle near a centre, or an image of one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Partner {
+    pub atom: u32,
+    /// Periods from the particle in the cell to this image.
+    pub image: [i32; 3],
+    /// From the centre (length).
+    pub y: [f64; 3],
+}
+
+/// Bins of the particles of a frame.
+pub struct Neighbours<'a> {
+    frame: &'a Frame,
+    reach: f64,
+    /// In the cell along periodic axes.
+    pub wrapped: Vec<[f64; 3]>,
+    /// Bins along each axis, and where they begin and end, in fractions.
+    pub bins: [i32; 3],
+    low: [f64; 3],
+    extent: [f64; 3],
+    /// First place of each bin in `order`.
+    start: Vec<u32>,
+    order: Vec<u32>,
+    /// Bins to look through on each side.
+    span: [i32; 3],
+}
+
+/// Bins per reach.
+const FINENESS: f64 = 2.0;
+/// Bins along an axis at most.
+const MOST: f64 = 1000.0;
+
+impl<'a> Neighbours<'a> {
+    /// # Errors
+    /// The reach is not finite, or so many times the cell that no list of images can be made.
+    pub fn new(frame: &'a Frame, reach: f64) -> Result<Neighbours<'a>, FieldsError> {
+        if !(reach > 0.0 && reach.is_finite()) {
+            return Err(FieldsError(format!(
+                "the potential has a reach of {reach}: give it a cut-off (`cutoff`)"
+            )));
+        }
+        let cell = &frame.cell;
+        let wrapped: Vec<[f64; 3]> = frame.position.iter().map(|x| cell.wrap(*x)).collect();
+        let (mut low, mut high) = ([0.0; 3], [1.0; 3]);
+        for a in (0..3).filter(|a| !cell.periodic[*a]) {
+            (low[a], high[a]) = (f64::INFINITY, f64::NEG_INFINITY);
+        }
+        for x in &wrapped {
+            let s = cell.fraction(*x);
+            for a in (0..3).filter(|a| !cell.periodic[*a]) {
+                low[a] = low[a].min(s[a]);
+                high[a] = high[a].max(s[a]);
+            }
+        }
+        let extent: [f64; 3] = std::array::from_fn(|a| (high[a] - low[a]).max(1e-9));
+        let thickness: [f64; 3] = std::array::from_fn(|a| extent[a] * cell.height(a));
+        // no more bins than particles
+        let most = MOST.min((8.0 * frame.len() as f64).cbrt() + 64.0);
+        let bins: [i32; 3] = std::array::from_fn(|a| {
+            (FINENESS * thickness[a] / reach).floor().clamp(1.0, most) as i32
+        });
+        let span = std::array::from_fn(|a| {
+            (reach * f64::from(bins[a]) / thickness[a] * (1.0 + 1e-12))
+                .ceil()
+                .min(1e6) as i32
+        });
+        let images: f64 = (0..3)
+            .filter(|a| cell.periodic[*a])
+            .map(|a| 2.0 * reach / thickness[a] + 1.0)
+            .product();
+        if images * frame.len() as f64 > 1e9 {
+            return Err(FieldsError(format!(
+                "the reach of the potential, {reach}, is many times the cell: are the units right?"
+            )));
+        }
+        let mut all = Neighbours {
+            frame,
+            reach,
+            wrapped,
+            bins,
+            low,
+            extent,
+            start: vec![0; bins.iter().product::<i32>() as usize + 1],
+            order: vec![0; frame.len()],
+            span,
+        };
+        let place: Vec<u32> = all.wrapped.iter().map(|x| all.bin(*x)).collect();
+        for p in &place {
+            all.start[*p as usize + 1] += 1;
+        }
+        for b in 1..all.start.len() {
+            all.start[b] += all.start[b - 1];
+        }
+        let mut next = all.start.clone();
+        for (i, p) in place.iter().enumerate() {
+            let next = &mut next[*p as usize];
+            all.order[*next as usize] = i as u32;
+            *next += 1;
+        }
+        Ok(all)
+    }
+
+    fn triple(&self, x: [f64; 3]) -> [i32; 3] {
+        let s = self.frame.cell.fraction(x);
+        std::array::from_fn(|a| {
+            let t = (s[a] - self.low[a]) / self.extent[a] * f64::from(self.bins[a]);
+            (t.floor().max(0.0) as i32).min(self.bins[a] - 1)
+        })
+    }
+
+    fn place(&self, b: [i32; 3]) -> usize {
+        ((b[0] * self.bins[1] + b[1]) * self.bins[2] + b[2]) as usize
+    }
+
+    fn bin(&self, x: [f64; 3]) -> u32 {
+        self.place(self.triple(x)) as u32
+    }
+
+    /// The particles of a bin.
+    pub fn members(&self, b: [i32; 3]) -> &[u32] {
+        let place = self.place(b);
+        &self.order[self.start[place] as usize..self.start[place + 1] as usize]
+    }
+
+    /// Fractions between which the bins from `from` to before `to` lie.
+    pub fn bounds(&self, from: [i32; 3], to: [i32; 3]) -> [[f64; 3]; 2] {
+        [from, to].map(|b| {
+            std::array::from_fn(|a| {
+                self.low[a] + self.extent[a] * f64::from(b[a]) / f64::from(self.bins[a])
+            })
+        })
+    }
+
+    /// All that are nearer to a particle than the reach, in an order of their own.
+    pub fn near(&self, i: usize, out: &mut Vec<Partner>) {
+        out.clear();
+        let cell = &self.frame.cell;
+        let x = self.wrapped[i];
+        let home = self.triple(x);
+        let limit = self.reach * self.reach;
+        // bins of an axis, wrapped, with the image they stand for
+        let line = |a: usize, n: i32| -> Option<(i32, i32)> {
+            let count = self.bins[a];
+            match cell.periodic[a] {
+                true => Some((n.rem_euclid(count), n.div_euclid(count))),
+                false => (0..count).contains(&n).then_some((n, 0)),
+            }
+        };
+        let range = |a: usize| home[a] - self.span[a]..=home[a] + self.span[a];
+        for b0 in range(0).filter_map(|n| line(0, n)) {
+            for b1 in range(1).filter_map(|n| line(1, n)) {
+                for b2 in range(2).filter_map(|n| line(2, n)) {
+                    let image = [b0.1, b1.1, b2.1];
+                    let shift = match image == [0; 3] {
+                        true => [0.0; 3],
+                        false => cell.shift(image),
+                    };
+                    for &atom in self.members([b0.0, b1.0, b2.0]) {
+                        let other = self.wrapped[atom as usize];
+                        let y: [f64; 3] = std::array::from_fn(|a| other[a] + shift[a] - x[a]);
+                        let q = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
+                        if q < limit && !(atom as usize == i && image == [0; 3]) {
+                            out.push(Partner { atom, image, y });
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Cell;
+
+    /// Against all images of all particles, in cells larger and smaller than the reach, tilted and open.
+    #[test]
+    fn every_image_is_found_once() {
+        let edges = [[3.0, 0.0, 0.0], [1.1, 2.5, 0.0], [-0.8, 0.6, 2.8]];
+        let mut seed = 3u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for periodic in [[true; 3], [true, false, true], [false; 3]] {
+            for reach in [0.7, 1.4, 5.0] {
+                let cell = Cell::new([0.3, 0.1, -1.0], edges, periodic).unwrap();
+                // some outside, as unwrapped coordinates are
+                let position: Vec<_> = (0..7)
+                    .map(|_| cell.at([2.0 * random() - 0.5, random(), 3.0 * random() - 1.0]))
+                    .collect();
+                let n = position.len();
+                let frame = Frame {
+                    cell,
+                    position,
+                    velocity: None,
+                    mass: vec![1.0; n],
+                    kind: vec![0; n],
+                    time: None,
+                };
+                let bins = Neighbours::new(&frame, reach).unwrap();
+                let mut near = vec![];
+                for i in 0..n {
+                    bins.near(i, &mut near);
+                    let mut found: Vec<_> = near.iter().map(|p| (p.atom, p.image)).collect();
+                    found.sort();
+                    let mut expected = vec![];
+                    let range = |a: usize| if periodic[a] { -6..=6 } else { 0..=0 };
+                    for a in range(0) {
+                        for b in range(1) {
+                            for c in range(2) {
+                                let shift = frame.cell.shift([a, b, c]);
+                                for j in 0..n {
+                                    let d: f64 = (0..3)
+                                        .map(|k| {
+                                            let y =
+                                                bins.wrapped[j][k] + shift[k] - bins.wrapped[i][k];
+                                            y * y
+                                        })
+                                        .sum();
+                                    let own = i == j && [a, b, c] == [0; 3];
+                                    if d < reach * reach && !own {
+                                        expected.push((j as u32, [a, b, c]));
+                                    }
+                                }
+                            }
+                        }
+                    }
+                    expected.sort();
+                    assert_eq!(found, expected, "{periodic:?} {reach}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! All fields of a frame at given points.
+//!
+//! Particles are taken in blocks of neighbouring bins. A block lists the terms of its centres, adds the bonds of each pair together,
+//! and adds them to the points near it; blocks are fixed and their results are added in order, so the bits do not depend on the
+//! number of threads. Velocities are counted from the drift of the whole frame, so that a fast body loses no digits of its heat.
+
+use crate::FieldsError;
+use crate::accumulate::{self, BOND, Particles};
+use crate::bonds::{Block, Collector};
+use crate::fields::{Fields, Layout, Sums, Totals};
+use crate::frame::Frame;
+use crate::kernel::{Kernel, dot};
+use crate::neighbours::Neighbours;
+use crate::partition::{PairForce, Partition};
+use crate::targets::{Bins, Targets};
+use peridyne::law::terms::Sites;
+use rayon::prelude::*;
+
+/// How fields are made.
+#[derive(Debug, Clone)]
+pub struct Method {
+    pub kernel: Kernel,
+    pub partition: Partition,
+    pub pair_force: PairForce,
+    /// Keep stress, churning and heat flux of the parts of the potential apart.
+    pub by_part: bool,
+    /// Also the exact rates of ρ, π and e, for residuals.
+    pub rates: bool,
+    /// k_B (energy / temperature); 1 in reduced units.
+    pub boltzmann: f64,
+}
+
+impl Method {
+    pub fn new(kernel: Kernel) -> Method {
+        Method {
+            kernel,
+            partition: Partition::Site,
+            pair_force: PairForce::Distances,
+            by_part: false,
+            rates: false,
+            boltzmann: 1.0,
+        }
+    }
+}
+
+/// Particles of a block, about.
+const BLOCK: usize = 4096;
+/// Blocks of a small frame, about: enough for many threads.
+const BLOCKS: usize = 64;
+
+/// Fields of a frame.
+///
+/// # Errors
+/// A frame that makes no sense, particles that coincide, a potential without a cut-off.
+pub fn evaluate(
+    frame: &Frame,
+    sites: &dyn Sites,
+    targets: &Targets,
+    method: &Method,
+) -> Result<Fields, FieldsError> {
+    frame.check()?;
+    let neighbours = Neighbours::new(frame, sites.reach())?;
+    let bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    let names = match method.by_part {
+        true => sites.parts(),
+        false => vec!["all".to_string()],
+    };
+    let parts = names.len();
+    let drift = frame.drift();
+    let velocity: Vec<[f64; 3]> = frame
+        .velocity
+        .iter()
+        .flatten()
+        .map(|v| std::array::from_fn(|a| v[a] - drift[a]))
+        .collect();
+    let collector = Collector {
+        frame,
+        sites,
+        neighbours: &neighbours,
+        partition: &method.partition,
+        pair_force: method.pair_force,
+        parts,
+        velocity: &velocity,
+    };
+    let blocks = Blocks::new(&neighbours, frame.len());
+    let layout = Layout {
+        parts,
+        moving: !velocity.is_empty(),
+        rates: method.rates && !velocity.is_empty(),
+    };
+    let mut sums = Sums {
+        bonds: vec![0.0; targets.len() * parts * BOND],
+        particles: vec![0.0; targets.len() * layout.stride()],
+    };
+    let mut own = Own {
+        energy: vec![0.0; frame.len() * parts],
+        force: vec![[0.0; 3]; frame.len()],
+        power: vec![0.0; frame.len()],
+    };
+    let mut totals = Totals::new(frame);
+    let wide = sites.reach();
+    let batch = 2 * rayon::current_num_threads();
+    for first in (0..blocks.count).step_by(batch) {
+        let some: Vec<_> = (first..(first + batch).min(blocks.count))
+            .into_par_iter()
+            .map(|b| -> Result<_, FieldsError> {
+                let (centres, bounds) = blocks.members(&neighbours, b);
+                let reach = std::array::from_fn(|a| wide / frame.cell.height(a));
+                let patch = bins.patch(widened(bounds, reach));
+                // far from all points: nothing of it is seen
+                if patch.index.is_empty() || centres.is_empty() {
+                    return Ok((Block::default(), vec![], vec![], centres.is_empty()));
+                }
+                let block = collector.collect(&centres)?;
+                let sums = accumulate::bonds(&method.kernel, &patch, &block.bonds, parts);
+                Ok((block, patch.index, sums, true))
+            })
+            .collect();
+        for result in some {
+            let (block, index, part, seen) = result?;
+            add(&mut sums.bonds, &index, &part, parts * BOND);
+            own.take(&block, parts);
+            totals.take(&block, seen);
+        }
+    }
+    totals.energy = own.energy.iter().sum();
+    for first in (0..blocks.count).step_by(batch) {
+        let some: Vec<_> = (first..(first + batch).min(blocks.count))
+            .into_par_iter()
+            .map(|b| {
+                let (members, bounds) = blocks.members(&neighbours, b);
+                let patch = bins.patch(bounds);
+                if patch.index.is_empty() {
+                    return (vec![], vec![]);
+                }
+                let mut columns = Columns::default();
+                for i in members {
+                    columns.push(frame, &layout, &own, &velocity, drift, i as usize);
+                    columns.position.push(neighbours.wrapped[i as usize]);
+                }
+                let of = Particles {
+                    position: &columns.position,
+                    width: layout.width(),
+                    value: &columns.value,
+                    slopes: layout.moving.then_some(&columns.slope[..]),
+                    slope_width: layout.slopes(),
+                };
+                let sums = accumulate::particles(&method.kernel, &patch, &of);
+                (patch.index, sums)
+            })
+            .collect();
+        for (index, part) in some {
+            add(&mut sums.particles, &index, &part, layout.stride());
+        }
+    }
+    Ok(Fields::finish(
+        targets.positions(&frame.cell),
+        names,
+        layout,
+        &sums,
+        drift,
+        method.boltzmann,
+        totals,
+        own.force,
+    ))
+}
+
+fn widened(bounds: [[f64; 3]; 2], by: [f64; 3]) -> [[f64; 3]; 2] {
+    let [low, high] = bounds;
+    [
+        std::array::from_fn(|a| low[a] - by[a]),
+        std::array::from_fn(|a| high[a] + by[a]),
+    ]
+}
+
+fn add(sums: &mut [f64], index: &[u32], part: &[f64], stride: usize) {
+    for (p, part) in index.iter().zip(part.chunks_exact(stride.max(1))) {
+        let own = &mut sums[*p as usize * stride..][..stride];
+        for (sum, value) in own.iter_mut().zip(part) {
+            *sum += value;
+        }
+    }
+}
+
+/// What atoms have of all terms.
+struct Own {
+    energy: Vec<f64>,
+    force: Vec<[f64; 3]>,
+    power: Vec<f64>,
+}
+
+impl Own {
+    fn take(&mut self, block: &Block, parts: usize) {
+        for (n, share) in block.shares.iter().enumerate() {
+            let i = share.atom as usize;
+            for c in 0..3 {
+                self.force[i][c] += share.force[c];
+            }
+            self.power[i] += share.power;
+            for part in 0..parts {
+                self.energy[i * parts + part] += block.energy[n * parts + part];
+            }
+        }
+    }
+}
+
+/// What particles of a block add.
+#[derive(Default)]
+struct Columns {
+    position: Vec<[f64; 3]>,
+    value: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+impl Columns {
+    fn push(
+        &mut self,
+        frame: &Frame,
+        layout: &Layout,
+        own: &Own,
+        velocity: &[[f64; 3]],
+        drift: [f64; 3],
+        i: usize,
+    ) {
+        let m = frame.mass[i];
+        let energy = &own.energy[i * layout.parts..][..layout.parts];
+        self.value.extend([1.0, m]);
+        self.value.extend(energy);
+        if !layout.moving {
+            return;
+        }
+        let v = velocity[i];
+        let square = dot(v, v);
+        let potential: f64 = energy.iter().sum();
+        self.value.extend(v.map(|c| m * c));
+        self.value.extend(products(v).map(|c| m * c));
+        self.value.extend(v.map(|c| m * square * c));
+        self.value.extend(v.map(|c| potential * c));
+        self.slope.push(m);
+        self.slope.extend(v.map(|c| m * c));
+        if !layout.rates {
+            return;
+        }
+        let v: [f64; 3] = std::array::from_fn(|a| v[a] + drift[a]);
+        let total = 0.5 * m * dot(v, v) + potential;
+        self.value.extend(own.force[i]);
+        self.value.push(dot(v, own.force[i]) + own.power[i]);
+        self.slope.extend(products(v).map(|c| m * c));
+        self.slope.extend(v.map(|c| total * c));
+    }
+}
+
+/// xx, yy, zz, yz, xz, xy.
+fn products(v: [f64; 3]) -> [f64; 6] {
+    [
+        v[0] * v[0],
+        v[1] * v[1],
+        v[2] * v[2],
+        v[1] * v[2],
+        v[0] * v[2],
+        v[0] * v[1],
+    ]
+}
+
+/// Bricks of bins of particles.
+struct Blocks {
+    size: [i32; 3],
+    along: [i32; 3],
+    count: usize,
+}
+
+impl Blocks {
+    fn new(neighbours: &Neighbours, atoms: usize) -> Blocks {
+        let bins = neighbours.bins;
+        let total: f64 = bins.iter().map(|b| f64::from(*b)).product();
+        let wanted = (atoms / BLOCKS).clamp(32, BLOCK) as f64;
+        let edge = (wanted * total / atoms as f64).cbrt().round().max(1.0) as i32;
+        let size = bins.map(|b| edge.min(b));
+        let along: [i32; 3] = std::array::from_fn(|a| (bins[a] + size[a] - 1) / size[a]);
+        Blocks {
+            size,
+            along,
+            count: along.iter().map(|n| *n as usize).product(),
+        }
+    }
+
+    /// Particles of a block, and the fractions between which they lie.
+    fn members(&self, neighbours: &Neighbours, b: usize) -> (Vec<u32>, [[f64; 3]; 2]) {
+        let b = b as i32;
+        let at = [
+            b / (self.along[1] * self.along[2]),
+            b / self.along[2] % self.along[1],
+            b % self.along[2],
+        ];
+        let from: [i32; 3] = std::array::from_fn(|a| at[a] * self.size[a]);
+        let to: [i32; 3] =
+            std::array::from_fn(|a| (from[a] + self.size[a]).min(neighbours.bins[a]));
+        let mut all = vec![];
+        for i in from[0]..to[0] {
+            for j in from[1]..to[1] {
+                for k in from[2]..to[2] {
+                    all.extend_from_slice(neighbours.members([i, j, k]));
+                }
+            }
+        }
+        (all, neighbours.bounds(from, to))
+    }
+}

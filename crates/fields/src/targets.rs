@@ -1,0 +1,332 @@
+//! Where fields are wanted, in bins like those of the particles: a point that lies in a box of fractions is found without looking at others.
+
+use crate::FieldsError;
+use crate::frame::Cell;
+use crate::kernel::Kernel;
+
+/// Where fields are wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Targets {
+    /// The centres of this many equal pieces of the cell along each of its edges, the first axis fastest.
+    Grid([usize; 3]),
+    Points(Vec<[f64; 3]>),
+}
+
+impl Targets {
+    /// Points evenly on a line, both ends included.
+    pub fn line(from: [f64; 3], to: [f64; 3], count: usize) -> Targets {
+        let part = |k: usize| k as f64 / (count.max(2) - 1) as f64;
+        let at = |t: f64| std::array::from_fn(|a| from[a] + t * (to[a] - from[a]));
+        Targets::Points((0..count).map(|k| at(part(k))).collect())
+    }
+
+    /// Points evenly on a parallelogram, the first edge fastest, borders included.
+    pub fn plane(corner: [f64; 3], edges: [[f64; 3]; 2], counts: [usize; 2]) -> Targets {
+        let part = |k: usize, n: usize| k as f64 / (n.max(2) - 1) as f64;
+        let mut points = vec![];
+        for j in 0..counts[1] {
+            for i in 0..counts[0] {
+                let [s, t] = [part(i, counts[0]), part(j, counts[1])];
+                points.push(std::array::from_fn(|a| {
+                    corner[a] + s * edges[0][a] + t * edges[1][a]
+                }));
+            }
+        }
+        Targets::Points(points)
+    }
+
+    /// The points, as they lie in a cell.
+    pub fn positions(&self, cell: &Cell) -> Vec<[f64; 3]> {
+        match self {
+            Targets::Points(points) => points.clone(),
+            Targets::Grid([nx, ny, nz]) => {
+                let mut all = Vec::with_capacity(nx * ny * nz);
+                let part = |k: usize, n: usize| (k as f64 + 0.5) / n as f64;
+                for k in 0..*nz {
+                    for j in 0..*ny {
+                        for i in 0..*nx {
+                            all.push(cell.at([part(i, *nx), part(j, *ny), part(k, *nz)]));
+                        }
+                    }
+                }
+                all
+            }
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        match self {
+            Targets::Points(points) => points.len(),
+            Targets::Grid(n) => n.iter().product(),
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Points in bins of a cell.
+pub(crate) struct Bins<'a> {
+    cell: &'a Cell,
+    /// Axes along which the bins repeat.
+    repeats: [bool; 3],
+    counts: [bool; 3],
+    radius: [f64; 3],
+    bins: [i32; 3],
+    low: [f64; 3],
+    extent: [f64; 3],
+    start: Vec<u32>,
+    order: Vec<u32>,
+    /// In the cell along axes that repeat.
+    wrapped: Vec<[f64; 3]>,
+}
+
+const MOST: usize = 200_000_000;
+
+impl<'a> Bins<'a> {
+    pub fn new(
+        targets: &Targets,
+        cell: &'a Cell,
+        kernel: &Kernel,
+    ) -> Result<Bins<'a>, FieldsError> {
+        let counts = kernel.averaged_axes().map(|a| a.is_none());
+        if targets.len() > MOST {
+            return Err(FieldsError(format!(
+                "{} points, of which {MOST} are taken: use a coarser grid",
+                targets.len()
+            )));
+        }
+        if let Targets::Grid(n) = targets {
+            for a in 0..3 {
+                let name = ["x", "y", "z"][a];
+                if n[a] == 0 {
+                    return Err(FieldsError(format!("the grid has 0 points along {name}")));
+                }
+                if !counts[a] && n[a] != 1 {
+                    return Err(FieldsError(format!(
+                        "{name} is averaged over: the grid has 1 point along it, not {}",
+                        n[a]
+                    )));
+                }
+            }
+        }
+        let repeats: [bool; 3] = std::array::from_fn(|a| cell.periodic[a] && counts[a]);
+        let positions = targets.positions(cell);
+        if let Some(k) = positions
+            .iter()
+            .position(|x| x.iter().any(|c| !c.is_finite()))
+        {
+            return Err(FieldsError(format!("point {} is not finite", k + 1)));
+        }
+        let only = cell.with_periods(repeats);
+        let wrapped: Vec<[f64; 3]> = positions.iter().map(|x| only.wrap(*x)).collect();
+        let (mut low, mut high) = ([0.0; 3], [1.0; 3]);
+        let radius: [f64; 3] = std::array::from_fn(|a| kernel.radius() / cell.height(a));
+        let bins = match targets {
+            Targets::Grid(n) => n.map(|n| n as i32),
+            Targets::Points(_) => {
+                for a in (0..3).filter(|a| !repeats[*a]) {
+                    let all = wrapped.iter().map(|x| cell.fraction(*x)[a]);
+                    low[a] = all.clone().fold(f64::INFINITY, f64::min);
+                    high[a] = all.fold(f64::NEG_INFINITY, f64::max).max(low[a] + 1e-9);
+                }
+                let most = (positions.len() as f64).cbrt() * 2.0 + 8.0;
+                std::array::from_fn(|a| match counts[a] {
+                    true => (2.0 * (high[a] - low[a]) / radius[a]).clamp(1.0, most) as i32,
+                    false => 1,
+                })
+            }
+        };
+        let extent = std::array::from_fn(|a| high[a] - low[a]);
+        let total = bins.iter().map(|b| *b as usize).product::<usize>();
+        let mut all = Bins {
+            cell,
+            repeats,
+            counts,
+            radius,
+            bins,
+            low,
+            extent,
+            start: vec![0; total + 1],
+            order: vec![0; positions.len()],
+            wrapped,
+        };
+        let place: Vec<usize> = all.wrapped.iter().map(|x| all.place(*x)).collect();
+        for p in &place {
+            all.start[p + 1] += 1;
+        }
+        for b in 1..all.start.len() {
+            all.start[b] += all.start[b - 1];
+        }
+        let mut next = all.start.clone();
+        for (i, p) in place.iter().enumerate() {
+            all.order[next[*p] as usize] = i as u32;
+            next[*p] += 1;
+        }
+        Ok(all)
+    }
+
+    fn place(&self, x: [f64; 3]) -> usize {
+        let s = self.cell.fraction(x);
+        let b: [i32; 3] = std::array::from_fn(|a| match self.counts[a] {
+            true => (self.bin(a, s[a]).max(0)).min(self.bins[a] - 1),
+            false => 0,
+        });
+        ((b[0] * self.bins[1] + b[1]) * self.bins[2] + b[2]) as usize
+    }
+
+    fn bin(&self, axis: usize, s: f64) -> i32 {
+        let t = (s - self.low[axis]) / self.extent[axis] * f64::from(self.bins[axis]);
+        t.floor().clamp(-1e9, 1e9) as i32
+    }
+
+    /// Bins that a range of fractions, widened by the radius of φ, touches: the first, and how many. Unwrapped on axes that repeat.
+    fn range(&self, axis: usize, low: f64, high: f64) -> [i32; 2] {
+        if !self.counts[axis] {
+            return [0, 1];
+        }
+        // a little more, so that round-off at a face loses nothing
+        let wide = self.radius[axis] * (1.0 + 1e-9) + 1e-12;
+        let (mut from, mut to) = (self.bin(axis, low - wide), self.bin(axis, high + wide));
+        if !self.repeats[axis] {
+            (from, to) = (from.max(0), to.min(self.bins[axis] - 1));
+        }
+        [from, (to - from + 1).max(0)]
+    }
+
+    /// The points near a box of fractions.
+    pub fn patch(&self, bounds: [[f64; 3]; 2]) -> Patch<'_> {
+        let mut first = [0; 3];
+        let mut size = [0; 3];
+        for a in 0..3 {
+            let [from, count] = self.range(a, bounds[0][a], bounds[1][a]);
+            // all of an axis that repeats begin at 0
+            [first[a], size[a]] = match self.repeats[a] && count >= self.bins[a] {
+                true => [0, self.bins[a]],
+                false => [from, count],
+            };
+        }
+        let mut patch = Patch {
+            bins: self,
+            whole: std::array::from_fn(|a| self.repeats[a] && size[a] == self.bins[a]),
+            first,
+            size,
+            start: vec![0],
+            index: vec![],
+            x: Default::default(),
+        };
+        for i in 0..size[0] {
+            for j in 0..size[1] {
+                for k in 0..size[2] {
+                    patch.add([i, j, k]);
+                }
+            }
+        }
+        patch
+    }
+}
+
+/// Points near a block of particles.
+pub(crate) struct Patch<'a> {
+    bins: &'a Bins<'a>,
+    /// Axes of which all bins are there.
+    whole: [bool; 3],
+    first: [i32; 3],
+    size: [i32; 3],
+    start: Vec<u32>,
+    /// Of all points.
+    pub index: Vec<u32>,
+    /// Columns of their coordinates, of the image near the block.
+    pub x: [Vec<f64>; 3],
+}
+
+impl Patch<'_> {
+    fn add(&mut self, local: [i32; 3]) {
+        let bins = self.bins;
+        let mut bin = [0; 3];
+        let mut image = [0; 3];
+        for a in 0..3 {
+            let n = self.first[a] + local[a];
+            if bins.repeats[a] {
+                bin[a] = n.rem_euclid(bins.bins[a]);
+                image[a] = n.div_euclid(bins.bins[a]);
+            } else {
+                bin[a] = n;
+            }
+        }
+        let place = ((bin[0] * bins.bins[1] + bin[1]) * bins.bins[2] + bin[2]) as usize;
+        let shift = bins.cell.shift(image);
+        for &p in &bins.order[bins.start[place] as usize..bins.start[place + 1] as usize] {
+            self.index.push(p);
+            for a in 0..3 {
+                self.x[a].push(bins.wrapped[p as usize][a] + shift[a]);
+            }
+        }
+        self.start.push(self.index.len() as u32);
+    }
+
+    /// Pieces of a range of bins: where it begins in the patch, its length, and the image that the patch shows.
+    fn pieces(&self, axis: usize, low: f64, high: f64, out: &mut Vec<[i32; 3]>) {
+        out.clear();
+        let [mut from, mut count] = self.bins.range(axis, low, high);
+        let n = self.bins.bins[axis];
+        if !self.whole[axis] {
+            from -= self.first[axis];
+            count = count.min(self.size[axis] - from);
+            if from < 0 {
+                count += from;
+                from = 0;
+            }
+            if count > 0 {
+                out.push([from, count, 0]);
+            }
+            return;
+        }
+        while count > 0 {
+            let (at, image) = (from.rem_euclid(n), from.div_euclid(n));
+            let here = count.min(n - at);
+            out.push([at, here, image]);
+            from += here;
+            count -= here;
+        }
+    }
+
+    /// Runs of points near a segment from `end` along `bond`, with the periods by which they are to be moved to it.
+    pub fn near(
+        &self,
+        end: [f64; 3],
+        bond: [f64; 3],
+        pieces: &mut [Vec<[i32; 3]>; 3],
+        mut run: impl FnMut(usize, usize, [f64; 3]),
+    ) {
+        let cell = self.bins.cell;
+        let s = cell.fraction(end);
+        let t = cell.fraction(std::array::from_fn(|a| end[a] + bond[a]));
+        for a in 0..3 {
+            self.pieces(a, s[a].min(t[a]), s[a].max(t[a]), &mut pieces[a]);
+        }
+        let [px, py, pz] = pieces;
+        for x in px.iter() {
+            for y in py.iter() {
+                for z in pz.iter() {
+                    let image = [x[2], y[2], z[2]];
+                    let shift = match image == [0; 3] {
+                        true => [0.0; 3],
+                        false => cell.shift(image),
+                    };
+                    for i in x[0]..x[0] + x[1] {
+                        for j in y[0]..y[0] + y[1] {
+                            let row = (i * self.size[1] + j) * self.size[2];
+                            let from = self.start[(row + z[0]) as usize] as usize;
+                            let to = self.start[(row + z[0] + z[1]) as usize] as usize;
+                            if from < to {
+                                run(from, to, shift);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

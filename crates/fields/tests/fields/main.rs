@@ -1,0 +1,8 @@
+//! What fields from particles must show: (lehoucq2010, chapter 4), on potentials of pairs, embedded atoms, triplets, torsion, and of
+//! any number of particles.
+
+mod balance;
+mod churning;
+mod pair_forces;
+mod sample;
+mod sums;
