@@ -14,6 +14,7 @@ mod moduli;
 pub mod number;
 pub mod potential;
 pub mod solid;
+pub mod slopes;
 pub mod spline;
 pub mod terms;
 

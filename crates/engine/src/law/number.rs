@@ -2,7 +2,7 @@
 //! or a Taylor series (elastic constants, gradient coefficients). So every law is written once, and its derivatives are exact.
 
 use super::spline::{Spline, Twin};
-use crate::execute::lane::Lane;
+use crate::execute::lane::{Lane, elementary};
 use std::ops::{Add, Mul, Sub};
 
 /// What a law may do with its arguments. Implemented by every lane, by [`Dual`] and by [`Jet`](super::jet::Jet); a law asks for
@@ -94,11 +94,11 @@ impl<L: Lane> Number for L {
     }
     #[inline(always)]
     fn exp(self) -> L {
-        each(self, f64::exp)
+        elementary::exp(self)
     }
     #[inline(always)]
     fn ln(self) -> L {
-        each(self, f64::ln)
+        elementary::ln(self)
     }
     #[inline(always)]
     fn ln_1p(self) -> L {
@@ -136,6 +136,29 @@ impl<L: Lane> Number for L {
     #[inline(always)]
     fn of_twin(self, twin: &Twin, n: usize) -> L {
         twin.lanes_of(n, self)[0]
+    }
+}
+
+/// Numbers that hold lanes.
+pub trait Over<L: Lane>: Number {
+    /// What does not depend on the variables.
+    fn lane(x: L) -> Self;
+}
+
+impl<L: Lane> Over<L> for L {
+    #[inline(always)]
+    fn lane(x: L) -> L {
+        x
+    }
+}
+
+impl<L: Lane> Over<L> for Dual<L> {
+    #[inline(always)]
+    fn lane(x: L) -> Self {
+        Dual {
+            value: x,
+            slope: L::splat(0.0),
+        }
     }
 }
 
@@ -198,7 +221,7 @@ impl<L: Lane> Mul for Dual<L> {
 
 /// A function of a plain number in every lane. No closure, so that this compiles for the lane's instruction set.
 #[inline(always)]
-fn each<L: Lane>(x: L, f: fn(f64) -> f64) -> L {
+pub(super) fn each<L: Lane>(x: L, f: fn(f64) -> f64) -> L {
     let mut a = x.to_array();
     for v in &mut a[..L::N] {
         *v = f(*v);
@@ -242,12 +265,12 @@ impl<L: Lane> Number for Dual<L> {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        let e = each(self.value, f64::exp);
+        let e = elementary::exp(self.value);
         self.chain(e, e)
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        self.chain(each(self.value, f64::ln), L::splat(1.0).div(self.value))
+        self.chain(elementary::ln(self.value), L::splat(1.0).div(self.value))
     }
     #[inline(always)]
     fn table(self, table: &Spline) -> Self {

@@ -106,6 +106,28 @@ impl Lane for F64x4 {
         }
     }
     #[inline(always)]
+    fn exponent_from_bits(self) -> Self {
+        unsafe {
+            F64x4(_mm256_castsi256_pd(_mm256_slli_epi64::<52>(
+                _mm256_castpd_si256(self.0),
+            )))
+        }
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> [Self; 2] {
+        unsafe {
+            let bits = _mm256_castpd_si256(self.0);
+            let of = |x: u64| _mm256_set1_epi64x(x as i64);
+            let mantissa =
+                _mm256_or_si256(_mm256_and_si256(bits, of(super::MANTISSA)), of(super::ONE));
+            let exponent = _mm256_or_si256(_mm256_srli_epi64::<52>(bits), of(super::TWO_TO_52));
+            [
+                F64x4(_mm256_castsi256_pd(mantissa)),
+                F64x4(_mm256_castsi256_pd(exponent)),
+            ]
+        }
+    }
+    #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
         unsafe { F64x4(_mm256_fmadd_pd(self.0, a.0, b.0)) }
     }

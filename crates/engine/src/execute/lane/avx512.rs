@@ -122,6 +122,28 @@ impl Lane for F64x8 {
         }
     }
     #[inline(always)]
+    fn exponent_from_bits(self) -> Self {
+        unsafe {
+            F64x8(_mm512_castsi512_pd(_mm512_slli_epi64::<52>(
+                _mm512_castpd_si512(self.0),
+            )))
+        }
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> [Self; 2] {
+        unsafe {
+            let bits = _mm512_castpd_si512(self.0);
+            let of = |x: u64| _mm512_set1_epi64(x as i64);
+            let mantissa =
+                _mm512_or_si512(_mm512_and_si512(bits, of(super::MANTISSA)), of(super::ONE));
+            let exponent = _mm512_or_si512(_mm512_srli_epi64::<52>(bits), of(super::TWO_TO_52));
+            [
+                F64x8(_mm512_castsi512_pd(mantissa)),
+                F64x8(_mm512_castsi512_pd(exponent)),
+            ]
+        }
+    }
+    #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
         unsafe { F64x8(_mm512_fmadd_pd(self.0, a.0, b.0)) }
     }

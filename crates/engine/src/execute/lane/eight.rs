@@ -109,6 +109,14 @@ impl Lane for Eight {
     fn inv_sqrt_estimate(self) -> Self {
         one(&self, |a| a.inv_sqrt_estimate())
     }
+    #[inline(always)]
+    fn exponent_from_bits(self) -> Self {
+        one(&self, |a| a.exponent_from_bits())
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> [Self; 2] {
+        from_fn(|n| one(&self, |a| a.mantissa_and_exponent()[n]))
+    }
     #[cfg_attr(target_arch = "x86_64", inline(never))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
     fn fma(self, a: Self, b: Self) -> Self {

@@ -16,6 +16,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod eight;
+pub mod elementary;
 #[cfg(target_arch = "x86_64")]
 mod pair;
 mod scalar;
@@ -66,6 +67,10 @@ pub trait Lane:
     unsafe fn gather2(base: *const f64, index: *const u32) -> [Self; 2];
     /// `ROOT_MAGIC − (bits >> 1)` as a number: 1/√self within 3.5 %, the same on every machine.
     fn inv_sqrt_estimate(self) -> Self;
+    /// `2ⁿ` of `2⁵³ − 2⁵¹ + 1023 + n`, −1023 < n ≤ 1023: the lowest bits become the exponent.
+    fn exponent_from_bits(self) -> Self;
+    /// Mantissa from 1 to 2, and `2⁵² + 1023 + exponent`, of a positive normal number.
+    fn mantissa_and_exponent(self) -> [Self; 2];
     /// `self * a + b`, rounded once.
     fn fma(self, a: Self, b: Self) -> Self;
     fn div(self, a: Self) -> Self;
@@ -114,6 +119,11 @@ pub trait Lane:
         a
     }
 }
+
+/// Bits of the mantissa; of 1; of 2⁵².
+const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
+const ONE: u64 = 0x3ff0_0000_0000_0000;
+const TWO_TO_52: u64 = 0x4330_0000_0000_0000;
 
 /// Minimises the error of [`Lane::inv_sqrt_estimate`] (Lomont 2003, 64 bits).
 const ROOT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;

@@ -77,6 +77,16 @@ impl<L: Lane> Lane for Pair<L> {
         Pair(self.0.inv_sqrt_estimate(), self.1.inv_sqrt_estimate())
     }
     #[inline(always)]
+    fn exponent_from_bits(self) -> Self {
+        Pair(self.0.exponent_from_bits(), self.1.exponent_from_bits())
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> [Self; 2] {
+        let [a, b] = self.0.mantissa_and_exponent();
+        let [c, d] = self.1.mantissa_and_exponent();
+        [Pair(a, c), Pair(b, d)]
+    }
+    #[inline(always)]
     fn fma(self, a: Self, b: Self) -> Self {
         Pair(self.0.fma(a.0, b.0), self.1.fma(a.1, b.1))
     }

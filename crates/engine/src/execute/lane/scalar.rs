@@ -48,6 +48,18 @@ impl Lane for f64 {
         f64::from_bits(super::ROOT_MAGIC.wrapping_sub(self.to_bits() >> 1))
     }
     #[inline(always)]
+    fn exponent_from_bits(self) -> f64 {
+        f64::from_bits(self.to_bits() << 52)
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> [f64; 2] {
+        let bits = self.to_bits();
+        [
+            f64::from_bits(bits & super::MANTISSA | super::ONE),
+            f64::from_bits(bits >> 52 | super::TWO_TO_52),
+        ]
+    }
+    #[inline(always)]
     fn fma(self, a: f64, b: f64) -> f64 {
         self.mul_add(a, b)
     }
