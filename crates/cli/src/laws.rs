@@ -145,7 +145,7 @@ fn explain(key: &Key) -> String {
             format!("one of {}", words.join(", "))
         }
         Value::Name => "a name".into(),
-        Value::Table => "a file".into(),
+        Value::Table | Value::Entries(_) => "a file".into(),
     };
     let need = match key.need {
         Need::Given | Need::Refused => String::new(),

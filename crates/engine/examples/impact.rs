@@ -20,6 +20,7 @@ fn main() {
     }
     let e = |s: &str| Expression::parse(s, &[]).unwrap();
     let spec = Spec {
+        bonded: None,
         boltzmann: 1.0,
         thermal: None,
         fields: None,

@@ -140,6 +140,7 @@ impl AtomsPlan {
             }
         }
         Atoms {
+            bonded: false,
             species: vec![Species {
                 name: self.species.clone(),
                 mass,

@@ -24,6 +24,7 @@ fn sample(step: u64) -> Atoms {
         step: Some(step),
         time: Some(0.001 * step as f64),
         from_momenta: false,
+        bonded: false,
     }
 }
 

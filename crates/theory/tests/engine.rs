@@ -62,6 +62,7 @@ fn case(
         periodic[a] = Some(H * kind.edges()[a] * cells[a] as f64);
     }
     let spec = Spec {
+        bonded: None,
         boltzmann: 1.0,
         thermal: None,
         fields: None,

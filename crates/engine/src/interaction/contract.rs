@@ -121,6 +121,11 @@ pub trait Interaction<const D: usize>: Send + Sync {
         false
     }
 
+    /// Does it have terms of more than two atoms, so that the tangents of its pairs are not along them?
+    fn has_fans(&self) -> bool {
+        false
+    }
+
     /// Every directed bond that is whole with its tangent at `u`, images of which are fresh, in order of slots. Repulsion inside
     /// the family is left out. The scalars' gains are in [`Interaction::gain`] afterwards.
     ///

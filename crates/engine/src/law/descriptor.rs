@@ -49,6 +49,9 @@ pub enum Value {
     List(usize, Dimension, Bounds),
     /// Rows of numbers, a dimension and bounds for each column.
     Rows(&'static [(&'static str, Dimension, Bounds)]),
+    /// Rows of constants for triples of kinds: three kinds of atom, counted from 0, and a number for each column; in decks the name of a
+    /// file that has them.
+    Entries(&'static [Key]),
     /// One of these.
     Word(&'static [(&'static str, &'static str)]),
     /// Any word.
@@ -218,7 +221,9 @@ impl Key {
     pub fn dimension(&self) -> Option<Dimension> {
         match self.value {
             Value::Number(dimension, _) | Value::List(_, dimension, _) => Some(dimension),
-            Value::Rows(_) | Value::Word(_) | Value::Name | Value::Table => None,
+            Value::Rows(_) | Value::Entries(_) | Value::Word(_) | Value::Name | Value::Table => {
+                None
+            }
         }
     }
 }
@@ -392,6 +397,11 @@ impl Descriptor {
 }
 
 impl Value {
+    /// Is it the name of a file in decks?
+    pub fn is_file(&self) -> bool {
+        matches!(self, Value::Table | Value::Entries(_))
+    }
+
     fn check(&self, name: &str, given: &Parameter) -> Result<(), String> {
         match (self, given) {
             (Value::Number(_, bounds), Parameter::Number(x)) => match bounds.hold(*x) {
@@ -423,6 +433,21 @@ impl Value {
                 let of = of.join(", ");
                 Err(format!("a row of `{name}` is {row:?}, expected [{of}]"))
             }
+            (Value::Entries(columns), Parameter::Rows(rows)) => {
+                let kind = |x: &f64| *x >= 0.0 && *x < 255.0 && x.fract() == 0.0;
+                let fits = |row: &&Vec<f64>| {
+                    let kinds = row.iter().take(3).all(kind);
+                    kinds && row.len() == columns.len() + 3 && row.iter().all(|x| x.is_finite())
+                };
+                let Some(row) = rows.iter().find(|r| !fits(r)) else {
+                    return Ok(());
+                };
+                let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
+                let names = names.join(", ");
+                Err(format!(
+                    "a row of `{name}` is {row:?}, expected three kinds, {names}"
+                ))
+            }
             (Value::Word(words), Parameter::Word(word)) => {
                 if words.iter().any(|(w, _)| w == word) {
                     return Ok(());
@@ -435,6 +460,7 @@ impl Value {
             (Value::Table, Parameter::Table(table)) => table.check(),
             (Value::Number(..), _) => Err(format!("`{name}` is a number")),
             (Value::List(..), _) => Err(format!("`{name}` is a list of numbers")),
+            (Value::Entries(_), _) => Err(format!("`{name}` is a list of rows")),
             (Value::Rows(_), _) => Err(format!("`{name}` is a list of rows")),
             (Value::Word(_) | Value::Name, _) => Err(format!("`{name}` is a word")),
             (Value::Table, _) => Err(format!("`{name}` is a table of functions")),

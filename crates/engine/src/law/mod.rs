@@ -4,7 +4,10 @@
 //! `e = |ξ+η|²/|ξ|² − 1` in the form the law asks for: extension over current length `g = (r − r0)/r`, or stretch
 //! `s = (r − r0)/r0`.
 
+pub mod blocks;
+pub mod bonded;
 pub mod descriptor;
+pub mod fan;
 pub mod fracture_energy;
 pub mod influence;
 pub mod jet;
@@ -13,8 +16,9 @@ pub mod micromodulus;
 mod moduli;
 pub mod number;
 pub mod potential;
-pub mod solid;
+pub mod scaled;
 pub mod slopes;
+pub mod solid;
 pub mod spline;
 pub mod terms;
 

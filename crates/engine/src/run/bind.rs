@@ -31,6 +31,7 @@ pub(super) fn bind<const D: usize>(
         }
         let model = parts[0].constitutive(body, shelf, simd, warnings)?;
         let interaction = model.interaction(body, None)?;
+        let interaction = super::bonded::around(spec, body, shelf, interaction, simd)?;
         return Ok((ConstitutiveModels::one(model), interaction));
     };
     let (mut constitutive, mut bonds) = (vec![], vec![]);

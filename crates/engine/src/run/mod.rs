@@ -3,6 +3,7 @@
 mod accounts;
 mod atoms;
 mod bind;
+mod bonded;
 mod bonds;
 mod build;
 mod calibration;

@@ -39,7 +39,7 @@ impl<const D: usize> Model<D> {
 
     /// Bonds between atoms about the displacements of now, and F″ of every atom, in order of ids.
     pub(super) fn bonds_of_atoms(&mut self, visit: &mut dyn FnMut(AtomBond)) -> Option<Vec<f64>> {
-        if !self.interaction.is_potential() {
+        if !self.interaction.is_potential() || self.interaction.has_fans() {
             return None;
         }
         self.refresh_images();

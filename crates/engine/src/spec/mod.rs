@@ -4,6 +4,7 @@
 //! linear bodies do stands in [`law`](crate::law) and [`statics`](crate::statics); nothing here reads them.
 
 mod body;
+mod bonded;
 mod bonds;
 mod carriers;
 mod condition;
@@ -17,6 +18,7 @@ mod schedule;
 mod surface;
 
 pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
+pub use bonded::{BondedSpec, BondedTerm, Form};
 pub use bonds::{
     BondFactorSpec, ContactSpec, ContactStiffness, CrackKind, CrackShape, PrecrackSpec,
 };
@@ -79,6 +81,8 @@ pub struct Spec {
     pub precracks: Vec<PrecrackSpec>,
     pub contact: Option<ContactSpec>,
     pub initial: Vec<InitialSpec>,
+    /// What points say that are bonded to each other whatever moves, beside their potential.
+    pub bonded: Option<std::sync::Arc<BondedSpec>>,
     /// Boltzmann's constant in these units (energy / temperature); 1 where temperatures are energies.
     pub boltzmann: f64,
     /// Maxwellian velocities, given before those of `initial`.
@@ -126,6 +130,7 @@ impl Spec {
             precracks: vec![],
             contact: None,
             initial: vec![],
+            bonded: None,
             boltzmann: 1.0,
             thermal: None,
             conditions: vec![],

@@ -2,6 +2,7 @@
 
 mod chain;
 mod crystal;
+mod fans;
 mod relax;
 mod sample;
 mod scaled;

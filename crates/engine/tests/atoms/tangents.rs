@@ -6,7 +6,7 @@ use peridyne::space::Point;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{FamilyChoice, Spec};
 
-fn check<const D: usize>(name: &str, spec: &Spec) {
+pub fn check<const D: usize>(name: &str, spec: &Spec) {
     let options = Options {
         trust_time_step: true,
         ..Options::default()

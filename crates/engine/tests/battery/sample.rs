@@ -275,6 +275,7 @@ impl Case {
             vec![]
         };
         Spec {
+            bonded: None,
             boltzmann: 1.0,
             thermal: None,
             fields: None,

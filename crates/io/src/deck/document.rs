@@ -3,6 +3,7 @@
 mod condition;
 mod crack;
 mod law;
+mod molecules;
 mod names;
 mod output;
 mod region;
@@ -13,6 +14,7 @@ use super::value::{At, Named, Number, Or, Vector, Written};
 pub use condition::{Condition, Contact, Indenter, Initial};
 pub use crack::{BondFactor, FlatShape, Precrack};
 pub use law::{Given, Law};
+pub use molecules::Molecules;
 pub use names::*;
 pub use output::Output;
 pub use region::{Mark, Periodic, Set, Shape};
@@ -89,6 +91,8 @@ pub struct Document {
     pub precrack: Vec<At<Precrack>>,
     /// On when a material can fracture or there are several bodies; false turns it off.
     pub contact: Option<Or<bool, Contact>>,
+    /// What bonds the atoms of `body.file`, beside their pair potential; { } takes the file's as it is.
+    pub molecules: Option<At<Molecules>>,
     /// Maxwellian velocities.
     pub thermal: Option<Thermal>,
     #[serde(default)]

@@ -1,7 +1,6 @@
 //! The deck of an upscaled model: the old deck with the numbers of the new specification.
 
 use super::{Deck, Dim};
-use peridyne::law::descriptor;
 use peridyne::run::Shelf;
 use peridyne::spec::{BodySpec, Horizon, Spec, TimeStep};
 use serde::Deserialize;
@@ -58,7 +57,7 @@ fn beside(deck: &Deck, table: &mut Table) -> Vec<(PathBuf, String)> {
     let law = material(table).and_then(|m| inner(m, "law"));
     for (name, constants) in law.into_iter().flatten() {
         let keys = shelf.descriptor(name).into_iter().flat_map(|d| &d.keys);
-        for key in keys.filter(|k| k.value == descriptor::Value::Table) {
+        for key in keys.filter(|k| k.value.is_file()) {
             place(constants.get_mut(key.name));
         }
     }

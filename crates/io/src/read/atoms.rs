@@ -29,6 +29,8 @@ pub struct Atoms {
     pub low: [f64; 3],
     pub high: [f64; 3],
     pub periodic: [bool; 3],
+    /// Does the file have bonds, angles or dihedrals ([`molecules`](super::molecules))?
+    pub bonded: bool,
     /// Of the frame, where the file says it.
     pub step: Option<u64>,
     pub time: Option<f64>,

@@ -1,4 +1,4 @@
-//! LAMMPS data files of `atom_style atomic`.
+//! LAMMPS data files of `atom_style atomic` and `molecular`.
 
 use super::atoms::{Atoms, Species};
 use super::lammps::{DataFile, Style};
@@ -20,7 +20,7 @@ pub fn data(path: &Path) -> Result<Atoms, ReadError> {
 /// The same from a text; `name` is for messages.
 pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
     let file: DataFile = lammps::file(text, name)?;
-    if file.style != Style::Atomic {
+    if file.style == Style::Peri {
         return Err(lammps::error(
             name,
             None,
@@ -49,6 +49,7 @@ pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
         low: file.low,
         high: file.high,
         periodic: [true; 3],
+        bonded: file.bonded,
         ..Atoms::default()
     })
 }

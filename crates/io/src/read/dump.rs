@@ -261,6 +261,7 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
         new[*old as usize] = place as u32;
     }
     Ok(Atoms {
+        bonded: false,
         species: order
             .iter()
             .map(|k| names.species[*k as usize].clone())

@@ -1,5 +1,6 @@
 //! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), atoms
-//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), and tables of potentials ([`eam`]).
+//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), and tables and constants of
+//! potentials ([`eam`], [`entries`]).
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count; what
 //! else the mesh names becomes sets (`mesh`). Second-order cells are taken by their corners.
@@ -10,12 +11,14 @@ mod cell;
 pub mod data;
 pub mod dump;
 pub mod eam;
+pub mod entries;
 pub mod extxyz;
 mod gmsh;
 pub mod lammps;
 mod linear;
 mod lines;
 mod mesh;
+pub mod molecules;
 mod stream;
 mod text;
 
@@ -57,6 +60,8 @@ pub struct AtomsFile {
     pub species: Vec<String>,
     /// The velocities are in Å, eV and g/mol.
     pub from_momenta: bool,
+    /// There are bonds, angles or dihedrals.
+    pub bonded: bool,
 }
 
 /// What is wrong in a file of points.
@@ -157,7 +162,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
     let points = match extension {
         "extxyz" => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
         "xyz" if extended => sourced(extxyz::parse_extxyz(text, name, Frame::Last)?, false, name)?,
-        "data" | "lmp" if lammps::file(text, name)?.style == lammps::Style::Atomic => {
+        "data" | "lmp" if lammps::file(text, name)?.style != lammps::Style::Peri => {
             sourced(data::parse_data(text, name)?, true, name)?
         }
         "lammpstrj" | "dump" => sourced(dump::parse_dump(text, name, Frame::Last)?, false, name)?,
@@ -227,6 +232,7 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
             mass,
             species: kinds().map(|s| s.name.clone()).collect(),
             from_momenta: atoms.from_momenta,
+            bonded: atoms.bonded,
         }),
         cloud: Cloud {
             volume: vec![volume; n],

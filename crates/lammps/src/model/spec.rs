@@ -54,6 +54,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         members: Members::Mark(*kind as i32),
     };
     Ok(Spec {
+        bonded: None,
         boltzmann: 1.0,
         thermal: None,
         fields: None,

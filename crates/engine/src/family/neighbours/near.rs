@@ -123,6 +123,12 @@ impl<const D: usize> NearList<D> {
         tiles.map(move |(n, lines)| (b * BLOCK + n, lines))
     }
 
+    /// Lines of one tile.
+    #[inline(always)]
+    pub fn lines(&self, tile: usize) -> &[[u32; TILE]] {
+        self.blocks[tile / BLOCK].tile(tile % BLOCK)
+    }
+
     /// Slots of a tile's atoms.
     #[inline(always)]
     pub fn slots(&self, tile: usize) -> &[u32] {
@@ -140,13 +146,19 @@ impl<const D: usize> NearList<D> {
         &mut self.position
     }
 
-    /// Slot of the atom that a listed one is or copies.
-    pub fn original(&self, atom: usize) -> Option<usize> {
+    /// The own atom that a listed one is or copies.
+    #[inline(always)]
+    pub fn home(&self, atom: usize) -> Option<usize> {
         let own = match atom.checked_sub(self.first_ghost()) {
             None => atom,
             Some(ghost) => self.ghosts.get(ghost)?.of as usize,
         };
-        self.order.get(own).map(|s| *s as usize)
+        (own < self.order.len()).then_some(own)
+    }
+
+    /// Slot of the atom that a listed one is or copies.
+    pub fn original(&self, atom: usize) -> Option<usize> {
+        self.home(atom).map(|own| self.order[own] as usize)
     }
 
     /// How often the list was made.

@@ -3,7 +3,9 @@
 //! The force on i is `Σ_j 2 [φ′ + (F′_i + F′_j) f′] (y_j − y_i)` with derivatives with respect to `q = r²`
 //! (seleson2014 (2.3)); force densities are that over the atom's volume.
 
+pub mod bonded;
 pub mod current;
+pub mod fan;
 pub mod fixed;
 
 use super::tangent::curvature;

@@ -2,11 +2,12 @@
 
 use super::cut::Ends;
 use super::{Potential, each};
-use crate::columns::Dimension;
 use crate::family::stencil::Stencil;
-use crate::law::descriptor::{Descriptor, Value, Wrong};
+use crate::law::descriptor::{Descriptor, Wrong};
+use crate::law::fan;
+use crate::law::scaled::by_dimension;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{End, Parameter, Parameters, PotentialSpec};
+use crate::spec::{End, Parameters, PotentialSpec};
 
 /// The constants of a potential, by which decks and programs name it.
 pub trait Described: Sized + Send + Sync + 'static {
@@ -59,40 +60,6 @@ pub struct KeptReach<'a> {
     pub coarse: &'a Stencil,
 }
 
-/// Each number to the power of energy and length that its dimension has; a dimension that has others is left alone.
-fn by_dimension(descriptor: &Descriptor, parameters: &mut Parameters, length: f64, energy: f64) {
-    let factor = |dimension: Dimension, x: f64| {
-        // an energy is a mass times a velocity squared
-        let [l, m, t, k] = dimension.0;
-        if (t, k) != (-2 * m, 0) {
-            return x;
-        }
-        let (energies, lengths) = (i32::from(m), i32::from(l - 2 * m));
-        let up = |x: f64, n: i32| if n > 0 { x.powi(n) } else { 1.0 };
-        x * (up(energy, energies) * up(length, lengths))
-            / (up(energy, -energies) * up(length, -lengths))
-    };
-    for (name, given) in &mut parameters.0 {
-        let Some(key) = descriptor.key(name) else {
-            continue;
-        };
-        match (key.value, given) {
-            (Value::Number(dimension, _), Parameter::Number(x)) => *x = factor(dimension, *x),
-            (Value::List(_, dimension, _), Parameter::List(list)) => {
-                list.iter_mut().for_each(|x| *x = factor(dimension, *x));
-            }
-            (Value::Rows(columns), Parameter::Rows(rows)) => {
-                for row in rows {
-                    let each = row.iter_mut().zip(columns);
-                    each.for_each(|(x, c)| *x = factor(c.1, *x));
-                }
-            }
-            // words, tables (which say themselves how they grow), and what does not fit its key
-            _ => {}
-        }
-    }
-}
-
 /// What is done with a potential of a known kind.
 pub trait Visitor {
     type Out;
@@ -137,7 +104,12 @@ fn find<O: Of>(name: &str, todo: O) -> Result<O::Out, String> {
     };
     each(&mut find);
     let known = find.known.join(", ");
-    let unknown = || format!("there is no potential named {name}; known are {known}");
+    let unknown = || match fan::is_known(name) {
+        true => format!(
+            "{name} has terms of more than two atoms, and this is known for pairs and densities only: {known}"
+        ),
+        false => format!("there is no potential named {name}; known are {known}"),
+    };
     find.done.ok_or_else(unknown)
 }
 
@@ -211,6 +183,9 @@ impl PotentialSpec {
                 P::scaled(&mut self.0, self.1, self.2);
                 self.0
             }
+        }
+        if let Some(fan) = self.scaled_fan(length, energy) {
+            return Ok(fan);
         }
         let parameters = self.parameters.clone();
         Ok(PotentialSpec {

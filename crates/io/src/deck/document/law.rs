@@ -127,7 +127,7 @@ impl<'de> Visitor<'de> for Constants<'_> {
                 Value::Number(..) => Given::Number(map.next_value()?),
                 Value::List(..) => Given::List(map.next_value()?),
                 Value::Rows(_) => Given::Rows(map.next_value()?),
-                Value::Name | Value::Table => Given::Word(map.next_value()?),
+                Value::Name | Value::Table | Value::Entries(_) => Given::Word(map.next_value()?),
                 Value::Word(words) => {
                     let word: At<String> = map.next_value()?;
                     if !words.iter().any(|(w, _)| *w == word.value) {
@@ -179,7 +179,7 @@ impl JsonSchema for Law {
                         let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
                         json!({ "type": "string", "enum": words })
                     }
-                    Value::Name | Value::Table => json!({ "type": "string" }),
+                    Value::Name | Value::Table | Value::Entries(_) => json!({ "type": "string" }),
                 };
                 value["description"] = json!(k.doc);
                 (k.name.to_string(), value)

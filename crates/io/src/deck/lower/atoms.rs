@@ -5,9 +5,12 @@ use super::context::{Context, Result};
 use crate::deck::document::{Body, Document, Given, Material, Thermal};
 use crate::deck::units::{BOLTZMANN, Dim, UnitSystem};
 use crate::deck::value::{At, Number, Written};
-use peridyne::law::descriptor::{Key, Need};
+use peridyne::law::descriptor::{Key, Need, Value};
+use peridyne::law::{fan, scaled};
 use peridyne::run::Shelf;
-use peridyne::spec::{BodySpec, LawSpec, PotentialSpec, TableSpec, ThermalSpec};
+use peridyne::spec::{
+    BodySpec, BondedSpec, LawSpec, Parameter, PotentialSpec, TableSpec, ThermalSpec,
+};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,10 +46,16 @@ pub(super) fn potential(
         ));
     }
     let of_file = RefCell::new((None, None));
-    let mut read = super::law::read(context, law, |file| {
-        let (table, element, mass) = table(context, file, law.value.word("element"), files)?;
+    let element = law.value.word("element");
+    let mut read = super::law::read(context, law, |file, key| {
+        if let Value::Entries(columns) = key.value {
+            let (rows, element) = entries(context, file, element, columns, files)?;
+            of_file.replace((Some(element), None));
+            return Ok(Parameter::Rows(rows));
+        }
+        let (table, element, mass) = table(context, file, element, files)?;
         of_file.replace((Some(element), mass));
-        Ok(Arc::new(table))
+        Ok(Parameter::Table(Arc::new(table)))
     })?;
     if let BodySpec::Lattice { kind, spacing, .. } | BodySpec::Sites { kind, spacing, .. } = body {
         shelf.on_lattice(&mut read.law, *kind, *spacing);
@@ -59,6 +68,47 @@ pub(super) fn potential(
             mass,
         })),
         _ => Err(context.error(&law.span, "this law is no potential")),
+    }
+}
+
+/// Rows of the constants of one element in computed units, and its name.
+fn entries(
+    context: &Context,
+    written: &At<String>,
+    element: Option<&At<String>>,
+    columns: &'static [Key],
+    files: &Files,
+) -> Result<(Vec<Vec<f64>>, String)> {
+    let all = files.entries(context, written, columns)?;
+    let names = crate::read::entries::names(&all);
+    let known = names.join(", ");
+    let name = match element {
+        Some(name) if names.contains(&&*name.value) => name.value.clone(),
+        Some(name) => {
+            let message = format!(
+                "no element `{}` in {}; it has {known}",
+                name.value, written.value
+            );
+            return Err(context.error(&name.span, message));
+        }
+        None if names.len() == 1 => names[0].to_string(),
+        None => {
+            let message = format!("{} has several elements: {known}", written.value);
+            let help = format!("add element = \"{}\"", names[0]);
+            return Err(context.error_with(&written.span, message, help));
+        }
+    };
+    let (angstrom, ev) = metal(context);
+    let mut rows = crate::read::entries::rows(&all, &[&name]);
+    scaled::rows(columns, &mut rows, angstrom, ev);
+    Ok((rows, name))
+}
+
+/// Å and eV in computed units; 1 where these have no size.
+fn metal(context: &Context) -> (f64, f64) {
+    match context.units {
+        UnitSystem::Si => (1e-10, EV),
+        UnitSystem::Metal(_) | UnitSystem::Lj | UnitSystem::None => (1.0, 1.0),
     }
 }
 
@@ -88,10 +138,11 @@ fn table(
             ));
         }
     };
-    let (angstrom, ev, mass) = match context.units {
-        UnitSystem::Si => (1e-10, EV, Some(1e-3 / AVOGADRO)),
-        UnitSystem::Metal(_) => (1.0, 1.0, Some(context.units.plain_factor(Dim::MASS))),
-        UnitSystem::Lj | UnitSystem::None => (1.0, 1.0, None),
+    let (angstrom, ev) = metal(context);
+    let mass = match context.units {
+        UnitSystem::Si => Some(1e-3 / AVOGADRO),
+        UnitSystem::Metal(_) => Some(context.units.plain_factor(Dim::MASS)),
+        UnitSystem::Lj | UnitSystem::None => None,
     };
     let pair = &file.pair[crate::read::eam::EamFile::pair_index(element, element)];
     let table = TableSpec {
@@ -123,7 +174,8 @@ pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<(
             continue;
         };
         for (name, given) in &law.given {
-            let key = descriptor.key(name).filter(|k| k.need == Need::Given);
+            let needed = |k: &&Key| k.need == Need::Given || fan::is_known(&law.name);
+            let key = descriptor.key(name).filter(needed);
             let dimension = key.and_then(Key::dimension);
             if let (Given::Number(number), Some(Dim::ENERGY | Dim::LENGTH)) = (given, dimension) {
                 numbers.push(number);
@@ -173,6 +225,46 @@ pub(super) fn of_file(
     }
     potential.mass = file.mass.or(potential.mass);
     Ok(())
+}
+
+/// What bonds the atoms of the deck's file.
+pub(super) fn molecules(
+    context: &Context,
+    document: &Document,
+    files: &Files,
+) -> Result<Option<Arc<BondedSpec>>> {
+    let body = &document.body.value;
+    let bonded = context.atoms.as_ref().is_some_and(|a| a.bonded);
+    let (written, file) = match (&document.molecules, &body.file) {
+        (None, Some(file)) if bonded => {
+            return Err(context.error_with(
+                &file.span,
+                "the file has bonds, angles or dihedrals, and the deck does not ask for them",
+                "add molecules = { special = [0, 0, 0] }: what is left of the potential between atoms that are one, two and three bonds apart",
+            ));
+        }
+        (None, _) => return Ok(None),
+        (Some(written), Some(file)) if bonded => (written, file),
+        (Some(written), _) => {
+            return Err(context.error_with(
+                &written.span,
+                "there are no molecules: no bonds, angles or dihedrals in body.file",
+                "give a LAMMPS data file of atom_style molecular, or remove this key",
+            ));
+        }
+    };
+    let special = match &written.value.special {
+        None => [0.0; 3],
+        Some(list) => match list.value[..] {
+            [a, b, c] if [a, b, c].iter().all(|x| (0.0..=1.0).contains(x)) => [a, b, c],
+            _ => {
+                let message = "special has three numbers from 0 to 1";
+                return Err(context.error(&list.span, message));
+            }
+        },
+    };
+    let made = files.molecules(context, file, special, metal(context))?;
+    Ok(Some(Arc::new(made)))
 }
 
 /// Boltzmann's constant in computed units.

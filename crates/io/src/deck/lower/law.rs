@@ -8,9 +8,8 @@ use peridyne::columns::Dimension;
 use peridyne::error::BuildError;
 use peridyne::law::descriptor::{Key, Value};
 use peridyne::run::Shelf;
-use peridyne::spec::{LawSpec, NamedLaw, Parameter, Parameters, TableSpec};
+use peridyne::spec::{LawSpec, NamedLaw, Parameter, Parameters};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// A law whose keys were read.
 pub(super) struct ReadLaw<'a> {
@@ -19,11 +18,11 @@ pub(super) struct ReadLaw<'a> {
     shelf: Shelf,
 }
 
-/// Reads the keys of a law; `table` reads the file of one that takes tables.
+/// Reads the keys of a law; `file` reads what a key takes from a file.
 pub(super) fn read<'a>(
     context: &Context,
     written: &'a At<Law>,
-    table: impl Fn(&At<String>) -> Result<Arc<TableSpec>>,
+    file: impl Fn(&At<String>, &Key) -> Result<Parameter>,
 ) -> Result<ReadLaw<'a>> {
     let shelf = Shelf::standard();
     let name = &written.value.name;
@@ -51,7 +50,7 @@ pub(super) fn read<'a>(
                     .map(|row| of_row(context, key, rows, row, columns));
                 Parameter::Rows(rows.collect::<Result<_>>()?)
             }
-            (Given::Word(file), Value::Table) => Parameter::Table(table(file)?),
+            (Given::Word(name), Value::Table | Value::Entries(_)) => file(name, key)?,
             (Given::Word(word), _) => Parameter::Word(word.value.clone()),
             (Given::Number(_) | Given::List(_) | Given::Rows(_), _) => {
                 let message = format!("`{name}` has another form");
@@ -136,7 +135,7 @@ fn refused(context: &Context, written: &At<Law>, shelf: &Shelf, error: &BuildErr
 
 /// The law of a material that is no potential.
 pub(super) fn solid(context: &Context, written: &At<Law>) -> Result<LawSpec> {
-    read(context, written, |file| {
+    read(context, written, |file, _| {
         Err(context.error(&file.span, "a law of atoms is not known here"))
     })?
     .look_up(context)

@@ -29,12 +29,14 @@ use super::source::Source;
 use super::units::{Constants, Dim, UnitSystem, short};
 use super::value::{At, Or, Written};
 use crate::read::eam::{self, EamFile};
+use crate::read::entries::Entry;
 use crate::read::{Frame, Points};
 use context::{Context, Result};
+use peridyne::law::descriptor::Key;
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon, Influence,
-    MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, BondedSpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon,
+    Influence, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
 };
 use std::path::Path;
 
@@ -71,6 +73,26 @@ impl Files<'_> {
             true => eam::funcfl(&[&path]),
             false => eam::setfl(&path),
         };
+        read.map_err(|e| context.error(&file.span, e.to_string()))
+    }
+
+    /// What bonds the atoms of the file of a body.
+    fn molecules(
+        &self,
+        context: &Context,
+        file: &At<String>,
+        special: [f64; 3],
+        (length, energy): (f64, f64),
+    ) -> Result<BondedSpec> {
+        let path = self.folder.join(&file.value);
+        crate::read::molecules::molecules(&path, special, length, energy)
+            .map_err(|e| context.error(&file.span, e.to_string()))
+    }
+
+    /// Constants of triples of elements.
+    fn entries(&self, context: &Context, file: &At<String>, columns: &[Key]) -> Result<Vec<Entry>> {
+        let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
+        let read = crate::read::entries::entries(&self.folder.join(&file.value), &names);
         read.map_err(|e| context.error(&file.span, e.to_string()))
     }
 }
@@ -175,6 +197,7 @@ pub(super) fn lower(
                 ));
             }
         },
+        bonded: atoms::molecules(&context, document, files)?,
         thermal: document
             .thermal
             .as_ref()

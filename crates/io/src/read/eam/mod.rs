@@ -92,7 +92,7 @@ fn failure(file: &str, line: Option<usize>, message: impl Into<String>) -> ReadE
 }
 
 /// A text file with the name that the user gave it.
-fn text_of(path: &Path) -> Result<(String, String), ReadError> {
+pub(super) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
     let name = path.display().to_string();
     let bytes =
         std::fs::read(path).map_err(|e| failure(&name, None, format!("cannot read it: {e}")))?;

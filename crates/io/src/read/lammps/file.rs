@@ -10,6 +10,8 @@ pub enum Style {
     Peri,
     /// `id type x y z [ix iy iz]`
     Atomic,
+    /// `id molecule type x y z [ix iy iz]`
+    Molecular,
 }
 
 impl Style {
@@ -18,11 +20,12 @@ impl Style {
         match self {
             Style::Peri => 7,
             Style::Atomic => 5,
+            Style::Molecular => 6,
         }
     }
 
     fn of(columns: usize) -> Option<Style> {
-        let styles = [Style::Peri, Style::Atomic];
+        let styles = [Style::Peri, Style::Atomic, Style::Molecular];
         styles
             .into_iter()
             .find(|s| [s.columns(), s.columns() + 3].contains(&columns))
@@ -44,6 +47,8 @@ pub struct DataFile {
     pub atoms: DataAtoms,
     /// Image flags other than 0 were present (and are dropped).
     pub had_images: bool,
+    /// Are there bonds, angles or dihedrals?
+    pub bonded: bool,
 }
 
 /// Atoms of a data file, in order of their ids.
@@ -73,6 +78,15 @@ impl DataAtoms {
 }
 
 const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
+/// What bonds atoms.
+const BONDED: [&str; 6] = [
+    "Bonds",
+    "Angles",
+    "Dihedrals",
+    "Bond Coeffs",
+    "Angle Coeffs",
+    "Dihedral Coeffs",
+];
 
 /// Reads a data file of `atom_style peri` or `atomic`.
 ///
@@ -80,7 +94,7 @@ const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
 /// File and line of the first mistake.
 pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
     let mut lines = Lines::new(reader, path);
-    let (mut count, mut types) = (None, None);
+    let (mut count, mut types, mut bonded) = (None, None, false);
     let mut bounds: [Option<[f64; 2]>; 3] = [None; 3];
     lines.advance()?; // the first line is a title
     let mut section = loop {
@@ -104,12 +118,12 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
                 }
                 bounds[usize::from(a.as_bytes()[0] - b'x')] = Some([low, high]);
             }
-            [n, what @ ("bonds" | "angles" | "dihedrals" | "impropers")] if n != "0" => {
-                return Err(lines.fail(format!(
-                    "{what} are not supported; `atom_style peri` has none"
-                )));
+            [n, "impropers"] if n != "0" => {
+                return Err(lines.fail("impropers are not supported"));
             }
-            [_, "bonds" | "angles" | "dihedrals" | "impropers"] => {}
+            [n, "bonds" | "angles" | "dihedrals" | "impropers"] => bonded |= n != "0",
+            [_, "bond" | "angle" | "dihedral" | "improper", "types"] => {}
+            [_, "extra", ..] => {}
             [name] if name.starts_with(|c: char| c.is_ascii_uppercase()) => break name.to_string(),
             _ => {
                 return Err(lines
@@ -144,6 +158,14 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
                 )?);
             }
             ("Masses", _) => masses = read_masses(&mut lines, types)?,
+            (name, _) if BONDED.contains(&name) => {
+                // another reader looks at them
+                section = match skip(&mut lines)? {
+                    Some(name) => name,
+                    None => break,
+                };
+                continue;
+            }
             ("Velocities", true) => {
                 read_velocities(&mut lines, &mut atoms)?;
             }
@@ -167,15 +189,22 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
             None => break,
         }
     }
+    let style = style.unwrap_or(Style::Peri);
+    if bonded && style != Style::Molecular {
+        return Err(lines
+            .fail("bonds, angles and dihedrals belong to `atom_style molecular`")
+            .help("write `Atoms # molecular` and id molecule type x y z"));
+    }
     let atoms = atoms.unwrap_or_default();
     Ok(DataFile {
-        style: style.unwrap_or(Style::Peri),
+        style,
         types,
         masses,
         low: corners.map(|c| c[0]),
         high: corners.map(|c| c[1]),
         atoms,
         had_images,
+        bonded,
     })
 }
 
@@ -187,10 +216,11 @@ fn told_style<R: BufRead>(lines: &Lines<R>) -> Result<Option<Style>> {
     match comment.trim() {
         "peri" => Ok(Some(Style::Peri)),
         "atomic" => Ok(Some(Style::Atomic)),
+        "molecular" | "bond" | "angle" => Ok(Some(Style::Molecular)),
         "" => Ok(None),
         other => Err(lines
             .fail(format!("atom_style `{other}` is not supported"))
-            .help("supported: peri, atomic")),
+            .help("supported: peri, atomic, bond, angle, molecular")),
     }
 }
 
@@ -245,6 +275,16 @@ fn next_filled<R: BufRead>(lines: &mut Lines<R>) -> Result<Option<String>> {
     }
 }
 
+/// The head of the next section.
+fn skip<R: BufRead>(lines: &mut Lines<R>) -> Result<Option<String>> {
+    loop {
+        match next_filled(lines)? {
+            Some(line) if !line.starts_with(|c: char| c.is_ascii_uppercase()) => {}
+            other => return Ok(other),
+        }
+    }
+}
+
 fn row<R: BufRead>(
     lines: &mut Lines<R>,
     section: &str,
@@ -285,10 +325,12 @@ fn read_atoms<R: BufRead>(
                     columns + 3,
                     words.len()
                 ))
-                .help("atom_style peri: id type volume density x y z [ix iy iz]; atom_style atomic: id type x y z [ix iy iz]"));
+                .help("atom_style peri: id type volume density x y z [ix iy iz]; atom_style atomic: id type x y z [ix iy iz]; atom_style molecular: id molecule type x y z [ix iy iz]"));
         }
         let id = whole(lines, &words[0])?;
-        let kind = whole(lines, &words[1])?;
+        // a molecule's number comes between
+        let kind_at = if told == Style::Molecular { 2 } else { 1 };
+        let kind = whole(lines, &words[kind_at])?;
         if id == 0 {
             return Err(lines.fail("atom ids start at 1"));
         }
@@ -296,7 +338,8 @@ fn read_atoms<R: BufRead>(
             return Err(lines.fail(format!("atom type {kind} is not between 1 and {types}")));
         }
         let mut v = [1.0; 5];
-        for (slot, word) in v[7 - columns..].iter_mut().zip(&words[2..columns]) {
+        let numbers = &words[kind_at + 1..columns];
+        for (slot, word) in v[5 - numbers.len()..].iter_mut().zip(numbers) {
             *slot = finite(word).map_err(|e| lines.fail(e))?;
         }
         for (value, name) in v.iter().zip(["volume", "density"]) {

@@ -30,7 +30,7 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
         return Err(error(
             name,
             None,
-            "the file is of atom_style atomic, without volumes; points need atom_style peri: id type volume density x y z",
+            "the file is one of atoms, without volumes; points need atom_style peri: id type volume density x y z",
         ));
     }
     if atoms.is_empty() {

@@ -31,6 +31,16 @@ impl Block {
         })
     }
 
+    /// The lines of one of them.
+    #[inline(always)]
+    pub fn tile(&self, n: usize) -> &[[u32; TILE]] {
+        let first = match n {
+            0 => 0,
+            n => self.ends[n - 1] as usize,
+        };
+        &self.lines[first..self.ends[n] as usize]
+    }
+
     pub fn bytes(&self) -> usize {
         4 * TILE * self.lines.capacity() + 4 * self.ends.capacity()
     }

@@ -7,9 +7,13 @@ use crate::execute::simd::Simd;
 use crate::family::links::Links;
 use crate::family::stencil::Stencil;
 use crate::interaction::Interaction;
+use crate::interaction::atoms::bonded::PairEnergy;
 use crate::interaction::atoms::current::CurrentAtoms;
+use crate::interaction::atoms::fan::FanAtoms;
 use crate::interaction::atoms::fixed::FixedAtoms;
 use crate::law::descriptor::Wrong;
+use crate::law::fan::{self, sites::FanSites};
+use crate::law::jet::Jet;
 use crate::law::potential::bulk::{Bulk, bulk};
 use crate::law::potential::{Described, Potential, look_up, make};
 use crate::law::terms::{OfSites, Sites};
@@ -29,18 +33,52 @@ pub(super) struct Atoms {
     bulk: fn(&Parameters, &Stencil, f64, f64) -> Result<Bulk, Wrong>,
     closest: fn(&Parameters, f64, f64) -> Result<Option<f64>, Wrong>,
     sites: fn(&Parameters) -> Result<Box<dyn Sites>, Wrong>,
+    pair: fn(&Parameters) -> Result<Box<PairEnergy>, Wrong>,
     /// [`Binder`]s of one, two and three dimensions.
     binders: [Arc<dyn Any + Send + Sync>; 3],
 }
 
 impl Atoms {
+    pub fn of_fan<F: fan::Described>() -> Atoms {
+        Atoms {
+            look_up: fan::look_up::<F>,
+            on_lattice: |_, _, _| {},
+            bulk: |p, stencil, spacing, volume| {
+                Ok(fan::bulk(&fan::make::<F>(p)?, stencil, spacing, volume))
+            },
+            closest: |p, from, energy| {
+                let fan = fan::make::<F>(p)?;
+                Ok(closest(|r| fan::pair(&fan, r), from, energy))
+            },
+            sites: |p| Ok(Box::new(FanSites(fan::make::<F>(p)?))),
+            pair: |_| Err(not_of_pairs(F::NAME)),
+            binders: [
+                Arc::new(flat::<1, F> as Binder<1>),
+                Arc::new(flat::<2, F> as Binder<2>),
+                Arc::new(bind_fan::<F> as Binder<3>),
+            ],
+        }
+    }
+
     pub fn of<P: Described>() -> Atoms {
         Atoms {
             look_up: look_up::<P>,
             on_lattice: P::on_lattice,
             bulk: |p, stencil, spacing, volume| Ok(bulk(&make::<P>(p)?, stencil, spacing, volume)),
-            closest: |p, from, energy| Ok(closest(&make::<P>(p)?, from, energy)),
+            closest: |p, from, energy| {
+                let potential = make::<P>(p)?;
+                Ok(closest(|r| potential.pair(r * r), from, energy))
+            },
             sites: |p| Ok(Box::new(OfSites(make::<P>(p)?))),
+            pair: |p| match P::Made::EMBEDDED {
+                true => Err(not_of_pairs(P::NAME)),
+                false => {
+                    let potential = make::<P>(p)?;
+                    Ok(Box::new(move |q| {
+                        potential.pair(Jet::<3>::variable(q)).derivatives()
+                    }))
+                }
+            },
             binders: [
                 Arc::new(bind::<1, P> as Binder<1>),
                 Arc::new(bind::<2, P> as Binder<2>),
@@ -63,11 +101,57 @@ fn bind<const D: usize, P: Described>(
     })
 }
 
+fn not_of_pairs(name: &str) -> Wrong {
+    let message = format!("{name} is no sum of pairs, and molecules leave pairs out");
+    (String::new(), message)
+}
+
+fn bind_fan<F: fan::Described>(
+    parameters: &Parameters,
+    body: &Body<3>,
+    links: Option<Links<3>>,
+    simd: Simd,
+) -> Bound<3> {
+    let fan = fan::make::<F>(parameters)?;
+    if links.is_some() {
+        let message = format!(
+            "{} lives on current neighbours: remove family = \"stencil\"",
+            F::NAME
+        );
+        return Err((String::new(), message));
+    }
+    let known = fan.table().kinds();
+    let kinds = body.slots.iter().map(|s| body.material_of(*s as usize));
+    let found = kinds.max().map_or(0, |k| k + 1);
+    if found > known {
+        let message = format!(
+            "{} knows {known} kinds of atom, the body has {found}",
+            F::NAME
+        );
+        return Err((String::new(), message));
+    }
+    Ok(Box::new(FanAtoms::new(body, fan, simd)))
+}
+
+/// Angles between bonds need space.
+fn flat<const D: usize, F: fan::Described>(
+    _: &Parameters,
+    _: &Body<D>,
+    _: Option<Links<D>>,
+    _: Simd,
+) -> Bound<D> {
+    let message = format!(
+        "{} is a potential in three dimensions, the body has {D}",
+        F::NAME
+    );
+    Err((String::new(), message))
+}
+
 /// The distance at which the pair energy has reached `energy`, from `from` inwards (length), if it ever does.
-fn closest(potential: &impl Potential, from: f64, energy: f64) -> Option<f64> {
+fn closest(pair: impl Fn(f64) -> f64, from: f64, energy: f64) -> Option<f64> {
     let steps = (0..300).map(|n| from * 0.99f64.powi(n));
     steps
-        .map(|r| (r, potential.pair(r * r)))
+        .map(|r| (r, pair(r)))
         .take_while(|(_, e)| e.is_finite())
         .find(|(_, e)| *e >= energy)
         .map(|(r, _)| r)
@@ -139,6 +223,11 @@ impl AnyPotential {
     /// The distance at which the pair energy has reached `energy`, from `from` inwards (length), if it ever does.
     pub fn closest(&self, from: f64, energy: f64) -> Result<Option<f64>, BuildError> {
         self.with(|a| (a.closest)(&self.spec.parameters, from, energy))
+    }
+
+    /// The energy of two atoms.
+    pub fn pair(&self) -> Result<Box<PairEnergy>, BuildError> {
+        self.with(|a| (a.pair)(&self.spec.parameters))
     }
 
     /// On fixed neighbours where there are links, else on current ones.

@@ -10,6 +10,7 @@ pub(crate) use materials::{Chosen, Place};
 use crate::condition::own::{OwnForce, Seen};
 use crate::error::BuildError;
 use crate::law::descriptor::{Descriptor, Shelved, Wrong};
+use crate::law::fan;
 use crate::law::material::{self, Kinds as _, Material};
 use crate::law::potential::{self, Described, Kinds};
 use crate::law::solid::linear::{self, Linear};
@@ -60,6 +61,12 @@ impl Kinds for Shelf {
     }
 }
 
+impl fan::Kinds for Shelf {
+    fn fan<F: fan::Described>(&mut self) {
+        self.put(F::descriptor(), Runs::Atoms(Atoms::of_fan::<F>()));
+    }
+}
+
 impl material::Kinds for Shelf {
     fn law<M>(&mut self)
     where
@@ -105,6 +112,7 @@ impl Shelf {
         };
         linear::each(&mut shelf);
         potential::each(&mut shelf);
+        fan::each(&mut shelf);
         material::each(&mut shelf);
         shelf
     }

@@ -1,0 +1,310 @@
+//! The fans of a tile of atoms: lanes run over centres, loops over the pairs of their bonds.
+
+use super::back::{Back, FAR};
+use crate::body::Values;
+use crate::execute::blocks::Shared;
+use crate::execute::lane::{Lane, TILE};
+use crate::execute::simd::Kernel;
+use crate::family::neighbours::near::NearList;
+use crate::interaction::VIRIAL;
+use crate::law::fan::{Arm, Fan, Row};
+use crate::law::number::Dual;
+use crate::law::slopes::Slopes;
+
+pub(super) struct View<'a, F> {
+    pub list: &'a NearList<3>,
+    /// `[atoms][4]`, the fourth the kind.
+    pub position: *const f64,
+    pub fan: &'a F,
+    /// Squared length.
+    pub limit: f64,
+    /// Where forces on ends go, if they are asked for; those on centres, force densities, then go to `f`.
+    pub ends: Option<&'a Back>,
+    pub f: [Shared; 3],
+    /// Energy density per slot, if asked for.
+    pub energy: Shared,
+    pub volume: &'a Values,
+}
+
+// SAFETY: the pointer is into the list that the view borrows
+unsafe impl<F: Sync> Sync for View<'_, F> {}
+
+/// `MANY`: there are several kinds of atom.
+pub(super) struct Centres<'a, F, const MANY: bool>(pub View<'a, F>);
+
+/// A line of bonds of a tile that are within the cut-off.
+#[derive(Clone, Copy)]
+struct Bond<L> {
+    y: [L; 3],
+    kind: [u8; TILE],
+    arm: Arm<Dual<L>>,
+    zeta: L,
+    /// `∂h/∂ζ`.
+    along: L,
+    /// Σ of the pulls at its end.
+    pull: L,
+    /// Σ of the pulls between its end and others, times these.
+    across: [L; 3],
+}
+
+/// z of two lines by ξ of both and of what closes the triangle.
+#[derive(Clone, Copy)]
+struct Share<L>([L; 3]);
+
+/// Room for a tile.
+struct Room<L> {
+    bonds: Vec<Bond<L>>,
+    shares: Vec<Share<L>>,
+    /// Neighbours line by line, those within the cut-off only.
+    near: Vec<[u32; TILE]>,
+}
+
+impl<F: Fan> View<'_, F> {
+    /// Positions and kinds of atoms.
+    #[inline(always)]
+    fn at<L: Lane>(&self, index: &[u32; TILE]) -> [L; 4] {
+        // SAFETY: listed atoms have positions
+        unsafe { L::gather4(self.position, index.as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn kinds<L: Lane, const MANY: bool>(kind: L) -> [u8; TILE] {
+        match MANY {
+            true => kind.to_array().map(|k| k as u8),
+            false => [0; TILE],
+        }
+    }
+
+    /// The lines of a tile without what is beyond the cut-off.
+    #[inline(always)]
+    fn compress<L: Lane>(
+        &self,
+        tile: usize,
+        lines: &[[u32; TILE]],
+        i: &[L; 4],
+        near: &mut Vec<[u32; TILE]>,
+    ) {
+        let nowhere = self.list.positions().len() as u32 - 1;
+        // lanes without an atom have neighbours at no distance
+        let own_lanes = (1u32 << self.list.slots(tile).len()) - 1;
+        let mut count = [0usize; TILE];
+        near.clear();
+        for (n, line) in lines.iter().enumerate() {
+            let j = self.at::<L>(line);
+            let mut q = L::splat(0.0);
+            for a in 0..3 {
+                let y = j[a] - i[a];
+                q = y.fma(y, q);
+            }
+            let mut bits = L::bits(q.lt(L::splat(self.limit))) & own_lanes;
+            if let Some(back) = self.ends {
+                let own = back.place(tile) + n * TILE;
+                let (before, _) = back.places();
+                for l in 0..TILE {
+                    let skipped = match bits >> l & 1 {
+                        1 => (n - count[l]) as u16,
+                        _ => FAR,
+                    };
+                    // SAFETY: every tile has its own places
+                    unsafe { *before.at(own + l) = skipped };
+                }
+            }
+            while bits != 0 {
+                let l = bits.trailing_zeros() as usize;
+                if count[l] == near.len() {
+                    near.push([nowhere; TILE]);
+                }
+                near[count[l]][l] = line[l];
+                count[l] += 1;
+                bits &= bits - 1;
+            }
+        }
+    }
+}
+
+impl<F: Fan, const MANY: bool> Centres<'_, F, MANY> {
+    #[inline(always)]
+    fn arm<L: Lane>(&self, i: &[u8; TILE], kind: &[u8; TILE], xi: L) -> Arm<Dual<L>> {
+        let (fan, xi) = (self.0.fan, Dual::variable(xi));
+        match MANY {
+            true => fan.arm::<L, _>(xi, fan.table().each(i, kind, kind)),
+            false => fan.arm::<L, _>(xi, fan.table().same()),
+        }
+    }
+
+    /// h by ξ and ζ.
+    #[inline(always)]
+    fn bond<L: Lane>(&self, i: &[u8; TILE], bond: &Bond<L>) -> Slopes<L, 2> {
+        let (arm, zeta) = (bond.arm.along(0), Slopes::variable(bond.zeta, 1));
+        let fan = self.0.fan;
+        let k = &bond.kind;
+        match MANY {
+            true => fan.bond::<L, _>(&arm, zeta, fan.table().each(i, k, k)),
+            false => fan.bond::<L, _>(&arm, zeta, fan.table().same()),
+        }
+    }
+
+    #[inline(always)]
+    fn share<L: Lane>(&self, i: &[u8; TILE], j: &Bond<L>, k: &Bond<L>) -> Slopes<L, 3> {
+        let fan = self.0.fan;
+        match MANY {
+            true => Self::shared(fan, j, k, fan.table().each(i, &j.kind, &k.kind)),
+            false => Self::shared(fan, j, k, fan.table().same()),
+        }
+    }
+
+    #[inline(always)]
+    fn shared<L: Lane>(fan: &F, j: &Bond<L>, k: &Bond<L>, of: impl Row) -> Slopes<L, 3> {
+        let mut q = L::splat(0.0);
+        for a in 0..3 {
+            let y = j.y[a] - k.y[a];
+            q = y.fma(y, q);
+        }
+        let closing = Slopes::variable(q * L::splat(0.5), 2);
+        fan.share::<L, _>(&j.arm.along(0), &k.arm.along(1), closing, of)
+    }
+
+    /// Bonds of a tile with their pulls; the energy of its centres.
+    #[inline(always)]
+    fn evaluate<L: Lane>(&self, i: &[L; 4], room: &mut Room<L>) -> L {
+        let zero = L::splat(0.0);
+        let own = View::<F>::kinds::<L, MANY>(i[3]);
+        room.bonds.clear();
+        room.shares.clear();
+        for line in &room.near {
+            let j = self.0.at::<L>(line);
+            let mut y = [zero; 3];
+            let mut q = zero;
+            for a in 0..3 {
+                y[a] = j[a] - i[a];
+                q = y[a].fma(y[a], q);
+            }
+            let kind = View::<F>::kinds::<L, MANY>(j[3]);
+            room.bonds.push(Bond {
+                y,
+                kind,
+                arm: self.arm(&own, &kind, q * L::splat(0.5)),
+                zeta: zero,
+                along: zero,
+                pull: zero,
+                across: [zero; 3],
+            });
+        }
+        let count = room.bonds.len();
+        for j in 0..count {
+            for k in 0..if F::TRIPLES { j } else { count } {
+                if j == k {
+                    continue;
+                }
+                let z = self.share(&own, &room.bonds[j], &room.bonds[k]);
+                room.bonds[j].zeta = room.bonds[j].zeta + z.value;
+                if F::TRIPLES {
+                    room.bonds[k].zeta = room.bonds[k].zeta + z.value;
+                }
+                room.shares.push(Share(z.slope));
+            }
+        }
+        let mut energy = zero;
+        for bond in &mut room.bonds {
+            let h = self.bond(&own, bond);
+            energy = energy + h.value;
+            bond.pull = h.slope[0];
+            bond.along = h.slope[1];
+        }
+        let mut next = 0;
+        for j in 0..count {
+            for k in 0..if F::TRIPLES { j } else { count } {
+                if j == k {
+                    continue;
+                }
+                let Share(slope) = room.shares[next];
+                next += 1;
+                let mut along = room.bonds[j].along;
+                if F::TRIPLES {
+                    along = along + room.bonds[k].along;
+                }
+                let across = along * slope[2];
+                let (yj, yk) = (room.bonds[j].y, room.bonds[k].y);
+                let first = &mut room.bonds[j];
+                first.pull = along.fma(slope[0], first.pull) + across;
+                for a in 0..3 {
+                    first.across[a] = across.fma(yk[a], first.across[a]);
+                }
+                let second = &mut room.bonds[k];
+                second.pull = along.fma(slope[1], second.pull) + across;
+                for a in 0..3 {
+                    second.across[a] = across.fma(yj[a], second.across[a]);
+                }
+            }
+        }
+        energy
+    }
+}
+
+impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
+    /// Energy and virial.
+    type Out = [f64; 7];
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> [f64; 7] {
+        let view = &self.0;
+        let zero = L::splat(0.0);
+        let mut sum = [0.0; 7];
+        let mut room = Room::<L> {
+            bonds: vec![],
+            shares: vec![],
+            near: vec![],
+        };
+        for (t, lines) in view.list.tiles(block) {
+            let mut here = [(t * TILE) as u32; TILE];
+            for (l, n) in here.iter_mut().enumerate() {
+                *n += l as u32;
+            }
+            let i = view.at::<L>(&here);
+            view.compress(t, lines, &i, &mut room.near);
+            let energy = self.evaluate(&i, &mut room);
+            let mut virial = [zero; 6];
+            let mut centre = [zero; 3];
+            for (n, bond) in room.bonds.iter().enumerate() {
+                // on the end: −Σ G (x_end − x_other)
+                let mut force = [zero; 4];
+                for a in 0..3 {
+                    force[a] = bond.across[a] - bond.pull * bond.y[a];
+                    centre[a] = centre[a] - force[a];
+                }
+                for (v, (m, n)) in virial.iter_mut().zip(VIRIAL) {
+                    *v = bond.y[m].fma(force[n], *v);
+                }
+                if let Some(back) = view.ends {
+                    let (_, place) = back.places();
+                    let all = force.map(L::to_array);
+                    for l in 0..TILE {
+                        let at = back.place(t) + n * TILE + l;
+                        // SAFETY: every tile has its own places, and no more current bonds than lines
+                        unsafe { *place.at(at) = all.map(|f| f[l]) };
+                    }
+                }
+            }
+            let slots = view.list.slots(t);
+            let energy = energy.to_array();
+            let centre = centre.map(L::to_array);
+            for (l, &slot) in slots.iter().enumerate() {
+                let slot = slot as usize;
+                let scale = 1.0 / view.volume.at(slot);
+                // SAFETY, both: every slot belongs to one atom
+                if !view.energy.0.is_null() {
+                    unsafe { *view.energy.at(slot) = scale * energy[l] };
+                }
+                if view.ends.is_some() {
+                    for a in 0..3 {
+                        unsafe { *view.f[a].at(slot) = scale * centre[a][l] };
+                    }
+                }
+                sum[0] += energy[l];
+            }
+            for (sum, v) in sum[1..].iter_mut().zip(virial) {
+                *sum += v.to_array()[..slots.len()].iter().sum::<f64>();
+            }
+        }
+        sum
+    }
+}
