@@ -57,6 +57,8 @@ fn main() {
         interface: InterfaceRule::Series,
         interfaces: vec![],
         pairs: vec![],
+        potentials: vec![],
+        mixing: None,
         release: Release::AfterForce,
         horizon: Horizon::Length(0.0015001),
         volume_scaling: true,

@@ -295,6 +295,11 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
     ),
     ("eam", "lammps/src/command/molecular.rs", "a word of LAMMPS"),
     (
+        "no_potential",
+        "engine/src/run/constitutive/shelf/atoms.rs",
+        "a message says what to write",
+    ),
+    (
         "eam",
         "io/src/deck/lower/atoms.rs",
         "a module: the format of files",

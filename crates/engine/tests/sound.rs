@@ -369,6 +369,8 @@ fn tables_are_read_before_they_are_believed() {
         density: vec![0.0; 6],
         pair: vec![0.0; 6],
         cutoff: 1.1,
+        element: "X".into(),
+        partners: vec![],
     };
     assert_eq!(fine.check(), Ok(()));
     let with = |change: fn(&mut TableSpec)| {

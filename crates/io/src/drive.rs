@@ -93,9 +93,8 @@ pub struct AtomsPlan {
     pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state.
     pub data: Option<PathBuf>,
-    pub species: String,
-    /// Mass density (mass / length³).
-    pub density: f64,
+    /// Of each material: name of its atoms, and mass density (mass / length³).
+    pub species: Vec<(String, f64)>,
     /// How much computed velocity one of ASE is.
     pub ase_velocity: f64,
     /// How many units of mass of a data file a computed mass of 1 is.
@@ -128,9 +127,18 @@ impl AtomsPlan {
         let n = sim.info().points as usize;
         let position = sim.vectors("position");
         let volume = sim.scalars("volume");
-        let mass = volume
-            .first()
-            .map(|v| rounded(self.density * v * self.mass_scale));
+        let mass = |density: f64| {
+            let volume = volume.first();
+            volume.map(|v| rounded(density * v * self.mass_scale))
+        };
+        let species = { self.species.iter() }.map(|(name, density)| Species {
+            name: name.clone(),
+            mass: mass(*density),
+        });
+        let kind = match sim.column("material").map(|c| c.values) {
+            Some(Values::Counts(of)) if self.species.len() > 1 => of,
+            _ => vec![0; n],
+        };
         let force = sim.vectors("force_density");
         let force = force.iter().zip(&volume).map(|(f, v)| f.map(|f| f * v));
         let [mut low, mut high] = Atoms::bounds(&position);
@@ -141,11 +149,8 @@ impl AtomsPlan {
         }
         Atoms {
             bonded: false,
-            species: vec![Species {
-                name: self.species.clone(),
-                mass,
-            }],
-            kind: vec![0; n],
+            species: species.collect(),
+            kind,
             velocity: Some(sim.velocities()),
             force: Some(force.collect()),
             energy: Some(

@@ -84,16 +84,32 @@ fn dumps_read_back_in_order_of_ids() {
     write_atoms(&path, Format::Dump, &[sample(0), sample(5)]).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("ITEM: BOX BOUNDS pp pp ff\n0.0 4.0\n-1.0 3.0\n-2.0 2.5\n"));
-    assert!(text.contains("ITEM: ATOMS id type x y z vx vy vz fx fy fz c_pe\n1 1 0.1 "));
-    let mut wanted = sample(5);
-    for (t, s) in wanted.species.iter_mut().enumerate() {
-        *s = Species {
-            name: (t + 1).to_string(),
-            mass: None,
-        };
-    }
-    assert_eq!(dump::dump(&path, Frame::Last).unwrap(), wanted);
-    assert_eq!(dump::dump(&path, Frame::Step(5)).unwrap(), wanted);
+    assert!(
+        text.contains("ITEM: ATOMS id type x y z vx vy vz fx fy fz c_pe element mass\n1 1 0.1 ")
+    );
+    assert!(text.contains(" -3.5 Cu 63.55\n"));
+    assert_eq!(dump::dump(&path, Frame::Last).unwrap(), sample(5));
+    assert_eq!(dump::dump(&path, Frame::Step(5)).unwrap(), sample(5));
+    // types say in which order the elements are
+    let turned = "ITEM: TIMESTEP\n3\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 2\n0 4\n-1 1\nITEM: ATOMS id type element x y z\n1 2 Cu 0 0 0\n2 1 Ni 1 1 0\n";
+    let atoms = dump::parse_dump(turned, "f", Frame::Last).unwrap();
+    assert_eq!(
+        (&*atoms.species[0].name, &atoms.kind[..]),
+        ("Ni", &[1, 0][..])
+    );
+    // one kind has its type alone
+    let mut one = sample(5);
+    one.kind = vec![0; 4];
+    one.species.pop();
+    write_atoms(&path, Format::Dump, &[one.clone()]).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("fx fy fz c_pe\n"));
+    one.species[0] = Species {
+        name: "1".into(),
+        mass: None,
+    };
+    assert_eq!(dump::dump(&path, Frame::Last).unwrap(), one);
+    write_atoms(&path, Format::Dump, &[sample(0), sample(5)]).unwrap();
     assert_eq!(dump::frames(&path).unwrap(), 2);
     let mixed = "ITEM: TIMESTEP\n3\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 2\n0 4\n-1 1\nITEM: ATOMS id element xs ys zs\n7 Ni 0.5 0.25 0.5\n2 Cu 0 0 0\n";
     let atoms = dump::parse_dump(mixed, "f", Frame::Index(0)).unwrap();

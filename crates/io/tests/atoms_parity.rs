@@ -1,5 +1,6 @@
 //! Atoms of `verify/lammps/atoms`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
 
+use peridyne::observe::Values;
 use peridyne::run::{Options, build};
 use peridyne_io::deck::{Deck, Dim};
 use std::path::{Path, PathBuf};
@@ -30,8 +31,19 @@ const LAMMPS_BOLTZMANN: f64 = 8.617343e-5;
 
 /// `mass` takes the place of the deck's.
 fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
+    let material = format!("material.law = {law}\n");
+    compare_kinds(
+        name,
+        &material,
+        extra,
+        mass.as_ref().map(std::slice::from_ref),
+    );
+}
+
+/// Of several materials.
+fn compare_kinds(name: &str, materials: &str, extra: &str, masses: Option<&[f64]>) {
     let text = format!(
-        "periodic = [\"x\", \"y\", \"z\"]\nbody.file = \"{name}.data\"\n{extra}\nmaterial.law = {law}\n"
+        "{extra}\nperiodic = [\"x\", \"y\", \"z\"]\nbody.file = \"{name}.data\"\n{materials}"
     );
     let file = folder().join("deck.toml");
     let mut deck =
@@ -40,12 +52,19 @@ fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
         peridyne::spec::BodySpec::Cloud(c) => c.volume[0],
         _ => panic!(),
     };
-    if let Some(mass) = mass {
-        deck.spec.materials[0].density = mass / volume;
+    for (material, mass) in deck.spec.materials.iter_mut().zip(masses.unwrap_or(&[])) {
+        // the file's, but for products and quotients
+        assert!(
+            (material.density * volume / mass - 1.0).abs() < 1e-14
+                || masses.is_some_and(|m| m.len() == 1)
+        );
+        material.density = mass / volume;
     }
-    let mass = deck.spec.materials[0].density * volume;
+    let mass: Vec<f64> = { deck.spec.materials.iter() }
+        .map(|m| m.density * volume)
+        .collect();
     let pressure = 1.0 / deck.units.plain_factor(Dim::PRESSURE);
-    let mut sim = build(&deck.spec, Options::default()).unwrap();
+    let mut sim = build(&deck.spec, Options::default()).unwrap_or_else(|e| panic!("{e}"));
     let golden = golden(name);
     sim.start(true);
     let first = &golden[0][0];
@@ -56,6 +75,10 @@ fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
         "{name}: energy {energy} is not {}",
         first[0]
     );
+    let kind = match sim.column("material").map(|c| c.values) {
+        Some(Values::Counts(kind)) => kind,
+        _ => panic!(),
+    };
     // kinetic part and virial, over the box
     let (v, volumes) = (sim.velocities(), sim.scalars("volume"));
     let box_volume: f64 = volumes.iter().sum();
@@ -64,7 +87,8 @@ fn compare(name: &str, law: &str, extra: &str, mass: Option<f64>) {
         .into_iter()
         .enumerate()
     {
-        let kinetic: f64 = v.iter().map(|v| mass * v[a] * v[b]).sum();
+        let each = v.iter().zip(&kind);
+        let kinetic: f64 = each.map(|(v, k)| mass[*k as usize] * v[a] * v[b]).sum();
         let p = (kinetic + virial[k]) / box_volume * pressure;
         let scale = first[1].abs().max(first[2].abs());
         assert!(
@@ -140,6 +164,76 @@ fn a_copper_block_is_that_of_lammps() {
         "copper",
         "{ eam = { file = \"copper.eam.alloy\" } }",
         "units = { system = \"metal\", constants = \"lammps\" }\nrun = { steps = 100, time_step = 0.002 }",
+        None,
+    );
+}
+
+#[test]
+fn a_lennard_jones_mixture_is_that_of_lammps() {
+    compare_kinds(
+        "lj_mixture",
+        r#"
+[material.1]
+law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5 } }
+[material.b]
+set = "2"
+law = { lennard_jones = { epsilon = 0.5, sigma = 0.88, cutoff = 2.2 } }
+[material.c]
+mass = 0.4
+law = { lennard_jones = { epsilon = 0.7, sigma = 0.94, cutoff = 2.3 } }
+[[pair]]
+between = ["c", "1"]
+law = { lennard_jones = { epsilon = 1.3, sigma = 0.9, cutoff = 2.1 } }
+"#,
+        "units = \"lj\"\nrun = { steps = 100, time_step = 0.002 }\nmixing = \"arithmetic\"",
+        Some(&[1.0, 2.5, 0.4]),
+    );
+}
+
+#[test]
+fn a_sum_of_potentials_is_that_of_lammps() {
+    compare_kinds(
+        "overlay",
+        r#"
+[material.one]
+set = "1"
+law = { lennard_jones = { epsilon = 0.8, sigma = 1, cutoff = 2.5 } }
+[material.two]
+set = "2"
+law = { morse = { depth = 0.9, alpha = 5, distance = 1.1, cutoff = 2.4 } }
+[[pair]]
+between = ["one", "one"]
+law = { morse = { depth = 0.3, alpha = 4, distance = 1.1, cutoff = 2.0 } }
+[[pair]]
+between = ["one", "two"]
+law = { buckingham = { strength = 400, range = 0.18, dispersion = 0.9, cutoff = 2.3 } }
+"#,
+        "units = \"lj\"\nrun = { steps = 100, time_step = 0.002 }",
+        Some(&[1.0, 3.0]),
+    );
+}
+
+const METAL: &str = "units = { system = \"metal\", constants = \"lammps\" }\nrun = { steps = 100, time_step = 0.002 }";
+
+#[test]
+fn alloys_are_those_of_lammps() {
+    for (name, file) in [("alloy", "alloy.eam.alloy"), ("alloy_fs", "alloy.eam.fs")] {
+        let material = |element| {
+            format!(
+                "material.{element}.law.eam = {{ file = \"{file}\", element = \"{element}\" }}\n"
+            )
+        };
+        compare_kinds(name, &(material("Aa") + &material("Bb")), METAL, None);
+    }
+}
+
+#[test]
+fn two_metals_of_a_file_each_are_those_of_lammps() {
+    let material = |element| format!("material.{element}.law.eam.file = \"{element}.eam\"\n");
+    compare_kinds(
+        "two_metals",
+        &(material("Na") + &material("Mg")),
+        METAL,
         None,
     );
 }

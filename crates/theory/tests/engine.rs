@@ -89,6 +89,8 @@ fn case(
         interface: InterfaceRule::Series,
         interfaces: vec![],
         pairs: vec![],
+        potentials: vec![],
+        mixing: None,
         release: Release::AtOnce,
         horizon: Horizon::Ratio(ratio),
         volume_scaling: true,

@@ -23,8 +23,8 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     for warning in &info.warnings {
         say(warning.clone(), "");
     }
-    if let Some(potential) = spec.potential() {
-        atoms::advice(found, potential, &mut say);
+    if spec.potential().is_some() {
+        atoms::advice(found, &mut say);
         trial(found, &mut say);
         return all;
     }

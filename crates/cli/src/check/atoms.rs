@@ -1,7 +1,7 @@
 //! What looks wrong with atoms: cut-off, stability, time step, temperature.
 
 use super::Findings;
-use peridyne::spec::{BodySpec, PotentialSpec};
+use peridyne::spec::BodySpec;
 use peridyne_io::deck::Dim;
 use peridyne_theory::voigt::components;
 
@@ -10,7 +10,7 @@ const COARSE: f64 = 0.2;
 /// Below this part of what would be chosen steps are wasted.
 const WASTED: f64 = 0.05;
 
-pub fn advice(found: &Findings, potential: &PotentialSpec, say: &mut dyn FnMut(String, &str)) {
+pub fn advice(found: &Findings, say: &mut dyn FnMut(String, &str)) {
     let (spec, info) = (found.spec, found.sim.info());
     let d = info.dimension;
     let few = [2.0, 6.0, 12.0][d - 1];
@@ -19,7 +19,7 @@ pub fn advice(found: &Findings, potential: &PotentialSpec, say: &mut dyn FnMut(S
             format!(
                 "atoms have {:.1} neighbours in the mean within the cut-off {}: a dense crystal has {few} nearest ones",
                 info.family.1,
-                found.units.write(potential.cut_off(), Dim::LENGTH)
+                found.units.write(info.horizon, Dim::LENGTH)
             ),
             "a longer cut-off, or a smaller spacing: 2.5 σ is usual for Lennard-Jones",
         );

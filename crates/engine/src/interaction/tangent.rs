@@ -146,13 +146,15 @@ impl<const D: usize> BondTangent<D> {
         }
     }
 
-    /// Of a potential at the current vector y; `slopes` is F′_i + F′_j, `scale` two over the volume of i.
+    /// Of a potential at the current vector y; `slopes` are F′_i and F′_j, `scale` two over the volume of i. Of `unlike` atoms what i
+    /// adds at j is not what j adds at i.
     pub(super) fn of_potential<P: Potential>(
         potential: &P,
         [i, j]: [usize; 2],
         y: [f64; D],
-        slopes: f64,
+        slopes: [f64; 2],
         scale: f64,
+        unlike: bool,
     ) -> Self {
         let q: f64 = y.iter().map(|c| c * c).sum();
         let at = Jet::<3>::variable(q);
@@ -160,10 +162,18 @@ impl<const D: usize> BondTangent<D> {
         let (mut share, mut pull) = ([0.0; D], [[0.0; D]; 2]);
         if P::EMBEDDED {
             let [_, f, curvature] = potential.density(at).derivatives();
-            first += slopes * f;
-            second += slopes * curvature;
+            let mut other = f;
+            if unlike {
+                let [_, g, given] = potential.given(at).derivatives();
+                first += slopes[0] * f + slopes[1] * g;
+                second += slopes[0] * curvature + slopes[1] * given;
+                other = g;
+            } else {
+                first += (slopes[0] + slopes[1]) * f;
+                second += (slopes[0] + slopes[1]) * curvature;
+            }
             share = y.map(|y| 2.0 * f * y);
-            pull = [y.map(|y| scale * f * y); 2];
+            pull = [f, other].map(|f| y.map(|y| scale * f * y));
         }
         BondTangent {
             i,

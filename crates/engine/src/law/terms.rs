@@ -5,6 +5,7 @@
 
 use super::number::Dual;
 use super::potential::Potential;
+use super::potential::mixture::Mixture;
 
 /// A particle near a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,7 +59,7 @@ pub trait Sites: Send + Sync {
     fn terms(&self, kind: u32, near: &[Near], visit: &mut dyn FnMut(&Term));
 }
 
-/// A potential of one kind of atom: `F(ρ_i) + ½ Σ φ`, the pairs as terms of their own.
+/// A potential of one kind of atom: `F(ρ_i) + ½ Σ φ`, the pairs as terms of their own. [`Mixture`]s have the same of their kinds.
 #[derive(Debug, Clone)]
 pub struct OfSites<P>(pub P);
 
@@ -68,45 +69,112 @@ impl<P: Potential> Sites for OfSites<P> {
     }
 
     fn parts(&self) -> Vec<String> {
-        let pair = "pair".to_string();
-        match P::EMBEDDED {
-            true => vec![pair, "embedding".into()],
-            false => vec![pair],
-        }
+        parts::<P>()
     }
 
     fn terms(&self, _: u32, near: &[Near], visit: &mut dyn FnMut(&Term)) {
-        let limit = self.0.cutoff() * self.0.cutoff();
-        let mut term = Term::default();
-        let mut embedding = Term::default();
-        embedding.begin(1);
-        let mut density = 0.0;
-        for (n, near) in near.iter().enumerate() {
-            let q = near.square();
-            if q >= limit {
-                continue;
-            }
-            let end = n as u32 + 1;
-            let [pair, f] = self.0.both(Dual::variable(q));
-            term.begin(0);
-            term.energy = 0.5 * pair.value;
-            term.particles.push(end);
-            // q = 2ξ
-            term.pulls.push((0, end, pair.slope));
-            visit(&term);
-            if P::EMBEDDED {
-                density += f.value;
-                embedding.particles.push(end);
-                embedding.pulls.push((0, end, 2.0 * f.slope));
-            }
-        }
+        let own = Some(&self.0);
+        terms(own, |_| own, near, visit);
+    }
+}
+
+impl<P: Potential> Sites for Mixture<P> {
+    fn reach(&self) -> f64 {
+        Mixture::reach(self)
+    }
+
+    fn parts(&self) -> Vec<String> {
+        parts::<P>()
+    }
+
+    fn terms(&self, kind: u32, near: &[Near], visit: &mut dyn FnMut(&Term)) {
+        // one potential for all does not tell them apart
+        let place = |kind: u32| match self.kinds() {
+            1 => 0,
+            _ => kind as usize,
+        };
+        let kind = place(kind);
+        terms(
+            self.own(kind),
+            |other| self.of(kind, place(other)),
+            near,
+            visit,
+        );
+    }
+}
+
+fn parts<P: Potential>() -> Vec<String> {
+    let pair = "pair".to_string();
+    match P::EMBEDDED {
+        true => vec![pair, "embedding".into()],
+        false => vec![pair],
+    }
+}
+
+/// Terms of a centre with its `own` potential, and that `of` those that are near by their kinds.
+fn terms<'a, P: Potential>(
+    own: Option<&P>,
+    of: impl Fn(u32) -> Option<&'a P>,
+    near: &[Near],
+    visit: &mut dyn FnMut(&Term),
+) {
+    let mut term = Term::default();
+    let mut embedding = Term::default();
+    embedding.begin(1);
+    let mut density = 0.0;
+    for (n, near) in near.iter().enumerate() {
+        let q = near.square();
+        let Some(potential) = of(near.kind).filter(|p| q < p.cutoff() * p.cutoff()) else {
+            continue;
+        };
+        let end = n as u32 + 1;
+        let [pair, f] = potential.both(Dual::variable(q));
+        term.begin(0);
+        term.energy = 0.5 * pair.value;
+        term.particles.push(end);
+        // q = 2ξ
+        term.pulls.push((0, end, pair.slope));
+        visit(&term);
         if P::EMBEDDED {
-            let f = self.0.embedding(Dual::variable(density));
-            embedding.energy = f.value;
-            for (_, _, g) in &mut embedding.pulls {
-                *g *= f.slope;
-            }
-            visit(&embedding);
+            density += f.value;
+            embedding.particles.push(end);
+            embedding.pulls.push((0, end, 2.0 * f.slope));
+        }
+    }
+    if P::EMBEDDED
+        && let Some(own) = own
+    {
+        let f = own.embedding(Dual::variable(density));
+        embedding.energy = f.value;
+        for (_, _, g) in &mut embedding.pulls {
+            *g *= f.slope;
+        }
+        visit(&embedding);
+    }
+}
+
+/// A sum of potentials: parts and terms of one after those of the other.
+pub struct Together(pub Vec<Box<dyn Sites>>);
+
+impl Sites for Together {
+    fn reach(&self) -> f64 {
+        self.0.iter().map(|s| s.reach()).fold(0.0, f64::max)
+    }
+
+    fn parts(&self) -> Vec<String> {
+        self.0.iter().flat_map(|s| s.parts()).collect()
+    }
+
+    fn terms(&self, kind: u32, near: &[Near], visit: &mut dyn FnMut(&Term)) {
+        let mut first = 0;
+        let mut moved = Term::default();
+        for sites in &self.0 {
+            sites.terms(kind, near, &mut |term| {
+                moved.clone_from(term);
+                moved.part += first;
+                visit(&moved);
+            });
+            first += sites.parts().len();
         }
     }
 }

@@ -1,20 +1,20 @@
 //! What atoms need beyond peridynamic points: their crystal looked at before it runs, and a temperature.
 
-use super::constitutive::AnyPotential;
+use super::constitutive::AnyPotentials;
 use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
 use crate::family::stencil::Stencil;
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{Horizon, PotentialSpec, Spec, ThermalSpec};
+use crate::spec::{Horizon, Spec, ThermalSpec};
 
 /// A potential on current neighbours needs a cut-off, and periods of at least two of them.
 pub(super) fn check_box(
-    potential: &PotentialSpec,
+    potentials: &AnyPotentials,
     period: &[Option<f64>],
 ) -> Result<(), BuildError> {
-    let cutoff = potential.cut_off();
+    let cutoff = potentials.reach;
     if !(cutoff > 0.0 && cutoff.is_finite()) {
         return Err(BuildError::missing(
             "potential.cutoff",
@@ -41,12 +41,12 @@ pub(super) fn check_box(
 /// Warnings about the perfect crystal: pressure, and densities that the embedding energy does not know.
 pub(super) fn crystal(
     spec: &Spec,
-    potential: &AnyPotential,
+    potentials: &AnyPotentials,
     kind: LatticeKind,
     spacing: f64,
 ) -> Result<Option<String>, BuildError> {
     let horizon = match (current_neighbours(spec), spec.horizon) {
-        (true, _) => Horizon::Length(potential.spec.cut_off()),
+        (true, _) => Horizon::Length(potentials.reach),
         (false, h) => h,
     };
     let length = horizon.length(spacing);
@@ -56,7 +56,11 @@ pub(super) fn crystal(
     }
     let volume = kind.site_volume() * spacing.powi(kind.dimension() as i32) * spec.section;
     let stencil = Stencil::new(kind, spacing, horizon);
-    let found = potential.bulk(&stencil, spacing, volume)?;
+    let bulk = |spacing: f64| potentials.bulk(&stencil, spacing, volume);
+    // how the kinds of a mixture lie on the lattice is not known here
+    let (Some(found), Some(stiff)) = (bulk(spacing)?, bulk(spacing * 0.999)?) else {
+        return Ok(None);
+    };
     if found.density <= found.least_density {
         return Err(BuildError::ill_posed(
             "potential",
@@ -69,7 +73,6 @@ pub(super) fn crystal(
         .help("the length scale of the density does not fit this lattice: give density_length of its own"));
     }
     // pressure against that of a strain of a thousandth
-    let stiff = potential.bulk(&stencil, spacing * 0.999, volume)?;
     let scale = (stiff.pressure - found.pressure).abs();
     Ok((found.pressure.abs() > 1e-3 * scale).then(|| {
         format!(
@@ -91,7 +94,7 @@ const FASTEST: f64 = 4.0;
 impl<const D: usize> Model<D> {
     /// The step that the atoms' speeds allow (time): none goes further than a small part of the shortest bond, nor of the
     /// distance to which two of the fastest come when they meet head on.
-    pub(super) fn step_of_speeds(&self, potential: &AnyPotential) -> Result<f64, BuildError> {
+    pub(super) fn step_of_speeds(&self, potentials: &AnyPotentials) -> Result<f64, BuildError> {
         let slots = || self.body.slots.iter().map(|s| *s as usize);
         let mass = |s: usize| self.body.volume.at(s) * self.body.density.at(s);
         let total: f64 = slots().map(mass).sum();
@@ -114,8 +117,8 @@ impl<const D: usize> Model<D> {
         });
         let shortest = shortest.sqrt();
         let heaviest = slots().map(mass).fold(0.0, f64::max);
-        let from = shortest.min(potential.spec.cut_off());
-        let closest = potential.closest(from, heaviest * speed * speed)?;
+        let from = shortest.min(potentials.reach);
+        let closest = potentials.closest(from, heaviest * speed * speed)?;
         Ok(STRIDE * closest.unwrap_or(f64::INFINITY).min(shortest) / speed)
     }
 

@@ -21,7 +21,7 @@ pub(super) fn around<const D: usize>(
     };
     let refused =
         |message: &str, help: &str| Err(BuildError::unsupported("bonded", message).help(help));
-    let Some(potential) = spec.potential() else {
+    let Some(potentials) = shelf.potentials(spec)? else {
         return refused(
             "bonds, angles and dihedrals stand beside a potential of atoms",
             "give the material a pair potential",
@@ -40,13 +40,12 @@ pub(super) fn around<const D: usize>(
         );
     }
     fits(bonded, body.points())?;
-    let pair = shelf.potential(potential)?.pair()?;
-    let ends = (pair, potential.cut_off());
+    let pair = potentials.pair()?;
     Ok(Box::new(BondedAtoms::new(
         interaction,
         body,
         bonded.clone(),
-        ends,
+        pair,
         simd,
     )))
 }

@@ -69,11 +69,12 @@ pub fn build_in<const D: usize>(
     let simd = options.simd.unwrap_or_else(Simd::detect);
     let mut warnings = vec![];
     let (mut parts, mut body) = parts::<D>(spec)?;
-    if let Some(potential) = spec.potential()
+    let potentials = shelf.potentials(spec)?;
+    if let Some(potentials) = &potentials
         && current_neighbours(spec)
     {
-        atoms::check_box(potential, &body.period)?;
-        parts[0].horizon = potential.cut_off();
+        atoms::check_box(potentials, &body.period)?;
+        parts[0].horizon = potentials.reach;
     }
     let bonded_horizons = || parts.iter().filter(|p| p.bonded).map(|p| p.horizon);
     let horizon = bonded_horizons()
@@ -96,11 +97,8 @@ pub fn build_in<const D: usize>(
     let by_length = |p: &&Part| matches!(p.spec.horizon, Horizon::Length(_));
     let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
     let ends: u64 = ends.map(|s| s.near_horizon as u64).sum();
-    if let (Some(potential), BodySpec::Lattice { kind, spacing, .. }) =
-        (spec.potential(), &spec.body)
-    {
-        let potential = shelf.potential(potential)?;
-        warnings.extend(atoms::crystal(spec, &potential, *kind, *spacing)?);
+    if let (Some(potentials), BodySpec::Lattice { kind, spacing, .. }) = (&potentials, &spec.body) {
+        warnings.extend(atoms::crystal(spec, potentials, *kind, *spacing)?);
     }
     let (mut constitutive, mut interaction) =
         bind(spec, &mut parts, &mut body, shelf, simd, &mut warnings)?;
@@ -272,9 +270,8 @@ pub fn build_in<const D: usize>(
         model.set_velocities(&velocity);
     }
     initial(spec, &mut model)?;
-    if let (TimeStep::Auto, Some(potential)) = (spec.schedule.time_step, spec.potential()) {
-        let potential = shelf.potential(potential)?;
-        model.dt = model.dt.min(model.step_of_speeds(&potential)?);
+    if let (TimeStep::Auto, Some(potentials)) = (spec.schedule.time_step, &potentials) {
+        model.dt = model.dt.min(model.step_of_speeds(potentials)?);
         model.info.time_step = model.dt;
     }
     model.check_fields(spec.fields.as_deref().unwrap_or_default())?;

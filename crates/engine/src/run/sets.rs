@@ -1,6 +1,7 @@
 //! Named sets, the materials and the initial state of the points in them.
 
 use super::model::Model;
+use super::reference::SplitMix;
 use crate::body::{Body, Values};
 use crate::error::BuildError;
 use crate::space::Point;
@@ -31,7 +32,11 @@ pub(super) fn sets<const D: usize>(
         let mut loaded: Vec<u32> = vec![];
         let by_place = match &set.members {
             Members::All | Members::Region(_) | Members::Where(_) => true,
-            Members::Mark(_) | Members::Points(_) | Members::Within { .. } => false,
+            Members::Mark(_)
+            | Members::Points(_)
+            | Members::Random { .. }
+            | Members::Outside(_)
+            | Members::Within { .. } => false,
         };
         if let Some(carriers) = carriers
             && by_place
@@ -59,7 +64,7 @@ pub(super) fn sets<const D: usize>(
 
 /// The test of a set; `first` is the id of the first point that places count from, `spacing` that of the points.
 fn member<'a, const D: usize>(
-    spec: &Spec,
+    spec: &'a Spec,
     body: &'a Body<D>,
     set: &str,
     members: &'a Members,
@@ -77,6 +82,32 @@ fn member<'a, const D: usize>(
         Members::Points(ids) => {
             let place = move |id: usize| id.checked_sub(first).map(|n| n as u32);
             Box::new(move |id, _| place(id).is_some_and(|n| ids.binary_search(&n).is_ok()))
+        }
+        Members::Random { part, seed } => {
+            if !(0.0..=1.0).contains(part) {
+                let message = format!("the part is {part}, expected a number from 0 to 1");
+                return Err(BuildError::invalid(format!("sets.{set}"), message));
+            }
+            let drawn = drawn(body.points(), *part, *seed);
+            Box::new(move |id, _| drawn[id])
+        }
+        Members::Outside(names) => {
+            let mut others = vec![];
+            for name in names {
+                let Some(other) = spec.sets.iter().find(|s| s.name == *name) else {
+                    return Err(BuildError::unknown(
+                        format!("sets.{set}"),
+                        name,
+                        format!("set `{set}` is outside of `{name}`, which does not exist"),
+                    ));
+                };
+                if matches!(other.members, Members::Outside(_)) {
+                    let message = format!("`{set}` and `{name}` are both what others leave");
+                    return Err(BuildError::conflict(format!("sets.{set}"), message));
+                }
+                others.push(member(spec, body, name, &other.members, first, spacing)?);
+            }
+            Box::new(move |id, x| others.iter().all(|o| !o(id, x)))
         }
         Members::Within {
             body: name,
@@ -97,6 +128,18 @@ fn member<'a, const D: usize>(
             Box::new(move |id, x| ids.contains(&id) && inner(id, x))
         }
     })
+}
+
+/// Which of so many points are drawn.
+fn drawn(points: usize, part: f64, seed: u64) -> Vec<bool> {
+    let mut random = SplitMix(seed);
+    let numbers: Vec<f64> = (0..points).map(|_| random.unit()).collect();
+    let mut order: Vec<usize> = (0..points).collect();
+    order.sort_by(|a, b| numbers[*a].total_cmp(&numbers[*b]));
+    let mut drawn = vec![false; points];
+    let count = (part * points as f64).round() as usize;
+    order[..count].iter().for_each(|n| drawn[*n] = true);
+    drawn
 }
 
 /// Points within round-off of a region's boundary belong to it.

@@ -138,6 +138,13 @@ pub enum Members {
     Where(Expression),
     /// Points of a cloud by their place in it, rising.
     Points(Arc<[u32]>),
+    /// This part of all points (0–1), the nearest whole number of them, drawn by a seed: the same on every machine.
+    Random {
+        part: f64,
+        seed: u64,
+    },
+    /// Points of none of these sets.
+    Outside(Vec<String>),
     /// Those of one of several bodies, by its name.
     Within {
         body: String,

@@ -3,6 +3,7 @@
 //! A front end (deck, LAMMPS script, another program) fills a [`Spec`]; `run::build` makes a model of it. What laws and
 //! linear bodies do stands in [`law`](crate::law) and [`statics`](crate::statics); nothing here reads them.
 
+mod atoms;
 mod body;
 mod bonded;
 mod bonds;
@@ -17,6 +18,7 @@ mod probe;
 mod schedule;
 mod surface;
 
+pub use atoms::{Acting, ActingSpec, Mixing};
 pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
 pub use bonded::{BondedSpec, BondedTerm, Form};
 pub use bonds::{
@@ -34,7 +36,7 @@ pub use law::{
 };
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
-pub use potential::{End, PotentialSpec, TableSpec};
+pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
 pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
@@ -63,6 +65,10 @@ pub struct Spec {
     /// What pairs of materials have instead of what follows from the two, `[of][with]`; empty: nothing. Their bonds
     /// are in lists.
     pub pairs: Vec<PairSpec>,
+    /// Potentials of atoms besides those that are the laws of materials.
+    pub potentials: Vec<ActingSpec>,
+    /// How constants of pairs of unlike atoms follow, where no potential is given for them; `None`: they must be given.
+    pub mixing: Option<Mixing>,
     /// When a bond past its critical stretch lets go.
     pub release: Release,
     pub horizon: Horizon,
@@ -119,6 +125,8 @@ impl Spec {
             interface: InterfaceRule::Series,
             interfaces: vec![],
             pairs: vec![],
+            potentials: vec![],
+            mixing: None,
             release: Release::AtOnce,
             horizon: Horizon::Ratio(1),
             volume_scaling: false,
@@ -170,7 +178,7 @@ impl Spec {
         spec
     }
 
-    /// The interatomic potential, where the materials are atoms.
+    /// The interatomic potential, where the materials are atoms; of several kinds that of the first.
     pub fn potential(&self) -> Option<&PotentialSpec> {
         self.materials.iter().find_map(|m| m.law.potential())
     }

@@ -3,7 +3,7 @@
 
 use super::Parameters;
 
-/// A potential of one kind of atom.
+/// A potential, with the constants that one kind of atom, or a pair of kinds, has in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PotentialSpec {
     pub name: String,
@@ -34,7 +34,7 @@ pub enum End {
     Smooth(f64),
 }
 
-/// Functions of an embedded-atom model as tables, as eam/alloy and eam files hold them (one element): values at `m Δρ` (F) and `m Δr`
+/// Functions of an element of an embedded-atom model as tables, as eam/alloy, eam/fs and eam files hold them: values at `m Δρ` (F) and `m Δr`
 /// (f and r φ), m = 0, 1, …, at least five each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableSpec {
@@ -50,6 +50,21 @@ pub struct TableSpec {
     pub pair: Vec<f64>,
     /// Distance beyond which there is nothing (length).
     pub cutoff: f64,
+    /// Name of the element.
+    pub element: String,
+    /// What its atoms have with those of other elements.
+    pub partners: Vec<PartnerTable>,
+}
+
+/// Functions of a pair of unlike elements, on the same distances as those of the element itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartnerTable {
+    /// The other one.
+    pub element: String,
+    /// Density that an atom of it adds at one of this.
+    pub density: Vec<f64>,
+    /// r φ (energy · length) between the two.
+    pub pair: Vec<f64>,
 }
 
 impl TableSpec {
@@ -72,6 +87,18 @@ impl TableSpec {
         if self.density.len() != self.pair.len() {
             return Err("density and pair term need tables of one length".into());
         }
+        for partner in &self.partners {
+            let fits = [&partner.density, &partner.pair]
+                .iter()
+                .all(|t| t.len() == self.pair.len() && t.iter().all(|v| v.is_finite()));
+            if !fits {
+                return Err(format!(
+                    "density and pair term with {} need {} finite values",
+                    partner.element,
+                    self.pair.len()
+                ));
+            }
+        }
         let positive = |x: f64| x > 0.0 && x.is_finite();
         match [self.density_step, self.step, self.cutoff]
             .into_iter()
@@ -92,6 +119,14 @@ impl TableSpec {
             density: self.density.clone(),
             pair: times(&self.pair, energy * length),
             cutoff: self.cutoff * length,
+            element: self.element.clone(),
+            partners: { self.partners.iter() }
+                .map(|p| PartnerTable {
+                    element: p.element.clone(),
+                    density: p.density.clone(),
+                    pair: times(&p.pair, energy * length),
+                })
+                .collect(),
         }
     }
 }

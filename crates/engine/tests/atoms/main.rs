@@ -3,6 +3,7 @@
 mod chain;
 mod crystal;
 mod fans;
+mod kinds;
 mod relax;
 mod sample;
 mod scaled;

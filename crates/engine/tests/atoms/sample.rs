@@ -104,6 +104,8 @@ pub fn potentials() -> Vec<(String, PotentialSpec)> {
         density: sample(&|r| closed.density(r * r), dr),
         pair: sample(&|r| r * closed.pair(r * r), dr),
         cutoff: 1.95,
+        element: "X".into(),
+        partners: vec![],
     };
     for (name, form) in [
         ("closed form", PotentialSpec::of(constants)),

@@ -317,6 +317,8 @@ impl Case {
             interface: InterfaceRule::Series,
             interfaces: vec![],
             pairs: vec![],
+            potentials: vec![],
+            mixing: None,
             release: Release::AtOnce,
             horizon: Horizon::Ratio(ratio),
             volume_scaling: true,

@@ -5,9 +5,9 @@ use peridyne::law::descriptor::Value;
 use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::spec::{
-    BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion, LawSpec,
-    MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, ProbeSpec, Release, Spec,
-    Stepper, TimeStep,
+    Acting, BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion,
+    LawSpec, MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, PotentialSpec,
+    ProbeSpec, Release, Spec, Stepper, TimeStep,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -56,18 +56,22 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                 .into(),
         );
     }
+    lines.extend(between_atoms(spec, units));
     let length = |horizon: Horizon| match horizon {
         Horizon::Ratio(m) => format!("{m} spacings"),
         Horizon::Length(length) => units.write(length, Dim::LENGTH),
     };
     let horizon = length(spec.horizon);
     lines.push(match spec.potential() {
-        Some(potential) => {
-            let cutoff = potential.cut_off();
+        Some(_) => {
+            let cutoffs = potentials(spec).map(PotentialSpec::cut_off);
+            let cutoff = cutoffs.fold(0.0, f64::max);
+            let mut names: Vec<&str> = potentials(spec).map(|p| &*p.name).collect();
+            names.dedup();
             let current = matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours);
             format!(
                 "potential  {}, {}, {}",
-                potential.name,
+                names.join(" and "),
                 if cutoff.is_finite() {
                     format!("cut-off {}", units.write(cutoff, Dim::LENGTH))
                 } else {
@@ -335,16 +339,42 @@ fn extent(region: &Region, units: UnitSystem, dimension: usize) -> String {
     format!("within {}", sizes.join(" × "))
 }
 
-/// A law with its constants.
+/// All potentials between atoms that a spec names.
+fn potentials(spec: &Spec) -> impl Iterator<Item = &PotentialSpec> {
+    let own = spec.materials.iter().filter_map(|m| m.law.potential());
+    own.chain(spec.potentials.iter().map(|a| &a.potential))
+}
+
+/// What atoms of several kinds have with each other.
+fn between_atoms(spec: &Spec, units: UnitSystem) -> Vec<String> {
+    let mut lines = vec![];
+    for acting in &spec.potentials {
+        let Acting::Between(pair) = acting.on;
+        let [a, b] = pair.map(|n| spec.materials.get(n).map_or("", |m| &*m.name));
+        let said = constants(&LawSpec::Atoms(acting.potential.clone()), units);
+        lines.push(format!("pair       {a} and {b}: {said}"));
+    }
+    if let Some(rule) = spec.mixing {
+        lines.push(format!("mixing     {}", rule.name()));
+    }
+    lines
+}
+
+/// A law, of all but potentials with its constants.
 fn law(law: &LawSpec, units: UnitSystem) -> String {
+    match law.potential() {
+        Some(potential) => potential.name.replace('_', "-"),
+        None => constants(law, units),
+    }
+}
+
+/// A law with its constants.
+fn constants(law: &LawSpec, units: UnitSystem) -> String {
     let shelf = Shelf::standard();
     let Some((descriptor, parameters)) = shelf.written(law) else {
         return "a law of its own".into();
     };
     let mut said = descriptor.name.replace('_', "-");
-    if law.potential().is_some() {
-        return said;
-    }
     for (key, given) in &parameters.0 {
         let value = match (descriptor.key(key).map(|k| k.value), given) {
             (Some(Value::Number(dimension, _)), Parameter::Number(x)) => units.write(*x, dimension),

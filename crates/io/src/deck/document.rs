@@ -59,6 +59,11 @@ pub struct Document {
     /// `[material]`, or `[material.NAME]` for each of several.
     #[schemars(with = "Or<Material, Named<Material>>")]
     pub material: BTreeMap<String, At<Material>>,
+    /// How constants of pairs of unlike atoms follow where no [[pair]] gives them (lennard_jones).
+    pub mixing: Option<At<MixingName>>,
+    /// Potentials between atoms of two materials, or on top of that of one: energies are added.
+    #[serde(default)]
+    pub pair: Vec<At<Pair>>,
     /// Bond-based bonds between unlike materials of one body, and factors of bonds between unlike ends; series when left out. Ends of other
     /// laws answer for themselves, which is parallel. Or `[[interface]]`, bonds between two of several bodies.
     #[schemars(with = "Option<Or<Vec<Interface>, InterfaceName>>")]
@@ -174,14 +179,25 @@ pub struct Interface {
     pub fracture: Option<At<Fracture>>,
 }
 
+/// A potential between atoms of two materials.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pair {
+    /// Names of the two; the same twice: on top of the law of one.
+    pub between: At<Vec<At<String>>>,
+    /// A pair potential; "no_potential" if they do not feel each other.
+    pub law: At<Law>,
+}
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Set that is made of it; all when left out.
+    /// Set that is made of it; all when left out. Of several, that of the same name when left out; of atoms, one may be what the others
+    /// leave. Kinds of atoms in a file are sets of their names, or of the numbers of their types.
     pub set: Option<At<String>>,
     /// Left out, the densities in the LAMMPS data file are taken; given, it takes their place.
     pub density: Option<Number>,
-    /// Mass of a point, instead of the density; of atoms taken from an eam file when left out.
+    /// Mass of a point, instead of the density; of atoms taken from their file or an eam file when left out.
     pub mass: Option<Number>,
     pub law: At<Law>,
     pub fracture: Option<At<Fracture>>,

@@ -105,6 +105,7 @@ fn deck_key(spec_key: &str) -> &str {
         "conditions" => "condition",
         "indenters" => "indenter",
         "probes" => "probe",
+        "potentials" => "pair",
         "schedule" => "run",
         other => other,
     }

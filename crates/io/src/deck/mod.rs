@@ -41,8 +41,8 @@ use std::path::{Path, PathBuf};
 pub struct Deck {
     pub spec: Spec,
     pub output: OutputSpec,
-    /// Name of the atoms, where a file says it.
-    pub species: Option<String>,
+    /// Names of the atoms of each material, where a file says it; none where they are no atoms.
+    named: Vec<Option<String>>,
     /// Lower corner of the periods.
     pub corner: [f64; 3],
     pub units: UnitSystem,
@@ -129,7 +129,7 @@ impl Deck {
         Ok(Deck {
             spec: lowered.spec,
             output: lowered.output,
-            species: lowered.species,
+            named: lowered.species,
             corner: lowered.corner,
             units,
             threads: lowered.threads,
@@ -140,6 +140,18 @@ impl Deck {
             condition_entries: lowered.condition_entries,
             source,
         })
+    }
+
+    /// Of each material of atoms their name, where a file does not say it that of the material (of a single one X), and their mass
+    /// density.
+    pub fn species(&self) -> Vec<(String, f64)> {
+        let one = self.spec.materials.len() == 1;
+        let each = self.spec.materials.iter().zip(&self.named);
+        each.map(|(m, named)| {
+            let own = if one { "X" } else { &m.name };
+            (named.clone().unwrap_or_else(|| own.into()), m.density)
+        })
+        .collect()
     }
 
     /// Do all names of files that the deck gives stay inside the folder of the results (`dir`: inside the folder it is

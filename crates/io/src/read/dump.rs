@@ -188,7 +188,8 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
         ))
     };
     let id = find("id").ok_or_else(|| missing("`id`"))?;
-    let kind = find("element").or(find("type"));
+    let number = find("type");
+    let kind = find("element").or(number);
     let kind = kind.ok_or_else(|| missing("`type` or `element`"))?;
     let plain = triple(columns, ["x", "y", "z"]).or(triple(columns, ["xu", "yu", "zu"]));
     let scaled = triple(columns, ["xs", "ys", "zs"]).or(triple(columns, ["xsu", "ysu", "zsu"]));
@@ -200,6 +201,8 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
     let energy = find("c_pe");
     let mass = find("mass");
     let mut names = Names::default();
+    // the number of the type, of each species
+    let mut numbers: Vec<u32> = vec![];
     let mut rows = Vec::with_capacity(head.count.min(1 << 20));
     for k in 0..head.count {
         stream.expect(|| {
@@ -229,6 +232,10 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
             x = std::array::from_fn(|a| head.low[a] + x[a] * (head.high[a] - head.low[a]));
         }
         let species = names.place(words[kind]);
+        if numbers.len() < names.species.len() {
+            let written = number.map_or(words[kind], |c| words[c]);
+            numbers.push(written.parse().unwrap_or(u32::MAX));
+        }
         if let Some(mass) = mass {
             names.species[species as usize].mass = Some(stream.finite(words[mass], "mass")?);
         }
@@ -252,10 +259,7 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
     }
     // type 1 is the first species whatever atom comes first
     let mut order: Vec<u32> = (0..names.species.len() as u32).collect();
-    order.sort_by_key(|k| {
-        let name = &names.species[*k as usize].name;
-        (name.parse::<u32>().unwrap_or(u32::MAX), *k)
-    });
+    order.sort_by_key(|k| (numbers[*k as usize], *k));
     let mut new = vec![0; order.len()];
     for (place, old) in order.iter().enumerate() {
         new[*old as usize] = place as u32;

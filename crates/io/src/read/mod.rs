@@ -54,10 +54,8 @@ pub struct AtomsFile {
     pub cell: [f64; 3],
     /// Periodic axes, where the file says it.
     pub periodic: Option<[bool; 3]>,
-    /// Mass of the atoms, where the file says it.
-    pub mass: Option<f64>,
-    /// Names of the kinds of atoms that occur.
-    pub species: Vec<String>,
+    /// The kinds of atoms that occur, with their masses where the file says them.
+    pub species: Vec<Species>,
     /// The velocities are in Å, eV and g/mol.
     pub from_momenta: bool,
     /// There are bonds, angles or dihedrals.
@@ -219,24 +217,23 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
     let cell: [f64; 3] = std::array::from_fn(|a| atoms.high[a] - atoms.low[a]);
     let used: std::collections::BTreeSet<u32> = atoms.kind.iter().copied().collect();
     let kinds = || used.iter().map(|k| &atoms.species[*k as usize]);
-    let mass = match used.len() {
-        1 => kinds().next().and_then(|s| s.mass),
-        _ => None,
-    };
     let volume = cell.iter().filter(|c| **c > 0.0).product::<f64>() / n as f64;
     Ok(Sourced {
         atoms: Some(AtomsFile {
             corner: atoms.low,
             cell,
             periodic: (!lammps).then_some(atoms.periodic),
-            mass,
-            species: kinds().map(|s| s.name.clone()).collect(),
+            species: kinds().cloned().collect(),
             from_momenta: atoms.from_momenta,
             bonded: atoms.bonded,
         }),
         cloud: Cloud {
             volume: vec![volume; n],
             mark: atoms.kind.iter().map(|k| *k as i32 + 1).collect(),
+            // of several, each is a set
+            names: { used.iter().filter(|_| used.len() > 1) }
+                .map(|k| (*k as i32 + 1, atoms.species[*k as usize].name.clone()))
+                .collect(),
             velocity: atoms.velocity.unwrap_or_default(),
             position: atoms.position,
             ..Cloud::default()

@@ -91,7 +91,8 @@ fn head<W: Write>(
     write!(w, "ITEM: ATOMS id type x y z")
 }
 
-/// Writes one frame of atoms: `id type x y z`, and `vx vy vz`, `fx fy fz` and `c_pe` (energy) where they are known. Positions
+/// Writes one frame of atoms: `id type x y z`, and `vx vy vz`, `fx fy fz` and `c_pe` (energy) where they are known, of several species
+/// also `element` and, where all are known, `mass`. Positions
 /// are written as they are; see [`Atoms::wrap`].
 ///
 /// # Errors
@@ -115,6 +116,15 @@ pub fn write_atoms<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
     if atoms.energy.is_some() {
         write!(w, " c_pe")?;
     }
+    let several = atoms.species.len() > 1;
+    let masses: Option<Vec<f64>> = atoms.species.iter().map(|s| s.mass).collect();
+    let masses = masses.filter(|_| several);
+    if several {
+        write!(w, " element")?;
+    }
+    if masses.is_some() {
+        write!(w, " mass")?;
+    }
     writeln!(w)?;
     for (i, [x, y, z]) in atoms.position.iter().enumerate() {
         write!(w, "{} {} {x:?} {y:?} {z:?}", i + 1, atoms.kind[i] + 1)?;
@@ -123,6 +133,12 @@ pub fn write_atoms<W: Write>(w: &mut W, atoms: &Atoms) -> io::Result<()> {
         }
         if let Some(e) = &atoms.energy {
             write!(w, " {:?}", e[i])?;
+        }
+        if several {
+            write!(w, " {}", atoms.name(i))?;
+        }
+        if let Some(masses) = &masses {
+            write!(w, " {:?}", masses[atoms.kind[i] as usize])?;
         }
         writeln!(w)?;
     }

@@ -21,6 +21,11 @@ pub fn write_setfl(path: &Path, file: &EamFile) -> Result<(), WriteError> {
 /// Those of `w`, and those of [`write_setfl`].
 pub fn setfl_to<W: Write>(w: &mut W, file: &EamFile) -> io::Result<()> {
     let (nrho, nr) = check(file)?;
+    if !file.density_at.is_empty() {
+        return Err(invalid(
+            "densities that know both ends belong into an eam/fs file".into(),
+        ));
+    }
     // exactly three lines, or all that follows is misread
     let comments = file.comments.iter().flat_map(|c| c.lines());
     let rest = file.comments.iter().flat_map(|c| c.lines()).skip(2);

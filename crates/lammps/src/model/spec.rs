@@ -73,6 +73,8 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         interface: InterfaceRule::Series,
         interfaces: vec![],
         pairs: types.table(),
+        potentials: vec![],
+        mixing: None,
         release: Release::AfterForce,
         horizon: Horizon::Length(types.horizon()),
         volume_scaling: true,

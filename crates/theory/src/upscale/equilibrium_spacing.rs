@@ -27,7 +27,7 @@ pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
         }
     }
     let (kind, _) = lattice(spec).ok()?;
-    let potential = spec.potential()?;
+    let potential = spec.potential().filter(|_| spec.materials.len() == 1)?;
     let reach = reach(spec);
     // a potential that is not known has no crystal
     potential.apply(At { kind, reach }).ok().flatten()

@@ -34,7 +34,10 @@ pub enum UpscaleError {
     Factor(u32),
     #[error("only a lattice body can be upscaled: its coarse points are lattice points, too")]
     NoLattice,
-    #[error("a body with several materials is not upscaled: one law has one upscaling")]
+    #[error(
+        "a body with several materials is not upscaled: one law has one upscaling, and of unlike atoms in a cell a coarser lattice would \
+         keep the acoustic waves alone and lose the optical ones"
+    )]
     SeveralMaterials,
     #[error("{what} {number} is not divisible by the factor {factor}: choose one of {choices}")]
     NotDivisible {
@@ -299,6 +302,9 @@ pub fn crystal<const D: usize>(
     spec: &Spec,
 ) -> Result<(Crystal<D>, Option<Reference>), UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
+    if spec.potential().is_some() && spec.materials.len() > 1 {
+        return Err(UpscaleError::SeveralMaterials);
+    }
     let density = spec.materials[0].density;
     match spec.potential() {
         Some(potential) => {

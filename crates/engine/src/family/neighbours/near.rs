@@ -4,6 +4,9 @@
 //! Atoms are kept in order of small cells, in tiles of eight, so that neighbours lie close in memory; periodic images within
 //! reach of the box are atoms of their own (ghosts) with copied positions. A tile's lists are stored line by line: line n
 //! holds the n-th neighbour of each of its eight atoms, or an atom infinitely far away.
+//!
+//! Of several kinds, the atoms of a tile are all of one, and so are the neighbours of a line: a pair of kinds is known before its
+//! numbers are read. Lines of a tile come in order of the neighbours' kinds.
 
 mod build;
 mod cells;
@@ -21,14 +24,81 @@ use ghosts::Ghost;
 /// Tiles per block of work.
 const BLOCK: usize = 32;
 
+/// In place of a slot where a tile has no atom.
+const NOBODY: u32 = u32::MAX;
+
+/// How far the pairs of kinds of atoms see each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reaches {
+    kinds: usize,
+    /// `[i][j]`: length; 0: not at all.
+    of: Vec<f64>,
+}
+
+impl Reaches {
+    /// Of kinds 0 to `kinds` − 1; who sees is seen.
+    pub fn new(kinds: usize, of: impl Fn(usize, usize) -> f64) -> Reaches {
+        let of = |n| of(n / kinds, n % kinds).max(of(n % kinds, n / kinds));
+        Reaches {
+            kinds,
+            of: (0..kinds * kinds).map(of).collect(),
+        }
+    }
+
+    /// The greatest of them.
+    pub fn longest(&self) -> f64 {
+        self.of.iter().copied().fold(0.0, f64::max)
+    }
+
+    fn between(&self, i: u8, j: u8) -> f64 {
+        self.of[usize::from(i) * self.kinds + usize::from(j)]
+    }
+}
+
+/// Eight atoms of a kind, with who is near to them.
+#[derive(Debug, Clone, Copy)]
+pub struct Tile<'a> {
+    pub number: usize,
+    /// Of its own atoms.
+    pub kind: usize,
+    lines: &'a [[u32; TILE]],
+    /// `[kinds]`: where the lines of each kind of neighbours end, counted as the block does.
+    ends: &'a [u32],
+    /// Where the first begins.
+    start: usize,
+}
+
+impl<'a> Tile<'a> {
+    /// Lines of neighbours of all kinds.
+    #[inline(always)]
+    pub fn lines(&self) -> &'a [[u32; TILE]] {
+        self.lines
+    }
+
+    /// Those of one kind.
+    #[inline(always)]
+    pub fn of_kind(&self, kind: usize) -> &'a [[u32; TILE]] {
+        let end = self.ends[kind] as usize - self.start;
+        let first = match kind {
+            0 => 0,
+            _ => self.ends[kind - 1] as usize - self.start,
+        };
+        &self.lines[first..end]
+    }
+}
+
 /// The full list.
 #[derive(Debug)]
 pub struct NearList<const D: usize> {
+    /// The greatest of all, with the margin.
     reach: f64,
+    reaches: Reaches,
     skin: f64,
     period: [Option<f64>; D],
-    /// Slot of every atom, in order of cells.
+    /// Slot of every atom, in order of kinds and cells; [`NOBODY`] where the last tile of a kind ends.
     order: Vec<u32>,
+    /// Kinds of all that have positions; empty where there is one.
+    kind: Vec<u8>,
     /// `[own][4]`: what to add to the displacement to be inside the box.
     base: Vec<[f64; 4]>,
     /// `[own][4]`: positions when the list was made.
@@ -46,6 +116,12 @@ impl<const D: usize> NearList<D> {
     /// For pairs closer than `cutoff`, with a margin `skin` (lengths). Periods must be at least twice the cut-off; the
     /// margin is made smaller where they leave less.
     pub fn new(body: &Body<D>, cutoff: f64, skin: f64) -> Self {
+        Self::of_kinds(body, Reaches::new(1, |_, _| cutoff), skin)
+    }
+
+    /// The same for pairs closer than what their kinds reach: materials of the body, or all are of one kind.
+    pub fn of_kinds(body: &Body<D>, reaches: Reaches, skin: f64) -> Self {
+        let cutoff = reaches.longest();
         let shortest = body
             .period
             .iter()
@@ -53,12 +129,20 @@ impl<const D: usize> NearList<D> {
             .copied()
             .fold(f64::INFINITY, f64::min);
         let skin = skin.min(shortest - cutoff).max(0.0);
-        let blocks = body.points().div_ceil(TILE).div_ceil(BLOCK);
+        let mut of_kind = vec![0usize; reaches.kinds];
+        match reaches.kinds {
+            1 => of_kind[0] = body.points(),
+            _ => { body.slots.iter() }.for_each(|s| of_kind[body.material_of(*s as usize)] += 1),
+        }
+        let tiles: usize = of_kind.iter().map(|n| n.div_ceil(TILE)).sum();
+        let blocks = tiles.div_ceil(BLOCK);
         NearList {
             reach: cutoff + skin,
+            reaches,
             skin,
             period: body.period,
             order: vec![],
+            kind: vec![],
             base: vec![],
             then: vec![],
             ghosts: vec![],
@@ -119,20 +203,39 @@ impl<const D: usize> NearList<D> {
     /// Tiles of block `b`: number of the tile, its lines.
     #[inline(always)]
     pub fn tiles(&self, b: usize) -> impl Iterator<Item = (usize, &[[u32; TILE]])> {
-        let tiles = self.blocks[b].tiles().enumerate();
-        tiles.map(move |(n, lines)| (b * BLOCK + n, lines))
+        self.tiles_of_kinds(b)
+            .map(|tile| (tile.number, tile.lines()))
+    }
+
+    /// The same with kinds.
+    #[inline(always)]
+    pub fn tiles_of_kinds(&self, b: usize) -> impl Iterator<Item = Tile<'_>> {
+        self.blocks[b].tiles(self.reaches.kinds, b * BLOCK, &self.kind)
+    }
+
+    /// Number of kinds.
+    #[inline(always)]
+    pub fn kinds(&self) -> usize {
+        self.reaches.kinds
     }
 
     /// Lines of one tile.
     #[inline(always)]
     pub fn lines(&self, tile: usize) -> &[[u32; TILE]] {
-        self.blocks[tile / BLOCK].tile(tile % BLOCK)
+        self.blocks[tile / BLOCK].tile(tile % BLOCK, self.reaches.kinds)
     }
 
     /// Slots of a tile's atoms.
     #[inline(always)]
     pub fn slots(&self, tile: usize) -> &[u32] {
-        &self.order[tile * TILE..((tile + 1) * TILE).min(self.order.len())]
+        let slots = &self.order[tile * TILE..((tile + 1) * TILE).min(self.order.len())];
+        match slots.last() {
+            Some(&NOBODY) => {
+                let end = slots.iter().position(|s| *s == NOBODY);
+                &slots[..end.unwrap_or(TILE)]
+            }
+            _ => slots,
+        }
     }
 
     /// Positions of all atoms, ghosts and nowhere.
@@ -158,7 +261,8 @@ impl<const D: usize> NearList<D> {
 
     /// Slot of the atom that a listed one is or copies.
     pub fn original(&self, atom: usize) -> Option<usize> {
-        self.home(atom).map(|own| self.order[own] as usize)
+        let slot = self.order[self.home(atom)?];
+        (slot != NOBODY).then_some(slot as usize)
     }
 
     /// How often the list was made.
@@ -171,6 +275,7 @@ impl<const D: usize> NearList<D> {
         self.blocks.iter().map(Block::bytes).sum::<usize>()
             + 32 * (self.base.capacity() + self.then.capacity() + self.position.capacity())
             + 4 * self.order.capacity()
+            + self.kind.capacity()
             + size_of::<Ghost<D>>() * self.ghosts.capacity()
     }
 }
@@ -200,6 +305,9 @@ impl<const D: usize> Kernel for Place<'_, D> {
     fn block<L: Lane>(&self, block: usize) -> f64 {
         let mut far: f64 = 0.0;
         for i in atoms_of(block, self.order.len()) {
+            if self.order[i] == NOBODY {
+                continue;
+            }
             let y = position(&self.base[i], self.u, self.order[i]);
             let mut square = 0.0;
             for a in 0..D {

@@ -17,8 +17,8 @@ use crate::spec::BondedSpec;
 use kernel::{BLOCK, Evaluate, Gather, Says, Term};
 use std::sync::Arc;
 
-/// A pair potential: value, first and second derivative by `q = r²`.
-pub type PairEnergy = dyn Fn(f64) -> [f64; 3] + Send + Sync;
+/// A pair potential of kinds of atoms: value, first and second derivative by `q = r²`; `None`: nothing, beyond its cut-off.
+pub type PairEnergy = dyn Fn([usize; 2], f64) -> Option<[f64; 3]> + Send + Sync;
 
 /// A potential with the bonded terms of a body.
 pub struct BondedAtoms<const D: usize> {
@@ -26,8 +26,6 @@ pub struct BondedAtoms<const D: usize> {
     simd: Simd,
     spec: Arc<BondedSpec>,
     pair: Box<PairEnergy>,
-    /// Squared distance from which on the potential says nothing.
-    limit: f64,
     terms: Vec<Term>,
     /// Forces on the particles of each term.
     force: Vec<[[f64; D]; 4]>,
@@ -38,7 +36,7 @@ pub struct BondedAtoms<const D: usize> {
 }
 
 impl<const D: usize> BondedAtoms<D> {
-    /// `inner` is the potential between all atoms, `pair` the same between two, which ends at `cutoff`.
+    /// `inner` is the potential between all atoms, `pair` the same between two.
     ///
     /// # Panics
     /// If a term names a point or a form that does not exist.
@@ -46,7 +44,7 @@ impl<const D: usize> BondedAtoms<D> {
         inner: Box<dyn Interaction<D>>,
         body: &Body<D>,
         spec: Arc<BondedSpec>,
-        (pair, cutoff): (Box<PairEnergy>, f64),
+        pair: Box<PairEnergy>,
         simd: Simd,
     ) -> Self {
         let slot = |n: u32| body.slots[n as usize];
@@ -88,7 +86,6 @@ impl<const D: usize> BondedAtoms<D> {
             simd,
             spec,
             pair,
-            limit: cutoff * cutoff,
             force: vec![[[0.0; D]; 4]; terms.len()],
             sums: PerBlock::sums(terms.len().div_ceil(BLOCK)),
             terms,
@@ -109,7 +106,6 @@ impl<const D: usize> BondedAtoms<D> {
             u,
             forms: &self.spec.forms,
             pair: &*self.pair,
-            limit: self.limit,
             terms: &self.terms,
             force,
             energy,
@@ -210,7 +206,7 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
                 Says::Form(form) => {
                     Some(self.spec.forms[form as usize].tangents(&xi[..term.pairs()]))
                 }
-                Says::Pair(factor) => self.taken(factor, xi[0]),
+                Says::Pair(factor) => kernel::left_out(body, &*self.pair, term, factor, xi[0]),
             }) else {
                 continue;
             };
@@ -285,14 +281,6 @@ impl<const D: usize> Interaction<D> for BondedAtoms<D> {
             + size_of::<Term>() * self.terms.capacity()
             + size_of::<[[f64; D]; 4]>() * self.force.capacity()
             + 4 * (self.first.capacity() + self.of.capacity())
-    }
-}
-
-impl<const D: usize> BondedAtoms<D> {
-    /// What is taken of a pair, by ξ.
-    fn taken(&self, factor: f64, xi: f64) -> Option<Tangents> {
-        let q = 2.0 * xi;
-        (q < self.limit).then(|| kernel::taken(factor, (self.pair)(q)))
     }
 }
 

@@ -7,12 +7,13 @@ use crate::body::{Body, Field, Identity, Values};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
-use crate::family::neighbours::near::NearList;
+use crate::family::neighbours::near::{NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::law::potential::Potential;
+use crate::law::potential::mixture::Mixture;
 use kernel::{Density, Energies, Forces, View};
 
 /// Margin of the list, in cut-offs.
@@ -22,8 +23,9 @@ const SKIN: f64 = 0.12;
 pub struct CurrentAtoms<const D: usize, P> {
     body: Identity,
     simd: Simd,
-    potential: P,
-    cutoff: f64,
+    potential: Mixture<P>,
+    /// Squared cut-offs of pairs of kinds.
+    limits: Vec<f64>,
     list: NearList<D>,
     faults: Faults,
     sums: PerBlock<[f64; 7]>,
@@ -33,33 +35,67 @@ pub struct CurrentAtoms<const D: usize, P> {
 }
 
 impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
-    pub fn new(body: &Body<D>, potential: P, simd: Simd) -> Self {
-        let cutoff = potential.cutoff();
-        let list = list_at(body, cutoff, &body.at_rest(), simd);
-        let mut family = vec![0; body.len];
+    /// The kinds of the potential are the materials of the body, or there is one.
+    pub fn new(body: &Body<D>, potential: Mixture<P>, simd: Simd) -> Self {
+        let kinds = potential.kinds();
+        let cutoffs = (0..kinds * kinds).map(|n| potential.cutoff(n / kinds, n % kinds));
+        let limits = cutoffs.map(|c| c * c).collect();
+        let list = list_at(body, &potential, &body.at_rest(), simd);
         let blocks = list.blocks();
-        let at = list.positions();
-        for (t, lines) in (0..blocks).flat_map(|b| list.tiles(b)) {
-            for (l, &slot) in list.slots(t).iter().enumerate() {
-                let x = at[t * TILE + l];
-                let near = |j: u32| -> bool {
-                    let y = at[j as usize];
-                    (0..D).map(|a| (y[a] - x[a]).powi(2)).sum::<f64>() < cutoff * cutoff
-                };
-                let count = lines.iter().filter(|line| near(line[l])).count();
-                family[slot as usize] = count.min(u16::MAX as usize) as u16;
-            }
-        }
-        CurrentAtoms {
+        let mut made = CurrentAtoms {
             body: body.identity,
             simd,
             potential,
-            cutoff,
+            limits,
             list,
             faults: PerBlock::new(blocks, None),
             sums: PerBlock::sums(blocks),
-            family,
+            family: vec![],
             curvatures: Curvatures::default(),
+        };
+        let mut family = vec![0u16; body.len];
+        made.each_near(|near| {
+            let count = &mut family[near.slot];
+            *count = count.saturating_add(1);
+        });
+        made.family = family;
+        made
+    }
+
+    /// Visits every pair of an atom with another, or an image of one, that is within their cut-off at the positions of the list.
+    fn each_near(&self, mut visit: impl FnMut(NearPair<D, P>)) {
+        let at = self.list.positions();
+        let kinds = self.potential.kinds();
+        for tile in (0..self.list.blocks()).flat_map(|b| self.list.tiles_of_kinds(b)) {
+            for (l, &slot) in self.list.slots(tile.number).iter().enumerate() {
+                let x = at[tile.number * TILE + l];
+                for kind in 0..kinds {
+                    let Some(potential) = self.potential.of(tile.kind, kind) else {
+                        continue;
+                    };
+                    let limit = self.limits[tile.kind * kinds + kind];
+                    for line in tile.of_kind(kind) {
+                        let z = at[line[l] as usize];
+                        let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
+                        let q: f64 = y.iter().map(|c| c * c).sum();
+                        let Some(other) = self.list.original(line[l] as usize) else {
+                            continue;
+                        };
+                        if q >= limit {
+                            continue;
+                        }
+                        visit(NearPair {
+                            potential,
+                            unlike: tile.kind != kind,
+                            slot: slot as usize,
+                            other,
+                            y,
+                            q,
+                            slopes: [x[3], z[3]],
+                        });
+                    }
+                }
+            }
         }
     }
 
@@ -85,7 +121,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             list,
             position: position.cast(),
             potential: &self.potential,
-            limit: self.cutoff * self.cutoff,
+            limits: &self.limits,
         }
     }
 
@@ -122,10 +158,30 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
 }
 
 /// A list for the displacements `u`.
-fn list_at<const D: usize>(body: &Body<D>, cutoff: f64, u: &Field<D>, simd: Simd) -> NearList<D> {
-    let mut list = NearList::new(body, cutoff, SKIN * cutoff);
+fn list_at<const D: usize, P: Potential>(
+    body: &Body<D>,
+    potential: &Mixture<P>,
+    u: &Field<D>,
+    simd: Simd,
+) -> NearList<D> {
+    let reaches = Reaches::new(potential.kinds(), |i, j| potential.cutoff(i, j));
+    let skin = SKIN * reaches.longest();
+    let mut list = NearList::of_kinds(body, reaches, skin);
     list.update(body, u, simd);
     list
+}
+
+/// An atom and one that is near to it.
+struct NearPair<'a, const D: usize, P> {
+    potential: &'a P,
+    unlike: bool,
+    slot: usize,
+    other: usize,
+    /// From the first to the second (length), and its square.
+    y: [f64; D],
+    q: f64,
+    /// The fourth numbers of both.
+    slopes: [f64; 2],
 }
 
 impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
@@ -169,14 +225,14 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         if let Some(position) = self.list.positions_at(u, self.simd) {
             self.see(body, &self.list, &position, out);
         } else {
-            let list = list_at(body, self.cutoff, u, self.simd);
+            let list = list_at(body, &self.potential, u, self.simd);
             self.see(body, &list, list.positions(), out);
         }
     }
 
     fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
         self.check(body, &[]);
-        let list = list_at(body, self.cutoff, &body.at_rest(), self.simd);
+        let list = list_at(body, &self.potential, &body.at_rest(), self.simd);
         let mut position = list.positions().to_vec();
         // what is nowhere stays there
         for x in position.iter_mut().filter(|x| x[0].is_finite()) {
@@ -209,36 +265,27 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
         visit: &mut dyn FnMut(BondTangent<D>),
     ) {
         self.ready(body, u);
-        let at = self.list.positions();
         let mut density = vec![0.0; if P::EMBEDDED { body.len } else { 0 }];
-        for (t, lines) in (0..self.list.blocks()).flat_map(|b| self.list.tiles(b)) {
-            for (l, &slot) in self.list.slots(t).iter().enumerate() {
-                let i = slot as usize;
-                let x = at[t * TILE + l];
-                for line in lines {
-                    let z = at[line[l] as usize];
-                    let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
-                    let q: f64 = y.iter().map(|c| c * c).sum();
-                    let Some(j) = self.list.original(line[l] as usize) else {
-                        continue;
-                    };
-                    if q >= self.cutoff * self.cutoff {
-                        continue;
-                    }
-                    if P::EMBEDDED {
-                        density[i] += self.potential.density(q);
-                    }
-                    visit(BondTangent::of_potential(
-                        &self.potential,
-                        [i, j],
-                        y,
-                        if P::EMBEDDED { x[3] + z[3] } else { 0.0 },
-                        2.0 / body.volume.at(i),
-                    ));
-                }
+        self.each_near(|near| {
+            if P::EMBEDDED {
+                density[near.slot] += near.potential.density(near.q);
             }
-        }
-        self.curvatures = Curvatures::of(&self.potential, &density);
+            visit(BondTangent::of_potential(
+                near.potential,
+                [near.slot, near.other],
+                near.y,
+                if P::EMBEDDED { near.slopes } else { [0.0; 2] },
+                2.0 / body.volume.at(near.slot),
+                near.unlike,
+            ));
+        });
+        let kind = |slot| match self.potential.kinds() {
+            1 => 0,
+            _ => body.material_of(slot),
+        };
+        let slots = density.iter().enumerate();
+        self.curvatures =
+            Curvatures::of(slots.map(|(slot, d)| (self.potential.own(kind(slot)), *d)));
     }
 
     fn gain(&self, slot: usize) -> f64 {
@@ -247,22 +294,11 @@ impl<const D: usize, P: Potential> Interaction<D> for CurrentAtoms<D, P> {
 
     /// Pairs of the current list that are within the cut-off now.
     fn each_bond(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
-        let at = self.list.positions();
-        for (t, lines) in (0..self.list.blocks()).flat_map(|b| self.list.tiles(b)) {
-            for line in lines {
-                for (l, &slot) in self.list.slots(t).iter().enumerate() {
-                    let (x, y) = (at[t * TILE + l], at[line[l] as usize]);
-                    let xi: [f64; D] = std::array::from_fn(|a| y[a] - x[a]);
-                    let near = xi.iter().map(|c| c * c).sum::<f64>() < self.cutoff * self.cutoff;
-                    if let Some(j) = self.list.original(line[l] as usize)
-                        && near
-                        && (slot as usize) < j
-                    {
-                        visit(slot as usize, j, xi, BondState::Whole);
-                    }
-                }
+        self.each_near(|near| {
+            if near.slot < near.other {
+                visit(near.slot, near.other, near.y, BondState::Whole);
             }
-        }
+        });
     }
 
     fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {

@@ -167,11 +167,13 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
                 &self.potential,
                 [i, original(j)],
                 y,
-                slope(i) + slope(j),
+                [slope(i), slope(j)],
                 2.0 / self.volume,
+                false,
             ));
         });
-        self.curvatures = Curvatures::of(&self.potential, &density);
+        let potential = &self.potential;
+        self.curvatures = Curvatures::of(density.iter().map(|d| (Some(potential), *d)));
     }
 
     fn each_force(

@@ -7,6 +7,7 @@ pub mod bonded;
 pub mod current;
 pub mod fan;
 pub mod fixed;
+pub mod together;
 
 use super::tangent::curvature;
 use super::{Fault, Tally};
@@ -52,8 +53,10 @@ fn bad_density<P: Potential>(
 struct Curvatures(Vec<f64>);
 
 impl Curvatures {
-    fn of<P: Potential>(potential: &P, density: &[f64]) -> Self {
-        Curvatures(density.iter().map(|d| curvature(potential, *d)).collect())
+    /// Of each slot's potential, if it has one, and density.
+    fn of<'a, P: Potential>(slots: impl Iterator<Item = (Option<&'a P>, f64)>) -> Self {
+        let each = slots.map(|(p, density)| p.map_or(0.0, |p| curvature(p, density)));
+        Curvatures(each.collect())
     }
 
     fn at(&self, slot: usize) -> f64 {

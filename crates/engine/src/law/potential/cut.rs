@@ -4,7 +4,7 @@ use super::Potential;
 use crate::columns::Dimension;
 use crate::law::descriptor::{Bounds, Key, Need, Wrong, number, word};
 use crate::law::number::{Dual, Number};
-use crate::spec::{End, Parameter, Parameters};
+use crate::spec::{End, Mixing, Parameter, Parameters};
 
 /// Keys of the end of a pair potential.
 pub const KEYS: [Key; 3] = [
@@ -82,6 +82,29 @@ impl Ends {
             }
             _ => Ok(Ends { cutoff, end }),
         }
+    }
+
+    /// Of a pair of unlike atoms, whose own these are.
+    ///
+    /// # Errors
+    /// They end in different ways.
+    pub fn mixed(self, other: Ends, rule: Mixing) -> Result<Ends, Wrong> {
+        let length = |a: f64, b: f64| match a.is_finite() && b.is_finite() {
+            true => rule.length(a, b),
+            false => f64::INFINITY,
+        };
+        let end = match (self.end, other.end) {
+            (End::Smooth(a), End::Smooth(b)) => End::Smooth(rule.length(a, b)),
+            (a, b) if a == b => a,
+            _ => {
+                let message = "the two end in different ways, which no rule mixes";
+                return Err(("end".into(), message.into()));
+            }
+        };
+        Ok(Ends {
+            cutoff: length(self.cutoff, other.cutoff),
+            end,
+        })
     }
 
     /// The other way round.
@@ -187,6 +210,11 @@ impl<P: Potential> Potential for Cut<P> {
     #[inline(always)]
     fn density<N: Number>(&self, q: N) -> N {
         self.potential.density(q)
+    }
+
+    #[inline(always)]
+    fn given<N: Number>(&self, q: N) -> N {
+        self.potential.given(q)
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use crate::law::descriptor::{Descriptor, Wrong};
 use crate::law::fan;
 use crate::law::scaled::by_dimension;
 use crate::space::lattice::LatticeKind;
-use crate::spec::{End, Parameters, PotentialSpec};
+use crate::spec::{End, Mixing, Parameters, PotentialSpec};
 
 /// The constants of a potential, by which decks and programs name it.
 pub trait Described: Sized + Send + Sync + 'static {
@@ -44,10 +44,33 @@ pub trait Described: Sized + Send + Sync + 'static {
         by_dimension(&Self::descriptor(), parameters, length, energy);
     }
 
+    /// Where the constants of unlike atoms come from.
+    const UNLIKE: Unlike = Unlike::Given;
+
+    /// Between atoms of two kinds, the first of them in the middle, by the constants that each has with its own.
+    ///
+    /// # Errors
+    /// The key of one of them that is wrong, and why.
+    fn mixed(_own: [(Self, Ends); 2], _rule: Option<Mixing>) -> Result<Self::Made, Wrong> {
+        let message = format!("{} has no rule of mixing", Self::NAME);
+        Err((String::new(), message))
+    }
+
     /// The constants at a coarser spacing that keep the reach on fixed neighbours, where the form of the potential allows it.
     fn keeping_reach(&self, _: &KeptReach) -> Option<Self> {
         None
     }
+}
+
+/// Where the constants of pairs of unlike atoms come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unlike {
+    /// They are given.
+    Given,
+    /// They are given, or follow by a rule of mixing.
+    Mixed,
+    /// All atoms that have the potential have it with each other.
+    Whole,
 }
 
 /// Two lattices of one kind with the same reach.

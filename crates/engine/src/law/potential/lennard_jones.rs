@@ -1,12 +1,12 @@
 //! Lennard-Jones: `φ = 4ε [(σ/r)¹² − (σ/r)⁶]` (Jones 1924; seleson2009 (5.1)).
 
 use super::cut::{self, Cut, Ends};
-use super::{Described, KeptReach, Potential};
+use super::{Described, KeptReach, Potential, Unlike};
 use crate::columns::Dimension;
 use crate::family::stencil::Stencil;
 use crate::law::descriptor::{Bounds, Descriptor, Wrong};
 use crate::law::number::Number;
-use crate::spec::Parameters;
+use crate::spec::{Mixing, Parameters};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LennardJones {
@@ -55,6 +55,20 @@ impl Described for LennardJones {
 
     fn made(self, ends: Ends) -> Cut<Self> {
         Cut::new(self, ends)
+    }
+
+    const UNLIKE: Unlike = Unlike::Mixed;
+
+    fn mixed(own: [(Self, Ends); 2], rule: Option<Mixing>) -> Result<Cut<Self>, Wrong> {
+        let Some(rule) = rule else {
+            return Err((String::new(), "no rule of mixing is given".into()));
+        };
+        let [(a, a_ends), (b, b_ends)] = own;
+        let mixed = LennardJones {
+            epsilon: rule.depth([a.epsilon, b.epsilon], [a.sigma, b.sigma]),
+            sigma: rule.length(a.sigma, b.sigma),
+        };
+        Ok(Cut::new(mixed, a_ends.mixed(b_ends, rule)?))
     }
 
     /// seleson2009 (5.3): reduced σ̄ and ε̄ by the sums over the neighbours, in any dimension.

@@ -11,10 +11,12 @@ pub mod cut;
 mod described;
 pub mod lennard_jones;
 pub mod mei;
+pub mod mixture;
 pub mod morse;
+pub mod no_potential;
 pub mod tabulated;
 
-pub use described::{Described, KeptReach, Kinds, Visitor};
+pub use described::{Described, KeptReach, Kinds, Unlike, Visitor};
 pub(crate) use described::{look_up, make};
 
 use super::number::Number;
@@ -28,9 +30,10 @@ pub fn each(kinds: &mut impl Kinds) {
     kinds.kind::<born_mayer::BornMayer>();
     kinds.kind::<tabulated::Eam>();
     kinds.kind::<mei::EamForm>();
+    kinds.kind::<no_potential::NoPotential>();
 }
 
-/// An interatomic potential of one kind of atom.
+/// An interatomic potential of one kind of atom, or of a pair of kinds ([`mixture`]).
 pub trait Potential: Clone + Send + Sync + 'static {
     /// Is there a density f and an embedding energy F?
     const EMBEDDED: bool = false;
@@ -62,6 +65,12 @@ pub trait Potential: Clone + Send + Sync + 'static {
     #[inline(always)]
     fn both<N: Number>(&self, q: N) -> [N; 2] {
         [self.pair(q), self.density(q)]
+    }
+
+    /// Density that the first of a pair of unlike atoms adds at the second, as f is what the second adds at the first.
+    #[inline(always)]
+    fn given<N: Number>(&self, q: N) -> N {
+        self.density(q)
     }
 
     /// Embedding energy F (energy) of the density ρ.
@@ -97,6 +106,10 @@ impl<P: Potential> Potential for Arc<P> {
     #[inline(always)]
     fn both<N: Number>(&self, q: N) -> [N; 2] {
         (**self).both(q)
+    }
+    #[inline(always)]
+    fn given<N: Number>(&self, q: N) -> N {
+        (**self).given(q)
     }
     #[inline(always)]
     fn embedding<N: Number>(&self, density: N) -> N {

@@ -1,6 +1,6 @@
 //! Constants of all materials of a body, from the spec.
 
-use super::shelf::{AnyPotential, Shelf};
+use super::shelf::{AnyPotentials, Shelf};
 use crate::error::BuildError;
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
@@ -14,7 +14,7 @@ pub(in crate::run) enum Laws {
     Solid(Vec<Solid>),
     /// Micromodulus of linear springs.
     Springs(f64),
-    Atoms(AnyPotential),
+    Atoms(AnyPotentials),
     /// Of the points in order of their ids.
     Micromoduli(Arc<AnyLinearBody>),
 }
@@ -84,8 +84,8 @@ pub(super) fn constants<const D: usize>(
                 springs.push(c(stiffness));
                 (c(stiffness), 0.0)
             }
-            LawSpec::Atoms(potential) => {
-                atoms.push(potential);
+            LawSpec::Atoms(_) => {
+                atoms.push(n);
                 (1.0, 0.0)
             }
             LawSpec::Micromoduli(body) => {
@@ -133,12 +133,6 @@ pub(super) fn constants<const D: usize>(
         )
         .help("give all materials the same springs"));
     }
-    if atoms.iter().any(|p| *p != atoms[0]) {
-        return Err(
-            BuildError::unsupported("materials", "atoms of unlike potentials in one body")
-                .help("give all materials the same potential: a potential knows one kind of atom"),
-        );
-    }
     if given.iter().any(|b| !Arc::ptr_eq(b, given[0])) {
         return Err(BuildError::unsupported(
             "materials",
@@ -146,8 +140,8 @@ pub(super) fn constants<const D: usize>(
         )
         .help("give all materials the micromoduli of the same body"));
     }
-    let laws = if let Some(potential) = atoms.pop() {
-        Laws::Atoms(shelf.potential(potential)?)
+    let laws = if let Some(potentials) = shelf.potentials(spec)? {
+        Laws::Atoms(potentials)
     } else if let Some(body) = given.pop() {
         Laws::Micromoduli(body.clone())
     } else if let Some(c) = springs.pop() {

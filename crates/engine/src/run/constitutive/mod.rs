@@ -18,7 +18,7 @@ use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
 pub(super) use pairs::contact_stiffness;
-pub(super) use shelf::AnyPotential;
+pub(super) use shelf::AnyPotentials;
 pub use shelf::Shelf;
 use std::sync::Arc;
 use toughness::toughness;

@@ -16,6 +16,14 @@ names! {
     PlaneName { Stress, Strain }
     LatticeName { Chain, Square, Triangular, Cubic, Bcc, Fcc, Diamond }
     AxisName { X, Y, Z }
+    MixingName {
+        /// σ = ½(σ_i + σ_j), ε = √(ε_i ε_j).
+        Arithmetic,
+        /// σ = √(σ_i σ_j), ε = √(ε_i ε_j).
+        Geometric,
+        /// σ⁶ = ½(σ_i⁶ + σ_j⁶), ε = 2 √(ε_i ε_j) σ_i³ σ_j³ / (σ_i⁶ + σ_j⁶).
+        Sixthpower,
+    }
     InterfaceName {
         /// Harmonic mean: the two half bonds in series.
         Series,

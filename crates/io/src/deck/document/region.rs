@@ -49,6 +49,16 @@ pub struct Set {
     pub mark: Option<At<Mark>>,
     /// Points where this expression of x, y, z is not 0, such as "noise(x/l, y/l, 0) > 0.2".
     pub r#where: Option<Number>,
+    /// Points drawn at random.
+    pub random: Option<At<Drawn>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drawn {
+    /// How many of all points, from 0 to 1; the nearest whole number of them.
+    pub part: Number,
+    pub seed: u64,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

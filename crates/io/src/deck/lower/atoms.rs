@@ -2,14 +2,17 @@
 
 use super::Files;
 use super::context::{Context, Result};
-use crate::deck::document::{Body, Document, Given, Material, Thermal};
+use crate::deck::document::{Document, Given, Law, Material, MixingName, Thermal};
+use crate::deck::error::nearest;
 use crate::deck::units::{BOLTZMANN, Dim, UnitSystem};
 use crate::deck::value::{At, Number, Written};
+use crate::read::eam::EamFile;
 use peridyne::law::descriptor::{Key, Need, Value};
 use peridyne::law::{fan, scaled};
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, BondedSpec, LawSpec, Parameter, PotentialSpec, TableSpec, ThermalSpec,
+    Acting, ActingSpec, BodySpec, BondedSpec, LawSpec, Mixing, Parameter, PartnerTable,
+    PotentialSpec, TableSpec, ThermalSpec,
 };
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -18,42 +21,62 @@ use std::sync::Arc;
 const EV: f64 = 1.602176634e-19;
 const AVOGADRO: f64 = 6.02214076e23;
 
-/// A potential, and the mass of its atoms where its file says it.
+/// The potential of a material, and what files say of its atoms.
 pub(super) struct AtomsPotential {
     pub spec: PotentialSpec,
-    /// Name of the atoms where its file says it.
+    /// Name of the atoms.
     pub element: Option<String>,
     pub mass: Option<f64>,
 }
 
-/// The potential of the deck's material, if it is one of atoms.
-pub(super) fn potential(
+/// Potentials of materials by their names.
+pub(super) type AtomsPotentials = BTreeMap<String, AtomsPotential>;
+
+/// The potentials of the deck's materials, if they are atoms.
+pub(super) fn potentials(
     context: &Context,
     written: &BTreeMap<String, At<Material>>,
     body: &BodySpec,
     files: &Files,
-) -> Result<Option<AtomsPotential>> {
+) -> Result<AtomsPotentials> {
     let shelf = Shelf::standard();
-    let mut laws = written.values().map(|m| &m.value.law);
-    let Some(law) = laws.find(|law| shelf.is_potential(&law.value.name)) else {
-        return Ok(None);
-    };
-    if written.len() > 1 {
+    let is_potential = |m: &At<Material>| shelf.is_potential(&m.value.law.value.name);
+    if !written.values().any(is_potential) {
+        return Ok(AtomsPotentials::new());
+    }
+    if let Some(other) = written.values().find(|m| !is_potential(m)) {
         return Err(context.error_with(
-            &law.span,
-            "a body of atoms has one material",
-            "one kind of atom at a time: give a single [material]",
+            &other.value.law.span,
+            "some materials are atoms and this one is not",
+            "all materials of a body use the same kind of law: give this one an interatomic potential",
         ));
     }
+    let tables = Tables::of(context, written, files)?;
+    let mut all = AtomsPotentials::new();
+    for (name, material) in written {
+        let found = potential(context, &material.value.law, body, &tables)?;
+        all.insert(name.clone(), found);
+    }
+    Ok(all)
+}
+
+/// A written potential.
+fn potential(
+    context: &Context,
+    law: &At<Law>,
+    body: &BodySpec,
+    tables: &Tables,
+) -> Result<AtomsPotential> {
+    let shelf = Shelf::standard();
     let of_file = RefCell::new((None, None));
     let element = law.value.word("element");
     let mut read = super::law::read(context, law, |file, key| {
         if let Value::Entries(columns) = key.value {
-            let (rows, element) = entries(context, file, element, columns, files)?;
+            let (rows, element) = tables.entries(context, file, element, columns)?;
             of_file.replace((Some(element), None));
             return Ok(Parameter::Rows(rows));
         }
-        let (table, element, mass) = table(context, file, element, files)?;
+        let (table, element, mass) = tables.of_element(context, file, element)?;
         of_file.replace((Some(element), mass));
         Ok(Parameter::Table(Arc::new(table)))
     })?;
@@ -62,46 +85,13 @@ pub(super) fn potential(
     }
     let (element, mass) = of_file.into_inner();
     match read.look_up(context)? {
-        LawSpec::Atoms(spec) => Ok(Some(AtomsPotential {
+        LawSpec::Atoms(spec) => Ok(AtomsPotential {
             spec,
             element,
             mass,
-        })),
+        }),
         _ => Err(context.error(&law.span, "this law is no potential")),
     }
-}
-
-/// Rows of the constants of one element in computed units, and its name.
-fn entries(
-    context: &Context,
-    written: &At<String>,
-    element: Option<&At<String>>,
-    columns: &'static [Key],
-    files: &Files,
-) -> Result<(Vec<Vec<f64>>, String)> {
-    let all = files.entries(context, written, columns)?;
-    let names = crate::read::entries::names(&all);
-    let known = names.join(", ");
-    let name = match element {
-        Some(name) if names.contains(&&*name.value) => name.value.clone(),
-        Some(name) => {
-            let message = format!(
-                "no element `{}` in {}; it has {known}",
-                name.value, written.value
-            );
-            return Err(context.error(&name.span, message));
-        }
-        None if names.len() == 1 => names[0].to_string(),
-        None => {
-            let message = format!("{} has several elements: {known}", written.value);
-            let help = format!("add element = \"{}\"", names[0]);
-            return Err(context.error_with(&written.span, message, help));
-        }
-    };
-    let (angstrom, ev) = metal(context);
-    let mut rows = crate::read::entries::rows(&all, &[&name]);
-    scaled::rows(columns, &mut rows, angstrom, ev);
-    Ok((rows, name))
 }
 
 /// Å and eV in computed units; 1 where these have no size.
@@ -112,53 +102,235 @@ fn metal(context: &Context) -> (f64, f64) {
     }
 }
 
-/// The tables of a file in computed units, and name and mass of their element.
-fn table(
-    context: &Context,
-    written: &At<String>,
-    element: Option<&At<String>>,
-    files: &Files,
-) -> Result<(TableSpec, String, Option<f64>)> {
-    let file = files.eam(context, written)?;
-    let element = match element {
-        Some(name) => file
-            .element(&name.value)
-            .map_err(|error| context.error(&name.span, error.to_string()))?,
-        None if file.elements.len() == 1 => 0,
-        None => {
-            let names: Vec<_> = file.elements.iter().map(|e| &*e.name).collect();
-            return Err(context.error_with(
-                &written.span,
-                format!(
-                    "{} has several elements: {}",
-                    written.value,
-                    names.join(", ")
-                ),
-                format!("add element = \"{}\"", names[0]),
-            ));
+/// Files of potentials. All funcfl files of a deck, an element each, are one potential.
+struct Tables<'a> {
+    files: &'a Files<'a>,
+    mixed: Option<EamFile>,
+    /// The elements of materials that have the same law of the same file, in order of the materials.
+    elements: Vec<&'a At<String>>,
+}
+
+impl<'a> Tables<'a> {
+    fn of(
+        context: &Context,
+        written: &'a BTreeMap<String, At<Material>>,
+        files: &'a Files<'a>,
+    ) -> Result<Self> {
+        let laws = written.values().map(|m| &m.value.law.value);
+        let file = |law: &'a Law| law.word("file").map(|f| &f.value);
+        let first = laws.clone().next();
+        let alike =
+            |law: &'a Law| first.is_some_and(|f| f.name == law.name && file(f) == file(law));
+        let elements = match laws.clone().all(alike) {
+            true => laws.clone().map(|law| law.word("element")).collect(),
+            false => None,
+        };
+        let named = laws.filter_map(|law| law.word("file"));
+        let mut funcfl: Vec<&At<String>> = vec![];
+        for file in named.filter(|f| Files::is_funcfl(&f.value)) {
+            if funcfl.iter().all(|f| f.value != file.value) {
+                funcfl.push(file);
+            }
         }
-    };
-    let (angstrom, ev) = metal(context);
-    let mass = match context.units {
-        UnitSystem::Si => Some(1e-3 / AVOGADRO),
-        UnitSystem::Metal(_) => Some(context.units.plain_factor(Dim::MASS)),
-        UnitSystem::Lj | UnitSystem::None => None,
-    };
-    let pair = &file.pair[crate::read::eam::EamFile::pair_index(element, element)];
-    let table = TableSpec {
+        let mixed = match funcfl.len() > 1 {
+            true => Some(files.funcfl(context, &funcfl)?),
+            false => None,
+        };
+        Ok(Tables {
+            files,
+            mixed,
+            elements: elements.unwrap_or_default(),
+        })
+    }
+
+    /// Rows of the constants of an element in computed units, and its name; of several materials of one file those of all.
+    fn entries(
+        &self,
+        context: &Context,
+        written: &At<String>,
+        element: Option<&At<String>>,
+        columns: &'static [Key],
+    ) -> Result<(Vec<Vec<f64>>, String)> {
+        let all = self.files.entries(context, written, columns)?;
+        let names = crate::read::entries::names(&all);
+        let known = names.join(", ");
+        let name = match element {
+            Some(name) if names.contains(&&*name.value) => name.value.clone(),
+            Some(name) => {
+                let message = format!(
+                    "no element `{}` in {}; it has {known}",
+                    name.value, written.value
+                );
+                return Err(context.error(&name.span, message));
+            }
+            None if names.len() == 1 => names[0].to_string(),
+            None => {
+                let message = format!("{} has several elements: {known}", written.value);
+                let help = format!("add element = \"{}\"", names[0]);
+                return Err(context.error_with(&written.span, message, help));
+            }
+        };
+        let (angstrom, ev) = metal(context);
+        let kinds: Vec<&str> = match self.elements.len() {
+            0 | 1 => vec![&name],
+            _ => self.elements.iter().map(|e| &*e.value).collect(),
+        };
+        let mut rows = crate::read::entries::rows(&all, &kinds);
+        scaled::rows(columns, &mut rows, angstrom, ev);
+        Ok((rows, name))
+    }
+
+    /// The tables of a file in computed units, and name and mass of their element.
+    fn of_element(
+        &self,
+        context: &Context,
+        written: &At<String>,
+        element: Option<&At<String>>,
+    ) -> Result<(TableSpec, String, Option<f64>)> {
+        let own = self.files.eam(context, written)?;
+        let element = match element {
+            Some(name) => own
+                .element(&name.value)
+                .map_err(|error| context.error(&name.span, error.to_string()))?,
+            None if own.elements.len() == 1 => 0,
+            None => {
+                let names: Vec<_> = own.elements.iter().map(|e| &*e.name).collect();
+                return Err(context.error_with(
+                    &written.span,
+                    format!(
+                        "{} has several elements: {}",
+                        written.value,
+                        names.join(", ")
+                    ),
+                    format!("add element = \"{}\"", names[0]),
+                ));
+            }
+        };
+        let (angstrom, ev) = metal(context);
+        let mass = match context.units {
+            UnitSystem::Si => Some(1e-3 / AVOGADRO),
+            UnitSystem::Metal(_) => Some(context.units.plain_factor(Dim::MASS)),
+            UnitSystem::Lj | UnitSystem::None => None,
+        };
+        let atom = own.elements[element].clone();
+        let place = |file: &EamFile| file.elements.iter().position(|e| e.name == atom.name);
+        let mixed = self
+            .mixed
+            .as_ref()
+            .filter(|_| Files::is_funcfl(&written.value));
+        let table = match mixed.and_then(|file| Some((file, place(file)?))) {
+            Some((file, element)) => table(file, element),
+            None => table(&own, element),
+        };
+        Ok((
+            table.scaled(angstrom, ev),
+            atom.name,
+            mass.map(|m| m * atom.mass),
+        ))
+    }
+}
+
+/// What a file has of an element.
+fn table(file: &EamFile, element: usize) -> TableSpec {
+    let others = (0..file.elements.len()).filter(|e| *e != element);
+    let pair = |other| file.pair[EamFile::pair_index(element, other)].clone();
+    TableSpec {
         density_step: file.drho,
         embedding: file.embedding[element].clone(),
         step: file.dr,
-        density: file.density[element].clone(),
-        pair: pair.clone(),
+        density: file.density_of(element, element).to_vec(),
+        pair: pair(element),
         cutoff: file.cutoff,
+        element: file.elements[element].name.clone(),
+        partners: others
+            .map(|other| PartnerTable {
+                element: file.elements[other].name.clone(),
+                density: file.density_of(other, element).to_vec(),
+                pair: pair(other),
+            })
+            .collect(),
+    }
+}
+
+/// Potentials between materials, `[[pair]]`.
+pub(super) fn pairs(
+    context: &Context,
+    document: &Document,
+    body: &BodySpec,
+    potentials: &AtomsPotentials,
+    files: &Files,
+) -> Result<Vec<ActingSpec>> {
+    let mut all = vec![];
+    for at in &document.pair {
+        let pair = &at.value;
+        if potentials.is_empty() {
+            return Err(context.error_with(
+                &at.span,
+                "[[pair]] is for atoms, and the material is none",
+                "give the materials interatomic potentials as laws",
+            ));
+        }
+        let [a, b] = &pair.between.value[..] else {
+            let found = pair.between.value.len();
+            return Err(context.error_with(
+                &pair.between.span,
+                format!("a pair is between two materials, here are {found}"),
+                "write between = [\"A\", \"B\"], names of [material.NAME]",
+            ));
+        };
+        let place = |name: &At<String>| {
+            let found = potentials.keys().position(|known| *known == name.value);
+            found.ok_or_else(|| {
+                let known: Vec<&str> = potentials.keys().map(|k| k.as_str()).collect();
+                let help = match nearest(&name.value, known.iter().copied()) {
+                    Some(near) => format!("did you mean \"{near}\"?"),
+                    None => format!("materials: {}", known.join(", ")),
+                };
+                let message = format!("there is no material \"{}\"", name.value);
+                context.error_with(&name.span, message, help)
+            })
+        };
+        if !Shelf::standard().is_potential(&pair.law.value.name) {
+            return Err(context.error_with(
+                &pair.law.span,
+                format!("{} is no potential between atoms", pair.law.value.name),
+                "`peridyne laws` lists them: those that begin with \"Atoms\"",
+            ));
+        }
+        let tables = Tables {
+            files,
+            mixed: None,
+            elements: vec![],
+        };
+        all.push(ActingSpec {
+            potential: potential(context, &pair.law, body, &tables)?.spec,
+            on: Acting::Between([place(a)?, place(b)?]),
+        });
+    }
+    Ok(all)
+}
+
+/// The rule of mixing.
+pub(super) fn mixing(
+    context: &Context,
+    document: &Document,
+    potentials: &AtomsPotentials,
+) -> Result<Option<Mixing>> {
+    let Some(written) = &document.mixing else {
+        return Ok(None);
     };
-    let atom = &file.elements[element];
-    Ok((
-        table.scaled(angstrom, ev),
-        atom.name.clone(),
-        mass.map(|m| m * atom.mass),
-    ))
+    if potentials.len() < 2 {
+        return Err(context.error_with(
+            &written.span,
+            "mixing is for several kinds of atoms",
+            "leave it out, or write [material.NAME] with an interatomic potential for each kind",
+        ));
+    }
+    Ok(Some(match written.value {
+        MixingName::Arithmetic => Mixing::Arithmetic,
+        MixingName::Geometric => Mixing::Geometric,
+        MixingName::Sixthpower => Mixing::SixthPower,
+    }))
 }
 
 /// Plain numbers of atoms are hardly ever in metres and joules: the deck must say in which units they are.
@@ -168,8 +340,8 @@ pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<(
     }
     let shelf = Shelf::standard();
     let mut numbers = vec![];
-    for material in document.material.values() {
-        let law = &material.value.law.value;
+    let of_materials = document.material.values().map(|m| &m.value.law.value);
+    for law in of_materials.chain(document.pair.iter().map(|p| &p.value.law.value)) {
         let Some(descriptor) = shelf.descriptor(&law.name) else {
             continue;
         };
@@ -197,33 +369,52 @@ pub(super) fn units_are_said(context: &Context, document: &Document) -> Result<(
     }
 }
 
-/// What a file of atoms means for the potential: it must be one kind of atom, whose mass the file may know.
+/// What a file of atoms means for the potentials: it may know masses and names.
 pub(super) fn of_file(
     context: &Context,
-    body: &At<Body>,
-    potential: Option<&mut AtomsPotential>,
+    document: &Document,
+    potentials: &mut AtomsPotentials,
 ) -> Result<()> {
-    let (Some(file), Some(written)) = (&context.atoms, &body.value.file) else {
+    let (Some(file), Some(written)) = (&context.atoms, &document.body.value.file) else {
         return Ok(());
     };
-    let Some(potential) = potential else {
+    if potentials.is_empty() {
         return Err(context.error_with(
             &written.span,
             "the file is one of atoms, without volumes",
             "give the material an interatomic potential, or take points with volumes (LAMMPS: atom_style peri)",
         ));
+    }
+    let species = |name: &str| file.species.iter().find(|s| s.name == *name);
+    let kinds = || {
+        let names: Vec<&str> = file.species.iter().map(|s| s.name.as_str()).collect();
+        names.join(", ")
     };
-    if file.species.len() > 1 {
-        return Err(context.error(
+    for (name, potential) in potentials.iter_mut() {
+        let material = &document.material[name].value;
+        let found = match (&material.set, &file.species[..]) {
+            (_, [only]) => Some(only),
+            (Some(set), _) => species(&set.value),
+            (None, _) => species(name),
+        };
+        if let Some(found) = found {
+            potential.mass = found.mass.or(potential.mass);
+            if found.name.parse::<u32>().is_err() && potential.element.is_none() {
+                potential.element = Some(found.name.clone());
+            }
+        }
+    }
+    if potentials.len() == 1 && file.species.len() > 1 {
+        return Err(context.error_with(
             &written.span,
             format!(
-                "the file has {} kinds of atoms ({}); a potential knows one",
+                "the file has {} kinds of atoms ({}), and there is one material",
                 file.species.len(),
-                file.species.join(", ")
+                kinds()
             ),
+            "write [material.NAME] for each kind: a kind is a set of its name, or of the number of its type",
         ));
     }
-    potential.mass = file.mass.or(potential.mass);
     Ok(())
 }
 

@@ -114,7 +114,9 @@ pub(super) fn body(
             }
             if let Some(atoms) = &mut context.atoms {
                 let mass = context.units.plain_factor(Dim::MASS);
-                atoms.mass = atoms.mass.map(|m| m * mass);
+                for species in &mut atoms.species {
+                    species.mass = species.mass.map(|m| m * mass);
+                }
                 if atoms.from_momenta {
                     let unit = context.units.ase_velocity();
                     cloud.velocity.iter_mut().flatten().for_each(|v| *v *= unit);

@@ -62,7 +62,7 @@ pub(super) fn interfaces(
                 None => format!("{} to {}", one.name, other.name),
             },
             bodies: [one.name.clone(), other.name.clone()],
-            law: law(context, &written.law, None)?,
+            law: law(context, &written.law)?,
             horizon: match (&written.horizon, one.horizon) {
                 (Some(written), _) => horizon(context, written, &one.body)?,
                 (None, Some(own)) => own,

@@ -1,6 +1,6 @@
 //! Materials: laws, moduli, fracture.
 
-use super::atoms::AtomsPotential;
+use super::atoms::AtomsPotentials;
 use super::bodies;
 use super::context::{Context, Result};
 use crate::deck::document::{Document, Fracture, Law, Material, ReleaseName};
@@ -14,12 +14,33 @@ use peridyne::spec::{
 };
 use std::collections::BTreeMap;
 
+/// A material of atoms that names no set, where the others do, has the atoms that they leave: as a set of its name.
+pub(super) fn what_is_left(
+    document: &Document,
+    potentials: &AtomsPotentials,
+    sets: &mut Vec<SetSpec>,
+) {
+    let set_of = |name: &String| {
+        let given = document.material[name].value.set.as_ref();
+        let own = sets.iter().find(|s| s.name == *name).map(|s| &s.name);
+        given.map(|set| &set.value).or(own).cloned()
+    };
+    let (named, without): (Vec<_>, Vec<_>) = potentials.keys().partition(|n| set_of(n).is_some());
+    if let ([one], false) = (&without[..], named.is_empty()) {
+        let others = named.into_iter().filter_map(set_of).collect();
+        sets.push(SetSpec {
+            name: one.to_string(),
+            members: Members::Outside(others),
+        });
+    }
+}
+
 pub(super) fn materials(
     context: &Context,
     document: &Document,
     sets: &[SetSpec],
     body: &mut BodySpec,
-    potential: Option<&AtomsPotential>,
+    potentials: &AtomsPotentials,
 ) -> Result<Vec<MaterialSpec>> {
     let written = &document.material;
     let several = written.len() > 1;
@@ -58,7 +79,11 @@ pub(super) fn materials(
             }
             None => "all".to_string(),
         };
-        let law = law(context, &given.law, potential)?;
+        let potential = potentials.get(name);
+        let law = match potential {
+            Some(potential) => LawSpec::Atoms(potential.spec.clone()),
+            None => law(context, &given.law)?,
+        };
         // each of several bodies has one kind, which the engine sees to
         if let Some(first) = materials.first()
             && !bodies::several(document)
@@ -175,17 +200,13 @@ fn mean_density(cloud: &Cloud, set: &str, sets: &[SetSpec]) -> f64 {
     }
 }
 
-pub(super) fn law(
-    context: &Context,
-    written: &At<Law>,
-    potential: Option<&AtomsPotential>,
-) -> Result<LawSpec> {
+pub(super) fn law(context: &Context, written: &At<Law>) -> Result<LawSpec> {
     let name = &*written.value.name;
     if Shelf::standard().is_potential(name) {
-        return match potential {
-            Some(potential) => Ok(LawSpec::Atoms(potential.spec.clone())),
-            None => Err(context.error(&written.span, "the potential of the deck was not read")),
-        };
+        return Err(context.error(
+            &written.span,
+            "an interatomic potential is the law of atoms alone",
+        ));
     }
     if name == Micromoduli::NAME {
         return match &context.micromoduli {

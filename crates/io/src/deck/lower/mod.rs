@@ -66,12 +66,18 @@ impl Files<'_> {
         crate::read::points(&path, frame).map_err(|e| context.error(span, e.to_string()))
     }
 
+    /// Is this file of an embedded-atom model one of those that have an element each?
+    fn is_funcfl(name: &str) -> bool {
+        Path::new(name).extension().is_some_and(|e| e == "eam")
+    }
+
     /// The table of an embedded-atom model.
     fn eam(&self, context: &Context, file: &At<String>) -> Result<EamFile> {
         let path = self.folder.join(&file.value);
-        let read = match path.extension().is_some_and(|e| e == "eam") {
-            true => eam::funcfl(&[&path]),
-            false => eam::setfl(&path),
+        let read = match path.extension().and_then(|e| e.to_str()) {
+            Some("eam") => eam::funcfl(&[&path]),
+            Some("fs") => eam::fs(&path),
+            _ => eam::setfl(&path),
         };
         read.map_err(|e| context.error(&file.span, e.to_string()))
     }
@@ -95,12 +101,19 @@ impl Files<'_> {
         let read = crate::read::entries::entries(&self.folder.join(&file.value), &names);
         read.map_err(|e| context.error(&file.span, e.to_string()))
     }
+
+    /// Tables of several elements, a file each, as one model.
+    fn funcfl(&self, context: &Context, files: &[&At<String>]) -> Result<EamFile> {
+        let paths = files.iter().map(|f| self.folder.join(&f.value));
+        let paths: Vec<_> = paths.collect();
+        eam::funcfl(&paths).map_err(|e| context.error(&files[0].span, e.to_string()))
+    }
 }
 
 pub(super) struct Lowered {
     pub spec: Spec,
-    /// Name of the atoms, where a file says it.
-    pub species: Option<String>,
+    /// Names of the atoms of each material, where a file says it.
+    pub species: Vec<Option<String>>,
     /// Lower corner of the periods.
     pub corner: [f64; 3],
     pub output: OutputSpec,
@@ -134,13 +147,14 @@ pub(super) fn lower(
     )?;
     let mut sets = bodies::sets(&context, document, &body)?;
     sets.extend(sets::sets(&context, &document.sets, &body)?);
-    let mut potential = atoms::potential(&context, &document.material, &body, files)?;
-    if potential.is_some() {
+    let mut potentials = atoms::potentials(&context, &document.material, &body, files)?;
+    if !potentials.is_empty() {
         atoms::units_are_said(&context, document)?;
     }
-    atoms::of_file(&context, &document.body, potential.as_mut())?;
-    let materials = material::materials(&context, document, &sets, &mut body, potential.as_ref())?;
-    let current = potential.is_some()
+    atoms::of_file(&context, document, &mut potentials)?;
+    material::what_is_left(document, &potentials, &mut sets);
+    let materials = material::materials(&context, document, &sets, &mut body, &potentials)?;
+    let current = !potentials.is_empty()
         && matches!(
             document.family,
             None | Some(FamilyName::Auto | FamilyName::Neighbours)
@@ -206,6 +220,8 @@ pub(super) fn lower(
         interface: interface::rule(&context, document, &materials)?,
         interfaces: interface::interfaces(&context, document, &body)?,
         pairs: vec![],
+        potentials: atoms::pairs(&context, document, &body, &potentials, files)?,
+        mixing: atoms::mixing(&context, document, &potentials)?,
         release: material::release(&context, &document.material)?,
         volume_scaling: document.volume_scaling.unwrap_or(true),
         calibration: match document.calibration {
@@ -250,15 +266,11 @@ pub(super) fn lower(
     if let Some(surface) = &document.surface {
         spec.surface = surface_factors(&context, surface, &spec)?;
     }
-    let species = potential.and_then(|p| p.element);
+    let species = potentials.into_values().map(|p| p.element);
     let output = schedule::output(&context, &document.output, spec.potential().is_some())?;
-    let of_body = context
-        .atoms
-        .as_ref()
-        .and_then(|a| a.species.first().cloned());
     Ok(Lowered {
         corner: periods::corner(&context, &document.body.value, &spec.body),
-        species: species.or(of_body.filter(|s| s.parse::<u32>().is_err())),
+        species: species.collect(),
         spec,
         output,
         threads: run.threads,

@@ -27,6 +27,7 @@ pub(super) fn sets(
             ("region", set.value.region.is_some()),
             ("mark", set.value.mark.is_some()),
             ("where", set.value.r#where.is_some()),
+            ("random", set.value.random.is_some()),
         ];
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
         let piece = match &set.value.body {
@@ -39,6 +40,21 @@ pub(super) fn sets(
             return Err(context.error_with(&set.span, "all points of a body", help));
         }
         let members = match (&set.value.region, &set.value.mark, &set.value.r#where) {
+            _ if let Some(drawn) = &set.value.random => {
+                if let Some(piece) = &set.value.body {
+                    let message = "points are drawn from all bodies: leave `body` out";
+                    return Err(context.error(&piece.span, message));
+                }
+                let part = context.finite(&drawn.value.part, Dim::NUMBER)?;
+                if !(0.0..=1.0).contains(&part) {
+                    let message = format!("the part is {part}, expected a number from 0 to 1");
+                    return Err(context.error(&drawn.value.part.span, message));
+                }
+                Members::Random {
+                    part,
+                    seed: drawn.value.seed,
+                }
+            }
             (Some(shape), _, _) => Members::Region(region(context, shape)?),
             (_, Some(mark), _) => marked(context, mark, of)?,
             (_, _, Some(text)) => Members::Where(context.expression(text, Dim::NUMBER)?),

@@ -121,6 +121,7 @@ fn merge(files: &[(&str, &str)], parts: &[Part]) -> EamFile {
             .iter()
             .map(|p| resampled(&p.density, p.grid.dr, dr, nr))
             .collect(),
+        density_at: vec![],
         pair,
     }
 }

@@ -1,4 +1,4 @@
-//! Tables of embedded-atom potentials: `eam/alloy` files (setfl) and `eam` files (funcfl), as LAMMPS reads them.
+//! Tables of embedded-atom potentials: `eam/alloy` files (setfl), `eam/fs` files and `eam` files (funcfl), as LAMMPS reads them.
 //!
 //! Format: LAMMPS documentation, `pair_style eam`. Tables start at ρ = 0 and r = 0. Energies in eV, lengths in Å.
 
@@ -8,7 +8,7 @@ mod symbol;
 mod values;
 
 pub use funcfl::{funcfl, parse_funcfl};
-pub use setfl::{parse_setfl, setfl};
+pub use setfl::{fs, parse_fs, parse_setfl, setfl};
 
 use super::ReadError;
 use std::path::Path;
@@ -45,6 +45,8 @@ pub struct EamFile {
     pub embedding: Vec<Vec<f64>>,
     /// `[element][m]`: electron density that an atom of this element makes at the distance m dr.
     pub density: Vec<Vec<f64>>,
+    /// `[element][at][m]`: the same at an atom of another element, where that matters (`eam/fs`); else empty.
+    pub density_at: Vec<Vec<Vec<f64>>>,
     /// `[pair][m]`: r φ(r) at r = m dr (eV Å); pairs in the order of [`EamFile::pair_index`].
     pub pair: Vec<Vec<f64>>,
 }
@@ -54,6 +56,14 @@ impl EamFile {
     pub fn pair_index(i: usize, j: usize) -> usize {
         let (high, low) = (i.max(j), i.min(j));
         high * (high + 1) / 2 + low
+    }
+
+    /// Electron density that an atom of element `of` makes at one of element `at`.
+    pub fn density_of(&self, of: usize, at: usize) -> &[f64] {
+        match self.density_at.get(of) {
+            Some(each) => &each[at],
+            None => &self.density[of],
+        }
     }
 
     /// Place of an element by its name, exactly as written in the file.

@@ -1,5 +1,6 @@
 //! `eam/alloy` files: three comment lines; `N name…`; `Nrho drho Nr dr cutoff`; per element a line
-//! `number mass lattice_constant lattice` with its tables F and ρ; then r φ of every pair, lower triangle.
+//! `number mass lattice_constant lattice` with its tables F and ρ; then r φ of every pair, lower triangle. `eam/fs` files have a
+//! table ρ at an atom of each element instead of one (Finnis & Sinclair 1984).
 
 use super::super::ReadError;
 use super::values::Values;
@@ -16,8 +17,27 @@ pub fn setfl(path: &Path) -> Result<EamFile, ReadError> {
     parse_setfl(&text, &name)
 }
 
+/// Reads an `eam/fs` file.
+///
+/// # Errors
+/// As [`setfl`].
+pub fn fs(path: &Path) -> Result<EamFile, ReadError> {
+    let (text, name) = text_of(path)?;
+    parse_fs(&text, &name)
+}
+
 /// The same from a text; `name` is for messages.
 pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
+    parse(text, name, false)
+}
+
+/// An `eam/fs` file from a text; `name` is for messages.
+pub fn parse_fs(text: &str, name: &str) -> Result<EamFile, ReadError> {
+    parse(text, name, true)
+}
+
+fn parse(text: &str, name: &str, both_ends: bool) -> Result<EamFile, ReadError> {
+    let kind = if both_ends { "eam/fs" } else { "eam/alloy" };
     let mut values = Values::new(text, name);
     let mut comments = Vec::new();
     for _ in 0..3 {
@@ -26,7 +46,7 @@ pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
             failure(
                 name,
                 None,
-                "the file ends within its three comment lines: this is not an eam/alloy file",
+                format!("the file ends within its three comment lines: this is not an {kind} file"),
             )
         })?;
         comments.push(line.trim_end().to_string());
@@ -43,6 +63,7 @@ pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
         cutoff: grid.cutoff,
         embedding: Vec::new(),
         density: Vec::new(),
+        density_at: Vec::new(),
         pair: Vec::new(),
     };
     for element in &names {
@@ -51,8 +72,18 @@ pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
         file.elements.push(described(&values, &words, element)?);
         let what = format!("the embedding energy F of {element}");
         file.embedding.push(values.table(&what, grid.nrho)?);
-        let what = format!("the electron density of {element}");
-        file.density.push(values.table(&what, grid.nr)?);
+        if both_ends {
+            let mut each = vec![];
+            for at in &names {
+                let what = format!("the electron density of {element} at {at}");
+                each.push(values.table(&what, grid.nr)?);
+            }
+            file.density.push(each[file.density.len()].clone());
+            file.density_at.push(each);
+        } else {
+            let what = format!("the electron density of {element}");
+            file.density.push(values.table(&what, grid.nr)?);
+        }
     }
     for (i, first) in names.iter().enumerate() {
         for second in &names[..=i] {
@@ -60,7 +91,10 @@ pub fn parse_setfl(text: &str, name: &str) -> Result<EamFile, ReadError> {
             file.pair.push(values.table(&what, grid.nr)?);
         }
     }
-    values.end("; this reads eam/alloy, not eam/fs, which has a density for every pair")?;
+    values.end(match both_ends {
+        true => "",
+        false => "; this reads eam/alloy: files of eam/fs, which have a density for every pair, are named .fs",
+    })?;
     Ok(file)
 }
 

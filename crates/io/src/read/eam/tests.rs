@@ -41,6 +41,37 @@ fn an_alloy_has_its_tables() {
     assert_eq!(EamFile::pair_index(2, 1), 4);
 }
 
+/// An eam/fs file has a density at each element: element by element, F, then those.
+#[test]
+fn densities_that_know_both_ends() {
+    let row = |first: f64| -> String {
+        let values = (0..6).map(|m| format!("{} ", first + f64::from(m)));
+        values.collect::<String>() + "\n"
+    };
+    let mut text = "a\nb\nc\n2 Fe P\n6 0.1 6 0.5 2.5\n".to_string();
+    for (element, first) in [("26 55.8 2.8 BCC\n", 100.0), ("15 31 3.3 FCC\n", 200.0)] {
+        text += element;
+        for table in 0..3 {
+            text += &row(first + 10.0 * f64::from(table));
+        }
+    }
+    for pair in 0..3 {
+        text += &row(300.0 + 10.0 * f64::from(pair));
+    }
+    let file = parse_fs(&text, "toy").unwrap();
+    assert_eq!(file.embedding[1][0], 200.0);
+    let of = |of: usize, at: usize| file.density_of(of, at)[0];
+    assert_eq!(
+        [of(0, 0), of(0, 1), of(1, 0), of(1, 1)],
+        [110.0, 120.0, 210.0, 220.0]
+    );
+    assert_eq!([file.density[0][0], file.density[1][0]], [110.0, 220.0]);
+    assert_eq!(file.pair[EamFile::pair_index(1, 0)][0], 310.0);
+    assert!(parse_setfl(&text, "toy").is_err());
+    let message = setfl_to(&mut Vec::new(), &file).unwrap_err().to_string();
+    assert!(message.contains("eam/fs"), "{message}");
+}
+
 #[test]
 fn single_elements_become_one_potential_on_one_grid() {
     let one = parse_funcfl(&[(SINGLE, "toy")]).unwrap();

@@ -192,6 +192,8 @@ fn equations_meet_the_points_to_the_next_order() {
         density: table(0.25, &|r| (-1.2 * r).exp()),
         pair: table(0.25, &|r| 3.0 * r * (-4.0 * r).exp()),
         cutoff: 2.3,
+        element: "X".into(),
+        partners: vec![],
     });
     let chain = PotentialChain::new(eam, 1.0, Reach::Cutoff).unwrap();
     meets_the_points("a table", &chain, 1.05, &[30.0, 20.0, 12.0]);

@@ -1,7 +1,7 @@
 //! Making the list anew: atoms wrapped into the box, in order of cells, with their ghosts, and who is near to whom.
 
 use super::cells::{Cells, Extent, Sorted};
-use super::{BLOCK, NearList, atoms_of, ghosts, position};
+use super::{BLOCK, NOBODY, NearList, Reaches, Tile, atoms_of, ghosts, position};
 use crate::body::{Body, Field};
 use crate::execute::blocks::{PerBlock, Shared, for_each_piece, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -15,30 +15,42 @@ const NOWHERE: f64 = 1e30;
 pub(super) struct Block {
     /// `[lines]` neighbours.
     lines: Vec<[u32; TILE]>,
-    /// Where each tile's lines end.
+    /// `[tile][kind]`: where its lines of neighbours of each kind end.
     ends: Vec<u32>,
 }
 
 impl Block {
-    /// The lines of its tiles.
+    /// Its tiles, the first of which has this number; `kind` are those of all atoms, if there are several.
     #[inline(always)]
-    pub fn tiles(&self) -> impl Iterator<Item = &[[u32; TILE]]> {
+    pub fn tiles<'a>(
+        &'a self,
+        kinds: usize,
+        first: usize,
+        kind: &'a [u8],
+    ) -> impl Iterator<Item = Tile<'a>> {
         let mut start = 0;
-        self.ends.iter().map(move |&end| {
-            let lines = &self.lines[start..end as usize];
-            start = end as usize;
-            lines
+        let each = self.ends.chunks_exact(kinds).enumerate();
+        each.map(move |(n, ends)| {
+            let begin = start;
+            start = ends[kinds - 1] as usize;
+            Tile {
+                number: first + n,
+                kind: kind.get((first + n) * TILE).map_or(0, |k| usize::from(*k)),
+                lines: &self.lines[begin..start],
+                ends,
+                start: begin,
+            }
         })
     }
 
     /// The lines of one of them.
     #[inline(always)]
-    pub fn tile(&self, n: usize) -> &[[u32; TILE]] {
+    pub fn tile(&self, n: usize, kinds: usize) -> &[[u32; TILE]] {
         let first = match n {
             0 => 0,
-            n => self.ends[n - 1] as usize,
+            n => self.ends[n * kinds - 1] as usize,
         };
-        &self.lines[first..self.ends[n] as usize]
+        &self.lines[first..self.ends[(n + 1) * kinds - 1] as usize]
     }
 
     pub fn bytes(&self) -> usize {
@@ -58,7 +70,7 @@ impl<const D: usize> NearList<D> {
         let extent = PerBlock::new(self.blocks.len(), Extent::EMPTY);
         let extent = extent.fold(simd, &wrap, Extent::add);
         let cells = Cells::new(base.len(), &extent, self.reach, &self.period);
-        self.arrange(&cells, &base, &body.slots, u);
+        self.arrange(&cells, &base, body, u);
 
         // ghosts, and what is nowhere
         let own = self.order.len();
@@ -71,6 +83,14 @@ impl<const D: usize> NearList<D> {
         self.position.resize(all + 1, [NOWHERE * self.reach; 4]);
         ghosts::refresh(&self.ghosts, self.first_ghost(), &mut self.position);
 
+        if self.kinds() > 1 {
+            // ghosts are of the kind of what they copy, what is nowhere of any
+            self.kind.resize(self.first_ghost(), 0);
+            let ghosts = self.ghosts.iter().map(|g| self.kind[g.of as usize]);
+            let ghosts: Vec<u8> = ghosts.collect();
+            self.kind.extend(ghosts);
+            self.kind.push(0);
+        }
         let gap = self.first_ghost() - own;
         let atom = |n: usize| if n < own { n } else { n + gap };
         let mut sorted = cells.sort(own + self.ghosts.len(), |n| self.position[atom(n)]);
@@ -92,7 +112,10 @@ impl<const D: usize> NearList<D> {
             sorted: &sorted,
             at: &at,
             position: &self.position,
-            own,
+            order: &self.order,
+            kind: &self.kind,
+            reaches: &self.reaches,
+            skin: self.skin,
             square: self.reach * self.reach,
             blocks: Shared(blocks.as_mut_ptr()),
         };
@@ -103,29 +126,59 @@ impl<const D: usize> NearList<D> {
         self.builds += 1;
     }
 
-    /// Put own atoms in order of cells.
-    fn arrange(&mut self, cells: &Cells<D>, base: &[[f64; 4]], slots: &[u32], u: &Field<D>) {
-        let order = cells
+    /// Put own atoms in order of kinds, and those of a kind in order of cells.
+    fn arrange(&mut self, cells: &Cells<D>, base: &[[f64; 4]], body: &Body<D>, u: &Field<D>) {
+        let slots = &body.slots;
+        let mut order = cells
             .sort(base.len(), |n| position(&base[n], u, slots[n]))
             .item;
+        if self.kinds() > 1 {
+            let kind_of = |n: u32| body.material_of(slots[n as usize] as usize) as u8;
+            (order, self.kind) = in_tiles_of_a_kind(&order, self.kinds(), kind_of);
+        }
+        let nowhere = NOWHERE * self.reach;
         self.base.resize(order.len(), [0.0; 4]);
         for_each_piece(&mut self.base, |first, piece| {
             for (b, n) in piece.iter_mut().zip(&order[first..]) {
-                *b = base[*n as usize];
+                *b = base.get(*n as usize).copied().unwrap_or([nowhere; 4]);
             }
         });
         self.order = order;
         for_each_piece(&mut self.order, |_, piece| {
-            piece.iter_mut().for_each(|n| *n = slots[*n as usize]);
+            for n in piece {
+                *n = slots.get(*n as usize).copied().unwrap_or(NOBODY);
+            }
         });
         self.then.resize(self.order.len(), [0.0; 4]);
         for_each_piece(&mut self.then, |first, piece| {
             let atoms = self.base[first..].iter().zip(&self.order[first..]);
             for (y, (base, slot)) in piece.iter_mut().zip(atoms) {
-                *y = position(base, u, *slot);
+                *y = match *slot {
+                    NOBODY => *base,
+                    slot => position(base, u, slot),
+                };
             }
         });
     }
+}
+
+/// Atoms in order of their kinds, each kind beginning a tile, with [`NOBODY`] in between; and the kinds.
+fn in_tiles_of_a_kind(
+    order: &[u32],
+    kinds: usize,
+    kind_of: impl Fn(u32) -> u8,
+) -> (Vec<u32>, Vec<u8>) {
+    let (mut atoms, mut kind) = (Vec::with_capacity(order.len() + kinds * TILE), vec![]);
+    for k in 0..kinds as u8 {
+        let whole = atoms.len().next_multiple_of(TILE);
+        let of_kind = || order.iter().copied().filter(|n| kind_of(*n) == k);
+        if of_kind().next().is_some() {
+            atoms.resize(whole, NOBODY);
+            atoms.extend(of_kind());
+        }
+        kind.resize(atoms.len(), k);
+    }
+    (atoms, kind)
 }
 
 /// What to add to displacements so that atoms are inside the box, by id, and how far they reach.
@@ -166,7 +219,10 @@ struct Find<'a, const D: usize> {
     /// `[D][sorted]`, with room to read a whole tile at the end.
     at: &'a [Vec<f64>; D],
     position: &'a [[f64; 4]],
-    own: usize,
+    order: &'a [u32],
+    kind: &'a [u8],
+    reaches: &'a Reaches,
+    skin: f64,
     square: f64,
     blocks: Shared<Block>,
 }
@@ -207,6 +263,30 @@ impl<const D: usize> Find<'_, D> {
                 k += TILE;
             }
         }
+        if self.reaches.kinds > 1 {
+            self.by_kind(i, row);
+        }
+    }
+
+    /// Of a row those that the kinds reach, in order of their kinds.
+    fn by_kind(&self, i: usize, row: &mut Vec<u32>) {
+        row.retain(|&j| {
+            let j = j as usize;
+            let reach = self.reaches.between(self.kind[i], self.kind[j]);
+            let (x, y) = (&self.position[i], &self.position[j]);
+            let q: f64 = (0..D).map(|a| (y[a] - x[a]).powi(2)).sum();
+            reach > 0.0 && q < (reach + self.skin).powi(2)
+        });
+        row.sort_by_key(|j| self.kind[*j as usize]);
+    }
+
+    /// Where the part of a row that begins at `from` and is of a kind ends.
+    #[inline(always)]
+    fn end_of(&self, kind: usize, row: &[u32], from: usize) -> usize {
+        if self.reaches.kinds == 1 {
+            return row.len();
+        }
+        from + row[from..].partition_point(|j| usize::from(self.kind[*j as usize]) <= kind)
     }
 }
 
@@ -220,24 +300,33 @@ impl<const D: usize> Kernel for Find<'_, D> {
         block.ends.clear();
         let nowhere = (self.position.len() - 1) as u32;
         let mut rows: [Vec<u32>; TILE] = Default::default();
-        for t in b * BLOCK..((b + 1) * BLOCK).min(self.own.div_ceil(TILE)) {
-            let mut longest = 0;
+        let own = self.order.len();
+        for t in b * BLOCK..((b + 1) * BLOCK).min(own.div_ceil(TILE)) {
             for l in 0..TILE {
                 let i = t * TILE + l;
                 rows[l].clear();
-                if i < self.own {
+                if i < own && self.order[i] != NOBODY {
                     self.row::<L>(i, &mut rows[l]);
                 }
-                longest = longest.max(rows[l].len());
             }
-            let first = block.lines.len();
-            block.lines.resize(first + longest, [nowhere; TILE]);
-            for (l, row) in rows.iter().enumerate() {
-                for (line, j) in block.lines[first..].iter_mut().zip(row) {
-                    line[l] = *j;
+            let mut from = [0; TILE];
+            for kind in 0..self.reaches.kinds {
+                let (mut to, mut longest) = ([0; TILE], 0);
+                for (l, row) in rows.iter().enumerate() {
+                    to[l] = self.end_of(kind, row, from[l]);
+                    longest = longest.max(to[l] - from[l]);
                 }
+                let first = block.lines.len();
+                block.lines.resize(first + longest, [nowhere; TILE]);
+                for (l, row) in rows.iter().enumerate() {
+                    let part = &row[from[l]..to[l]];
+                    for (line, j) in block.lines[first..].iter_mut().zip(part) {
+                        line[l] = *j;
+                    }
+                }
+                block.ends.push(block.lines.len() as u32);
+                from = to;
             }
-            block.ends.push(block.lines.len() as u32);
         }
     }
 }

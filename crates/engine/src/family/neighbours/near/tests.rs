@@ -24,8 +24,9 @@ fn check<const D: usize>(n: usize, length: f64, periodic: bool) {
         list.update(&body, &u, Simd::detect());
         let mut found = vec![];
         for b in 0..list.blocks() {
-            for (t, lines) in list.tiles(b) {
-                for line in lines {
+            for tile in list.tiles_of_kinds(b) {
+                let t = tile.number;
+                for line in tile.lines() {
                     for (l, &slot) in list.slots(t).iter().enumerate() {
                         let (p, q) = (
                             list.positions()[t * TILE + l],
@@ -84,15 +85,34 @@ fn the_list_is_that_of_all_pairs() {
     }
 }
 
+/// Materials of the points, as they come.
+fn mix<const D: usize>(body: &mut Body<D>, kinds: usize, random: &mut Random) {
+    if kinds > 1 {
+        let points = body.points();
+        let kind = |_| ((0.5 + 0.5 * random.next()) * kinds as f64) as u8;
+        body.give_materials((0..points).map(kind).collect::<Vec<_>>().into_iter());
+    }
+}
+
+/// Of up to three kinds: two that do not see each other, one that sees its own nearby only.
+fn reaches(kinds: usize) -> Reaches {
+    Reaches::new(kinds, |i, j| match (i.min(j), i.max(j)) {
+        (0, 2) => 0.0,
+        (1, 1) => 0.9,
+        _ => 1.5,
+    })
+}
+
 /// Everything that a list holds after being made, moved and made again.
-fn trace(threads: usize) -> Vec<u64> {
+fn trace(threads: usize, kinds: usize) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
         let mut random = Random(2);
         // many more atoms, and ghosts, than a thread takes at a time
-        let body = gas::<3>(20_000, 20.0, true, &mut random);
+        let mut body = gas::<3>(20_000, 20.0, true, &mut random);
+        mix(&mut body, kinds, &mut random);
         let mut u = body.at_rest();
-        let mut list = NearList::new(&body, 1.5, 0.2);
+        let mut list = NearList::of_kinds(&body, reaches(kinds), 0.2);
         let mut bits = vec![];
         for (length, anew) in [(0.0, true), (0.05, false), (3.0, true)] {
             for c in &mut u {
@@ -104,9 +124,9 @@ fn trace(threads: usize) -> Vec<u64> {
             assert!(list.ghosts.len() > 8000);
             assert!(list.positions_at(&u, Simd::detect()).as_deref() == Some(list.positions()));
             bits.extend(list.positions().iter().flatten().map(|x| x.to_bits()));
-            for (t, lines) in (0..list.blocks()).flat_map(|b| list.tiles(b)) {
-                bits.extend(list.slots(t).iter().map(|s| u64::from(*s)));
-                bits.extend(lines.iter().flatten().map(|j| u64::from(*j)));
+            for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
+                bits.extend(list.slots(tile.number).iter().map(|s| u64::from(*s)));
+                bits.extend(tile.lines().iter().flatten().map(|j| u64::from(*j)));
             }
         }
         bits
@@ -115,6 +135,71 @@ fn trace(threads: usize) -> Vec<u64> {
 
 #[test]
 fn the_number_of_threads_does_not_show() {
-    let one = trace(1);
-    assert!(trace(2) == one && trace(5) == one);
+    for kinds in [1, 3] {
+        let one = trace(1, kinds);
+        assert!(trace(2, kinds) == one && trace(5, kinds) == one);
+    }
+}
+
+#[test]
+fn lists_of_kinds_are_those_of_all_their_pairs() {
+    let mut random = Random(3);
+    let length = 6.0;
+    let mut body = gas::<3>(700, length, true, &mut random);
+    mix(&mut body, 3, &mut random);
+    let mut u = body.at_rest();
+    let reaches = reaches(3);
+    let mut list = NearList::of_kinds(&body, reaches.clone(), 0.3);
+    for round in 0..3 {
+        list.update(&body, &u, Simd::detect());
+        let mut found = vec![];
+        for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
+            for (l, &slot) in list.slots(tile.number).iter().enumerate() {
+                assert_eq!(body.material_of(slot as usize), tile.kind);
+                for kind in 0..3 {
+                    for line in tile.of_kind(kind) {
+                        let Some(j) = list.original(line[l] as usize) else {
+                            continue;
+                        };
+                        assert_eq!(body.material_of(j), kind);
+                        let x = list.positions()[tile.number * TILE + l];
+                        let y = list.positions()[line[l] as usize];
+                        let r2: f64 = (0..3).map(|a| (x[a] - y[a]).powi(2)).sum();
+                        if r2 < reaches.between(tile.kind as u8, kind as u8).powi(2) {
+                            found.push((slot as usize, j));
+                        }
+                    }
+                }
+            }
+        }
+        found.sort_unstable();
+        let mut exact = vec![];
+        for &i in &body.slots {
+            for &j in &body.slots {
+                let (i, j) = (i as usize, j as usize);
+                let (p, q) = (body.position(i), body.position(j));
+                let d = |a: usize| {
+                    let d = p[a] + u[a][i] - q[a] - u[a][j];
+                    d - length * (d / length).round()
+                };
+                let r2: f64 = (0..3).map(|a| d(a).powi(2)).sum();
+                let kinds = [i, j].map(|s| body.material_of(s) as u8);
+                if i != j && r2 < reaches.between(kinds[0], kinds[1]).powi(2) {
+                    exact.push((i, j));
+                }
+            }
+        }
+        exact.sort_unstable();
+        assert!(
+            found == exact,
+            "round {round}: {} pairs, not {}",
+            found.len(),
+            exact.len()
+        );
+        for c in &mut u {
+            for &s in &body.slots {
+                c[s as usize] += 0.1 * round as f64 * random.next();
+            }
+        }
+    }
 }

@@ -65,7 +65,7 @@ pub(super) fn places<const D: usize>(
 }
 
 /// Derivatives by ξ of so many times a pair energy, from those by `q = 2ξ`.
-pub(super) fn taken(factor: f64, [value, first, second]: [f64; 3]) -> Tangents {
+fn taken(factor: f64, [value, first, second]: [f64; 3]) -> Tangents {
     let (mut pulls, mut curvature) = ([0.0; 6], [[0.0; 6]; 6]);
     pulls[0] = 2.0 * factor * first;
     curvature[0][0] = 4.0 * factor * second;
@@ -78,12 +78,23 @@ pub(super) fn taken(factor: f64, [value, first, second]: [f64; 3]) -> Tangents {
     }
 }
 
+/// What is taken of the pair of a term, by ξ.
+pub(super) fn left_out<const D: usize>(
+    body: &Body<D>,
+    pair: &super::PairEnergy,
+    term: &Term,
+    factor: f64,
+    xi: f64,
+) -> Option<Tangents> {
+    let kinds = [term.slots[0], term.slots[1]].map(|s| body.material_of(s as usize));
+    pair(kinds, 2.0 * xi).map(|said| taken(factor, said))
+}
+
 pub(super) struct Evaluate<'a, const D: usize> {
     pub body: &'a Body<D>,
     pub u: &'a Field<D>,
     pub forms: &'a [Form],
     pub pair: &'a super::PairEnergy,
-    pub limit: f64,
     pub terms: &'a [Term],
     /// Where forces on the particles go, if anywhere.
     pub force: Shared<[[f64; D]; 4]>,
@@ -95,13 +106,14 @@ impl<const D: usize> Evaluate<'_, D> {
     fn pulls(&self, term: &Term, xi: &[f64; 6]) -> Pulls {
         match term.says {
             Says::Form(form) => self.forms[form as usize].pulls(&xi[..term.pairs()]),
-            Says::Pair(factor) if 2.0 * xi[0] < self.limit => {
-                taken(factor, (self.pair)(2.0 * xi[0])).first
+            Says::Pair(factor) => {
+                let nothing = Pulls {
+                    energy: 0.0,
+                    pulls: [0.0; 6],
+                };
+                let said = left_out(self.body, self.pair, term, factor, xi[0]);
+                said.map_or(nothing, |t| t.first)
             }
-            Says::Pair(_) => Pulls {
-                energy: 0.0,
-                pulls: [0.0; 6],
-            },
         }
     }
 

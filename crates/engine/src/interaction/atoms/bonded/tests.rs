@@ -5,6 +5,7 @@ use crate::law::jet::Jet;
 use crate::law::potential::Potential;
 use crate::law::potential::cut::{Cut, Ends};
 use crate::law::potential::lennard_jones::LennardJones;
+use crate::law::potential::mixture::Mixture;
 use crate::samples::Random;
 use crate::spec::{BondedTerm, End, Form};
 
@@ -91,13 +92,12 @@ fn potential() -> Cut<LennardJones> {
 
 fn bonded(body: &Body<3>, spec: &Arc<BondedSpec>) -> BondedAtoms<3> {
     let simd = Simd::detect();
-    let inner = Box::new(CurrentAtoms::new(body, potential(), simd));
+    let inner = Box::new(CurrentAtoms::new(body, Mixture::one(potential()), simd));
     let pair = potential();
-    let ends: (Box<PairEnergy>, f64) = (
-        Box::new(move |q| pair.pair(Jet::<3>::variable(q)).derivatives()),
-        3.5,
-    );
-    BondedAtoms::new(inner, body, spec.clone(), ends, simd)
+    let pair: Box<PairEnergy> = Box::new(move |_, q| {
+        (q < 3.5 * 3.5).then(|| pair.pair(Jet::<3>::variable(q)).derivatives())
+    });
+    BondedAtoms::new(inner, body, spec.clone(), pair, simd)
 }
 
 fn forces(made: &mut BondedAtoms<3>, body: &Body<3>, u: &Field<3>) -> Vec<[f64; 3]> {

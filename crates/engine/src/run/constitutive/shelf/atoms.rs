@@ -11,29 +11,35 @@ use crate::interaction::atoms::bonded::PairEnergy;
 use crate::interaction::atoms::current::CurrentAtoms;
 use crate::interaction::atoms::fan::FanAtoms;
 use crate::interaction::atoms::fixed::FixedAtoms;
+use crate::interaction::atoms::together::Together;
 use crate::law::descriptor::Wrong;
 use crate::law::fan::{self, sites::FanSites};
 use crate::law::jet::Jet;
 use crate::law::potential::bulk::{Bulk, bulk};
-use crate::law::potential::{Described, Potential, look_up, make};
-use crate::law::terms::{OfSites, Sites};
+use crate::law::potential::mixture::{Between, Given, mixture};
+use crate::law::potential::{Described, Potential, Unlike, look_up};
+use crate::law::terms::{self, Sites};
 use crate::space::lattice::LatticeKind;
-use crate::spec::{Parameters, PotentialSpec};
+use crate::spec::{Acting, Parameters, PotentialSpec, Spec};
 use std::any::Any;
 use std::sync::Arc;
 
 type Bound<const D: usize> = Result<Box<dyn Interaction<D>>, Wrong>;
 /// Fixed neighbours where there are links.
-type Binder<const D: usize> = fn(&Parameters, &Body<D>, Option<Links<D>>, Simd) -> Bound<D>;
+type Binder<const D: usize> = fn(&Given, &Body<D>, Option<Links<D>>, Simd) -> Bound<D>;
 
 /// What the engine does with a kind of potential.
 pub(super) struct Atoms {
     pub look_up: fn(Parameters) -> Result<PotentialSpec, Wrong>,
     pub on_lattice: fn(&mut Parameters, LatticeKind, f64),
-    bulk: fn(&Parameters, &Stencil, f64, f64) -> Result<Bulk, Wrong>,
-    closest: fn(&Parameters, f64, f64) -> Result<Option<f64>, Wrong>,
-    sites: fn(&Parameters) -> Result<Box<dyn Sites>, Wrong>,
-    pair: fn(&Parameters) -> Result<Box<PairEnergy>, Wrong>,
+    pub unlike: Unlike,
+    pub of_pairs: bool,
+    pub embedded: bool,
+    bulk: fn(&Given, &Stencil, f64, f64) -> Result<Option<Bulk>, Wrong>,
+    closest: fn(&Given, f64, f64) -> Result<Option<f64>, Wrong>,
+    reach: fn(&Given) -> Result<f64, Wrong>,
+    pair: fn(&Given) -> Result<Box<PairEnergy>, Wrong>,
+    sites: fn(&Given) -> Result<Box<dyn Sites>, Wrong>,
     /// [`Binder`]s of one, two and three dimensions.
     binders: [Arc<dyn Any + Send + Sync>; 3],
 }
@@ -43,14 +49,19 @@ impl Atoms {
         Atoms {
             look_up: fan::look_up::<F>,
             on_lattice: |_, _, _| {},
-            bulk: |p, stencil, spacing, volume| {
-                Ok(fan::bulk(&fan::make::<F>(p)?, stencil, spacing, volume))
+            unlike: Unlike::Whole,
+            of_pairs: false,
+            embedded: false,
+            bulk: |given, stencil, spacing, volume| {
+                let fan = fan_of::<F>(given)?;
+                Ok(Some(fan::bulk(&fan, stencil, spacing, volume)))
             },
-            closest: |p, from, energy| {
-                let fan = fan::make::<F>(p)?;
+            closest: |given, from, energy| {
+                let fan = fan_of::<F>(given)?;
                 Ok(closest(|r| fan::pair(&fan, r), from, energy))
             },
-            sites: |p| Ok(Box::new(FanSites(fan::make::<F>(p)?))),
+            reach: |given| Ok(fan_of::<F>(given)?.cutoff()),
+            sites: |given| Ok(Box::new(FanSites(fan_of::<F>(given)?))),
             pair: |_| Err(not_of_pairs(F::NAME)),
             binders: [
                 Arc::new(flat::<1, F> as Binder<1>),
@@ -64,18 +75,32 @@ impl Atoms {
         Atoms {
             look_up: look_up::<P>,
             on_lattice: P::on_lattice,
-            bulk: |p, stencil, spacing, volume| Ok(bulk(&make::<P>(p)?, stencil, spacing, volume)),
-            closest: |p, from, energy| {
-                let potential = make::<P>(p)?;
-                Ok(closest(|r| potential.pair(r * r), from, energy))
+            unlike: P::UNLIKE,
+            of_pairs: !P::Made::EMBEDDED,
+            embedded: P::Made::EMBEDDED,
+            bulk: |given, stencil, spacing, volume| {
+                let made = mixture::<P>(given)?;
+                let one = made.own(0).filter(|_| made.kinds() == 1);
+                Ok(one.map(|p| bulk(p, stencil, spacing, volume)))
             },
-            sites: |p| Ok(Box::new(OfSites(make::<P>(p)?))),
-            pair: |p| match P::Made::EMBEDDED {
+            closest: |given, from, energy| {
+                let made = mixture::<P>(given)?;
+                let each = made
+                    .each()
+                    .filter_map(|p| closest(|r| p.pair(r * r), from, energy));
+                Ok(each.reduce(f64::min))
+            },
+            reach: |given| Ok(mixture::<P>(given)?.reach()),
+            sites: |given| Ok(Box::new(mixture::<P>(given)?)),
+            pair: |given| match P::Made::EMBEDDED {
                 true => Err(not_of_pairs(P::NAME)),
                 false => {
-                    let potential = make::<P>(p)?;
-                    Ok(Box::new(move |q| {
-                        potential.pair(Jet::<3>::variable(q)).derivatives()
+                    let made = mixture::<P>(given)?;
+                    Ok(Box::new(move |[i, j], q| {
+                        let place = |kind| if made.kinds() == 1 { 0 } else { kind };
+                        let pair = made.of(place(i), place(j));
+                        let within = pair.filter(|p| q < p.cutoff() * p.cutoff())?;
+                        Some(within.pair(Jet::<3>::variable(q)).derivatives())
                     }))
                 }
             },
@@ -89,15 +114,21 @@ impl Atoms {
 }
 
 fn bind<const D: usize, P: Described>(
-    parameters: &Parameters,
+    given: &Given,
     body: &Body<D>,
     links: Option<Links<D>>,
     simd: Simd,
 ) -> Bound<D> {
-    let potential = make::<P>(parameters)?;
-    Ok(match links {
-        Some(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
-        None => Box::new(CurrentAtoms::new(body, potential, simd)),
+    let potential = mixture::<P>(given)?;
+    Ok(match (links, potential.own(0)) {
+        (Some(links), Some(own)) if potential.kinds() == 1 => {
+            Box::new(FixedAtoms::new(body, links, own.clone(), simd))
+        }
+        (Some(_), _) => {
+            let message = "fixed neighbours know one kind of atom: several are near to each other now (family = \"neighbours\")";
+            return Err((String::new(), message.into()));
+        }
+        (None, _) => Box::new(CurrentAtoms::new(body, potential, simd)),
     })
 }
 
@@ -106,13 +137,31 @@ fn not_of_pairs(name: &str) -> Wrong {
     (String::new(), message)
 }
 
+/// The fan of all kinds of atoms: its constants know all of them, and are the same for each.
+fn fan_of<F: fan::Described>(given: &Given) -> Result<F, Wrong> {
+    let own = |kind| match given.at(kind, kind) {
+        Between::Given(parameters) => Some(parameters),
+        Between::Nothing | Between::Mixed => None,
+    };
+    match own(0).filter(|first| (1..given.kinds).all(|k| own(k) == Some(first))) {
+        Some(parameters) => fan::make::<F>(parameters),
+        None => {
+            let message = format!(
+                "{} knows all atoms of a body by one set of constants: give all materials the same file, with their elements",
+                F::NAME
+            );
+            Err((String::new(), message))
+        }
+    }
+}
+
 fn bind_fan<F: fan::Described>(
-    parameters: &Parameters,
+    given: &Given,
     body: &Body<3>,
     links: Option<Links<3>>,
     simd: Simd,
 ) -> Bound<3> {
-    let fan = fan::make::<F>(parameters)?;
+    let fan = fan_of::<F>(given)?;
     if links.is_some() {
         let message = format!(
             "{} lives on current neighbours: remove family = \"stencil\"",
@@ -135,7 +184,7 @@ fn bind_fan<F: fan::Described>(
 
 /// Angles between bonds need space.
 fn flat<const D: usize, F: fan::Described>(
-    _: &Parameters,
+    _: &Given,
     _: &Body<D>,
     _: Option<Links<D>>,
     _: Simd,
@@ -157,46 +206,197 @@ fn closest(pair: impl Fn(f64) -> f64, from: f64, energy: f64) -> Option<f64> {
         .map(|(r, _)| r)
 }
 
-/// A potential with its constants.
+/// A potential with the constants of all kinds of atoms.
 #[derive(Clone)]
-pub(crate) struct AnyPotential {
+struct AnyPotential {
     entry: Arc<Entry>,
-    pub spec: PotentialSpec,
+    given: Given,
 }
 
-impl std::fmt::Debug for AnyPotential {
+/// All potentials between the atoms of a body: their energies are added.
+#[derive(Clone)]
+pub(crate) struct AnyPotentials {
+    parts: Vec<AnyPotential>,
+    /// The greatest distance at which one of them says something (length).
+    pub reach: f64,
+}
+
+impl std::fmt::Debug for AnyPotentials {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.spec.fmt(f)
+        let parts = self.parts.iter();
+        f.debug_list()
+            .entries(parts.map(|p| (&p.entry.descriptor.name, &p.given)))
+            .finish()
     }
 }
 
 impl Shelf {
-    /// The potential that a spec names.
-    pub(crate) fn potential(&self, spec: &PotentialSpec) -> Result<AnyPotential, BuildError> {
-        let entry = self.entry(&spec.name).filter(|e| e.atoms().is_some());
-        match entry {
-            Some(entry) => Ok(AnyPotential {
-                entry: entry.clone(),
-                spec: spec.clone(),
-            }),
-            None => Err(BuildError::unknown(
-                "materials[0].law",
-                spec.name.clone(),
-                format!("there is no potential named {}", spec.name),
+    /// The potentials between the atoms of a spec; `None`: its materials are no atoms.
+    pub(crate) fn potentials(&self, spec: &Spec) -> Result<Option<AnyPotentials>, BuildError> {
+        let laws = spec.materials.iter().map(|m| m.law.potential());
+        let Some(own) = laws.collect::<Option<Vec<_>>>().filter(|o| !o.is_empty()) else {
+            return match spec.potentials.is_empty() {
+                true => Ok(None),
+                false => Err(BuildError::conflict(
+                    "potentials",
+                    "potentials act between atoms, and these materials are none",
+                )
+                .help("give the materials potentials as laws")),
+            };
+        };
+        let mut made = AnyPotentials {
+            parts: vec![],
+            reach: 0.0,
+        };
+        if spec.potentials.is_empty() && own.iter().all(|p| *p == own[0]) {
+            let given = Given::one(own[0].parameters.clone());
+            made.push(self.named(own[0], 0)?, given)?;
+            return Ok(Some(made));
+        }
+        for (entry, given) in self.sum(spec, &own)? {
+            made.push(entry, given)?;
+        }
+        match made.parts.is_empty() {
+            true => Err(BuildError::missing(
+                "materials",
+                "no potential acts between these atoms",
             )),
+            false => Ok(Some(made)),
         }
     }
-}
 
-impl Shelf {
-    /// A potential as terms of sites ([`crate::law::terms`]).
+    /// Potentials of several kinds of atoms by their names, whose own are given.
+    fn sum(
+        &self,
+        spec: &Spec,
+        own: &[&PotentialSpec],
+    ) -> Result<Vec<(Arc<Entry>, Given)>, BuildError> {
+        let kinds = own.len();
+        let mut parts: Vec<(Arc<Entry>, Given)> = vec![];
+        let mut put = |entry: Arc<Entry>, [i, j]: [usize; 2], between: Between| {
+            let free = |(e, given): &&mut (Arc<Entry>, Given)| {
+                e.descriptor.name == entry.descriptor.name && *given.at(i, j) == Between::Nothing
+            };
+            match parts.iter_mut().find(free) {
+                Some((_, given)) => given.set(i, j, between),
+                None => {
+                    let mut given = Given::nothing(kinds, spec.mixing);
+                    given.set(i, j, between);
+                    parts.push((entry, given));
+                }
+            }
+        };
+        for (n, potential) in own.iter().enumerate() {
+            let between = Between::Given(potential.parameters.clone());
+            let entry = self.named(potential, n)?;
+            if potential.reach > 0.0 {
+                put(entry, [n, n], between);
+            }
+        }
+        let mut named = vec![false; kinds * kinds];
+        for (n, acting) in spec.potentials.iter().enumerate() {
+            let Acting::Between([i, j]) = acting.on;
+            let path = || format!("potentials[{n}]");
+            if i >= kinds || j >= kinds {
+                let message = format!("it names material {}, there are {kinds}", i.max(j));
+                return Err(BuildError::invalid(path(), message));
+            }
+            let entry = self.named(&acting.potential, i)?;
+            if entry.atoms().is_some_and(|a| !a.of_pairs) {
+                let message = format!("{} is no sum over pairs", acting.potential.name);
+                return Err(BuildError::unsupported(path(), message).help(
+                    "make it the law of the materials: what they have with each other follows",
+                ));
+            }
+            let between = Between::Given(acting.potential.parameters.clone());
+            if acting.potential.reach > 0.0 {
+                put(entry, [i, j], between);
+            }
+            (named[i * kinds + j], named[j * kinds + i]) = (true, true);
+        }
+        for i in 0..kinds {
+            for j in 0..i {
+                let entry = self.named(own[i], i)?;
+                let alike = own[i].name == own[j].name;
+                let unlike = entry.atoms().map_or(Unlike::Given, |a| a.unlike);
+                let mixed = match unlike {
+                    Unlike::Whole => alike,
+                    _ if named[i * kinds + j] => continue,
+                    Unlike::Mixed => alike && spec.mixing.is_some(),
+                    Unlike::Given => false,
+                };
+                if mixed {
+                    put(entry, [i, j], Between::Mixed);
+                } else if !named[i * kinds + j] {
+                    return Err(unsaid(spec, [i, j], alike && unlike == Unlike::Mixed));
+                }
+            }
+        }
+        let embedded = |(e, _): &&(Arc<Entry>, Given)| e.atoms().is_some_and(|a| a.embedded);
+        if parts.iter().filter(embedded).count() > 1 {
+            return Err(BuildError::unsupported(
+                "materials",
+                "two embedded-atom potentials in one body: densities of one mean nothing to the other",
+            )
+            .help("take both elements from one file"));
+        }
+        Ok(parts)
+    }
+
+    /// What stands on the shelf for the potential of a material.
+    fn named(&self, spec: &PotentialSpec, material: usize) -> Result<Arc<Entry>, BuildError> {
+        let entry = self.entry(&spec.name).filter(|e| e.atoms().is_some());
+        entry.cloned().ok_or_else(|| {
+            BuildError::unknown(
+                format!("materials[{material}].law"),
+                spec.name.clone(),
+                format!("there is no potential named {}", spec.name),
+            )
+        })
+    }
+
+    /// A potential of one kind of atom as terms of sites ([`crate::law::terms`]).
     ///
     /// # Errors
     /// No potential of this shelf has the name, or the constants do not fit it.
     pub fn sites(&self, spec: &PotentialSpec) -> Result<Box<dyn Sites>, BuildError> {
-        let potential = self.potential(spec)?;
-        potential.with(|a| (a.sites)(&potential.spec.parameters))
+        let potential = AnyPotential {
+            entry: self.named(spec, 0)?,
+            given: Given::one(spec.parameters.clone()),
+        };
+        potential.with(|a| (a.sites)(&potential.given))
     }
+
+    /// All potentials of a spec as terms of sites, kinds of which are its materials.
+    ///
+    /// # Errors
+    /// Its materials are no atoms, or two of them have no potential, or constants do not fit theirs.
+    pub fn sites_of(&self, spec: &Spec) -> Result<Box<dyn Sites>, BuildError> {
+        let mut spec = spec.clone();
+        self.resolve(&mut spec)?;
+        match self.potentials(&spec)? {
+            None => Err(BuildError::unsupported(
+                "materials",
+                "these materials are no atoms",
+            )),
+            Some(all) => Ok(Box::new(terms::Together(all.sites()?))),
+        }
+    }
+}
+
+/// Two materials of which nobody says what their atoms have.
+fn unsaid(spec: &Spec, [i, j]: [usize; 2], mixes: bool) -> BuildError {
+    let [a, b] = [i, j].map(|n| &spec.materials[n].name);
+    let message = format!("no potential is given between atoms of `{b}` and of `{a}`");
+    let help = match mixes {
+        true => format!(
+            "write [[pair]] between = [\"{b}\", \"{a}\"] with its law, or a rule: mixing = \"arithmetic\""
+        ),
+        false => format!(
+            "write [[pair]] between = [\"{b}\", \"{a}\"] with its law; law = \"no_potential\" if they do not feel each other"
+        ),
+    };
+    BuildError::missing(format!("materials[{i}].law"), message).help(help)
 }
 
 impl Entry {
@@ -210,24 +410,75 @@ impl Entry {
 
 impl AnyPotential {
     fn with<T>(&self, of: impl FnOnce(&Atoms) -> Result<T, Wrong>) -> Result<T, BuildError> {
-        let none = || (String::new(), format!("{} is no potential", self.spec.name));
+        let name = &self.entry.descriptor.name;
+        let none = || (String::new(), format!("{name} is no potential"));
         let found = self.entry.atoms().ok_or_else(none).and_then(of);
         found.map_err(|(_, message)| BuildError::invalid("materials[0].law", message))
     }
 
-    /// An atom of a perfect crystal.
-    pub fn bulk(&self, stencil: &Stencil, spacing: f64, volume: f64) -> Result<Bulk, BuildError> {
-        self.with(|a| (a.bulk)(&self.spec.parameters, stencil, spacing, volume))
+    /// On fixed neighbours where there are links, else on current ones.
+    fn bind<const D: usize>(
+        &self,
+        body: &Body<D>,
+        links: Option<Links<D>>,
+        simd: Simd,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        self.with(|a| {
+            let binder = a.binders.get(D - 1);
+            match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
+                Some(binder) => binder(&self.given, body, links, simd),
+                None => Err((String::new(), format!("there are no {D} dimensions"))),
+            }
+        })
+    }
+}
+
+impl AnyPotentials {
+    fn push(&mut self, entry: Arc<Entry>, given: Given) -> Result<(), BuildError> {
+        let part = AnyPotential { entry, given };
+        let reach = part.with(|a| (a.reach)(&part.given))?;
+        self.reach = self.reach.max(reach);
+        self.parts.push(part);
+        Ok(())
     }
 
-    /// The distance at which the pair energy has reached `energy`, from `from` inwards (length), if it ever does.
+    /// An atom of a perfect crystal of one kind.
+    pub fn bulk(
+        &self,
+        stencil: &Stencil,
+        spacing: f64,
+        volume: f64,
+    ) -> Result<Option<Bulk>, BuildError> {
+        let [part] = &self.parts[..] else {
+            return Ok(None);
+        };
+        part.with(|a| (a.bulk)(&part.given, stencil, spacing, volume))
+    }
+
+    /// The distance at which a pair energy has reached `energy`, from `from` inwards (length), if one ever does: the shortest of all
+    /// pairs of kinds.
     pub fn closest(&self, from: f64, energy: f64) -> Result<Option<f64>, BuildError> {
-        self.with(|a| (a.closest)(&self.spec.parameters, from, energy))
+        let mut least: Option<f64> = None;
+        for part in &self.parts {
+            let found = part.with(|a| (a.closest)(&part.given, from, energy))?;
+            least = least.into_iter().chain(found).reduce(f64::min);
+        }
+        Ok(least)
+    }
+
+    fn sites(&self) -> Result<Vec<Box<dyn Sites>>, BuildError> {
+        let parts = self.parts.iter();
+        parts.map(|p| p.with(|a| (a.sites)(&p.given))).collect()
     }
 
     /// The energy of two atoms.
     pub fn pair(&self) -> Result<Box<PairEnergy>, BuildError> {
-        self.with(|a| (a.pair)(&self.spec.parameters))
+        let each = self.parts.iter().map(|p| p.with(|a| (a.pair)(&p.given)));
+        let parts = each.collect::<Result<Vec<_>, _>>()?;
+        Ok(Box::new(move |kinds, q| {
+            let said = parts.iter().filter_map(|p| p(kinds, q));
+            said.reduce(|a, b| std::array::from_fn(|n| a[n] + b[n]))
+        }))
     }
 
     /// On fixed neighbours where there are links, else on current ones.
@@ -237,12 +488,18 @@ impl AnyPotential {
         links: Option<Links<D>>,
         simd: Simd,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
-        self.with(|a| {
-            let binder = a.binders.get(D - 1);
-            match binder.and_then(|b| b.downcast_ref::<Binder<D>>()) {
-                Some(binder) => binder(&self.spec.parameters, body, links, simd),
-                None => Err((String::new(), format!("there are no {D} dimensions"))),
-            }
-        })
+        if let [one] = &self.parts[..] {
+            return one.bind(body, links, simd);
+        }
+        if links.is_some() {
+            return Err(BuildError::unsupported(
+                "family",
+                "fixed neighbours know one kind of atom and one potential",
+            )
+            .help("leave family out: atoms feel those that are near now"));
+        }
+        let parts = self.parts.iter().map(|p| p.bind(body, None, simd));
+        let parts = parts.collect::<Result<Vec<_>, _>>()?;
+        Ok(Box::new(Together::new(body, parts)))
     }
 }

@@ -3,7 +3,7 @@
 mod atoms;
 mod materials;
 
-pub(crate) use atoms::AnyPotential;
+pub(crate) use atoms::AnyPotentials;
 pub(super) use materials::chosen;
 pub(crate) use materials::{Chosen, Place};
 
@@ -220,6 +220,14 @@ impl Shelf {
         for (n, m) in spec.materials.iter_mut().enumerate() {
             self.look_up(&mut m.law)
                 .map_err(|e| e.at(format!("materials[{n}].law")))?;
+        }
+        for (n, acting) in spec.potentials.iter_mut().enumerate() {
+            let mut law = LawSpec::Atoms(acting.potential.clone());
+            self.look_up(&mut law)
+                .map_err(|e| e.at(format!("potentials[{n}].potential")))?;
+            if let LawSpec::Atoms(potential) = law {
+                acting.potential = potential;
+            }
         }
         Ok(())
     }

@@ -1,0 +1,158 @@
+//! A sum of potentials on one body of atoms, each with the atoms that it acts on.
+
+use crate::body::{Body, Field, Identity, zeros};
+use crate::interaction::{
+    BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
+};
+
+/// Potentials whose energies are added.
+pub struct Together<const D: usize> {
+    body: Identity,
+    parts: Vec<Box<dyn Interaction<D>>>,
+    /// Forces of one of them.
+    own: Field<D>,
+}
+
+impl<const D: usize> Together<D> {
+    /// All are made for the body.
+    pub fn new(body: &Body<D>, parts: Vec<Box<dyn Interaction<D>>>) -> Self {
+        Together {
+            body: body.identity,
+            parts,
+            own: zeros(body.len),
+        }
+    }
+}
+
+/// Adds energy densities.
+fn add(to: &mut [f64], of: &[f64]) {
+    to.iter_mut().zip(of).for_each(|(a, b)| *a += b);
+}
+
+impl<const D: usize> Interaction<D> for Together<D> {
+    fn made_for(&self) -> Identity {
+        self.body
+    }
+
+    fn family(&self) -> &'static str {
+        "neighbours"
+    }
+
+    unsafe fn forces_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        sweep: Sweep<D>,
+        mut seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        let mut tally = Tally::default();
+        if let Some(seen) = seen.as_deref_mut() {
+            seen.zeros(body.len);
+        }
+        for (n, part) in self.parts.iter_mut().enumerate() {
+            let mut energies = seen.is_some().then(PointEnergies::default);
+            let into = if n == 0 { &mut *f } else { &mut self.own };
+            tally += part.forces(body, u, into, sweep, energies.as_mut());
+            if n > 0 {
+                for (f, own) in f.iter_mut().zip(&self.own) {
+                    add(f, own);
+                }
+            }
+            if let (Some(seen), Some(energies)) = (seen.as_deref_mut(), energies) {
+                add(&mut seen.strain, &energies.strain);
+            }
+        }
+        tally
+    }
+
+    unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
+        let each = self.parts.iter_mut().map(|p| p.energy(body, u));
+        each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
+    }
+
+    unsafe fn observe_unchecked(&self, body: &Body<D>, u: &Field<D>, out: &mut PointEnergies) {
+        out.zeros(body.len);
+        for part in &self.parts {
+            let mut own = PointEnergies::default();
+            part.observe(body, u, &mut own);
+            add(&mut out.strain, &own.strain);
+        }
+    }
+
+    fn observe_gradient(&self, body: &Body<D>, gradient: &[[f64; D]; D], out: &mut PointEnergies) {
+        self.check(body, &[]);
+        out.zeros(body.len);
+        for part in &self.parts {
+            let mut own = PointEnergies::default();
+            part.observe_gradient(body, gradient, &mut own);
+            add(&mut out.strain, &own.strain);
+        }
+    }
+
+    fn is_potential(&self) -> bool {
+        true
+    }
+
+    fn has_fans(&self) -> bool {
+        self.parts.iter().any(|p| p.has_fans())
+    }
+
+    unsafe fn tangents_unchecked(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        for part in &mut self.parts {
+            part.tangents(body, u, visit);
+        }
+    }
+
+    /// At most one of them has embedding energies.
+    fn gain(&self, slot: usize) -> f64 {
+        self.parts.iter().map(|p| p.gain(slot)).sum()
+    }
+
+    /// Pairs that have two potentials come twice.
+    fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        for part in &self.parts {
+            part.each_bond(body, visit);
+        }
+    }
+
+    fn each_force(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondForce<D>),
+    ) -> bool {
+        let mut all = true;
+        for part in &mut self.parts {
+            all &= part.each_force(body, u, visit);
+        }
+        all
+    }
+
+    fn virial(&mut self, body: &Body<D>, u: &Field<D>) -> Option<[f64; 6]> {
+        let mut sum = [0.0; 6];
+        for part in &mut self.parts {
+            let own = part.virial(body, u)?;
+            add(&mut sum, &own);
+        }
+        Some(sum)
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.parts.iter().map(|p| p.directed_bonds()).sum()
+    }
+
+    fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
+        self.parts.iter().map(|p| p.family_size(body, slot)).sum()
+    }
+
+    fn bytes(&self) -> usize {
+        let own: usize = self.own.iter().map(|c| 8 * c.len()).sum();
+        own + self.parts.iter().map(|p| p.bytes()).sum::<usize>()
+    }
+}
