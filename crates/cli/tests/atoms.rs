@@ -103,6 +103,55 @@ fn a_frame_of_a_lammps_dump_goes_on_as_lammps_did() {
     assert!(worst < 1e-9, "{worst}");
 }
 
+/// Kinds and masses of a mixture in all files, and a run that goes on from them.
+#[test]
+fn a_mixture_keeps_its_kinds_in_every_file() {
+    let dir = TempDir::new().unwrap();
+    let deck = good("mixture.toml");
+    let both = "output.trajectory=[\"m.extxyz\", \"m.lammpstrj\"]";
+    let more = ["--set", "run.steps=4", "--set", both];
+    let (code, text) = run(&deck, dir.path(), &more);
+    assert_eq!(code, Some(0), "{text}");
+    let xyz = extxyz(&dir.path().join("m.extxyz"), Frame::Last).unwrap();
+    let dumped = dump(&dir.path().join("m.lammpstrj"), Frame::Last).unwrap();
+    let last = data(&dir.path().join("last.data")).unwrap();
+    for file in [&xyz, &dumped, &last] {
+        let heavy = (0..file.len()).filter(|i| file.name(*i) == "heavy").count();
+        assert_eq!((file.len(), heavy), (500, 150));
+        for species in &file.species {
+            let mass = if species.name == "heavy" { 2.5 } else { 1.0 };
+            assert_eq!(species.mass, Some(mass), "{}", species.name);
+        }
+        let names = |f: &Atoms| -> Vec<String> { (0..f.len()).map(|i| f.name(i).into()).collect() };
+        assert_eq!(names(file), names(&xyz));
+    }
+    let text = std::fs::read_to_string(&deck).unwrap();
+    let text = text
+        .replace(
+            "body = { lattice = \"fcc\", spacing = 1.63, cells = [5, 5, 5] }",
+            "body = { file = \"FILE\" }",
+        )
+        .replace("thermal = { temperature = 1.2, seed = 87287 }\n", "")
+        .replace("[sets.heavy]\nrandom = { part = 0.3, seed = 5 }\n", "")
+        .replace("mass = 2.5\n", "")
+        .replace("mass = 1\n", "");
+    let mut ends = vec![];
+    for (n, file) in ["m.extxyz", "m.lammpstrj", "last.data"]
+        .into_iter()
+        .enumerate()
+    {
+        let deck = dir.path().join("more.toml");
+        std::fs::write(&deck, text.replace("FILE", file)).unwrap();
+        let out = dir.path().join(format!("more{n}"));
+        let (code, text) = run(&deck, &out, &["--set", "run.steps=5"]);
+        assert_eq!(code, Some(0), "{file}: {text}");
+        ends.push(extxyz(&out.join("mixture.extxyz"), Frame::Last).unwrap());
+    }
+    for end in &ends[1..] {
+        assert!(apart(&ends[0], &end.position, true) < 1e-12);
+    }
+}
+
 /// A table in metal units: the mass comes back as it was read, and a chain's box has lengths along all axes.
 #[test]
 fn data_files_have_the_units_of_the_deck() {

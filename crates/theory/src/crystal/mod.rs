@@ -6,6 +6,7 @@
 //! the first sum over directed bonds. For an embedded-atom potential `V = φ + (F′_s + F′_t) f`, share = f′.
 
 pub mod cells;
+pub mod mixture;
 pub mod potential;
 pub mod solid;
 

@@ -1,0 +1,235 @@
+//! Waves of crystals with a basis of unlike atoms, against the forces of the engine under small displacements.
+
+use num_complex::Complex64;
+use peridyne::law::potential::Potential;
+use peridyne::law::potential::cut::{Cut, Ends};
+use peridyne::law::potential::lennard_jones::LennardJones;
+use peridyne::law::potential::mixture::Mixture;
+use peridyne::law::potential::tabulated::{Eam, Tabulated};
+use peridyne::run::{Options, build};
+use peridyne::spec::*;
+use peridyne_theory::crystal::Crystal;
+use peridyne_theory::crystal::mixture::Atom;
+use peridyne_theory::dispersion::hermitian::{Matrix, eigen};
+
+const CELLS: usize = 4;
+
+/// A cubic cell with these sites (fractions of its edge) of two kinds, and its waves by both ways.
+fn check<P: Potential>(
+    name: &str,
+    edge: f64,
+    sites: &[([f64; 3], usize)],
+    mixture: &Mixture<P>,
+    own: [PotentialSpec; 2],
+    across: Option<PotentialSpec>,
+) {
+    let masses = [1.3, 4.1];
+    let atoms: Vec<Atom<3>> = { sites.iter() }
+        .map(|(place, kind)| Atom {
+            place: place.map(|c| c * edge),
+            kind: *kind,
+            mass: masses[*kind],
+        })
+        .collect();
+    let cell = std::array::from_fn(|a| std::array::from_fn(|b| if a == b { edge } else { 0.0 }));
+    let (crystal, energy) = Crystal::<3>::of_mixture(mixture, cell, &atoms).unwrap();
+    assert!(crystal.residual() < 1e-11, "{name}: {}", crystal.residual());
+
+    let (mut position, mut mark, mut at_cell) = (vec![], vec![], vec![]);
+    for n in 0..CELLS.pow(3) {
+        let c = [n % CELLS, n / CELLS % CELLS, n / CELLS / CELLS];
+        for atom in &atoms {
+            position.push(std::array::from_fn(|a| atom.place[a] + c[a] as f64 * edge));
+            mark.push(atom.kind as i32);
+            at_cell.push(c);
+        }
+    }
+    let n = position.len();
+    let cloud = Cloud {
+        volume: vec![1.0; n],
+        position,
+        mark,
+        ..Cloud::default()
+    };
+    let mut spec = Spec::new(
+        3,
+        BodySpec::Cloud(cloud),
+        1.0,
+        LawSpec::Atoms(own[0].clone()),
+    );
+    spec.periodic = [Some(edge * CELLS as f64); 3];
+    spec.materials.clear();
+    for (kind, potential) in own.into_iter().enumerate() {
+        let name = ["light", "heavy"][kind].to_string();
+        spec.sets.push(SetSpec {
+            name: name.clone(),
+            members: Members::Mark(kind as i32),
+        });
+        spec.materials.push(MaterialSpec {
+            set: name.clone(),
+            name,
+            density: masses[kind],
+            law: LawSpec::Atoms(potential),
+            fracture: None,
+        });
+    }
+    spec.potentials = across
+        .into_iter()
+        .map(|potential| ActingSpec {
+            potential,
+            on: Acting::Between([0, 1]),
+        })
+        .collect();
+    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    let options = Options {
+        trust_time_step: true,
+        ..Options::default()
+    };
+    let mut sim = build(&spec, options).unwrap_or_else(|e| panic!("{name}: {e}"));
+    sim.start(true);
+    let found = sim.ledger().unwrap().strain / CELLS.pow(3) as f64;
+    assert!(
+        (found - energy).abs() < 1e-11 * energy.abs(),
+        "{name}: {found} {energy}"
+    );
+
+    // force constants by fourth-order differences
+    let (s, h) = (atoms.len(), 1e-4);
+    let mut constants = vec![];
+    for t in 0..s {
+        for b in 0..3 {
+            let mut at = |x: f64| {
+                let mut u = vec![[0.0; 3]; n];
+                u[t][b] = x;
+                sim.forces_under(&u)
+            };
+            let far = [2.0, 1.0, -1.0, -2.0].map(|x| at(x * h));
+            let slope = |i: usize, a: usize| {
+                (8.0 * (far[1][i][a] - far[2][i][a]) - (far[0][i][a] - far[3][i][a])) / (12.0 * h)
+            };
+            let column: Vec<[f64; 3]> = (0..n)
+                .map(|i| std::array::from_fn(|a| -slope(i, a)))
+                .collect();
+            constants.push(column);
+        }
+    }
+    for wave in [
+        [0, 0, 0],
+        [1, 0, 0],
+        [2, 0, 0],
+        [1, 1, 0],
+        [1, 2, 3],
+        [2, 2, 2],
+    ] {
+        let mut matrix = Matrix::zero(3 * s);
+        for (column, values) in constants.iter().enumerate() {
+            for (i, value) in values.iter().enumerate() {
+                let turns: usize = (0..3).map(|a| wave[a] * at_cell[i][a]).sum();
+                let phase = std::f64::consts::TAU * turns as f64 / CELLS as f64;
+                let factor = Complex64::from_polar(1.0, phase);
+                let mass = (atoms[i % s].mass * atoms[column / 3].mass).sqrt();
+                for a in 0..3 {
+                    matrix.add(3 * (i % s) + a, column, factor * (value[a] / mass));
+                }
+            }
+        }
+        let by_forces = eigen(&matrix).0;
+        let k = wave.map(|w| std::f64::consts::TAU * w as f64 / (CELLS as f64 * edge));
+        let waves = crystal.squares(k);
+        let most = waves.iter().fold(0.0f64, |m, w| m.max(w.abs()));
+        for (x, y) in by_forces.iter().zip(&waves) {
+            assert!((x - y).abs() < 1e-6 * most, "{name}, {wave:?}: {x} {y}");
+        }
+        if wave == [0, 0, 0] {
+            // three waves move the whole crystal, all others its atoms against each other
+            let still = waves.iter().filter(|w| w.abs() < 1e-11 * most).count();
+            assert_eq!(still, 3, "{name}: acoustic {waves:?}");
+            let others = waves.iter().filter(|w| w.abs() > 1e-3 * most).count();
+            assert_eq!(others, waves.len() - 3, "{name}: optical {waves:?}");
+        }
+    }
+}
+
+const CAESIUM_CHLORIDE: [([f64; 3], usize); 2] = [([0.0; 3], 0), ([0.5; 3], 1)];
+
+const ROCK_SALT: [([f64; 3], usize); 8] = [
+    ([0.0, 0.0, 0.0], 0),
+    ([0.5, 0.5, 0.0], 0),
+    ([0.5, 0.0, 0.5], 0),
+    ([0.0, 0.5, 0.5], 0),
+    ([0.5, 0.0, 0.0], 1),
+    ([0.0, 0.5, 0.0], 1),
+    ([0.0, 0.0, 0.5], 1),
+    ([0.5, 0.5, 0.5], 1),
+];
+
+#[test]
+fn rock_salt_of_pairs() {
+    let constants = |i: usize, j: usize| match i + j {
+        0 => (0.2, 1.15),
+        1 => (1.4, 0.9),
+        _ => (0.3, 1.2),
+    };
+    let ends = Ends {
+        cutoff: 1.9,
+        end: End::ShiftedForce,
+    };
+    let lj = |i, j| {
+        let (epsilon, sigma) = constants(i, j);
+        LennardJones { epsilon, sigma }
+    };
+    let mixture = Mixture::new(2, |i, j| Some(Cut::new(lj(i, j), ends)));
+    let named = |i, j| PotentialSpec::of(lj(i, j)).ended(ends.cutoff, ends.end);
+    let own = [named(0, 0), named(1, 1)];
+    check(
+        "rock salt",
+        2.0,
+        &ROCK_SALT,
+        &mixture,
+        own,
+        Some(named(0, 1)),
+    );
+}
+
+/// Two elements whose densities depend on both ends.
+fn tables() -> [TableSpec; 2] {
+    let (n, cutoff) = (2000, 2.3);
+    let step = cutoff / (n - 1) as f64;
+    let fade = |r: f64| (1.0 - (r / cutoff).powi(2)).powi(4);
+    let table = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        (0..n)
+            .map(|m| f(step * m as f64) * fade(step * m as f64))
+            .collect()
+    };
+    let pair = |a: f64| table(&|r| a * (-5.0 * (r - 1.0)).exp() * r);
+    let density = |b: f64, decay: f64| table(&|r| b * (-decay * (r - 1.0)).exp());
+    let one = |name: &str, other: &str, [a, own, from, c]: [f64; 4]| TableSpec {
+        density_step: 0.005,
+        embedding: (0..n).map(|m| -c * (0.005 * m as f64).sqrt()).collect(),
+        step,
+        density: density(own, 2.0),
+        pair: pair(a),
+        cutoff,
+        element: name.into(),
+        partners: vec![PartnerTable {
+            element: other.into(),
+            density: density(from, 2.5),
+            pair: pair(1.1),
+        }],
+    };
+    [
+        one("Aa", "Bb", [1.0, 0.2, 0.35, 1.3]),
+        one("Bb", "Aa", [0.9, 0.3, 0.15, 0.8]),
+    ]
+}
+
+#[test]
+fn caesium_chloride_of_an_alloy() {
+    let tables = tables();
+    let mixture = Mixture::new(2, |i, j| match i == j {
+        true => Some(Tabulated::new(&tables[i])),
+        false => Tabulated::between(&tables[i], &tables[j]),
+    });
+    let own = tables.clone().map(|t| PotentialSpec::of(Eam::new(t)));
+    check("alloy", 1.25, &CAESIUM_CHLORIDE, &mixture, own, None);
+}
