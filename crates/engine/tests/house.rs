@@ -2,6 +2,7 @@
 //! folder, and what is one of many (a potential, a law, a field) is one file and a line in the list of its folder.
 
 use peridyne::law::descriptor::Shelved;
+use peridyne::law::fan;
 use peridyne::law::material::{self, Material};
 use peridyne::law::potential::{self, Described};
 use peridyne::observe::observables;
@@ -300,6 +301,16 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "a message says what to write",
     ),
     (
+        "stillinger_weber",
+        "lammps/src/command/molecular.rs",
+        "LAMMPS has another word for it",
+    ),
+    (
+        "tersoff",
+        "lammps/src/command/molecular.rs",
+        "a word of LAMMPS",
+    ),
+    (
         "eam",
         "io/src/deck/lower/atoms.rs",
         "a module: the format of files",
@@ -333,6 +344,12 @@ impl Listed {
 impl potential::Kinds for Listed {
     fn kind<P: Described>(&mut self) {
         self.put(P::NAME, type_name::<P>());
+    }
+}
+
+impl fan::Kinds for Listed {
+    fn fan<F: fan::Described>(&mut self) {
+        self.put(F::NAME, type_name::<F>());
     }
 }
 
@@ -386,13 +403,16 @@ fn touched(
 #[test]
 fn a_law_or_potential_is_a_file_and_a_line() {
     let sources = sources();
-    let (mut potentials, mut laws) = (Listed::default(), Listed::default());
+    let mut potentials = Listed::default();
+    let (mut fans, mut laws) = (Listed::default(), Listed::default());
     potential::each(&mut potentials);
+    fan::each(&mut fans);
     material::each(&mut laws);
-    assert!(potentials.0.len() >= 12 && laws.0.len() >= 8);
+    assert!(potentials.0.len() >= 12 && fans.0.len() >= 4 && laws.0.len() >= 8);
     let (mut wrong, mut used) = (vec![], BTreeSet::new());
     for (listed, folder) in [
         (potentials, "engine/src/law/potential/"),
+        (fans, "engine/src/law/fan/"),
         (laws, "engine/src/law/material/"),
     ] {
         for word in &listed.0 {

@@ -243,7 +243,7 @@ fn what_is_wrong_is_said_with_its_line() {
         ),
         (
             format!("{head}Atoms # full\n\n1 1 0 0 0\n"),
-            "f:7: atom_style `full` is not supported (supported: peri, atomic)",
+            "f:7: atom_style `full` is not supported (supported: peri, atomic, bond, angle, molecular)",
         ),
         (
             format!("{head}Atoms # atomic\n\n1 1 1.0 1.0 0 0 0\n"),
