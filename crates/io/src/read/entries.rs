@@ -17,7 +17,7 @@ pub struct Entry {
 /// # Errors
 /// File and line: an entry is cut off, goes on too long, or has something else than a finite number; there is none.
 pub fn entries(path: &Path, columns: &[&str]) -> Result<Vec<Entry>, ReadError> {
-    let (text, name) = super::eam::text_of(path)?;
+    let (text, name) = super::whole::text_of(path)?;
     parse_entries(&text, &name, columns)
 }
 

@@ -21,6 +21,7 @@ mod mesh;
 pub mod molecules;
 mod stream;
 mod text;
+mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
 

@@ -49,7 +49,7 @@ pub fn molecules(
     length: f64,
     energy: f64,
 ) -> Result<BondedSpec, ReadError> {
-    let (text, name) = super::eam::text_of(path)?;
+    let (text, name) = super::whole::text_of(path)?;
     parse_molecules(&text, &name, special, length, energy)
 }
 

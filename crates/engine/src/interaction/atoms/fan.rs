@@ -3,6 +3,10 @@
 //! Each atom evaluates its own fan and says how it pulls at the ends; an atom gathers what the fans of its neighbours say of it through
 //! the place of the bond that leads back, which is found when the list is made. No races, and the same bits on any number of threads
 //! and any width.
+//!
+//! The energy of an atom is that of its own fan: `U_i`, half of each pair and the whole of each angle at it. LAMMPS's `pe/atom` gives a
+//! third of an angle of Stillinger & Weber to each of its three atoms, and half of Tersoff's bond to each of its ends; who wants equal
+//! shares adds up terms ([`crate::law::terms`]). Totals are the same.
 
 mod back;
 mod gather;
@@ -19,7 +23,7 @@ use crate::interaction::{
 };
 use crate::law::fan::{Fan, tangents};
 use crate::law::terms::Near;
-use back::Back;
+use back::{Back, Ends};
 use gather::Gather;
 use kernel::{Centres, View};
 
@@ -83,7 +87,7 @@ impl<F: Fan> FanAtoms<F> {
         &self,
         list: &NearList<3>,
         position: &[[f64; 4]],
-        ends: Option<&Back>,
+        ends: Option<Ends>,
         f: [Shared; 3],
         energy: Shared,
         volume: &Values,
@@ -94,6 +98,7 @@ impl<F: Fan> FanAtoms<F> {
             fan: &self.fan,
             limit: self.fan.cutoff() * self.fan.cutoff(),
             ends,
+            back: &self.back,
             f,
             energy,
             volume,
@@ -203,8 +208,9 @@ impl<F: Fan> Interaction<3> for FanAtoms<F> {
             None => Shared::NULL,
         };
         let f: [Shared; 3] = std::array::from_fn(|a| Shared(f[a].as_mut_ptr()));
+        let ends = self.back.ends();
         let (list, volume) = (&self.list, &body.volume);
-        self.centres(list, list.positions(), Some(&self.back), f, energy, volume);
+        self.centres(list, list.positions(), Some(ends), f, energy, volume);
         let gather = Gather {
             list,
             back: &self.back,

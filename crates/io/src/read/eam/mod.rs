@@ -11,7 +11,7 @@ pub use funcfl::{funcfl, parse_funcfl};
 pub use setfl::{fs, parse_fs, parse_setfl, setfl};
 
 use super::ReadError;
-use std::path::Path;
+use super::whole::text_of;
 
 /// An element of a file of potentials.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,21 +98,6 @@ fn failure(file: &str, line: Option<usize>, message: impl Into<String>) -> ReadE
         file: file.to_string(),
         line,
         message: message.into(),
-    }
-}
-
-/// A text file with the name that the user gave it.
-pub(super) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
-    let name = path.display().to_string();
-    let bytes =
-        std::fs::read(path).map_err(|e| failure(&name, None, format!("cannot read it: {e}")))?;
-    match String::from_utf8(bytes) {
-        Ok(text) => Ok((text, name)),
-        // old comments are in Latin-1, tables are ASCII
-        Err(e) => Ok((
-            e.into_bytes().iter().map(|b| char::from(*b)).collect(),
-            name,
-        )),
     }
 }
 

@@ -64,14 +64,12 @@ impl Back {
         &self.before
     }
 
-    /// To write what a tile says.
-    #[inline(always)]
-    pub fn places(&self) -> (Shared<u16>, Shared<[f64; 4]>) {
-        // both are written tile by tile, while nobody reads them
-        (
-            Shared(self.before.as_ptr().cast_mut()),
-            Shared(self.force.as_ptr().cast_mut()),
-        )
+    /// To write what tiles say: both are written tile by tile, while nobody reads them.
+    pub fn ends(&mut self) -> Ends {
+        Ends {
+            before: Shared(self.before.as_mut_ptr()),
+            force: Shared(self.force.as_mut_ptr()),
+        }
     }
 
     #[inline(always)]
@@ -85,6 +83,13 @@ impl Back {
             + 2 * self.before.capacity()
             + 32 * self.force.capacity()
     }
+}
+
+/// Where tiles write what they say of the ends of their bonds.
+#[derive(Clone, Copy)]
+pub(super) struct Ends {
+    pub before: Shared<u16>,
+    pub force: Shared<[f64; 4]>,
 }
 
 struct Find<'a> {

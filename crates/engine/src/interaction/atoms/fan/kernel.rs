@@ -1,6 +1,6 @@
 //! The fans of a tile of atoms: lanes run over centres, loops over the pairs of their bonds.
 
-use super::back::{Back, FAR};
+use super::back::{Back, Ends, FAR};
 use crate::body::Values;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
@@ -19,7 +19,8 @@ pub(super) struct View<'a, F> {
     /// Squared length.
     pub limit: f64,
     /// Where forces on ends go, if they are asked for; those on centres, force densities, then go to `f`.
-    pub ends: Option<&'a Back>,
+    pub ends: Option<Ends>,
+    pub back: &'a Back,
     pub f: [Shared; 3],
     /// Energy density per slot, if asked for.
     pub energy: Shared,
@@ -97,16 +98,15 @@ impl<F: Fan> View<'_, F> {
                 q = y.fma(y, q);
             }
             let mut bits = L::bits(q.lt(L::splat(self.limit))) & own_lanes;
-            if let Some(back) = self.ends {
-                let own = back.place(tile) + n * TILE;
-                let (before, _) = back.places();
+            if let Some(ends) = self.ends {
+                let own = self.back.place(tile) + n * TILE;
                 for l in 0..TILE {
                     let skipped = match bits >> l & 1 {
                         1 => (n - count[l]) as u16,
                         _ => FAR,
                     };
                     // SAFETY: every tile has its own places
-                    unsafe { *before.at(own + l) = skipped };
+                    unsafe { *ends.before.at(own + l) = skipped };
                 }
             }
             while bits != 0 {
@@ -274,13 +274,12 @@ impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
                 for (v, (m, n)) in virial.iter_mut().zip(VIRIAL) {
                     *v = bond.y[m].fma(force[n], *v);
                 }
-                if let Some(back) = view.ends {
-                    let (_, place) = back.places();
+                if let Some(ends) = view.ends {
                     let all = force.map(L::to_array);
                     for l in 0..TILE {
-                        let at = back.place(t) + n * TILE + l;
+                        let at = view.back.place(t) + n * TILE + l;
                         // SAFETY: every tile has its own places, and no more current bonds than lines
-                        unsafe { *place.at(at) = all.map(|f| f[l]) };
+                        unsafe { *ends.force.at(at) = all.map(|f| f[l]) };
                     }
                 }
             }
