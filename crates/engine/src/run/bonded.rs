@@ -39,6 +39,12 @@ pub(super) fn around<const D: usize>(
             "give body.file",
         );
     }
+    if spec.materials.len() > 1 {
+        return refused(
+            "molecules leave out pairs of one potential, and several materials have several",
+            "give the atoms one material",
+        );
+    }
     fits(bonded, body.points())?;
     let pair = potentials.pair()?;
     Ok(Box::new(BondedAtoms::new(
