@@ -6,6 +6,7 @@ mod coarsen;
 mod converge;
 mod deck;
 mod failure;
+mod fields;
 mod laws;
 mod progress;
 mod reproduce;
@@ -43,6 +44,8 @@ enum Verb {
     Waves(waves::WavesArguments),
     /// Refine a lattice deck level by level, and fit the order with which its error falls.
     Converge(converge::ConvergeArguments),
+    /// Continuum fields from the particles of a trajectory: stress, heat flux and their balance laws.
+    Fields(Box<fields::FieldsArguments>),
     /// A peristatic bar pulled at its ends: stiffness, homogenization factors, elongation as a fraction and its limit.
     Bar(bar::BarArguments),
     /// Run the experiments of the papers and compare with what was published.
@@ -93,6 +96,7 @@ fn main() -> ExitCode {
         Verb::Coarsen(arguments) => coarsen::coarsen(&arguments),
         Verb::Waves(arguments) => waves::waves(&arguments),
         Verb::Converge(arguments) => converge::converge(&arguments),
+        Verb::Fields(arguments) => fields::fields(&arguments),
         Verb::Bar(arguments) => bar::bar(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),

@@ -3,6 +3,7 @@
 use crate::FieldsError;
 use crate::frame::Frame;
 use crate::kernel::dot;
+use crate::molecules::Molecules;
 use crate::neighbours::{Neighbours, Partner};
 use crate::partition::{PairForce, Partition};
 use peridyne::law::terms::{Near, Sites, Term};
@@ -35,6 +36,7 @@ pub struct Share {
 pub struct Collector<'a> {
     pub frame: &'a Frame,
     pub sites: &'a dyn Sites,
+    pub molecules: Option<&'a Molecules>,
     pub neighbours: &'a Neighbours<'a>,
     pub partition: &'a Partition,
     pub pair_force: PairForce,
@@ -151,12 +153,53 @@ impl Collector<'_> {
                         wrong = room.term(x, term).err();
                     }
                 });
+            if let Some(molecules) = self.molecules
+                && wrong.is_none()
+            {
+                wrong = self.bonded(i, molecules, &mut room).err();
+            }
             if let Some(message) = wrong {
                 let FieldsError(message) = message;
                 return Err(FieldsError(format!("particle {}: {message}", i + 1)));
             }
         }
         Ok(room.out)
+    }
+
+    /// What a centre is bonded to, the nearest images of it.
+    fn bonded(&self, i: u32, molecules: &Molecules, room: &mut Room) -> Result<(), FieldsError> {
+        let x = self.neighbours.wrapped[i as usize];
+        let mut all = vec![];
+        molecules.partners(i, &mut all);
+        let mut places: Vec<(u32, u32, [f64; 3])> = vec![];
+        for atom in all {
+            let (image, y) = self
+                .frame
+                .cell
+                .nearest(x, self.neighbours.wrapped[atom as usize]);
+            let share = room.share(atom);
+            places.push((atom, room.here.len() as u32, y));
+            room.here.push(Here {
+                atom,
+                image,
+                y,
+                share,
+            });
+        }
+        let at = |atom: u32| match places.binary_search_by_key(&atom, |p| p.0) {
+            Ok(n) => (places[n].1, places[n].2),
+            Err(_) => (0, [0.0; 3]),
+        };
+        let mut outcome = Ok(());
+        let kind = self.frame.kind[i as usize];
+        let first = self.sites.parts().len();
+        let of = (self.sites, first);
+        molecules.terms((i, kind), &self.frame.kind, &at, of, &mut |term| {
+            if outcome.is_ok() {
+                outcome = room.term(x, term);
+            }
+        });
+        outcome
     }
 }
 

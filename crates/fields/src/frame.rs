@@ -100,6 +100,17 @@ impl Cell {
         std::array::from_fn(|c| (0..3).map(|a| f64::from(n[a]) * self.edges[a][c]).sum())
     }
 
+    /// The image of b that is nearest to a along each edge, in periods from b, and from a to it.
+    pub(crate) fn nearest(&self, a: [f64; 3], b: [f64; 3]) -> ([i32; 3], [f64; 3]) {
+        let d: [f64; 3] = std::array::from_fn(|c| b[c] - a[c]);
+        let image: [i32; 3] = std::array::from_fn(|e| match self.periodic[e] {
+            true => -dot(self.inverse[e], d).round() as i32,
+            false => 0,
+        });
+        let shift = self.shift(image);
+        (image, std::array::from_fn(|c| d[c] + shift[c]))
+    }
+
     /// The image inside the cell, along periodic axes.
     pub fn wrap(&self, x: [f64; 3]) -> [f64; 3] {
         let s = self.fraction(x);

@@ -28,6 +28,7 @@ mod bonds;
 pub mod fields;
 pub mod frame;
 pub mod kernel;
+pub mod molecules;
 pub mod neighbours;
 pub mod partition;
 pub mod residuals;

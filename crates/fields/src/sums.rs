@@ -10,11 +10,13 @@ use crate::bonds::{Block, Collector};
 use crate::fields::{Fields, Layout, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::{Kernel, dot};
+use crate::molecules::{self, Molecules};
 use crate::neighbours::Neighbours;
 use crate::partition::{PairForce, Partition};
 use crate::targets::{Bins, Targets};
 use peridyne::law::terms::Sites;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// How fields are made.
 #[derive(Debug, Clone)]
@@ -24,6 +26,8 @@ pub struct Method {
     pub pair_force: PairForce,
     /// Keep stress, churning and heat flux of the parts of the potential apart.
     pub by_part: bool,
+    /// What is bonded whatever moves.
+    pub molecules: Option<Arc<Molecules>>,
     /// Also the exact rates of ρ, π and e, for residuals.
     pub rates: bool,
     /// k_B (energy / temperature); 1 in reduced units.
@@ -37,6 +41,7 @@ impl Method {
             partition: Partition::Site,
             pair_force: PairForce::Distances,
             by_part: false,
+            molecules: None,
             rates: false,
             boltzmann: 1.0,
         }
@@ -61,8 +66,16 @@ pub fn evaluate(
     frame.check()?;
     let neighbours = Neighbours::new(frame, sites.reach())?;
     let bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    let molecules = method.molecules.as_deref();
+    if let Some(molecules) = molecules {
+        molecules.check(frame.len(), sites)?;
+    }
     let names = match method.by_part {
-        true => sites.parts(),
+        true => {
+            let bonded = molecules.map_or(&[][..], |_| &molecules::PARTS);
+            let bonded = bonded.iter().map(|p| p.to_string());
+            sites.parts().into_iter().chain(bonded).collect()
+        }
         false => vec!["all".to_string()],
     };
     let parts = names.len();
@@ -76,6 +89,7 @@ pub fn evaluate(
     let collector = Collector {
         frame,
         sites,
+        molecules,
         neighbours: &neighbours,
         partition: &method.partition,
         pair_force: method.pair_force,
@@ -98,7 +112,10 @@ pub fn evaluate(
         power: vec![0.0; frame.len()],
     };
     let mut totals = Totals::new(frame);
-    let wide = sites.reach();
+    // bonded partners may be farther than the potential reaches
+    let wide = sites
+        .reach()
+        .max(molecules.map_or(0.0, |m| m.longest(frame)));
     let batch = 2 * rayon::current_num_threads();
     for first in (0..blocks.count).step_by(batch) {
         let some: Vec<_> = (first..(first + batch).min(blocks.count))

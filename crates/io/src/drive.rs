@@ -164,6 +164,7 @@ impl AtomsPlan {
             low,
             high,
             periodic: self.periodic.map(|p| p.is_some()),
+            edges: None,
             step: Some(sim.step_number()),
             time: Some(sim.time()),
             from_momenta: false,

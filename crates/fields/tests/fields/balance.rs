@@ -3,8 +3,10 @@
 
 use crate::sample::*;
 use peridyne::law::terms::Sites;
+use peridyne_fields::molecules::Molecules;
 use peridyne_fields::residuals::{RIGHT, Residuals, Signs, of, of_frame};
 use peridyne_fields::{Frame, Method, PairForce, Partition, Shape};
+use std::sync::Arc;
 
 fn points(frame: &Frame) -> Vec<[f64; 3]> {
     let mut random = Random(11);
@@ -22,12 +24,21 @@ fn points(frame: &Frame) -> Vec<[f64; 3]> {
 
 /// Residuals with steps, and with half of them.
 fn halves(frame: &Frame, sites: &dyn Sites, method: &Method, signs: Signs) -> [Residuals; 2] {
+    let steps = steps(frame);
     [1.0, 0.5].map(|part| {
-        let (h, dt) = (0.04 * part, 2e-3 * part);
+        let (h, dt) = (steps[0] * part, steps[1] * part);
         let [before, after] = [-dt, dt].map(|t| step(frame, sites, t));
         let around = Some([&before, &after]);
         of(frame, around, sites, method, &points(frame), h, signs).unwrap()
     })
+}
+
+/// Steps in space and time: of particles about 1 apart, and of silicon in Å and ps.
+fn steps(frame: &Frame) -> [f64; 2] {
+    match frame.cell.edges[0][0] > 7.0 {
+        true => [0.08, 5e-4],
+        false => [0.04, 2e-3],
+    }
 }
 
 fn order(of: [f64; 2]) -> f64 {
@@ -148,6 +159,23 @@ fn embedded_atoms_in_equal_parts_churn_and_balance() {
     fails("embedded, no q_C", &frame, &embedded(), &method, WRONG[3].1);
 }
 
+/// Stillinger and Weber's silicon as the engine has it, hot, in eV, Å and ps.
+#[test]
+fn silicon_balances() {
+    let frame = silicon();
+    let sites = stillinger_weber();
+    for partition in [Partition::Site, Partition::Equal] {
+        let method = Method {
+            partition,
+            ..method(Shape::Polynomial(5), 3.2)
+        };
+        converges("silicon", &frame, &*sites, &method);
+        for (what, signs) in WRONG {
+            fails(what, &frame, &*sites, &method, signs);
+        }
+    }
+}
+
 #[test]
 fn a_molecule_with_torsion_balances() {
     let frame = molecule();
@@ -160,6 +188,49 @@ fn a_molecule_with_torsion_balances() {
         for (what, signs) in WRONG {
             fails(what, &frame, &Torsion, &method, signs);
         }
+    }
+}
+
+/// Bonds, angles and dihedrals of the engine, with pairs of which a part is left between bonded particles, across the borders of a
+/// tilted cell.
+#[test]
+fn bonded_terms_balance() {
+    let mut frame = gas(8);
+    let spec = bonded(frame.len());
+    let molecules = Molecules::new(spec, frame.len()).unwrap();
+    // the nearest image does not know where the cell begins
+    frame.position.iter_mut().for_each(|x| x[0] += 2.1);
+    for partition in [Partition::Site, Partition::Equal] {
+        let method = Method {
+            partition,
+            molecules: Some(Arc::new(molecules.clone())),
+            ..smooth()
+        };
+        converges_moved("bonded", &frame, &pairs(), &method);
+        let exact = of_frame(&frame, &pairs(), &method, &points(&frame), 0.02).unwrap();
+        let still = Method {
+            molecules: None,
+            ..method
+        };
+        let other = of_frame(&frame, &pairs(), &still, &points(&frame), 0.02).unwrap();
+        assert!((exact.momentum.scale / other.momentum.scale - 1.0).abs() > 0.01);
+    }
+}
+
+/// Rates of the instant alone.
+fn converges_moved(name: &str, frame: &Frame, sites: &dyn Sites, method: &Method) {
+    let exact = of_frame(frame, sites, method, &points(frame), 0.02).unwrap();
+    for r in [exact.mass, exact.momentum, exact.energy] {
+        assert!((r.value / r.expected - 1.0).abs() < 0.2, "{name}: {r:?}");
+        assert!(r.extrapolated < 0.1 * r.value, "{name}: {r:?}");
+    }
+    for (what, signs) in WRONG {
+        let wrong = of(frame, None, sites, method, &points(frame), 0.02, signs).unwrap();
+        let worst = [wrong.momentum, wrong.energy];
+        assert!(
+            worst.iter().any(|r| r.value > 5.0 * r.expected),
+            "{name} {what}: {worst:?}"
+        );
     }
 }
 

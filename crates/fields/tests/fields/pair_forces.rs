@@ -4,8 +4,10 @@ use crate::sample::*;
 use peridyne::law::number::Dual;
 use peridyne::law::potential::Potential;
 use peridyne::law::terms::{Near, OfSites, Sites};
+use peridyne_fields::molecules::Molecules;
 use peridyne_fields::residuals::of_frame;
 use peridyne_fields::{Frame, Method, PairForce, Quantity, Shape, Targets, evaluate};
+use std::sync::Arc;
 
 fn energy(frame: &Frame, sites: &dyn Sites) -> f64 {
     let targets = Targets::Points(frame.position.clone());
@@ -46,6 +48,50 @@ fn forces_are_slopes_of_the_energy() {
             }
         }
     }
+}
+
+/// The same of bonds, angles and dihedrals, and of pairs of which a part is left between bonded particles.
+#[test]
+fn forces_of_molecules_are_slopes_of_the_energy() {
+    let frame = gas(8);
+    let molecules = Molecules::new(bonded(frame.len()), frame.len()).unwrap();
+    let method = Method {
+        molecules: Some(Arc::new(molecules)),
+        ..method(Shape::Polynomial(3), 1.0)
+    };
+    let of = |frame: &Frame| {
+        let targets = Targets::Points(frame.position.clone());
+        evaluate(frame, &pairs(), &targets, &method).unwrap()
+    };
+    let force = of(&frame).force;
+    for i in [1, 2, 6, 7, 9] {
+        for a in 0..3 {
+            let at = |step: f64| {
+                let mut moved = frame.clone();
+                moved.position[i][a] += step;
+                of(&moved).totals.energy
+            };
+            let h = 1e-3;
+            let odd = |n: f64| at(n * h) - at(-n * h);
+            let slope = (45.0 * odd(1.0) - 9.0 * odd(2.0) + odd(3.0)) / (60.0 * h);
+            let error = (slope + force[i][a]).abs();
+            assert!(
+                error < 1e-8 * (1.0 + slope.abs()),
+                "{i} {a}: {slope} {}",
+                force[i][a]
+            );
+        }
+    }
+    let other = molecules_of(3);
+    let error = Molecules::new(other, 2).unwrap_err().to_string();
+    assert!(error.contains("particle 3"), "{error}");
+}
+
+fn molecules_of(count: u32) -> peridyne::spec::BondedSpec {
+    let mut spec = bonded(16);
+    spec.terms.truncate(1);
+    spec.terms[0].points = [0, count - 1, 0, 0];
+    spec
 }
 
 /// To the last digits, with dual numbers through the coordinates instead of the distances.

@@ -3,6 +3,8 @@
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
 use peridyne::law::terms::{Near, OfSites, Sites, Term};
+use peridyne::run::Shelf;
+use peridyne::spec::{BondedSpec, BondedTerm, Form, Parameters, PotentialSpec};
 use peridyne_fields::{Cell, Frame, Kernel, Method, Shape, Targets, evaluate};
 
 pub struct Random(pub u64);
@@ -382,6 +384,106 @@ pub fn cluster(count: usize, seed: u64) -> Frame {
         mass: (0..count).map(|_| 1.0 + 0.4 * random.next()).collect(),
         kind: (0..count as u32).collect(),
         time: Some(0.0),
+    }
+}
+
+/// The published constants (eV, Å).
+pub fn stillinger_weber() -> Box<dyn Sites> {
+    let parameters = Parameters::numbers(&[
+        ("epsilon", 2.1683),
+        ("sigma", 2.0951),
+        ("a", 1.80),
+        ("lambda", 21.0),
+        ("gamma", 1.20),
+        ("cos_theta0", -0.333333333333),
+        ("A", 7.049556277),
+        ("B", 0.6022245584),
+        ("p", 4.0),
+        ("q", 0.0),
+    ]);
+    let spec = PotentialSpec {
+        name: "stillinger_weber".into(),
+        parameters,
+        reach: f64::INFINITY,
+    };
+    Shelf::standard().sites(&spec).unwrap()
+}
+
+/// Two cells of a diamond lattice along each axis, with displacements of a fifth of an ångström.
+pub fn silicon() -> Frame {
+    let quarters = [
+        [0, 0, 0],
+        [2, 2, 0],
+        [2, 0, 2],
+        [0, 2, 2],
+        [1, 1, 1],
+        [3, 3, 1],
+        [3, 1, 3],
+        [1, 3, 3],
+    ];
+    let (edge, n) = (5.431, 2);
+    let mut random = Random(21);
+    let mut position = vec![];
+    for i in 0..n * n * n {
+        let cell = [i / (n * n), i / n % n, i % n];
+        for q in quarters {
+            let r = random.vector();
+            position.push(std::array::from_fn(|a| {
+                edge * (cell[a] as f64 + 0.25 * f64::from(q[a])) + 0.2 * r[a]
+            }));
+        }
+    }
+    let count = position.len();
+    Frame {
+        cell: Cell::orthogonal([0.0; 3], [edge * n as f64; 3], [true; 3]).unwrap(),
+        position,
+        velocity: Some(
+            (0..count)
+                .map(|_| random.vector().map(|v| 8.0 * v + 4.0))
+                .collect(),
+        ),
+        mass: vec![28.0855 * 1.036427e-4; count],
+        kind: vec![0; count],
+        time: Some(0.0),
+    }
+}
+
+/// Neighbouring particles of [`gas`] along an axis as chains of four, with stiff bonds, angles and torsion.
+pub fn bonded(count: usize) -> BondedSpec {
+    let forms = vec![
+        Form::HarmonicBond {
+            stiffness: 30.0,
+            length: 1.0,
+        },
+        Form::CosineSquaredAngle {
+            stiffness: 6.0,
+            cosine: -0.4,
+        },
+        Form::Dihedral {
+            powers: vec![1.0, 0.7, -0.4, 0.9],
+        },
+    ];
+    let term = |form: u32, points: &[u32]| {
+        let mut all = [0; 4];
+        all[..points.len()].copy_from_slice(points);
+        BondedTerm { form, points: all }
+    };
+    let mut terms = vec![];
+    // particles 4k to 4k + 3 follow each other along z; the chain goes on to the next row, and bends there
+    for first in (0..count as u32 - 8).step_by(8) {
+        let chain = [first + 1, first + 2, first + 6, first + 7];
+        for pair in chain.windows(2) {
+            terms.push(term(0, pair));
+        }
+        for three in chain.windows(3) {
+            terms.push(term(1, three));
+        }
+        terms.push(term(2, &chain));
+    }
+    BondedSpec {
+        forms,
+        terms,
+        special: [0.0, 0.3, 0.5],
     }
 }
 

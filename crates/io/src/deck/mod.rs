@@ -24,7 +24,7 @@ pub use describe::describe;
 pub use error::DeckError;
 pub use schema::schema;
 pub use source::Flag;
-pub use units::{Dim, UnitSystem};
+pub use units::{Constants, Dim, UnitSystem};
 
 use crate::write::trajectory::Format;
 use document::Document;

@@ -31,6 +31,8 @@ pub struct Atoms {
     pub periodic: [bool; 3],
     /// Does the file have bonds, angles or dihedrals ([`molecules`](super::molecules))?
     pub bonded: bool,
+    /// Edges of a box that is not along the axes, one per row, from the corner `low`; `high` is then no more than a bound.
+    pub edges: Option<[[f64; 3]; 3]>,
     /// Of the frame, where the file says it.
     pub step: Option<u64>,
     pub time: Option<f64>,
@@ -100,6 +102,13 @@ impl Names {
         });
         place
     }
+}
+
+/// Boxes whose edges are not along the axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Tilted {
+    Refused,
+    Taken,
 }
 
 /// Which frame of a trajectory.

@@ -1,7 +1,7 @@
 //! LAMMPS text dumps of atoms: `id`, `type` or `element`, positions (`x`, `xu` or scaled `xs`), velocities, forces.
 
 use super::ReadError;
-use super::atoms::{Atoms, Frame, Names};
+use super::atoms::{Atoms, Frame, Names, Tilted};
 use super::stream::Stream;
 use std::io::BufRead;
 use std::path::Path;
@@ -34,14 +34,93 @@ pub fn frames(path: &Path) -> Result<usize, ReadError> {
 }
 
 /// What stands before the atoms of a frame.
-struct Head {
+pub(super) struct Head {
     step: u64,
     time: Option<f64>,
     count: usize,
     low: [f64; 3],
     high: [f64; 3],
     periodic: [bool; 3],
+    edges: Option<[[f64; 3]; 3]>,
     columns: Vec<String>,
+}
+
+/// How the box is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum BoxLines {
+    Bounds,
+    /// `xlo_bound xhi_bound xy`, …: bounds of the tilted box.
+    Tilted,
+    /// `ax ay az origin_x`, …: any three edges.
+    General,
+}
+
+impl BoxLines {
+    fn width(self) -> usize {
+        match self {
+            BoxLines::Bounds => 2,
+            BoxLines::Tilted => 3,
+            BoxLines::General => 4,
+        }
+    }
+}
+
+impl Head {
+    /// From the lines after `BOX BOUNDS`.
+    fn take_box(&mut self, lines: BoxLines, rows: &[Vec<f64>]) {
+        match lines {
+            BoxLines::Bounds => {
+                self.low = std::array::from_fn(|a| rows[a][0]);
+                self.high = std::array::from_fn(|a| rows[a][1]);
+            }
+            BoxLines::Tilted => {
+                let [xy, xz, yz] = [rows[0][2], rows[1][2], rows[2][2]];
+                let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+                for a in 0..3 {
+                    (low[a], high[a]) = (rows[a][0], rows[a][1]);
+                }
+                // LAMMPS manual, Howto triclinic: what the bounds are wider than the box
+                let sums = [0.0, xy, xz, xy + xz];
+                low[0] -= sums.into_iter().fold(f64::INFINITY, f64::min);
+                high[0] -= sums.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                low[1] -= yz.min(0.0);
+                high[1] -= yz.max(0.0);
+                (self.low, self.high) = (low, high);
+                let length: [f64; 3] = std::array::from_fn(|a| high[a] - low[a]);
+                if [xy, xz, yz] != [0.0; 3] {
+                    self.edges = Some([
+                        [length[0], 0.0, 0.0],
+                        [xy, length[1], 0.0],
+                        [xz, yz, length[2]],
+                    ]);
+                }
+            }
+            BoxLines::General => {
+                self.low = std::array::from_fn(|a| rows[a][3]);
+                let edges: [[f64; 3]; 3] =
+                    std::array::from_fn(|a| std::array::from_fn(|c| rows[a][c]));
+                self.high =
+                    std::array::from_fn(|c| self.low[c] + (0..3).map(|a| edges[a][c]).sum::<f64>());
+                self.edges = Some(edges);
+            }
+        }
+    }
+
+    /// The point at scaled coordinates.
+    fn scaled(&self, s: [f64; 3]) -> [f64; 3] {
+        let edges = self.edges.unwrap_or_else(|| {
+            std::array::from_fn(|a| {
+                std::array::from_fn(|c| {
+                    if a == c {
+                        self.high[a] - self.low[a]
+                    } else {
+                        0.0
+                    }
+                })
+            })
+        });
+        std::array::from_fn(|c| self.low[c] + (0..3).map(|a| s[a] * edges[a][c]).sum::<f64>())
+    }
 }
 
 /// The line after an item.
@@ -51,7 +130,10 @@ fn value<R: BufRead>(stream: &mut Stream<R>, item: &str) -> Result<String, ReadE
 }
 
 /// `None` at the end of the file.
-fn head<R: BufRead>(stream: &mut Stream<R>) -> Result<Option<Head>, ReadError> {
+pub(super) fn head<R: BufRead>(
+    stream: &mut Stream<R>,
+    tilted: Tilted,
+) -> Result<Option<Head>, ReadError> {
     let mut frame = Head {
         step: 0,
         time: None,
@@ -59,6 +141,7 @@ fn head<R: BufRead>(stream: &mut Stream<R>) -> Result<Option<Head>, ReadError> {
         low: [0.0; 3],
         high: [0.0; 3],
         periodic: [false; 3],
+        edges: None,
         columns: Vec::new(),
     };
     let (mut begun, mut boxed) = (false, false);
@@ -81,21 +164,38 @@ fn head<R: BufRead>(stream: &mut Stream<R>) -> Result<Option<Head>, ReadError> {
         }
         begun = true;
         if let Some(flags) = item.strip_prefix("BOX BOUNDS") {
-            let flags: Vec<&str> = flags.split_whitespace().collect();
-            if flags.iter().any(|f| ["xy", "xz", "yz", "abc"].contains(f)) {
+            let mut flags: Vec<&str> = flags.split_whitespace().collect();
+            let lines = match flags[..] {
+                ["xy", "xz", "yz", ..] => BoxLines::Tilted,
+                ["abc", "origin", ..] => BoxLines::General,
+                _ => BoxLines::Bounds,
+            };
+            if tilted == Tilted::Refused && lines != BoxLines::Bounds {
                 return Err(stream.error("tilted boxes are not read: use an orthogonal box"));
             }
+            flags.retain(|f| !["xy", "xz", "yz", "abc", "origin"].contains(f));
             frame.periodic =
                 std::array::from_fn(|a| flags.get(a).is_some_and(|f| f.starts_with('p')));
-            for a in 0..3 {
+            let mut rows = vec![];
+            for _ in 0..3 {
                 let line = value(stream, "BOX BOUNDS")?;
                 let words: Vec<&str> = line.split_whitespace().collect();
-                let [low, high] = words[..] else {
-                    return Err(stream.error(format!("expected two bounds, found `{line}`")));
-                };
-                frame.low[a] = stream.finite(low, "a bound")?;
-                frame.high[a] = stream.finite(high, "a bound")?;
+                if words.len() != lines.width() {
+                    return Err(stream.error(match lines {
+                        BoxLines::Bounds => format!("expected two bounds, found `{line}`"),
+                        BoxLines::Tilted => {
+                            format!("expected two bounds and a tilt, found `{line}`")
+                        }
+                        BoxLines::General => {
+                            format!("expected an edge and a number of the origin, found `{line}`")
+                        }
+                    }));
+                }
+                let row: Result<Vec<f64>, _> =
+                    words.iter().map(|w| stream.finite(w, "a bound")).collect();
+                rows.push(row?);
             }
+            frame.take_box(lines, &rows);
             boxed = true;
             continue;
         }
@@ -131,7 +231,8 @@ fn skip<R: BufRead>(stream: &mut Stream<R>, head: &Head) -> Result<(), ReadError
 
 fn count<R: BufRead>(mut stream: Stream<R>) -> Result<usize, ReadError> {
     let mut frames = 0;
-    while let Some(head) = head(&mut stream)? {
+    // what is only counted may have any box
+    while let Some(head) = head(&mut stream, Tilted::Taken)? {
         skip(&mut stream, &head)?;
         frames += 1;
     }
@@ -140,7 +241,7 @@ fn count<R: BufRead>(mut stream: Stream<R>) -> Result<usize, ReadError> {
 
 fn parse<R: BufRead>(mut stream: Stream<R>, which: Frame, last: usize) -> Result<Atoms, ReadError> {
     let mut steps = Vec::new();
-    while let Some(head) = head(&mut stream)? {
+    while let Some(head) = head(&mut stream, Tilted::Refused)? {
         let wanted = match which {
             Frame::Step(step) => head.step == step,
             Frame::Index(index) => steps.len() == index,
@@ -178,7 +279,7 @@ fn triple(columns: &[String], names: [&str; 3]) -> Option<[usize; 3]> {
     Some([find(names[0])?, find(names[1])?, find(names[2])?])
 }
 
-fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadError> {
+pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadError> {
     let columns = &head.columns;
     let find = |name: &str| columns.iter().position(|c| c == name);
     let missing = |what: &str| {
@@ -229,7 +330,7 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
         };
         let mut x = vector(place)?;
         if plain.is_none() {
-            x = std::array::from_fn(|a| head.low[a] + x[a] * (head.high[a] - head.low[a]));
+            x = head.scaled(x);
         }
         let species = names.place(words[kind]);
         if numbers.len() < names.species.len() {
@@ -278,6 +379,7 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadEr
         low: head.low,
         high: head.high,
         periodic: head.periodic,
+        edges: head.edges,
         step: Some(head.step),
         time: head.time,
         from_momenta: false,

@@ -6,7 +6,7 @@
 //! Format: libAtoms extended XYZ specification and ASE's documentation of it.
 
 use super::ReadError;
-use super::atoms::{Atoms, Frame, Names};
+use super::atoms::{Atoms, Frame, Names, Tilted};
 use super::stream::Stream;
 use std::io::BufRead;
 use std::path::Path;
@@ -42,7 +42,7 @@ pub fn frames(path: &Path) -> Result<usize, ReadError> {
 }
 
 /// Number of atoms of the next frame; `None` at the end of the file.
-fn next_frame<R: BufRead>(stream: &mut Stream<R>) -> Result<Option<usize>, ReadError> {
+pub(super) fn next_frame<R: BufRead>(stream: &mut Stream<R>) -> Result<Option<usize>, ReadError> {
     loop {
         match stream.next()? {
             None => return Ok(None),
@@ -83,11 +83,11 @@ fn parse<R: BufRead>(
     while let Some(atoms) = next_frame(&mut stream)? {
         stream.expect(|| "the line with Lattice and Properties is missing".into())?;
         let wanted = match which {
-            Frame::Step(step) => Head::read(&stream)?.step == Some(step),
+            Frame::Step(step) => Head::read(&stream, Tilted::Refused)?.step == Some(step),
             Frame::Index(_) | Frame::Last => seen == index,
         };
         if wanted {
-            let head = Head::read(&stream)?;
+            let head = Head::read(&stream, Tilted::Refused)?;
             return frame(&mut stream, atoms, head);
         }
         skip(&mut stream, atoms, atoms)?;
@@ -134,9 +134,11 @@ const ROLES: [(&str, Role, char, usize); 15] = [
 ];
 
 /// The line of keys.
-struct Head {
+pub(super) struct Head {
     /// Corner and lengths; a length of 0: as far as the atoms go.
     lattice: Option<[f64; 3]>,
+    /// Of a lattice that is not orthogonal.
+    edges: Option<[[f64; 3]; 3]>,
     origin: [f64; 3],
     periodic: [bool; 3],
     step: Option<u64>,
@@ -147,7 +149,7 @@ struct Head {
 }
 
 impl Head {
-    fn read<R: BufRead>(stream: &Stream<R>) -> Result<Head, ReadError> {
+    pub(super) fn read<R: BufRead>(stream: &Stream<R>, tilted: Tilted) -> Result<Head, ReadError> {
         let pairs = pairs(stream.current()).map_err(|e| stream.error(e))?;
         let find = |key: &str| {
             let found = pairs.iter().find(|(k, _)| k.eq_ignore_ascii_case(key));
@@ -167,12 +169,18 @@ impl Head {
                 Err(stream.error(format!("{key} has {count} numbers, found {}", values.len())))
             }
         };
+        let mut edges = None;
         let lattice = match numbers("Lattice", 9)? {
             None => None,
             Some(rows) => {
                 let off = (0..9).any(|k| k % 4 != 0 && rows[k] != 0.0);
                 let lengths = [rows[0], rows[4], rows[8]];
-                if off || lengths.iter().any(|l| *l < 0.0) {
+                let turned = off || lengths.iter().any(|l| *l < 0.0);
+                if turned && tilted == Tilted::Taken {
+                    edges = Some(std::array::from_fn(|a| {
+                        std::array::from_fn(|c| rows[3 * a + c])
+                    }));
+                } else if turned {
                     return Err(stream.error(
                         "the lattice is not orthogonal: only Lattice=\"Lx 0 0 0 Ly 0 0 0 Lz\" is read; make an orthogonal supercell",
                     ));
@@ -186,7 +194,10 @@ impl Head {
             Some(text) => flags(text)
                 .ok_or_else(|| stream.error(format!("expected pbc=\"T T F\", found `{text}`")))?,
         };
-        if let Some(a) = (0..3).find(|a| periodic[*a] && lattice.is_none_or(|l| l[*a] <= 0.0)) {
+        if let Some(a) = (0..3).find(|a| {
+            let short = lattice.is_none_or(|l| l[*a] <= 0.0);
+            periodic[*a] && edges.is_none() && short
+        }) {
             let axis = ["x", "y", "z"][a];
             return Err(stream.error(format!(
                 "{axis} is periodic (pbc), but Lattice gives it no length"
@@ -196,6 +207,7 @@ impl Head {
             .map_err(|e| stream.error(e))?;
         Ok(Head {
             lattice,
+            edges,
             origin: numbers("Origin", 3)?.map_or([0.0; 3], |v| [v[0], v[1], v[2]]),
             periodic,
             step: find("step")
@@ -301,7 +313,11 @@ fn pairs(line: &str) -> Result<Vec<(String, String)>, String> {
     Ok(pairs)
 }
 
-fn frame<R: BufRead>(stream: &mut Stream<R>, count: usize, head: Head) -> Result<Atoms, ReadError> {
+pub(super) fn frame<R: BufRead>(
+    stream: &mut Stream<R>,
+    count: usize,
+    head: Head,
+) -> Result<Atoms, ReadError> {
     let column = |role: Role| head.roles.iter().find(|(r, _)| *r == role).map(|(_, c)| *c);
     let (Some(species), Some(position)) = (column(Role::Species), column(Role::Position)) else {
         return Err(stream.error("Properties has no species and pos"));
@@ -319,6 +335,7 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, count: usize, head: Head) -> Result
         energy: energy.map(|_| Vec::new()),
         from_momenta: velocity.is_none() && momentum.is_some(),
         periodic: head.periodic,
+        edges: head.edges,
         step: head.step,
         time: head.time,
         ..Atoms::default()
@@ -373,6 +390,12 @@ fn frame<R: BufRead>(stream: &mut Stream<R>, count: usize, head: Head) -> Result
         }
     }
     atoms.species = names.species;
+    if let Some(edges) = head.edges {
+        atoms.low = head.origin;
+        atoms.high =
+            std::array::from_fn(|c| head.origin[c] + (0..3).map(|a| edges[a][c]).sum::<f64>());
+        return Ok(atoms);
+    }
     let [low, high] = Atoms::bounds(&atoms.position);
     for a in 0..3 {
         let length = head.lattice.map_or(0.0, |l| l[a]);

@@ -13,6 +13,7 @@ pub mod dump;
 pub mod eam;
 pub mod entries;
 pub mod extxyz;
+pub mod frames;
 mod gmsh;
 pub mod lammps;
 mod linear;

@@ -1,6 +1,7 @@
 //! Lines of a file one at a time: trajectories do not fit in memory.
 
 use super::ReadError;
+use flate2::bufread::MultiGzDecoder;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -11,19 +12,34 @@ pub(super) struct Stream<R> {
     /// 1-based number of the line last taken.
     number: usize,
     line: String,
+    packed: bool,
 }
 
-impl Stream<BufReader<File>> {
+/// Of a file, packed or not.
+pub(super) type Source = Box<dyn BufRead + Send>;
+
+/// What a gzip file begins with.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+const ROOM: usize = 1 << 18;
+
+impl Stream<Source> {
+    /// A text, or a text packed by gzip, which its first bytes tell.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let name = path.display().to_string();
-        match File::open(path) {
-            Ok(file) => Ok(Stream::new(BufReader::with_capacity(1 << 18, file), &name)),
-            Err(e) => Err(ReadError {
-                file: name,
-                line: None,
-                message: format!("cannot read it: {e}"),
-            }),
-        }
+        let wrong = |e: std::io::Error| ReadError {
+            file: name.clone(),
+            line: None,
+            message: format!("cannot read it: {e}"),
+        };
+        let mut file = BufReader::with_capacity(ROOM, File::open(path).map_err(wrong)?);
+        let packed = file.fill_buf().map_err(wrong)?.starts_with(&GZIP);
+        let source: Source = match packed {
+            true => Box::new(BufReader::with_capacity(ROOM, MultiGzDecoder::new(file))),
+            false => Box::new(file),
+        };
+        let mut stream = Stream::new(source, &name);
+        stream.packed = packed;
+        Ok(stream)
     }
 }
 
@@ -34,6 +50,7 @@ impl<R: BufRead> Stream<R> {
             name: name.to_string(),
             number: 0,
             line: String::new(),
+            packed: false,
         }
     }
 
@@ -48,9 +65,11 @@ impl<R: BufRead> Stream<R> {
             }
             Err(e) => {
                 self.number += 1;
-                Err(self.error(format!(
-                    "cannot read this line: {e} (binary or compressed file?)"
-                )))
+                let why = match self.packed {
+                    true => "the packed file is damaged or cut off",
+                    false => "binary or compressed file?",
+                };
+                Err(self.error(format!("cannot read this line: {e} ({why})")))
             }
         }
     }

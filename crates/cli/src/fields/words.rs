@@ -1,0 +1,261 @@
+//! What a user says: flags, or a file with the same keys.
+
+use crate::failure::Failure;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Continuum fields from particles: densities, stress (tension positive), heat flux, with the residuals of their balance laws.
+///
+/// With the distance r from a point and the width S, a particle counts as
+///   polynomial  c (1 - r^2/S^2)^n for r < S, n = --smoothness (3 if not given)
+///   bspline     c [(2 - q)^3 - 4 max(1 - q, 0)^3], q = 2 r/S < 2
+///   quartic     c [(5/2 - q)^4 - 5 max(3/2 - q, 0)^4 + 10 max(1/2 - q, 0)^4], q = 5 r/(2 S) < 5/2
+///   gaussian    c exp(-r^2/(2 S^2)) for r < 8 S
+///   step        c for r < S
+///   cell        c in a cube of edge S
+/// with c so that the integral over space is 1.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct FieldsArguments {
+    /// File (.toml) whose keys are the flags below, without their dashes; paths are relative to it.
+    pub deck: Option<PathBuf>,
+    /// Frames: extended XYZ, LAMMPS dump or data file, each also packed (.gz). Fields are means over all frames.
+    #[arg(long, value_name = "FILE")]
+    pub frames: Option<PathBuf>,
+    /// A potential that `peridyne laws` lists; setfl or funcfl with --file.
+    #[arg(long, value_name = "NAME")]
+    pub potential: Option<String>,
+    /// A constant of the potential by the name it has in decks, e.g. `--with epsilon=1 --with cutoff=2.5`; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = crate::pair)]
+    pub with: Vec<(String, String)>,
+    /// File of the potential.
+    #[arg(long, value_name = "FILE")]
+    pub file: Option<String>,
+    /// Element of a file that has several.
+    #[arg(long, value_name = "NAME")]
+    pub element: Option<String>,
+    /// LAMMPS data file with bonds, angles, dihedrals and their coefficients, of atoms in order of their ids.
+    #[arg(long, value_name = "FILE")]
+    pub molecules: Option<PathBuf>,
+    /// What is left of the potential between atoms that are one, two and three bonds apart, e.g. `0,0,0.5`.
+    #[arg(long, value_name = "A,B,C", requires = "molecules")]
+    pub special: Option<String>,
+    /// Mass of a species or type, e.g. `--mass Cu=63.546` or `--mass 1=2`; may be repeated.
+    #[arg(long, value_name = "NAME=MASS", value_parser = crate::pair)]
+    pub mass: Vec<(String, String)>,
+    /// Of frames and potential: metal (Å, ps, eV, g/mol), real (Å, fs, kcal/mol, g/mol), lj, si or none (any consistent units).
+    #[arg(long, value_name = "UNITS")]
+    pub units: Option<String>,
+    /// polynomial, bspline, quartic, gaussian, step or cell: see above.
+    #[arg(long, value_name = "NAME")]
+    pub kernel: Option<String>,
+    /// S (in the frames' unit of length).
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pub width: Option<f64>,
+    /// n of the polynomial, 0 to 7: n - 1 derivatives are continuous.
+    #[arg(long, value_name = "N")]
+    pub smoothness: Option<u32>,
+    /// Average over these axes of the box, e.g. `yz` for a profile along x.
+    #[arg(long, value_name = "AXES")]
+    pub average: Option<String>,
+    /// Fields at the centres of so many equal pieces of the box.
+    #[arg(long, value_name = "NX,NY,NZ")]
+    pub grid: Option<String>,
+    /// Fields at the points of this file: x y z in each row, by blanks or commas.
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Whose a term's energy is: site (its centre's), equal (in equal parts its atoms'), or centre:W (W its centre's).
+    #[arg(long, value_name = "NAME")]
+    pub partition: Option<String>,
+    /// Pair forces: distances (central, symmetric stress) or differences (from the centre's star).
+    #[arg(long, value_name = "NAME")]
+    pub pair_force: Option<String>,
+    /// Keep the parts of the potential apart.
+    #[arg(long)]
+    pub parts: bool,
+    /// Also write the fields of each frame.
+    #[arg(long)]
+    pub each: bool,
+    /// Frames to pass over first.
+    #[arg(long, value_name = "N")]
+    pub skip: Option<usize>,
+    /// Then take every so many.
+    #[arg(long, value_name = "N")]
+    pub every: Option<usize>,
+    /// Points at which the residuals of the balance laws are measured, 16 if not given.
+    #[arg(long, value_name = "N")]
+    pub residuals: Option<usize>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads; all cores if not given. Results do not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+/// A number or a word of a file.
+#[derive(Deserialize, Clone)]
+#[serde(untagged)]
+enum Scalar {
+    Number(f64),
+    Whole(i64),
+    Flag(bool),
+    Word(String),
+}
+
+impl Scalar {
+    fn text(&self) -> String {
+        match self {
+            Scalar::Number(x) => format!("{x:?}"),
+            Scalar::Whole(n) => n.to_string(),
+            Scalar::Flag(b) => b.to_string(),
+            Scalar::Word(w) => w.clone(),
+        }
+    }
+}
+
+/// The keys of a file.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+struct Keys {
+    frames: Option<PathBuf>,
+    potential: Option<String>,
+    with: BTreeMap<String, Scalar>,
+    file: Option<PathBuf>,
+    element: Option<String>,
+    molecules: Option<PathBuf>,
+    special: Option<[f64; 3]>,
+    mass: BTreeMap<String, f64>,
+    units: Option<String>,
+    kernel: Option<String>,
+    width: Option<f64>,
+    smoothness: Option<u32>,
+    average: Option<String>,
+    grid: Option<[usize; 3]>,
+    points: Option<PathBuf>,
+    partition: Option<String>,
+    pair_force: Option<String>,
+    parts: bool,
+    each: bool,
+    skip: usize,
+    every: Option<usize>,
+    residuals: Option<usize>,
+    out: Option<PathBuf>,
+    threads: Option<usize>,
+}
+
+/// All that was said, flags before keys of a file.
+#[derive(Default)]
+pub struct Words {
+    pub frames: Option<PathBuf>,
+    pub potential: Option<String>,
+    pub with: Vec<(String, String)>,
+    pub file: Option<String>,
+    pub element: Option<String>,
+    pub molecules: Option<PathBuf>,
+    pub special: Option<String>,
+    pub mass: Vec<(String, String)>,
+    pub units: Option<String>,
+    pub kernel: Option<String>,
+    pub width: Option<f64>,
+    pub smoothness: Option<u32>,
+    pub average: Option<String>,
+    pub grid: Option<String>,
+    pub points: Option<PathBuf>,
+    pub partition: Option<String>,
+    pub pair_force: Option<String>,
+    pub parts: bool,
+    pub each: bool,
+    pub skip: usize,
+    pub every: usize,
+    pub residuals: usize,
+    pub out: Option<PathBuf>,
+    pub threads: Option<usize>,
+}
+
+impl FieldsArguments {
+    /// Flags, and what a file says besides.
+    pub fn words(&self) -> Result<Words, Failure> {
+        let keys = match &self.deck {
+            Some(path) => read(path)?,
+            None => Keys::default(),
+        };
+        let joined = |name: &str| {
+            let of = |d: &PathBuf| d.parent().unwrap_or(Path::new("")).join(name);
+            self.deck.as_ref().map_or_else(|| PathBuf::from(name), of)
+        };
+        let path = |own: &Option<PathBuf>, key: &Option<PathBuf>| {
+            let key = key.as_ref().map(|k| joined(&k.to_string_lossy()));
+            own.clone().or(key)
+        };
+        // flags come last and win
+        let mut with: Vec<(String, String)> = keys
+            .with
+            .iter()
+            .map(|(k, v)| (k.clone(), v.text()))
+            .collect();
+        with.retain(|(k, _)| self.with.iter().all(|(own, _)| own != k));
+        with.extend(self.with.clone());
+        let mut mass: Vec<(String, String)> = keys
+            .mass
+            .iter()
+            .map(|(k, v)| (k.clone(), format!("{v:?}")))
+            .collect();
+        mass.retain(|(k, _)| self.mass.iter().all(|(own, _)| own != k));
+        mass.extend(self.mass.clone());
+        let grid = keys.grid.map(|[x, y, z]| format!("{x},{y},{z}"));
+        let (mut grid, mut points) = (self.grid.clone().or(grid), path(&self.points, &keys.points));
+        match (&self.grid, &self.points) {
+            (Some(_), None) => points = None,
+            (None, Some(_)) => grid = None,
+            _ => {}
+        }
+        let file = keys.file.as_ref().map(|f| joined(&f.to_string_lossy()));
+        Ok(Words {
+            frames: path(&self.frames, &keys.frames),
+            potential: self.potential.clone().or(keys.potential),
+            with,
+            file: self
+                .file
+                .clone()
+                .or(file.map(|f| f.to_string_lossy().into_owned())),
+            element: self.element.clone().or(keys.element),
+            molecules: path(&self.molecules, &keys.molecules),
+            special: self
+                .special
+                .clone()
+                .or(keys.special.map(|[a, b, c]| format!("{a:?},{b:?},{c:?}"))),
+            mass,
+            units: self.units.clone().or(keys.units),
+            kernel: self.kernel.clone().or(keys.kernel),
+            width: self.width.or(keys.width),
+            smoothness: self.smoothness.or(keys.smoothness),
+            average: self.average.clone().or(keys.average),
+            grid,
+            points,
+            partition: self.partition.clone().or(keys.partition),
+            pair_force: self.pair_force.clone().or(keys.pair_force),
+            parts: self.parts || keys.parts,
+            each: self.each || keys.each,
+            skip: self.skip.unwrap_or(keys.skip),
+            every: self.every.or(keys.every).unwrap_or(1),
+            residuals: self.residuals.or(keys.residuals).unwrap_or(16),
+            out: path(&self.out, &keys.out),
+            threads: self.threads.or(keys.threads),
+        })
+    }
+}
+
+fn read(path: &Path) -> Result<Keys, Failure> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| Failure::input(format!("{name}: cannot read it: {e}")))?;
+    toml::from_str(&text).map_err(|e| {
+        let line = e
+            .span()
+            .map(|s| text[..s.start.min(text.len())].lines().count().max(1));
+        let place = line.map_or(String::new(), |l| format!(":{l}"));
+        Failure::input(format!("{name}{place}: {}", e.message()))
+    })
+}

@@ -1,0 +1,10 @@
+//! From files of atoms and words of a user to what [`peridyne_fields`] takes: units, masses, frames, potentials.
+
+pub mod elements;
+pub mod frame;
+pub mod potential;
+pub mod units;
+
+pub use frame::{Masses, frame};
+pub use potential::{Model, model};
+pub use units::Units;

@@ -1,0 +1,149 @@
+//! Continuum fields at points: a table, NumPy arrays, a VTK image, a picture of a slice, and what all of it is.
+
+mod arrays;
+mod describe;
+mod image;
+mod slice;
+mod table;
+
+pub use arrays::write_arrays;
+pub use describe::{About, Frame, describe};
+pub use image::write_image;
+pub use slice::write_slice;
+pub use table::write_table;
+
+use crate::continuum::Units;
+use peridyne_fields::average::Average;
+use peridyne_fields::fields::{NO_VELOCITIES, Part};
+use peridyne_fields::{Cell, Fields, Quantity};
+
+/// A field at points, in the user's units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    pub quantity: Quantity,
+    /// Short name; of a part of the potential with the part's name.
+    pub name: String,
+    pub unit: String,
+    /// Components point by point, not a number where they are not defined; or why there are none.
+    pub values: Result<Vec<f64>, &'static str>,
+    /// Standard errors, of means over frames.
+    pub errors: Option<Vec<f64>>,
+}
+
+/// Fields at points, of a frame or as means over several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    pub points: Vec<[f64; 3]>,
+    /// Of a grid: its size, and the cell that it divides.
+    pub grid: Option<([usize; 3], Cell)>,
+    pub columns: Vec<Column>,
+}
+
+/// In the order of the table's columns.
+pub const ORDER: [Quantity; 15] = [
+    Quantity::Density,
+    Quantity::Momentum,
+    Quantity::Velocity,
+    Quantity::Temperature,
+    Quantity::Energy,
+    Quantity::StressKinetic,
+    Quantity::StressPotential,
+    Quantity::Stress,
+    Quantity::Churning,
+    Quantity::HeatKinetic,
+    Quantity::HeatPotential,
+    Quantity::HeatChurning,
+    Quantity::InternalEnergy,
+    Quantity::PotentialEnergy,
+    Quantity::ChurningSource,
+];
+
+impl Table {
+    /// Of one frame.
+    pub fn of_frame(fields: &Fields, units: Units, grid: Option<([usize; 3], Cell)>) -> Table {
+        let column = |quantity: Quantity| {
+            let values = fields.get(quantity).map(<[f64]>::to_vec);
+            of(quantity, units, values, None)
+        };
+        let mut columns: Vec<Column> = ORDER.into_iter().map(column).collect();
+        for part in &fields.parts {
+            columns.extend(of_part(part, units));
+        }
+        Table {
+            points: fields.points.clone(),
+            grid,
+            columns,
+        }
+    }
+
+    /// Means over frames.
+    pub fn of_average(
+        average: &Average,
+        points: Vec<[f64; 3]>,
+        units: Units,
+        grid: Option<([usize; 3], Cell)>,
+    ) -> Table {
+        let column = |quantity: Quantity| {
+            let errors = average.error(quantity).filter(|_| average.frames() > 1);
+            of(quantity, units, average.mean(quantity), errors)
+        };
+        Table {
+            points,
+            grid,
+            columns: ORDER.into_iter().map(column).collect(),
+        }
+    }
+}
+
+fn of(
+    quantity: Quantity,
+    units: Units,
+    values: Option<Vec<f64>>,
+    errors: Option<Vec<f64>>,
+) -> Column {
+    let factor = units.factor(quantity);
+    let scaled = |all: Vec<f64>| all.into_iter().map(|x| x * factor).collect();
+    Column {
+        quantity,
+        name: quantity.symbol().into(),
+        unit: units.unit(quantity),
+        values: values.map(scaled).ok_or(NO_VELOCITIES),
+        errors: errors.map(scaled),
+    }
+}
+
+/// Stress, churning, heat flux and energy of a part of the potential, named after it.
+fn of_part(part: &Part, units: Units) -> Vec<Column> {
+    [
+        (Quantity::StressPotential, &part.stress),
+        (Quantity::Churning, &part.churning),
+        (Quantity::HeatPotential, &part.heat),
+        (Quantity::PotentialEnergy, &part.energy),
+    ]
+    .into_iter()
+    .map(|(quantity, values)| {
+        let values = (!values.is_empty()).then(|| values.clone());
+        let own = of(quantity, units, values, None);
+        Column {
+            name: format!("{}({})", own.name, part.name),
+            ..own
+        }
+    })
+    .collect()
+}
+
+/// Names of a quantity's components, with its own before them.
+pub(crate) fn components(name: &str, quantity: Quantity) -> Vec<String> {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    match quantity.components() {
+        3 => {
+            // momentum and velocity are px, vx; heat fluxes qK_x
+            let joint = if name.len() == 1 { "" } else { "_" };
+            AXES.iter().map(|a| format!("{name}{joint}{a}")).collect()
+        }
+        9 => (0..9)
+            .map(|n| format!("{name}_{}{}", AXES[n / 3], AXES[n % 3]))
+            .collect(),
+        _ => vec![name.to_string()],
+    }
+}
