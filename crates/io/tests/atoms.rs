@@ -25,6 +25,7 @@ fn sample(step: u64) -> Atoms {
         time: Some(0.001 * step as f64),
         from_momenta: false,
         bonded: false,
+        edges: None,
     }
 }
 

@@ -179,7 +179,7 @@ pub fn model(words: &Words, units: Units) -> Result<Model, ModelError> {
     Ok(Model {
         name: words.name.clone(),
         sites,
-        element: deck.species.clone().or(words.element.clone()),
+        element: { deck.named.first().cloned().flatten() }.or(words.element.clone()),
         mass: of_file.filter(|m| *m > 0.0),
     })
 }

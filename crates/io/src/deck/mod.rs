@@ -42,7 +42,7 @@ pub struct Deck {
     pub spec: Spec,
     pub output: OutputSpec,
     /// Names of the atoms of each material, where a file says it; none where they are no atoms.
-    named: Vec<Option<String>>,
+    pub(crate) named: Vec<Option<String>>,
     /// Lower corner of the periods.
     pub corner: [f64; 3],
     pub units: UnitSystem,
