@@ -257,11 +257,11 @@ impl<const C: usize> Mul for Curved<C> {
         let (a, b) = (self.slope, o.slope);
         Curved {
             value: self.value * o.value,
-            slope: std::array::from_fn(|n| self.value * b[n] + a[n] * o.value),
+            slope: std::array::from_fn(|n| self.value.mul_add(b[n], a[n] * o.value)),
             curvature: std::array::from_fn(|m| {
                 std::array::from_fn(|n| {
-                    let own = self.curvature[m][n] * o.value + self.value * o.curvature[m][n];
-                    own + (a[m] * b[n] + a[n] * b[m])
+                    let own = self.curvature[m][n].mul_add(o.value, self.value * o.curvature[m][n]);
+                    a[m].mul_add(b[n], a[n].mul_add(b[m], own))
                 })
             }),
         }

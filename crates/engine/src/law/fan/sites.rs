@@ -232,7 +232,7 @@ mod tests {
         assert!(energy(sites, &near).abs() > 0.1);
         let force = forces(sites, &near);
         let mut blocks = vec![[[0.0; 3]; 3]; 49];
-        let mut pulled = vec![[0.0; 3]; 7];
+        let mut pulled = [[0.0; 3]; 7];
         tangents(&sites.0, 0, &near, &mut |t| {
             let (a, b) = (t.a as usize, t.b as usize);
             for c in 0..3 {
