@@ -66,6 +66,20 @@ fn hexane_is_that_of_lammps() {
     compare_deck("hexane", &parsed(&text));
 }
 
+/// Two kinds of atom, each a material of the deck.
+#[test]
+fn silicon_carbide_of_a_deck_is_that_of_lammps() {
+    let text = r#"
+units = { system = "metal", constants = "lammps" }
+run = { steps = 100, time_step = 0.001 }
+periodic = ["x", "y", "z"]
+body.file = "tersoff_carbide.data"
+material.Si = { set = "1", law = { tersoff = { file = "SiC.tersoff", element = "Si" } } }
+material.C = { set = "2", law = { tersoff = { file = "SiC.tersoff", element = "C" } } }
+"#;
+    compare_deck("tersoff_carbide", &parsed(text));
+}
+
 /// Two kinds of atom.
 #[test]
 fn silicon_carbide_of_tersoff_is_that_of_lammps() {

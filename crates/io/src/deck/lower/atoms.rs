@@ -83,6 +83,10 @@ fn potential(
     if let BodySpec::Lattice { kind, spacing, .. } | BodySpec::Sites { kind, spacing, .. } = body {
         shelf.on_lattice(&mut read.law, *kind, *spacing);
     }
+    if matches!(read.law.parameters.get("file"), Some(Parameter::Rows(_))) {
+        // the rows know the elements of all materials, which are alike so
+        read.law.parameters.0.retain(|(key, _)| key != "element");
+    }
     let (element, mass) = of_file.into_inner();
     match read.look_up(context)? {
         LawSpec::Atoms(spec) => Ok(AtomsPotential {
