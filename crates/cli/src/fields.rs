@@ -54,6 +54,12 @@ fn all(request: &Request) -> Result<(), Failure> {
             request.frames.display()
         )));
     }
+    if request.parts && chosen.len() > 1 && !request.each {
+        return Err(Failure::input(format!(
+            "--parts: {} frames are taken, and parts of the potential are kept apart in each alone: add --each, or take one frame (--skip, --every)",
+            chosen.len()
+        )));
+    }
     let existed = request.out.exists();
     let mut written = vec![];
     let mut folder = None;

@@ -24,7 +24,7 @@ pub struct Request {
     averaged: [bool; 3],
     partition: Partition,
     pair_force: PairForce,
-    parts: bool,
+    pub parts: bool,
     /// What is bonded whatever moves.
     bonded: Option<BondedSpec>,
     pub each: bool,

@@ -254,7 +254,7 @@ fn read(path: &Path) -> Result<Keys, Failure> {
     toml::from_str(&text).map_err(|e| {
         let line = e
             .span()
-            .map(|s| text[..s.start.min(text.len())].lines().count().max(1));
+            .map(|s| 1 + text[..s.start.min(text.len())].matches('\n').count());
         let place = line.map_or(String::new(), |l| format!(":{l}"));
         Failure::input(format!("{name}{place}: {}", e.message()))
     })
