@@ -108,10 +108,18 @@ fn a_frame_of_a_lammps_dump_goes_on_as_lammps_did() {
 fn a_mixture_keeps_its_kinds_in_every_file() {
     let dir = TempDir::new().unwrap();
     let deck = good("mixture.toml");
-    let both = "output.trajectory=[\"m.extxyz\", \"m.lammpstrj\"]";
-    let more = ["--set", "run.steps=4", "--set", both];
-    let (code, text) = run(&deck, dir.path(), &more);
-    assert_eq!(code, Some(0), "{text}");
+    for (name, out) in [
+        ("m.lammpstrj", dir.path().join("dumped")),
+        ("m.extxyz", dir.path().join("written")),
+    ] {
+        let trajectory = format!("output.trajectory=\"{name}\"");
+        let more = ["--set", "run.steps=4", "--set", &trajectory];
+        let (code, text) = run(&deck, &out, &more);
+        assert_eq!(code, Some(0), "{text}");
+        for file in [name, "last.data"] {
+            std::fs::copy(out.join(file), dir.path().join(file)).unwrap();
+        }
+    }
     let xyz = extxyz(&dir.path().join("m.extxyz"), Frame::Last).unwrap();
     let dumped = dump(&dir.path().join("m.lammpstrj"), Frame::Last).unwrap();
     let last = data(&dir.path().join("last.data")).unwrap();

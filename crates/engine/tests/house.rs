@@ -301,6 +301,16 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "a message says what to write",
     ),
     (
+        "lennard_jones",
+        "io/src/continuum/potential.rs",
+        "the other words of --potential",
+    ),
+    (
+        "eam",
+        "io/src/continuum/potential.rs",
+        "the other words of --potential",
+    ),
+    (
         "stillinger_weber",
         "lammps/src/command/molecular.rs",
         "LAMMPS has another word for it",

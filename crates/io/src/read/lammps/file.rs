@@ -159,7 +159,13 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
             }
             ("Masses", _) => masses = read_masses(&mut lines, types)?,
             (name, _) if BONDED.contains(&name) => {
+                if style.is_some_and(|s| s != Style::Molecular) {
+                    return Err(lines
+                        .fail(format!("`{name}` is not supported in this atom_style"))
+                        .help("write `Atoms # molecular` and id molecule type x y z"));
+                }
                 // another reader looks at them
+                bonded = true;
                 section = match skip(&mut lines)? {
                     Some(name) => name,
                     None => break,
