@@ -15,6 +15,7 @@ mod measure;
 mod page;
 pub mod profile;
 pub mod reproduce;
+mod sandia2010;
 mod seleson2009;
 mod seleson2014;
 mod silling2010;
@@ -30,6 +31,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         seleson2014::all(),
         eriksson2020::all(),
         silling2010::all(),
+        sandia2010::all(),
     ]
     .concat()
 }

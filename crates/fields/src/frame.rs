@@ -70,6 +70,18 @@ impl Cell {
         Self::new(low, edges, periodic)
     }
 
+    /// A cube about the origin in free space: nothing is periodic.
+    pub fn free(half: f64) -> Cell {
+        let diagonal =
+            |x: f64| std::array::from_fn(|a| std::array::from_fn(|b| if a == b { x } else { 0.0 }));
+        Cell {
+            origin: [-half; 3],
+            edges: diagonal(2.0 * half),
+            periodic: [false; 3],
+            inverse: diagonal(0.5 / half),
+        }
+    }
+
     pub fn volume(&self) -> f64 {
         dot(self.edges[0], cross(self.edges[1], self.edges[2])).abs()
     }

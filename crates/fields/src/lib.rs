@@ -32,6 +32,7 @@ pub mod molecules;
 pub mod neighbours;
 pub mod partition;
 pub mod residuals;
+pub mod specimen;
 pub mod sums;
 pub mod targets;
 

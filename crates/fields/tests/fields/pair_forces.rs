@@ -105,7 +105,7 @@ fn generalized_forces_are_slopes_to_twelve_digits() {
                 let r = y.iter().map(|c| c * c).sum::<f64>().sqrt();
                 Near {
                     kind: 0,
-                    y: y.map(|c| c / r * (1.2 + 0.3 * random.next())),
+                    y: y.map(|c| c / r * (1.2 + 0.3 * random.signed())),
                 }
             })
             .collect();

@@ -5,24 +5,8 @@ use peridyne::law::potential::Potential;
 use peridyne::law::terms::{Near, OfSites, Sites, Term};
 use peridyne::run::Shelf;
 use peridyne::spec::{BondedSpec, BondedTerm, Form, Parameters, PotentialSpec};
+pub use peridyne_fields::specimen::{Chiral, Cluster, Random, cluster};
 use peridyne_fields::{Cell, Frame, Kernel, Method, Shape, Targets, evaluate};
-
-pub struct Random(pub u64);
-
-impl Random {
-    /// From −1 to 1.
-    pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
-    }
-
-    pub fn vector(&mut self) -> [f64; 3] {
-        [self.next(), self.next(), self.next()]
-    }
-}
 
 const CUT: f64 = 1.9;
 
@@ -122,62 +106,6 @@ impl Sites for Triplets {
                 visit(&term);
             }
         }
-    }
-}
-
-/// One term of K particles, which are told apart by their kinds: `A sin(Σ c ξ) + B exp(−Σ d ξ)`. Its centre is that of kind 0.
-pub struct Cluster {
-    pub count: usize,
-    pub seed: u64,
-}
-
-impl Cluster {
-    fn factors(&self) -> Vec<[f64; 2]> {
-        let mut random = Random(self.seed);
-        let pairs = self.count * self.count;
-        (0..pairs)
-            .map(|_| [random.next(), 0.1 * (1.0 + random.next())])
-            .collect()
-    }
-}
-
-impl Sites for Cluster {
-    fn reach(&self) -> f64 {
-        100.0
-    }
-    fn parts(&self) -> Vec<String> {
-        vec!["cluster".into()]
-    }
-    fn terms(&self, kind: u32, near: &[Near], visit: &mut dyn FnMut(&Term)) {
-        if kind != 0 {
-            return;
-        }
-        assert_eq!(near.len() + 1, self.count);
-        let factors = self.factors();
-        let mut all = vec![(0, [0.0; 3])];
-        all.extend(near.iter().map(|n| (n.kind as usize, n.y)));
-        let (mut phase, mut decay, mut list) = (0.0, 0.0, vec![]);
-        for a in 0..all.len() {
-            for b in a + 1..all.len() {
-                let xi: f64 = (0..3)
-                    .map(|c| 0.5 * (all[a].1[c] - all[b].1[c]).powi(2))
-                    .sum();
-                let (k, l) = (all[a].0.min(all[b].0), all[a].0.max(all[b].0));
-                let [c, d] = factors[k * self.count + l];
-                phase += c * xi;
-                decay += d * xi;
-                list.push((a as u32, b as u32, c, d));
-            }
-        }
-        let mut term = Term::default();
-        term.begin(0);
-        term.particles.extend(1..all.len() as u32);
-        let fall = 3.0 * (-decay).exp();
-        term.energy = 2.0 * phase.sin() + fall;
-        for (a, b, c, d) in list {
-            term.pulls.push((a, b, 2.0 * c * phase.cos() - d * fall));
-        }
-        visit(&term);
     }
 }
 
@@ -282,53 +210,6 @@ impl Sites for Torsion {
     }
 }
 
-/// The chiral energy (4.0.28), `(x1 − x0)·((x2 − x0) × (x3 − x0))`, by distances: the root of Gram's determinant, and its sign.
-pub struct Chiral;
-
-impl Sites for Chiral {
-    fn reach(&self) -> f64 {
-        20.0
-    }
-    fn parts(&self) -> Vec<String> {
-        vec!["volume".into()]
-    }
-    fn terms(&self, kind: u32, near: &[Near], visit: &mut dyn FnMut(&Term)) {
-        if kind != 0 {
-            return;
-        }
-        let mut place = [0u32; 4];
-        let mut y = [[0.0; 3]; 4];
-        for (n, near) in near.iter().enumerate() {
-            place[near.kind as usize] = n as u32 + 1;
-            y[near.kind as usize] = near.y;
-        }
-        let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|c| a[c] * b[c]).sum::<f64>();
-        let cross = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] {
-            std::array::from_fn(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                a[j] * b[k] - a[k] * b[j]
-            })
-        };
-        let normal = [cross(y[2], y[3]), cross(y[3], y[1]), cross(y[1], y[2])];
-        let volume = dot(y[1], normal[0]);
-        let mut term = Term::default();
-        term.begin(0);
-        term.energy = volume;
-        term.particles.extend(1..4);
-        // cofactors of Gram's matrix are products of the normals; over 2U for the root
-        let cofactor = |a: usize, b: usize| dot(normal[a - 1], normal[b - 1]) / (2.0 * volume);
-        for a in 1..4 {
-            let row: f64 = (1..4).map(|b| 2.0 * cofactor(a, b)).sum();
-            term.pulls.push((0, place[a], row));
-            for b in a + 1..4 {
-                let (low, high) = (place[a].min(place[b]), place[a].max(place[b]));
-                term.pulls.push((low, high, -2.0 * cofactor(a, b)));
-            }
-        }
-        visit(&term);
-    }
-}
-
 /// A dense gas in a tilted periodic cell, with a drift.
 pub fn gas(seed: u64) -> Frame {
     let edges = [[4.4, 0.0, 0.0], [0.9, 4.2, 0.0], [-0.6, 0.5, 4.6]];
@@ -354,35 +235,8 @@ pub fn gas(seed: u64) -> Frame {
                 })
                 .collect(),
         ),
-        mass: (0..count).map(|_| 1.0 + 0.4 * random.next()).collect(),
+        mass: (0..count).map(|_| 1.0 + 0.4 * random.signed()).collect(),
         kind: vec![0; count],
-        time: Some(0.0),
-    }
-}
-
-/// K particles of kinds 0, 1, … in free space.
-pub fn cluster(count: usize, seed: u64) -> Frame {
-    let mut random = Random(seed);
-    let cell = Cell::orthogonal([-3.0; 3], [3.0; 3], [false; 3]).unwrap();
-    let around = |k: usize| {
-        let t = 2.4 * k as f64;
-        [t.cos(), t.sin(), 0.35 * k as f64 - 0.5]
-    };
-    Frame {
-        cell,
-        position: (0..count)
-            .map(|k| {
-                let (x, r) = (around(k), random.vector());
-                std::array::from_fn(|a| x[a] + 0.3 * r[a])
-            })
-            .collect(),
-        velocity: Some(
-            (0..count)
-                .map(|_| random.vector().map(|v| v + 0.5))
-                .collect(),
-        ),
-        mass: (0..count).map(|_| 1.0 + 0.4 * random.next()).collect(),
-        kind: (0..count as u32).collect(),
         time: Some(0.0),
     }
 }
