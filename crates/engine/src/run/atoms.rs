@@ -4,6 +4,7 @@ use super::constitutive::AnyPotentials;
 use super::model::Model;
 use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
+use crate::expression::Expression;
 use crate::family::stencil::Stencil;
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
@@ -123,21 +124,25 @@ impl<const D: usize> Model<D> {
     }
 
     /// Maxwellian velocities: component by component normal with variance k_B T / m, without total momentum, scaled to
-    /// the temperature `(D N − D) k_B T / 2 = kinetic energy`. The same for a seed on every machine and number of threads.
-    pub(super) fn heat(&mut self, thermal: ThermalSpec) {
+    /// the mean temperature `(D N − D) k_B T / 2 = kinetic energy`. The same for a seed on every machine and number of threads.
+    ///
+    /// # Errors
+    /// A temperature that is negative or no number somewhere.
+    pub(super) fn heat(&mut self, thermal: &ThermalSpec) -> Result<(), BuildError> {
         let mut random = SplitMix(thermal.seed);
         let slots: Vec<usize> = self.body.slots.iter().map(|s| *s as usize).collect();
         let mass: Vec<f64> = slots
             .iter()
             .map(|&s| self.body.volume.at(s) * self.body.density.at(s))
             .collect();
+        let energy = self.thermal_energies(&thermal.energy, &slots)?;
         let mut momentum = [0.0; D];
-        for (&s, m) in slots.iter().zip(&mass) {
+        for ((&s, m), energy) in slots.iter().zip(&mass).zip(&energy) {
             for a in 0..D {
                 // Box & Muller 1958
                 let (x, y) = (1.0 - random.unit(), random.unit());
                 let normal = (-2.0 * x.ln()).sqrt() * (std::f64::consts::TAU * y).cos();
-                self.v[a][s] = (thermal.energy / m).sqrt() * normal;
+                self.v[a][s] = (energy / m).sqrt() * normal;
                 momentum[a] += m * self.v[a][s];
             }
         }
@@ -150,13 +155,34 @@ impl<const D: usize> Model<D> {
             }
         }
         let free = (D * slots.len().saturating_sub(1)) as f64;
+        let mean = match thermal.energy.as_constant() {
+            Some(energy) => energy,
+            None => energy.iter().sum::<f64>() / slots.len() as f64,
+        };
         if twice > 0.0 {
-            let scale = (free * thermal.energy / twice).sqrt();
+            let scale = (free * mean / twice).sqrt();
             for &s in &slots {
                 for a in 0..D {
                     self.v[a][s] *= scale;
                 }
             }
         }
+        Ok(())
+    }
+
+    /// k_B T of each point.
+    fn thermal_energies(&self, of: &Expression, slots: &[usize]) -> Result<Vec<f64>, BuildError> {
+        let one = |s: &usize| {
+            let x = self.body.position(*s);
+            let energy = of.eval(&x, 0.0);
+            match energy >= 0.0 && energy.is_finite() {
+                true => Ok(energy),
+                false => Err(BuildError::invalid(
+                    "thermal.temperature",
+                    format!("`{}` is not a temperature at {x:?}", of.source()),
+                )),
+            }
+        };
+        slots.iter().map(one).collect()
     }
 }

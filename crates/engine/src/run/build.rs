@@ -263,8 +263,8 @@ pub fn build_in<const D: usize>(
         implicit: None,
     };
     model.info.bytes = model.bytes();
-    if let Some(thermal) = spec.thermal {
-        model.heat(thermal);
+    if let Some(thermal) = &spec.thermal {
+        model.heat(thermal)?;
     }
     if let Some(velocity) = own_velocities(spec, &model.body) {
         model.set_velocities(&velocity);

@@ -10,11 +10,11 @@ pub struct InitialSpec {
     pub velocity: [Option<Expression>; 3],
 }
 
-/// Velocities of a given temperature: normally distributed, without total momentum, scaled to the temperature exactly.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Velocities of a given temperature: normally distributed, without total momentum, scaled to the mean temperature exactly.
+#[derive(Debug, Clone)]
 pub struct ThermalSpec {
-    /// k_B T (energy).
-    pub energy: f64,
+    /// k_B T (energy), an expression of x, y, z.
+    pub energy: Expression,
     pub seed: u64,
 }
 

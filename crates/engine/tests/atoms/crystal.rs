@@ -2,6 +2,7 @@
 
 use crate::sample::*;
 use peridyne::execute::simd::Simd;
+use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
@@ -170,7 +171,7 @@ fn energy_is_exchanged_and_does_not_drift() {
             for halving in 0..2 {
                 let mut spec = atoms(LatticeKind::Fcc, 4, &potential, family, true);
                 spec.thermal = Some(ThermalSpec {
-                    energy: 0.02,
+                    energy: Expression::constant(0.02),
                     seed: 3,
                 });
                 let dt = 4e-3 / (1 << halving) as f64;
@@ -234,7 +235,7 @@ fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
             for family in [FamilyChoice::Stencil, FamilyChoice::Neighbours] {
                 let mut spec = atoms(kind, 2 * cells, &potential, family, true);
                 spec.thermal = Some(ThermalSpec {
-                    energy: 0.3,
+                    energy: Expression::constant(0.3),
                     seed: 5,
                 });
                 spec.schedule.time_step = TimeStep::Fixed(2e-3);
@@ -279,7 +280,7 @@ fn velocities_have_their_temperature_and_no_momentum() {
         true,
     );
     spec.thermal = Some(ThermalSpec {
-        energy: 0.7,
+        energy: Expression::constant(0.7),
         seed: 11,
     });
     let mut sim = build(&spec, Options::default()).unwrap();
@@ -296,7 +297,7 @@ fn velocities_have_their_temperature_and_no_momentum() {
     let s4 = v.iter().flatten().map(|v| v.powi(4)).sum::<f64>() / (3.0 * n);
     assert!((s4 / (s2 * s2) - 3.0).abs() < 0.6, "{}", s4 / (s2 * s2));
     spec.thermal = Some(ThermalSpec {
-        energy: 0.7,
+        energy: Expression::constant(0.7),
         seed: 12,
     });
     assert_ne!(build(&spec, Options::default()).unwrap().velocities(), v);

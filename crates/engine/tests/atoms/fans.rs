@@ -3,6 +3,7 @@
 use super::sample::Noise;
 use super::tangents;
 use peridyne::execute::simd::Simd;
+use peridyne::expression::Expression;
 use peridyne::law::fan::stillinger_weber::StillingerWeber;
 use peridyne::law::fan::tersoff::Tersoff;
 use peridyne::run::{Options, Simulation, build};
@@ -242,7 +243,7 @@ fn all_instruction_sets_and_thread_counts_give_the_same_bits() {
         // several blocks, and a path long enough for new lists
         let mut spec = crystal(&potential, edge, kinds, 4, true);
         spec.thermal = Some(ThermalSpec {
-            energy: 20.0,
+            energy: Expression::constant(20.0),
             seed: 5,
         });
         let mut runs = vec![];
@@ -272,7 +273,7 @@ fn energy_is_exchanged_and_does_not_drift() {
     for (name, potential, edge, kinds) in fans() {
         let mut spec = crystal(&potential, edge, kinds, 2, true);
         spec.thermal = Some(ThermalSpec {
-            energy: 0.05,
+            energy: Expression::constant(0.05),
             seed: 5,
         });
         let mut drift = [0.0; 2];

@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
-    /// In kelvin; k_B T, an energy, in reduced or no units.
+    /// In kelvin; k_B T, an energy, in reduced or no units. An expression of x, y, z at the start: "300 K + 30 K * cos(2*pi*x/80)".
     pub temperature: Number,
     pub seed: u64,
 }

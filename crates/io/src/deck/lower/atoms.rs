@@ -472,10 +472,16 @@ pub fn boltzmann(units: UnitSystem) -> f64 {
 }
 
 pub(super) fn thermal(context: &Context, thermal: &Thermal) -> Result<ThermalSpec> {
-    let temperature =
+    let temperature = context.expression(&thermal.temperature, Dim::TEMPERATURE)?;
+    if temperature.depends_on_time() {
+        let message = "a temperature at the start does not depend on t";
+        return Err(context.error(&thermal.temperature.span, message));
+    }
+    if temperature.as_constant().is_some() {
         context.positive(&thermal.temperature, Dim::TEMPERATURE, "the temperature")?;
+    }
     Ok(ThermalSpec {
-        energy: boltzmann(context.units) * temperature,
+        energy: temperature.times(boltzmann(context.units)),
         seed: thermal.seed,
     })
 }
