@@ -4,7 +4,7 @@
 mod waves;
 
 use crate::crystal::{Crystal, LatticeSolid, Reference};
-use crate::dispersion::zone::special_points;
+use crate::dispersion::zone::{special_points, special_points_of};
 use crate::elastic_constants::continuum;
 use crate::exact::{Field, Q};
 use crate::gradient::fractions::fractions;
@@ -85,9 +85,6 @@ pub fn lattice_dynamics(
     time_step: f64,
     terms: usize,
 ) -> Result<LatticeDynamics, UpscaleError> {
-    if spec.materials.len() != 1 {
-        return Err(UpscaleError::SeveralMaterials);
-    }
     match spec.dimension {
         1 => dynamics_in::<1>(spec, time_step, terms),
         2 => dynamics_in::<2>(spec, time_step, terms),
@@ -102,7 +99,10 @@ fn dynamics_in<const D: usize>(
 ) -> Result<LatticeDynamics, UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
     let (crystal, reference) = crystal::<D>(spec)?;
-    let points = special_points(kind);
+    let (points, unit) = match spec.materials.len() {
+        1 => (special_points(kind), spacing),
+        _ => special_points_of(&crystal),
+    };
     let per_axis = grid(&crystal, spacing);
     let limit = largest(&crystal, spec, per_axis);
     let scale = limit.squared.abs();
@@ -122,7 +122,7 @@ fn dynamics_in<const D: usize>(
     let mut growing: Vec<Growing> = vec![];
     if let Some(worst) = &instability {
         for p in &points {
-            let wave: [f64; D] = scaled(&p.wave, 2.0 * PI / spacing);
+            let wave: [f64; D] = scaled(&p.wave, 2.0 * PI / unit);
             let squared = crystal.squares(wave)[0];
             if squared < -1e-10 * scale && growing.iter().all(|g| g.name != Some(p.name)) {
                 growing.push(Growing {
@@ -138,7 +138,7 @@ fn dynamics_in<const D: usize>(
             rate: worst.growth,
         });
     }
-    let directions = directions(&crystal, &points, spacing, dt, scale, section, terms);
+    let directions = directions(&crystal, &points, unit, dt, scale, section, terms);
     // the fractions are of this very chain
     let same = |all: &Vec<Q>| {
         let c = directions
@@ -160,7 +160,7 @@ fn dynamics_in<const D: usize>(
         bonds: crystal.bonds.len() / crystal.basis.len(),
         sites: crystal.basis.len(),
         time_step: dt,
-        path: along_path(&crystal, &points, spacing, dt, scale),
+        path: along_path(&crystal, &points, unit, dt, scale),
         directions,
         fractions,
         unstable_part: instability.map_or(0.0, |i| i.part),

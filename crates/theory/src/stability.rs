@@ -150,6 +150,9 @@ impl<const D: usize> Crystal<D> {
             pair[b.from] += b.stiffness.abs().max(b.tension.abs());
             share[b.from] += b.share.abs();
         }
+        for (span, spring) in self.couplings.iter().flat_map(|c| c.springs()) {
+            span.sites.iter().for_each(|s| pair[*s] += spring);
+        }
         let lightest = self.mass.iter().copied().fold(f64::INFINITY, f64::min);
         let pair = pair.iter().copied().fold(0.0, f64::max);
         let widest = share.iter().copied().fold(0.0, f64::max);

@@ -37,6 +37,7 @@ mod virial;
 pub use build::{Options, build, build_in, build_with};
 pub use constitutive::Shelf;
 pub use model::Model;
+pub use sets::materials_of;
 
 use crate::columns::Declaration;
 use crate::condition::carried::Motion;

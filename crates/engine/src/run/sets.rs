@@ -1,8 +1,10 @@
 //! Named sets, the materials and the initial state of the points in them.
 
+use super::feasible::possible;
 use super::model::Model;
+use super::parts::parts;
 use super::reference::SplitMix;
-use crate::body::{Body, Values};
+use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
 use crate::space::Point;
 use crate::spec::{BodySpec, Carriers, Members, Spec};
@@ -33,6 +35,7 @@ pub(super) fn sets<const D: usize>(
         let by_place = match &set.members {
             Members::All | Members::Region(_) | Members::Where(_) => true,
             Members::Mark(_)
+            | Members::Basis(_)
             | Members::Points(_)
             | Members::Random { .. }
             | Members::Outside(_)
@@ -79,6 +82,31 @@ fn member<'a, const D: usize>(
         }
         Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
         Members::Mark(mark) => Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark),
+        Members::Basis(sites) => {
+            let (BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. }) = &spec.body else {
+                let message = format!("set `{set}` is of sites of a cell, and the body is no lattice");
+                return Err(BuildError::conflict(format!("sets.{set}"), message));
+            };
+            let Layout::Grid(grid) = &body.layout else {
+                let message = format!("set `{set}` is of sites of a cell, which a perturbed lattice does not have");
+                return Err(BuildError::conflict(format!("sets.{set}"), message));
+            };
+            let basis = kind.basis();
+            if let Some(n) = sites.iter().find(|n| **n >= basis.len()) {
+                let message = format!(
+                    "set `{set}` is of site {}; the cell of a {} lattice has {}",
+                    n + 1,
+                    kind.name(),
+                    basis.len()
+                );
+                return Err(BuildError::invalid(format!("sets.{set}"), message));
+            }
+            let lattice = grid.lattice;
+            Box::new(move |_, x| {
+                let quarter = lattice.quarter(x).map(|q| q.rem_euclid(4));
+                sites.iter().any(|n| basis[*n] == quarter)
+            })
+        }
         Members::Points(ids) => {
             let place = move |id: usize| id.checked_sub(first).map(|n| n as u32);
             Box::new(move |id, _| place(id).is_some_and(|n| ids.binary_search(&n).is_ok()))
@@ -225,6 +253,29 @@ pub(super) fn assign_materials<const D: usize>(
         body.mark = of.iter().map(|m| i32::from(m.unwrap_or(0))).collect();
     }
     Ok(())
+}
+
+/// Every point of the body of a spec: where it is in the reference, and its material by its place in the spec.
+///
+/// # Errors
+/// There are no such points, or their sets do not cover them.
+pub fn materials_of(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildError> {
+    possible(spec, None)?;
+    match spec.dimension {
+        1 => of_points::<1>(spec),
+        2 => of_points::<2>(spec),
+        _ => of_points::<3>(spec),
+    }
+}
+
+fn of_points<const D: usize>(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildError> {
+    let (_, mut body) = parts::<D>(spec)?;
+    let sets = sets(spec, &body, None)?.0;
+    assign_materials(spec, &mut body, &sets)?;
+    let slots = body.slots.iter().map(|s| *s as usize);
+    Ok(slots
+        .map(|s| (body.position(s), body.material_of(s) as usize))
+        .collect())
 }
 
 pub(super) fn initial<const D: usize>(spec: &Spec, model: &mut Model<D>) -> Result<(), BuildError> {

@@ -126,4 +126,13 @@ impl Lattice {
         }
         x
     }
+
+    /// The site nearest to a place, in quarters as [`Lattice::position`] takes them.
+    pub fn quarter(&self, x: &[f64; 3]) -> [i32; 3] {
+        let e = self.kind.edges();
+        std::array::from_fn(|a| match a < self.kind.dimension() {
+            true => (4.0 * (x[a] - self.origin[a]) / (self.spacing * e[a])).round() as i32,
+            false => 0,
+        })
+    }
 }

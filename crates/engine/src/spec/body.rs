@@ -136,6 +136,8 @@ pub enum Members {
     Mark(i32),
     /// Points at whose reference position this is not 0 (x, y, z; t = 0).
     Where(Expression),
+    /// Points on these sites of their lattice's cell, counted from 0 as [`LatticeKind::basis`] lists them.
+    Basis(Vec<usize>),
     /// Points of a cloud by their place in it, rising.
     Points(Arc<[u32]>),
     /// This part of all points (0–1), the nearest whole number of them, drawn by a seed: the same on every machine.

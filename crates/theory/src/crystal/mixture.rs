@@ -1,27 +1,10 @@
 //! Crystals of several kinds of atoms: any cell with any basis, in a potential of their kinds.
 
-use super::{Bond, Crystal, CrystalError, cells, positive};
+use super::atoms::{Atom, Near, neighbours};
+use super::{Bond, Crystal, CrystalError};
 use peridyne::law::jet;
 use peridyne::law::potential::Potential;
 use peridyne::law::potential::mixture::Mixture;
-
-/// An atom of the cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Atom<const D: usize> {
-    /// Length.
-    pub place: [f64; D],
-    /// As the potential counts kinds.
-    pub kind: usize,
-    pub mass: f64,
-}
-
-/// An atom of the cell and one near to it.
-struct Near<const D: usize> {
-    from: usize,
-    to: usize,
-    xi: [f64; D],
-    r: f64,
-}
 
 impl<const D: usize> Crystal<D> {
     /// A periodic crystal whose cell has these rows (length) and atoms, and its energy per cell. As many branches of waves as the
@@ -34,20 +17,8 @@ impl<const D: usize> Crystal<D> {
         cell: [[f64; D]; D],
         atoms: &[Atom<D>],
     ) -> Result<(Self, f64), CrystalError> {
-        positive("the volume of the cell", cells::determinant(&cell).abs())?;
-        for atom in atoms {
-            positive("the mass", atom.mass)?;
-        }
-        if !mixture.reach().is_finite() {
-            return Err(CrystalError::NoCutoff);
-        }
-        let near = neighbours(mixture, &cell, atoms);
-        if near.is_empty() {
-            return Err(CrystalError::NoNeighbours {
-                reach: mixture.reach(),
-                nearest: f64::INFINITY,
-            });
-        }
+        let cutoff = |a: usize, b: usize| mixture.cutoff(a, b);
+        let near = neighbours(&cell, atoms, mixture.reach(), cutoff)?;
         let of = |n: &Near<D>| mixture.of(atoms[n.from].kind, atoms[n.to].kind);
         let mut density = vec![0.0; atoms.len()];
         let mut energy = 0.0;
@@ -106,54 +77,10 @@ impl<const D: usize> Crystal<D> {
             mass: atoms.iter().map(|a| a.mass).collect(),
             bonds,
             curvature,
+            couplings: vec![],
         };
         Ok((crystal, energy))
     }
-}
-
-/// All pairs of an atom of the cell with another, or an image of one, within their cut-off.
-fn neighbours<const D: usize, P: Potential>(
-    mixture: &Mixture<P>,
-    cell: &[[f64; D]; D],
-    atoms: &[Atom<D>],
-) -> Vec<Near<D>> {
-    // planes of the lattice are 2π/|b| apart; atoms may lie anywhere in the cell or out of it
-    let reciprocal = cells::reciprocal(cell);
-    let norm = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let along = |b: &[f64; D], x: &[f64; D]| -> f64 {
-        (0..D).map(|a| b[a] * x[a]).sum::<f64>() / std::f64::consts::TAU
-    };
-    let most: [i64; D] = std::array::from_fn(|a| {
-        let b = &reciprocal[a];
-        let places = atoms.iter().map(|x| along(b, &x.place));
-        let (low, high) = places.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
-        (mixture.reach() * norm(b) / std::f64::consts::TAU + high - low).ceil() as i64
-    });
-    let count: i64 = most.iter().map(|m| 2 * m + 1).product();
-    let mut found = vec![];
-    for (from, here) in atoms.iter().enumerate() {
-        for n in 0..count {
-            let mut rest = n;
-            let image: [i64; D] = std::array::from_fn(|a| {
-                let wide = 2 * most[a] + 1;
-                let i = rest % wide - most[a];
-                rest /= wide;
-                i
-            });
-            let shift: [f64; D] =
-                std::array::from_fn(|a| (0..D).map(|r| image[r] as f64 * cell[r][a]).sum());
-            for (to, there) in atoms.iter().enumerate() {
-                let xi: [f64; D] =
-                    std::array::from_fn(|a| there.place[a] + shift[a] - here.place[a]);
-                let r = norm(&xi);
-                let same = from == to && image.iter().all(|i| *i == 0);
-                if !same && r < mixture.cutoff(here.kind, there.kind) {
-                    found.push(Near { from, to, xi, r });
-                }
-            }
-        }
-    }
-    found
 }
 
 #[cfg(test)]

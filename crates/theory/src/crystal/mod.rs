@@ -3,15 +3,23 @@
 //!
 //! Energy per cell to second order in displacements, η = u_to − u_from, n the bond's direction:
 //! `½ · ½ Σ_bonds [stiffness (n·η)² + tension (|η|² − (n·η)²)] + ½ Σ_s F″_s (Σ_bonds of s share n·η)²`,
-//! the first sum over directed bonds. For an embedded-atom potential `V = φ + (F′_s + F′_t) f`, share = f′.
+//! the first sum over directed bonds. For an embedded-atom potential `V = φ + (F′_s + F′_t) f`, share = f′. Fans have couplings of their
+//! bonds besides ([`Coupling`]).
 
+pub mod arrangement;
+pub mod atoms;
 pub mod cells;
+pub mod coupling;
+pub mod fan;
+pub mod kinds;
 pub mod mixture;
 pub mod potential;
 pub mod solid;
 
 use peridyne::space::lattice::LatticeKind;
 
+pub use atoms::Atom;
+pub use coupling::{Coupling, Span};
 pub use potential::{Reach, Reference};
 pub use solid::LatticeSolid;
 
@@ -77,6 +85,8 @@ pub struct Crystal<const D: usize> {
     pub bonds: Vec<Bond<D>>,
     /// `[site]` F″ of the point scalar; 0 for pair laws.
     pub curvature: Vec<f64>,
+    /// Of fans: extensions that answer to one another.
+    pub couplings: Vec<Coupling<D>>,
 }
 
 /// Why there is no crystal.
@@ -109,6 +119,17 @@ pub enum CrystalError {
         "waves, stability and upscaling are not known of the law {0}: they take pmb, lps, springs and potentials"
     )]
     Shelved(String),
+    /// Materials that lie anyhow.
+    #[error(
+        "the materials do not repeat within the body: plane waves are those of a periodic crystal. Name sublattices by the sites of the \
+         cell, `sets.NAME = {{ basis = [2] }}`, or by an expression that repeats"
+    )]
+    NotPeriodic,
+    #[error(
+        "fixed neighbours know one kind of atom and its pairs: several kinds, and potentials of more than two atoms, feel those that \
+         are near now (leave family out)"
+    )]
+    FixedNeighbours,
     /// A name that the engine does not have, or constants that do not fit it.
     #[error("{0}")]
     Potential(String),
@@ -201,8 +222,19 @@ impl<const D: usize> Crystal<D> {
                     ..*b
                 })
                 .collect(),
+            couplings: self.couplings.iter().map(|c| c.turned(turn)).collect(),
             ..self.clone()
         }
+    }
+
+    /// The same sites with what another crystal of them says besides.
+    pub(crate) fn plus(mut self, other: Crystal<D>) -> Crystal<D> {
+        self.bonds.extend(other.bonds);
+        self.couplings.extend(other.couplings);
+        for (c, more) in self.curvature.iter_mut().zip(other.curvature) {
+            *c += more;
+        }
+        self
     }
 }
 
@@ -230,5 +262,6 @@ pub(crate) fn dimer() -> Crystal<1> {
             bond(0, 0, -1.0, -0.1, 0.4, 0.15),
         ],
         curvature: vec![0.9, 1.3],
+        couplings: vec![],
     }
 }

@@ -79,6 +79,7 @@ impl<const D: usize> Crystal<D> {
         let crystal = Crystal {
             cell: cell.map(|row| row.map(|x| x * spacing)),
             mass: vec![mass; sites.len()],
+            couplings: vec![],
             curvature: vec![curvature; sites.len()],
             basis: sites.iter().map(|s| s.map(|x| x * spacing)).collect(),
             bonds,
@@ -99,12 +100,16 @@ pub fn equilibrium<const D: usize>(
     potential: &impl Potential,
     kind: LatticeKind,
     reach: Reach,
-    [mut low, mut high]: [f64; 2],
+    range: [f64; 2],
 ) -> Option<f64> {
-    let pressure = |a: f64| {
+    rest(range, |a| {
         let (_, reference) = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach).ok()?;
         Some(reference.pressure)
-    };
+    })
+}
+
+/// Where a pressure vanishes between `low` and `high`, to round-off; `None` if it has one sign at both, or no value.
+pub fn rest([mut low, mut high]: [f64; 2], pressure: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let (first, last) = (pressure(low)?, pressure(high)?);
     if first * last > 0.0 {
         return None;

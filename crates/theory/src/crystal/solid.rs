@@ -101,6 +101,7 @@ impl LatticeSolid {
         Ok(Crystal {
             cell: cell.map(|row| row.map(|x| x * self.spacing)),
             mass: vec![self.density * self.volume(); sites.len()],
+            couplings: vec![],
             curvature: vec![0.0; sites.len()],
             basis: sites.iter().map(|s| s.map(|x| x * self.spacing)).collect(),
             bonds: links

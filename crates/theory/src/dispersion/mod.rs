@@ -1,7 +1,8 @@
 //! Plane waves: dynamical matrix, frequencies, polarisations, group velocities of any crystal.
 //!
-//! `u_s = (v_s/√m_s) e^{i(k·x_s − ωt)}`: `D_st = (δ_st Σ_b Φ_b − Σ_{b: s→t} Φ_b e^{ik·ξ} + Σ_r F″_r G_r† G_r)/√(m_s m_t)`,
-//! Φ_b the bond's force constants, `G_r = Σ_{b of r} share n (e^{ik·ξ} at `to` − 1 at r)` the row of the point scalar.
+//! `u_s = (v_s/√m_s) e^{i(k·x_s − ωt)}`: `D_st = (δ_st Σ_b Φ_b − Σ_{b: s→t} Φ_b e^{ik·ξ} + Σ_r F″_r G_r† G_r + Σ_pq k_pq Y_p† Y_q)/√(m_s m_t)`,
+//! Φ_b the bond's force constants, `G_r = Σ_{b of r} share n (e^{ik·ξ} at `to` − 1 at r)` the row of the point scalar,
+//! Y_p that of `y·η` of a span of a fan.
 //! Phases go by positions, so that D is smooth in k and D(−k) is its conjugate.
 
 pub mod agreement;
@@ -101,6 +102,20 @@ impl<const D: usize> Crystal<D> {
                         Part::Slope(_) => dg[i].conj() * g[j] + g[i].conj() * dg[j],
                     };
                     m.add(i, j, c * *curvature);
+                }
+            }
+        }
+        for coupling in &self.couplings {
+            let wave = |x: &[f64; D]| {
+                Complex64::from_polar(1.0, (0..D).map(|a| k[a] * x[a]).sum())
+            };
+            let rows = coupling.rows(wave);
+            match part {
+                Part::Value => coupling.add(&rows, &rows, &mut m),
+                Part::Slope(a) => {
+                    let slopes = coupling.rows(|x| wave(x) * Complex64::new(0.0, x[a]));
+                    coupling.add(&slopes, &rows, &mut m);
+                    coupling.add(&rows, &slopes, &mut m);
                 }
             }
         }

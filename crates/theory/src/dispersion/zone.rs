@@ -1,6 +1,7 @@
 //! Brillouin zones: special points, paths through them, grids.
 
 use crate::crystal::Crystal;
+use crate::crystal::arrangement::bravais;
 use peridyne::space::lattice::LatticeKind;
 use std::f64::consts::PI;
 
@@ -73,6 +74,42 @@ pub fn special_points(kind: LatticeKind) -> Vec<SpecialPoint> {
         .iter()
         .map(|(name, wave)| SpecialPoint { name, wave: *wave })
         .collect()
+}
+
+/// Special points of any cell, and the length in whose inverse they count: those of its lattice, or halves of its reciprocal vectors.
+pub fn special_points_of<const D: usize>(crystal: &Crystal<D>) -> (Vec<SpecialPoint>, f64) {
+    if let Some((kind, spacing)) = bravais(&crystal.cell) {
+        return (special_points(kind), spacing);
+    }
+    let b = crystal.reciprocal();
+    let half = |of: &[usize]| -> [f64; 3] {
+        let sum = |a: usize| of.iter().map(|i| b[*i][a]).sum::<f64>();
+        std::array::from_fn(|a| if a < D { 0.5 * sum(a) / (2.0 * PI) } else { 0.0 })
+    };
+    let point = |name, of: &[usize]| SpecialPoint {
+        name,
+        wave: half(of),
+    };
+    let centre = point("Γ", &[]);
+    let points = match D {
+        1 => vec![centre, point("½b₁", &[0])],
+        2 => vec![
+            point("½b₁", &[0]),
+            centre,
+            point("½b₂", &[1]),
+            point("½(b₁+b₂)", &[0, 1]),
+            centre,
+        ],
+        _ => vec![
+            point("½b₁", &[0]),
+            centre,
+            point("½b₂", &[1]),
+            point("½(b₁+b₂+b₃)", &[0, 1, 2]),
+            centre,
+            point("½b₃", &[2]),
+        ],
+    };
+    (points, 1.0)
 }
 
 /// Straight lines through the special points, with `per_line` steps each.

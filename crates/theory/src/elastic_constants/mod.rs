@@ -3,6 +3,7 @@
 //!
 //! With `r² = ξ·(1 + 2E)·ξ` and rigid sites
 //! `C_ijkl = (1/2V) Σ_bonds (stiffness − tension)/r² ξ_i ξ_j ξ_k ξ_l + (1/V) Σ_s F″_s (Σ share ξ_i ξ_j/r)(Σ share ξ_k ξ_l/r)`.
+//! Spans of fans add `(1/V) Σ_pq k_pq y_i y_j y_k y_l`, the first two of p and the others of q: d²/2 is linear in E.
 //! Sites that are not equivalent move along: `C −= Λᵀ Φ⁻¹ Λ / V`, Φ the force constants of sites against each other, Λ the
 //! forces on sites per strain.
 //!
@@ -179,6 +180,14 @@ impl<const D: usize> Crystal<D> {
         for (share, curvature) in shares.iter().zip(&self.curvature) {
             stiffness.add_site(share, *curvature, self.volume());
         }
+        let v = self.volume();
+        for coupling in &self.couplings {
+            for (span, pull) in coupling.spans.iter().zip(coupling.pulls()) {
+                for (row, x) in stiffness.c.iter_mut().zip(span.by_strain()) {
+                    row.iter_mut().zip(pull).for_each(|(c, p)| *c += x * p / v);
+                }
+            }
+        }
         stiffness
     }
 
@@ -210,6 +219,17 @@ impl<const D: usize> Crystal<D> {
                     let x = f * n_bond[axis] * shares[bond.from][i];
                     force[bond.to * D + axis][i] += x;
                     force[bond.from * D + axis][i] -= x;
+                }
+            }
+        }
+        for coupling in &self.couplings {
+            for (span, pull) in coupling.spans.iter().zip(coupling.pulls()) {
+                let y = span.vector();
+                for axis in 0..D {
+                    for i in 0..n {
+                        force[span.sites[1] * D + axis][i] += y[axis] * pull[i];
+                        force[span.sites[0] * D + axis][i] -= y[axis] * pull[i];
+                    }
                 }
             }
         }

@@ -169,7 +169,7 @@ fn cos_sin<F: Field>(x: F, terms: usize) -> [Series<F>; 2] {
 impl LinearChain<f64> {
     /// A chain crystal with one point per cell.
     pub fn of_crystal(crystal: &Crystal<1>) -> Option<Self> {
-        if crystal.basis.len() != 1 {
+        if crystal.basis.len() != 1 || !crystal.couplings.is_empty() {
             return None;
         }
         let spacing = crystal.cell[0][0];

@@ -48,6 +48,24 @@ impl<const D: usize> Crystal<D> {
                 }
             }
         }
+        for coupling in &self.couplings {
+            // (ik n·x)^q/q!
+            let mut factorial = 1.0;
+            let rows: Vec<_> = (0..terms)
+                .map(|q| {
+                    factorial *= q.max(1) as f64;
+                    coupling.rows(|x| {
+                        let phase = (0..D).map(|a| direction[a] * x[a]).sum();
+                        Complex64::new(0.0, phase).powu(q as u32) / factorial
+                    })
+                })
+                .collect();
+            for (q, sum) in series.iter_mut().enumerate() {
+                for p in 0..=q {
+                    coupling.add(&rows[p], &rows[q - p], sum);
+                }
+            }
+        }
         for m in &mut series {
             for i in 0..size {
                 for j in 0..size {

@@ -1,7 +1,9 @@
 //! Where a crystal rests: the lattice spacing without pressure.
 
+use super::atoms::{Atoms, has_basis_or_fans};
 use super::{lattice, reach};
-use crate::crystal::{Crystal, Reach, potential::equilibrium};
+use crate::crystal::potential::rest;
+use crate::crystal::{Crystal, Reach, Reference};
 use peridyne::law::potential::{Potential, Visitor};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::Spec;
@@ -9,6 +11,13 @@ use peridyne::spec::Spec;
 /// The spacing at which the spec's lattice of atoms has no pressure and resists compression, of several that of the least
 /// energy, or that which an embedded-atom model in closed form is made for; `None` if there is none, or no potential. The spec's own spacing does not matter, unless its horizon is a length.
 pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
+    if has_basis_or_fans(spec) {
+        return match spec.dimension {
+            1 => of_kinds::<1>(spec),
+            2 => of_kinds::<2>(spec),
+            _ => of_kinds::<3>(spec),
+        };
+    }
     struct At {
         kind: LatticeKind,
         reach: Reach,
@@ -20,9 +29,9 @@ pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
             let range = [FROM, TO].map(|x| x * potential.length() / kind.nearest());
             let made_for = potential.made_for().map(|d| d / kind.nearest());
             match kind.dimension() {
-                1 => best::<1>(&potential, kind, reach, range, made_for),
-                2 => best::<2>(&potential, kind, reach, range, made_for),
-                _ => best::<3>(&potential, kind, reach, range, made_for),
+                1 => best(range, made_for, at::<1, P>(&potential, kind, reach)),
+                2 => best(range, made_for, at::<2, P>(&potential, kind, reach)),
+                _ => best(range, made_for, at::<3, P>(&potential, kind, reach)),
             }
         }
     }
@@ -33,22 +42,41 @@ pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
     potential.apply(At { kind, reach }).ok().flatten()
 }
 
+/// The reference of a lattice of a potential at a spacing.
+fn at<const D: usize, P: Potential>(
+    potential: &P,
+    kind: LatticeKind,
+    reach: Reach,
+) -> impl Fn(f64) -> Option<Reference> {
+    move |a| {
+        let crystal = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach);
+        crystal.ok().map(|(_, reference)| reference)
+    }
+}
+
+/// The same of several kinds of atoms, and of fans.
+fn of_kinds<const D: usize>(spec: &Spec) -> Option<f64> {
+    let (kind, spacing) = lattice(spec).ok()?;
+    let atoms = Atoms::<D>::of(spec).ok()?;
+    let all = spec.materials.iter().filter_map(|m| m.law.potential());
+    let reach = all.map(|p| p.cut_off()).fold(0.0, f64::max);
+    let range = [FROM, TO].map(|x| x * 0.5 * reach / kind.nearest());
+    best(range, None, |a| {
+        let made = atoms.grown(a / spacing).crystal();
+        made.ok().map(|(_, reference)| reference)
+    })
+}
+
 /// Steps inwards, each by this factor, from the first factor times the length to the last.
 const STEP: f64 = 0.98;
 const FROM: f64 = 2.5;
 const TO: f64 = 0.3;
 
-fn best<const D: usize>(
-    potential: &impl Potential,
-    kind: LatticeKind,
-    reach: Reach,
+fn best(
     [from, to]: [f64; 2],
     made_for: Option<f64>,
+    reference: impl Fn(f64) -> Option<Reference>,
 ) -> Option<f64> {
-    let reference = |a: f64| {
-        let crystal = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach);
-        crystal.ok().map(|(_, reference)| reference)
-    };
     let mut a = from;
     let mut attracts = false;
     let mut best: Option<(f64, f64)> = None;
@@ -56,8 +84,8 @@ fn best<const D: usize>(
         // too far apart there are no neighbours, too near the embedding energy may have no value
         let pressure = reference(a).map(|r| r.pressure);
         if attracts && pressure.is_some_and(|p| p >= 0.0) {
-            let rest = equilibrium::<D>(potential, kind, reach, [a, a / STEP]);
-            let state = rest.and_then(|rest| Some((rest, reference(rest)?)));
+            let found = rest([a, a / STEP], |a| Some(reference(a)?.pressure));
+            let state = found.and_then(|rest| Some((rest, reference(rest)?)));
             // not where the pressure jumps at a cut-off
             if let Some((rest, r)) = state
                 && r.pressure.abs() <= 1e-6 * pressure.unwrap_or(0.0)

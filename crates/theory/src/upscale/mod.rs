@@ -11,10 +11,14 @@
 //!
 //! [`upscale_keeping`] asks for one of the two: [`Keep::Shells`] goes with every law.
 
+mod atoms;
 pub mod card;
 mod equilibrium_spacing;
 
+pub use atoms::has_basis_or_fans;
 pub use equilibrium_spacing::equilibrium_spacing;
+
+use atoms::Atoms;
 
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
 use peridyne::family::stencil::Stencil;
@@ -302,11 +306,13 @@ pub fn crystal<const D: usize>(
     spec: &Spec,
 ) -> Result<(Crystal<D>, Option<Reference>), UpscaleError> {
     let (kind, spacing) = lattice(spec)?;
-    if spec.potential().is_some() && spec.materials.len() > 1 {
-        return Err(UpscaleError::SeveralMaterials);
-    }
     let density = spec.materials[0].density;
     match spec.potential() {
+        Some(_) if has_basis_or_fans(spec) => {
+            let (crystal, reference) = Atoms::<D>::of(spec)?.crystal()?;
+            Ok((crystal, Some(reference)))
+        }
+        None if spec.materials.len() > 1 => Err(UpscaleError::SeveralMaterials),
         Some(potential) => {
             let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
             let of = OfPotential::<D> {

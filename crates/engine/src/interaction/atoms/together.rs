@@ -11,16 +11,26 @@ pub struct Together<const D: usize> {
     parts: Vec<Box<dyn Interaction<D>>>,
     /// Forces of one of them.
     own: Field<D>,
+    /// Partners of every slot in the reference.
+    family: Vec<u16>,
 }
 
 impl<const D: usize> Together<D> {
     /// All are made for the body.
     pub fn new(body: &Body<D>, parts: Vec<Box<dyn Interaction<D>>>) -> Self {
-        Together {
+        let mut made = Together {
             body: body.identity,
             parts,
             own: zeros(body.len),
-        }
+            family: vec![],
+        };
+        let mut family = vec![0u16; body.len];
+        made.each_bond(body, &mut |i, j, _, _| {
+            family[i] += 1;
+            family[j] += 1;
+        });
+        made.family = family;
+        made
     }
 }
 
@@ -114,10 +124,16 @@ impl<const D: usize> Interaction<D> for Together<D> {
         self.parts.iter().map(|p| p.gain(slot)).sum()
     }
 
-    /// Pairs that have two potentials come twice.
+    /// A pair is one bond, however many potentials it has.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
+        let mut all = vec![];
         for part in &self.parts {
-            part.each_bond(body, visit);
+            part.each_bond(body, &mut |i, j, xi, state| all.push((i, j, xi, state)));
+        }
+        all.sort_by_key(|&(i, j, _, _)| (i, j));
+        all.dedup_by_key(|&mut (i, j, _, _)| (i, j));
+        for (i, j, xi, state) in all {
+            visit(i, j, xi, state);
         }
     }
 
@@ -144,15 +160,15 @@ impl<const D: usize> Interaction<D> for Together<D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.parts.iter().map(|p| p.directed_bonds()).sum()
+        self.family.iter().map(|n| u64::from(*n)).sum()
     }
 
-    fn family_size(&self, body: &Body<D>, slot: usize) -> usize {
-        self.parts.iter().map(|p| p.family_size(body, slot)).sum()
+    fn family_size(&self, _: &Body<D>, slot: usize) -> usize {
+        usize::from(self.family[slot])
     }
 
     fn bytes(&self) -> usize {
         let own: usize = self.own.iter().map(|c| 8 * c.len()).sum();
-        own + self.parts.iter().map(|p| p.bytes()).sum::<usize>()
+        own + 2 * self.family.len() + self.parts.iter().map(|p| p.bytes()).sum::<usize>()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Fan, each};
 use crate::law::descriptor::{Descriptor, Key, Need, Value, Wrong};
+use crate::law::potential::mixture::{Between, Given};
 use crate::law::scaled::by_dimension;
 use crate::spec::{Parameter, Parameters, PotentialSpec};
 
@@ -167,6 +168,27 @@ pub(crate) fn make<F: Described>(parameters: &Parameters) -> Result<F, Wrong> {
     let mut parameters = parameters.clone();
     F::descriptor().check(&mut parameters)?;
     F::read(&parameters)
+}
+
+/// The fan of all kinds of atoms: its constants know all of them, and are the same for each.
+///
+/// # Errors
+/// The key that is wrong, and why.
+pub fn of_kinds<F: Described>(given: &Given) -> Result<F, Wrong> {
+    let own = |kind| match given.at(kind, kind) {
+        Between::Given(parameters) => Some(parameters),
+        Between::Nothing | Between::Mixed => None,
+    };
+    match own(0).filter(|first| (1..given.kinds).all(|k| own(k) == Some(first))) {
+        Some(parameters) => make::<F>(parameters),
+        None => {
+            let message = format!(
+                "{} knows all atoms of a body by one set of constants: give all materials the same file, with their elements",
+                F::NAME
+            );
+            Err((String::new(), message))
+        }
+    }
 }
 
 /// The potential of parameters, which are checked.

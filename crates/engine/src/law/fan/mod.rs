@@ -14,10 +14,10 @@ mod tangent;
 pub mod tersoff;
 
 pub use bulk::{bulk, pair};
-pub use described::{Described, FILE, Kinds, is_known};
-pub(crate) use described::{look_up, make};
+pub use described::{Described, FILE, Kinds, is_known, of_kinds};
+pub(crate) use described::look_up;
 pub use table::Row;
-pub use tangent::tangents;
+pub use tangent::{second_derivatives, tangents};
 
 use super::number::{Dual, Number, Over};
 use super::slopes::Slopes;
@@ -79,9 +79,9 @@ impl<L: Lane> Arm<Dual<L>> {
 
 /// A potential of fans. Everything is 0 beyond its cut-offs, by itself: nobody else looks at distances.
 pub trait Fan: Clone + Send + Sync + 'static {
-    /// Is `z` of j and k that of k and j, and `h` a sum of a function of ξ and a multiple of ζ? Then terms are those of pairs and of
+    /// The multiple of ζ that `h` adds to a function of ξ, where `z` of j and k is that of k and j. Then terms are those of pairs and of
     /// triples, and each unordered pair j, k is evaluated once.
-    const TRIPLES: bool;
+    const TRIPLES: Option<f64>;
 
     /// Its constants.
     fn table(&self) -> &Table;
@@ -94,6 +94,19 @@ pub trait Fan: Clone + Send + Sync + 'static {
 
     /// What the arm i–k adds to ζ of i–j, with constants of i, j, k.
     fn share<L: Lane, N: Over<L>>(&self, ij: &Arm<N>, ik: &Arm<N>, closing: N, of: impl Row) -> N;
+
+    /// The same with its slopes by ξ of both arms and by `closing`. Who writes them out is tested against those of the text.
+    #[inline(always)]
+    fn share_slopes<L: Lane>(
+        &self,
+        ij: &Arm<Dual<L>>,
+        ik: &Arm<Dual<L>>,
+        closing: L,
+        of: impl Row,
+    ) -> Slopes<L, 3> {
+        let closing = Slopes::variable(closing, 2);
+        self.share::<L, _>(&ij.along(0), &ik.along(1), closing, of)
+    }
 
     /// Energy h of the bond i–j at i (energy), with constants of i, j, j.
     fn bond<L: Lane, N: Over<L>>(&self, ij: &Arm<N>, zeta: N, of: impl Row) -> N;

@@ -70,8 +70,8 @@ impl<F: Fan> Sites for FanSites<F> {
 
     fn parts(&self) -> Vec<String> {
         match F::TRIPLES {
-            true => vec!["pair".into(), "triple".into()],
-            false => vec!["bond".into()],
+            Some(_) => vec!["pair".into(), "triple".into()],
+            None => vec!["bond".into()],
         }
     }
 
@@ -84,7 +84,7 @@ impl<F: Fan> Sites for FanSites<F> {
                 continue;
             }
             let others = || ends.iter().enumerate().filter(|(m, _)| *m != n);
-            if F::TRIPLES {
+            if let Some(multiple) = F::TRIPLES {
                 let pair = self.bond(kind, j, 0.0);
                 term.begin(0);
                 term.energy = pair.value;
@@ -95,8 +95,7 @@ impl<F: Fan> Sites for FanSites<F> {
                     if k.arm.weight.value == 0.0 {
                         continue;
                     }
-                    let factor = pair.slope[1] + self.bond(kind, k, 0.0).slope[1];
-                    let z = self.share(kind, j, k).times(factor);
+                    let z = self.share(kind, j, k).times(2.0 * multiple);
                     term.begin(1);
                     term.energy = z.value;
                     term.particles.extend([j.number, k.number]);
@@ -133,7 +132,8 @@ impl<F: Fan> Sites for FanSites<F> {
 mod tests {
     use super::super::stillinger_weber::StillingerWeber;
     use super::super::tersoff::Tersoff;
-    use super::super::{make, tangents};
+    use super::super::described::make;
+    use super::super::tangents;
     use super::*;
     use crate::samples::Random;
     use crate::spec::Parameters;
@@ -278,6 +278,31 @@ mod tests {
     fn pulls_and_tangents_are_slopes() {
         check(&weber());
         check(&tersoff());
+    }
+
+    /// Who writes slopes out means those of the text.
+    fn slopes_of_shares<F: Fan>(sites: &FanSites<F>) {
+        let near = near();
+        let ends = sites.ends(0, &near);
+        for (j, k) in ends.iter().flat_map(|j| ends.iter().map(move |k| (j, k))) {
+            if j.number == k.number {
+                continue;
+            }
+            let (text, row) = (sites.share(0, j, k), sites.0.table().at([0; 3]));
+            let closing = closing(j.near, k.near);
+            let written = sites.0.share_slopes::<f64>(&j.arm, &k.arm, closing, row);
+            let scale = 1e-14 * (1.0 + text.value.abs());
+            assert!((written.value - text.value).abs() < scale);
+            for (a, b) in written.slope.iter().zip(text.slope) {
+                assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()), "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_text() {
+        slopes_of_shares(&weber());
+        slopes_of_shares(&tersoff());
     }
 
     /// sandia2010 (4.0.155) is 0·∞ there as printed.

@@ -8,7 +8,8 @@ use super::{Arm, Fan};
 use crate::columns::Dimension;
 use crate::execute::lane::Lane;
 use crate::law::descriptor::{Bounds, Descriptor, Key, Wrong, number};
-use crate::law::number::Over;
+use crate::law::number::{Dual, Over};
+use crate::law::slopes::Slopes;
 use crate::spec::Parameters;
 
 const fn constant(name: &'static str, dimension: Dimension, doc: &'static str) -> Key {
@@ -72,7 +73,7 @@ impl StillingerWeber {
     #[inline(always)]
     fn powers<L: Lane, N: Over<L>>(&self, inverse: N, of: impl Row) -> [N; 2] {
         match self.whole {
-            Some(powers) => powers.map(|n| inverse.power(n)),
+            Some([p, q]) => [inverse.power(p), inverse.power(q)],
             None => {
                 let log = inverse.ln();
                 let [p, q] = POWERS;
@@ -93,7 +94,7 @@ fn decay<L: Lane, N: Over<L>>(length: N, s: N, of: impl Row) -> N {
 }
 
 impl Fan for StillingerWeber {
-    const TRIPLES: bool = true;
+    const TRIPLES: Option<f64> = Some(0.5);
 
     fn table(&self) -> &Table {
         &self.table
@@ -114,6 +115,35 @@ impl Fan for StillingerWeber {
     fn share<L: Lane, N: Over<L>>(&self, ij: &Arm<N>, ik: &Arm<N>, closing: N, of: impl Row) -> N {
         let bend = ij.cosine(ik, closing) - of.get::<L, N>(BEST);
         bend * bend * (of.get::<L, N>(BEND) * (ij.weight * ik.weight))
+    }
+
+    /// With `u = cos θ − cos θ₀`, `∂cos θ/∂ξ_jk = −1/(r_ij r_ik)` and `∂cos θ/∂ξ_ij = 1/(r_ij r_ik) − cos θ/r_ij²`.
+    #[inline(always)]
+    fn share_slopes<L: Lane>(
+        &self,
+        ij: &Arm<Dual<L>>,
+        ik: &Arm<Dual<L>>,
+        closing: L,
+        of: impl Row,
+    ) -> Slopes<L, 3> {
+        let inverse = ij.inverse.value * ik.inverse.value;
+        let cosine = (ij.xi.value + ik.xi.value - closing) * inverse;
+        let bend = cosine - of.get::<L, L>(BEST);
+        let turn = bend * of.get::<L, L>(BEND);
+        let square = bend * turn;
+        let weight = ij.weight.value * ik.weight.value;
+        let across = (turn + turn) * weight;
+        // no closures over lanes: they would not compile for the lanes' instruction set
+        let j = inverse - cosine * (ij.inverse.value * ij.inverse.value);
+        let k = inverse - cosine * (ik.inverse.value * ik.inverse.value);
+        Slopes {
+            value: square * weight,
+            slope: [
+                square.fma(ij.weight.slope * ik.weight.value, across * j),
+                square.fma(ij.weight.value * ik.weight.slope, across * k),
+                L::splat(0.0) - across * inverse,
+            ],
+        }
     }
 
     #[inline(always)]

@@ -9,23 +9,42 @@ use crate::law::terms::Near;
 /// Every pair of particles of a fan that is within its cut-off, once; 0 is the centre, n + 1 the n-th of those that are near.
 pub fn tangents<F: Fan>(fan: &F, kind: u32, near: &[Near], visit: &mut dyn FnMut(PairTangent<3>)) {
     let limit = fan.cutoff() * fan.cutoff();
-    let within = |(_, n): &(usize, &Near)| n.square() < limit;
-    let ends: Vec<(usize, &Near)> = near.iter().enumerate().filter(within).collect();
-    let n = ends.len();
+    let within = |n: &usize| near[*n].square() < limit;
+    let ends: Vec<usize> = (0..near.len()).filter(within).collect();
+    let inside: Vec<Near> = ends.iter().map(|n| near[*n]).collect();
+    let mut at = vec![[0.0; 3]];
+    at.extend(inside.iter().map(|n| n.y));
+    let number = |a: u32| match a {
+        0 => 0,
+        a => ends[a as usize - 1] as u32 + 1,
+    };
+    second_derivatives(fan, kind, &inside).visit(&at, &mut |pair| {
+        visit(PairTangent {
+            a: number(pair.a),
+            b: number(pair.b),
+            ..pair
+        });
+    });
+}
+
+/// Derivatives of a fan's energy by ξ of all pairs of its particles: 0 is the centre, n + 1 the n-th of those that are near, all of
+/// which are within the cut-off.
+pub fn second_derivatives<F: Fan>(fan: &F, kind: u32, near: &[Near]) -> Quadratic {
+    let n = near.len();
     let mut all = Quadratic::new(n + 1);
     let pairs = all.pairs();
     let table = fan.table();
     let kinds = |j: usize, k: usize| {
-        let of = [kind, ends[j].1.kind, ends[k].1.kind];
+        let of = [kind, near[j].kind, near[k].kind];
         table.at(of.map(|k| k as usize))
     };
-    let xi = |j: usize| 0.5 * ends[j].1.square();
+    let xi = |j: usize| 0.5 * near[j].square();
     for j in 0..n {
         let arm = |k: usize, number: usize| -> Arm<Curved<3>> {
             fan.arm::<f64, _>(Curved::variable(xi(k), number), kinds(k, k))
         };
         let share = |k: usize| {
-            let closing = Curved::variable(closing(ends[j].1, ends[k].1), 2);
+            let closing = Curved::variable(closing(&near[j], &near[k]), 2);
             fan.share::<f64, _>(&arm(j, 0), &arm(k, 1), closing, kinds(j, k))
         };
         let others = (0..n).filter(|k| *k != j);
@@ -53,17 +72,5 @@ pub fn tangents<F: Fan>(fan: &F, kind: u32, near: &[Near], visit: &mut dyn FnMut
             }
         }
     }
-    let mut at = vec![[0.0; 3]];
-    at.extend(ends.iter().map(|(_, n)| n.y));
-    let number = |a: u32| match a {
-        0 => 0,
-        a => ends[a as usize - 1].0 as u32 + 1,
-    };
-    all.visit(&at, &mut |pair| {
-        visit(PairTangent {
-            a: number(pair.a),
-            b: number(pair.b),
-            ..pair
-        });
-    });
+    all
 }

@@ -126,7 +126,7 @@ fn cut<N: Number>(length: N, middle: N, over_half: N) -> N {
 }
 
 impl Fan for Tersoff {
-    const TRIPLES: bool = false;
+    const TRIPLES: Option<f64> = None;
 
     fn table(&self) -> &Table {
         &self.table

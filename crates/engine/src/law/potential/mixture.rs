@@ -133,7 +133,7 @@ impl Given {
 ///
 /// # Errors
 /// The key that is wrong, and why.
-pub(crate) fn mixture<P: Described>(given: &Given) -> Result<Mixture<P::Made>, Wrong> {
+pub fn mixture<P: Described>(given: &Given) -> Result<Mixture<P::Made>, Wrong> {
     let mut of = vec![];
     for (n, between) in given.of.iter().enumerate() {
         let (i, j) = (n / given.kinds, n % given.kinds);

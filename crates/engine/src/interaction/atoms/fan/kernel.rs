@@ -8,7 +8,7 @@ use crate::execute::simd::Kernel;
 use crate::family::neighbours::near::NearList;
 use crate::interaction::VIRIAL;
 use crate::law::fan::{Arm, Fan, Row};
-use crate::law::number::Dual;
+use crate::law::number::{Dual, Over};
 use crate::law::slopes::Slopes;
 
 pub(super) struct View<'a, F> {
@@ -144,6 +144,17 @@ impl<F: Fan, const MANY: bool> Centres<'_, F, MANY> {
         }
     }
 
+    /// h with its slope by ξ, where that by ζ is known.
+    #[inline(always)]
+    fn pair<L: Lane>(&self, i: &[u8; TILE], bond: &Bond<L>) -> Dual<L> {
+        let (fan, zeta) = (self.0.fan, Dual::lane(bond.zeta));
+        let k = &bond.kind;
+        match MANY {
+            true => fan.bond::<L, _>(&bond.arm, zeta, fan.table().each(i, k, k)),
+            false => fan.bond::<L, _>(&bond.arm, zeta, fan.table().same()),
+        }
+    }
+
     #[inline(always)]
     fn share<L: Lane>(&self, i: &[u8; TILE], j: &Bond<L>, k: &Bond<L>) -> Slopes<L, 3> {
         let fan = self.0.fan;
@@ -160,8 +171,7 @@ impl<F: Fan, const MANY: bool> Centres<'_, F, MANY> {
             let y = j.y[a] - k.y[a];
             q = y.fma(y, q);
         }
-        let closing = Slopes::variable(q * L::splat(0.5), 2);
-        fan.share::<L, _>(&j.arm.along(0), &k.arm.along(1), closing, of)
+        fan.share_slopes::<L>(&j.arm, &k.arm, q * L::splat(0.5), of)
     }
 
     /// Bonds of a tile with their pulls; the energy of its centres.
@@ -170,7 +180,6 @@ impl<F: Fan, const MANY: bool> Centres<'_, F, MANY> {
         let zero = L::splat(0.0);
         let own = View::<F>::kinds::<L, MANY>(i[3]);
         room.bonds.clear();
-        room.shares.clear();
         for line in &room.near {
             let j = self.0.at::<L>(line);
             let mut y = [zero; 3];
@@ -190,54 +199,84 @@ impl<F: Fan, const MANY: bool> Centres<'_, F, MANY> {
                 across: [zero; 3],
             });
         }
+        match F::TRIPLES {
+            Some(multiple) => self.triples(&own, &mut room.bonds, multiple),
+            None => self.weakened(&own, room),
+        }
+    }
+
+    /// A sum of pairs and triples: what a triple says is known when it is met.
+    #[inline(always)]
+    fn triples<L: Lane>(&self, own: &[u8; TILE], bonds: &mut [Bond<L>], multiple: f64) -> L {
+        let along = L::splat(2.0 * multiple);
+        for j in 0..bonds.len() {
+            let (before, rest) = bonds.split_at_mut(j);
+            let first = &mut rest[0];
+            for second in before {
+                let z = self.share(own, first, second);
+                first.zeta = first.zeta + z.value;
+                second.zeta = second.zeta + z.value;
+                pull(first, second, along, z.slope);
+            }
+        }
+        let mut energy = L::splat(0.0);
+        for bond in bonds {
+            let h = self.pair(own, bond);
+            energy = energy + h.value;
+            bond.pull = bond.pull + h.slope;
+        }
+        energy
+    }
+
+    /// Bonds that others weaken: all of them are asked before a bond is known.
+    #[inline(always)]
+    fn weakened<L: Lane>(&self, own: &[u8; TILE], room: &mut Room<L>) -> L {
+        room.shares.clear();
         let count = room.bonds.len();
         for j in 0..count {
-            for k in 0..if F::TRIPLES { j } else { count } {
-                if j == k {
+            for k in 0..count {
+                if k == j {
                     continue;
                 }
-                let z = self.share(&own, &room.bonds[j], &room.bonds[k]);
+                let z = self.share(own, &room.bonds[j], &room.bonds[k]);
                 room.bonds[j].zeta = room.bonds[j].zeta + z.value;
-                if F::TRIPLES {
-                    room.bonds[k].zeta = room.bonds[k].zeta + z.value;
-                }
                 room.shares.push(Share(z.slope));
             }
         }
-        let mut energy = zero;
+        let mut energy = L::splat(0.0);
         for bond in &mut room.bonds {
-            let h = self.bond(&own, bond);
+            let h = self.bond(own, bond);
             energy = energy + h.value;
             bond.pull = h.slope[0];
             bond.along = h.slope[1];
         }
         let mut next = 0;
         for j in 0..count {
-            for k in 0..if F::TRIPLES { j } else { count } {
-                if j == k {
+            let mut first = room.bonds[j];
+            let along = first.along;
+            for k in 0..count {
+                if k == j {
                     continue;
                 }
                 let Share(slope) = room.shares[next];
                 next += 1;
-                let mut along = room.bonds[j].along;
-                if F::TRIPLES {
-                    along = along + room.bonds[k].along;
-                }
-                let across = along * slope[2];
-                let (yj, yk) = (room.bonds[j].y, room.bonds[k].y);
-                let first = &mut room.bonds[j];
-                first.pull = along.fma(slope[0], first.pull) + across;
-                for a in 0..3 {
-                    first.across[a] = across.fma(yk[a], first.across[a]);
-                }
-                let second = &mut room.bonds[k];
-                second.pull = along.fma(slope[1], second.pull) + across;
-                for a in 0..3 {
-                    second.across[a] = across.fma(yj[a], second.across[a]);
-                }
+                pull(&mut first, &mut room.bonds[k], along, slope);
             }
+            room.bonds[j] = first;
         }
         energy
+    }
+}
+
+/// What `along` times a share pulls at two ends.
+#[inline(always)]
+fn pull<L: Lane>(first: &mut Bond<L>, second: &mut Bond<L>, along: L, slope: [L; 3]) {
+    let across = along * slope[2];
+    first.pull = along.fma(slope[0], first.pull) + across;
+    second.pull = along.fma(slope[1], second.pull) + across;
+    for a in 0..3 {
+        first.across[a] = across.fma(second.y[a], first.across[a]);
+        second.across[a] = across.fma(first.y[a], second.across[a]);
     }
 }
 

@@ -53,15 +53,15 @@ impl Atoms {
             of_pairs: false,
             embedded: false,
             bulk: |given, stencil, spacing, volume| {
-                let fan = fan_of::<F>(given)?;
+                let fan = fan::of_kinds::<F>(given)?;
                 Ok(Some(fan::bulk(&fan, stencil, spacing, volume)))
             },
             closest: |given, from, energy| {
-                let fan = fan_of::<F>(given)?;
+                let fan = fan::of_kinds::<F>(given)?;
                 Ok(closest(|r| fan::pair(&fan, r), from, energy))
             },
-            reach: |given| Ok(fan_of::<F>(given)?.cutoff()),
-            sites: |given| Ok(Box::new(FanSites(fan_of::<F>(given)?))),
+            reach: |given| Ok(fan::of_kinds::<F>(given)?.cutoff()),
+            sites: |given| Ok(Box::new(FanSites(fan::of_kinds::<F>(given)?))),
             pair: |_| Err(not_of_pairs(F::NAME)),
             binders: [
                 Arc::new(flat::<1, F> as Binder<1>),
@@ -137,31 +137,13 @@ fn not_of_pairs(name: &str) -> Wrong {
     (String::new(), message)
 }
 
-/// The fan of all kinds of atoms: its constants know all of them, and are the same for each.
-fn fan_of<F: fan::Described>(given: &Given) -> Result<F, Wrong> {
-    let own = |kind| match given.at(kind, kind) {
-        Between::Given(parameters) => Some(parameters),
-        Between::Nothing | Between::Mixed => None,
-    };
-    match own(0).filter(|first| (1..given.kinds).all(|k| own(k) == Some(first))) {
-        Some(parameters) => fan::make::<F>(parameters),
-        None => {
-            let message = format!(
-                "{} knows all atoms of a body by one set of constants: give all materials the same file, with their elements",
-                F::NAME
-            );
-            Err((String::new(), message))
-        }
-    }
-}
-
 fn bind_fan<F: fan::Described>(
     given: &Given,
     body: &Body<3>,
     links: Option<Links<3>>,
     simd: Simd,
 ) -> Bound<3> {
-    let fan = fan_of::<F>(given)?;
+    let fan = fan::of_kinds::<F>(given)?;
     if links.is_some() {
         let message = format!(
             "{} lives on current neighbours: remove family = \"stencil\"",
@@ -343,6 +325,21 @@ impl Shelf {
         Ok(parts)
     }
 
+    /// The potentials between the atoms of a spec, whose kinds are its materials: their names, and the constants of all kinds. A sum,
+    /// if there are several.
+    ///
+    /// # Errors
+    /// Its materials are no atoms, or two of them have no potential.
+    pub fn given(&self, spec: &Spec) -> Result<Vec<(String, Given)>, BuildError> {
+        let mut spec = spec.clone();
+        self.resolve(&mut spec)?;
+        let all = self.potentials(&spec)?.ok_or_else(no_atoms)?;
+        let parts = all.parts.into_iter();
+        Ok(parts
+            .map(|p| (p.entry.descriptor.name.to_string(), p.given))
+            .collect())
+    }
+
     /// What stands on the shelf for the potential of a material.
     fn named(&self, spec: &PotentialSpec, material: usize) -> Result<Arc<Entry>, BuildError> {
         let entry = self.entry(&spec.name).filter(|e| e.atoms().is_some());
@@ -375,13 +372,14 @@ impl Shelf {
         let mut spec = spec.clone();
         self.resolve(&mut spec)?;
         match self.potentials(&spec)? {
-            None => Err(BuildError::unsupported(
-                "materials",
-                "these materials are no atoms",
-            )),
+            None => Err(no_atoms()),
             Some(all) => Ok(Box::new(terms::Together(all.sites()?))),
         }
     }
+}
+
+fn no_atoms() -> BuildError {
+    BuildError::unsupported("materials", "these materials are no atoms")
 }
 
 /// Two materials of which nobody says what their atoms have.

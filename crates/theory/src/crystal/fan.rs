@@ -1,0 +1,95 @@
+//! Crystals of fans: second derivatives of the one text by pairs of its particles.
+
+use super::atoms::{Atom, neighbours};
+use super::{Bond, Coupling, Crystal, CrystalError, Span};
+use peridyne::law::blocks::place;
+use peridyne::law::fan::sites::FanSites;
+use peridyne::law::fan::{Fan, second_derivatives};
+use peridyne::law::terms::{self, Sites};
+
+impl<const D: usize> Crystal<D> {
+    /// A periodic crystal whose cell has these rows (length) and atoms, and its energy per cell. Force constants reach as far as two
+    /// arms of a fan.
+    ///
+    /// # Errors
+    /// No neighbours; a mass that is none; distances at which the potential has no value.
+    pub fn of_fan<F: Fan>(
+        fan: &F,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<(Self, f64), CrystalError> {
+        let near = neighbours(&cell, atoms, fan.cutoff(), |_, _| fan.cutoff())?;
+        let mut crystal = Crystal {
+            cell,
+            basis: atoms.iter().map(|a| a.place).collect(),
+            mass: atoms.iter().map(|a| a.mass).collect(),
+            bonds: vec![],
+            curvature: vec![0.0; atoms.len()],
+            couplings: vec![],
+        };
+        let sites = FanSites(fan.clone());
+        let mut energy = 0.0;
+        for (s, atom) in atoms.iter().enumerate() {
+            let mut ends = vec![(s, [0.0; D])];
+            ends.extend(near.iter().filter(|n| n.from == s).map(|n| (n.to, n.xi)));
+            let fan_of: Vec<terms::Near> = { ends[1..].iter() }
+                .map(|(to, xi)| terms::Near {
+                    kind: atoms[*to].kind as u32,
+                    y: std::array::from_fn(|a| if a < D { xi[a] } else { 0.0 }),
+                })
+                .collect();
+            let kind = atom.kind as u32;
+            sites.terms(kind, &fan_of, &mut |t| energy += t.energy);
+            let found = second_derivatives(fan, kind, &fan_of);
+            if found.first.iter().chain(&found.second).any(|x| !x.is_finite()) {
+                let distance = { near.iter() }.fold(f64::INFINITY, |d, n| d.min(n.r));
+                return Err(CrystalError::Distance { distance });
+            }
+            let mut spans = vec![];
+            // in the order of `place`
+            for b in 1..ends.len() {
+                for a in 0..b {
+                    let span = Span {
+                        sites: [ends[a].0, ends[b].0],
+                        at: [ends[a].1, ends[b].1],
+                    };
+                    crystal.pull(&span, found.first[place(a, b)]);
+                    spans.push(span);
+                }
+            }
+            let k = found.second;
+            crystal.couplings.push(Coupling { spans, k });
+        }
+        Ok((crystal, energy))
+    }
+
+    /// `G` along a span (energy / length²), both ways: `½ G |η|²` of it.
+    fn pull(&mut self, span: &Span<D>, pull: f64) {
+        if pull == 0.0 {
+            return;
+        }
+        let [a, b] = span.sites;
+        let xi = span.vector();
+        for (from, to, xi) in [(a, b, xi), (b, a, xi.map(|x| -x))] {
+            let size: f64 = xi.iter().map(|x| x.abs()).sum();
+            let same = |o: &&mut Bond<D>| {
+                let apart: f64 = (0..D).map(|a| (o.xi[a] - xi[a]).abs()).sum();
+                o.from == from && o.to == to && apart <= 1e-9 * size
+            };
+            match self.bonds.iter_mut().find(same) {
+                Some(bond) => {
+                    bond.tension += pull;
+                    bond.stiffness += pull;
+                }
+                None => self.bonds.push(Bond {
+                    from,
+                    to,
+                    xi,
+                    tension: pull,
+                    stiffness: pull,
+                    share: 0.0,
+                }),
+            }
+        }
+    }
+}
