@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct WavesArguments {
-    /// Deck of one material on a lattice.
+    /// Deck of one material on a lattice, or of several kinds of atoms that repeat on it.
     #[command(flatten)]
     pub input: Input,
     /// Folder for the results; `out/<name of the deck>-waves` if not given.
@@ -68,7 +68,7 @@ pub fn waves(arguments: &WavesArguments) -> Result<(), Failure> {
 fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
     let told = |e: UpscaleError| Failure::input(format!("{}: {}", deck.file(), explained(&e)));
     lattice(&deck.spec).map_err(told)?;
-    if deck.spec.materials.len() != 1 {
+    if deck.spec.materials.len() != 1 && deck.spec.potential().is_none() {
         return Err(told(UpscaleError::SeveralMaterials));
     }
     if let Stepper::Newmark(_) = deck.spec.schedule.stepper {
@@ -116,8 +116,8 @@ fn explained(error: &UpscaleError) -> String {
              perturbed lattice: give it as `lattice` with `spacing`; `peridyne check` tells stiffness and stable step of \
              any body"
             .into(),
-        UpscaleError::SeveralMaterials => "a body with several materials carries no plane waves: write a deck with one \
-             of them, and one for each other"
+        UpscaleError::SeveralMaterials => "waves of several materials are known of atoms, whose unlike ones repeat from cell to cell: \
+             write a deck with one of these materials, and one for each other"
             .into(),
         other => other.to_string(),
     }

@@ -32,6 +32,9 @@ pub fn text(found: &Found) -> String {
     if let Some(r) = &s.reference {
         let _ = write!(t, ", energy per atom {}", write(r.energy, Dim::ENERGY));
     }
+    if s.sites > 1 {
+        t += &cell(found);
+    }
     if found.deck.spec.thermal.is_some() {
         t += "\n          the lattice at rest: without the deck's temperature";
     }
@@ -74,6 +77,33 @@ pub fn text(found: &Found) -> String {
     gradients(&mut t, found);
     nonlinear(&mut t, found);
     t
+}
+
+/// What a cell with several sites is, and its waves in which these move against each other.
+fn cell(found: &Found) -> String {
+    let s = &found.dynamics;
+    let at_rest = s.path.iter().find(|r| r.name == Some("Γ"));
+    let mut optical: Vec<(f64, usize)> = vec![];
+    for b in at_rest.iter().flat_map(|r| r.branches.iter().skip(s.dimension)) {
+        match optical.last_mut() {
+            Some((w, count)) if (b.signed() - *w).abs() <= 1e-9 * w.abs() => *count += 1,
+            _ => optical.push((b.signed(), 1)),
+        }
+    }
+    let each: Vec<String> = { optical.iter() }
+        .map(|(w, count)| {
+            let period = found.deck.units.write(2.0 * PI / w.abs(), Dim::TIME);
+            let grows = if *w < 0.0 { ", growing" } else { "" };
+            format!("ω = {w:.6e}, period {period}{grows} ({count})")
+        })
+        .collect();
+    format!(
+        "\ncell      {} sites: {} acoustic and {} optical branches; optical waves without end: {}",
+        s.sites,
+        s.dimension,
+        s.dimension * (s.sites - 1),
+        each.join("; ")
+    )
 }
 
 /// Components in units of 2π/a.

@@ -2,7 +2,8 @@
 
 use super::{Deck, Dim};
 use peridyne::run::Shelf;
-use peridyne::spec::{BodySpec, Horizon, Spec, TimeStep};
+use peridyne::law::fan::FILE;
+use peridyne::spec::{BodySpec, FamilyChoice, Horizon, PotentialSpec, Spec, TimeStep};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -26,16 +27,17 @@ fn inner<'t>(table: &'t mut Table, key: &str) -> Option<&'t mut Table> {
     table.get_mut(key).and_then(Value::as_table_mut)
 }
 
-/// The one material of a deck.
-fn material(table: &mut Table) -> Option<&mut Table> {
+/// The materials of a deck, in order.
+fn materials(table: &mut Table) -> Option<Vec<&mut Table>> {
     let written = inner(table, "material")?;
     if written.contains_key("law") {
-        return Some(written);
+        return Some(vec![written]);
     }
-    written
-        .iter_mut()
-        .next()
-        .and_then(|(_, m)| m.as_table_mut())
+    let mut named: Vec<(&String, &mut Table)> = { written.iter_mut() }
+        .filter_map(|(name, m)| Some((name, m.as_table_mut()?)))
+        .collect();
+    named.sort_by_key(|(name, _)| (*name).clone());
+    Some(named.into_iter().map(|(_, m)| m).collect())
 }
 
 /// Files of the deck beside it under their own names.
@@ -49,16 +51,20 @@ fn beside(deck: &Deck, table: &mut Table) -> Vec<(PathBuf, String)> {
                 .file_name()
                 .map_or_else(|| file.clone(), |n| n.to_string_lossy().into_owned());
             *file = name.clone();
-            files.push((from, name));
+            let entry = (from, name);
+            if !files.contains(&entry) {
+                files.push(entry);
+            }
         }
     };
     place(inner(table, "body").and_then(|b| b.get_mut("file")));
     let shelf = Shelf::standard();
-    let law = material(table).and_then(|m| inner(m, "law"));
-    for (name, constants) in law.into_iter().flatten() {
-        let keys = shelf.descriptor(name).into_iter().flat_map(|d| &d.keys);
-        for key in keys.filter(|k| k.value.is_file()) {
-            place(constants.get_mut(key.name));
+    for material in materials(table).into_iter().flatten() {
+        for (name, constants) in inner(material, "law").into_iter().flatten() {
+            let keys = shelf.descriptor(name).into_iter().flat_map(|d| &d.keys);
+            for key in keys.filter(|k| k.value.is_file()) {
+                place(constants.get_mut(key.name));
+            }
         }
     }
     files
@@ -84,7 +90,7 @@ pub fn copied(deck: &Deck) -> Result<Rewritten, String> {
 /// What of the deck does not go with the factor, in words.
 pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, String> {
     let mut table = table(deck)?;
-    let files = beside(deck, &mut table);
+    let mut files = beside(deck, &mut table);
     let mut notes = vec![];
     let plain = |value: f64, dim: Dim| Value::Float(value / deck.units.plain_factor(dim));
     let title = deck.spec.title.clone();
@@ -130,13 +136,40 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
         );
     }
     if coarse.potential().is_some() {
-        table.insert("family".into(), "stencil".into());
-        let density = plain(coarse.materials[0].density, Dim::DENSITY);
-        let material = material(&mut table).ok_or("the deck has no material")?;
-        material.remove("mass");
-        material.insert("density".into(), density);
-        let law = inner(material, "law").ok_or("the material has no law")?;
-        law_numbers(law, deck, coarse);
+        match coarse.family {
+            FamilyChoice::Neighbours => {
+                // of atoms that are near now the cut-off is the potential's
+                table.remove("horizon");
+                table.remove("family");
+            }
+            FamilyChoice::Auto | FamilyChoice::Stencil | FamilyChoice::List => {
+                table.insert("family".into(), "stencil".into());
+            }
+        }
+        let written = materials(&mut table).ok_or("the deck has no material")?;
+        for (n, material) in written.into_iter().enumerate() {
+            let [Some(fine), Some(new)] = [&deck.spec, coarse].map(|s| s.materials.get(n)) else {
+                return Err("the deck has more materials than its body".into());
+            };
+            material.remove("mass");
+            material.insert("density".into(), plain(new.density, Dim::DENSITY));
+            let law = inner(material, "law").ok_or("the material has no law")?;
+            if let (Some(fine), Some(new)) = (fine.law.potential(), new.law.potential()) {
+                law_numbers(law, deck, fine, new)?;
+            }
+        }
+        if let Some(Value::Array(pairs)) = table.get_mut("pair") {
+            let both = deck.spec.potentials.iter().zip(&coarse.potentials);
+            for (pair, (fine, new)) in pairs.iter_mut().zip(both) {
+                let law = pair.as_table_mut().and_then(|p| inner(p, "law"));
+                if let Some(law) = law {
+                    law_numbers(law, deck, &fine.potential, &new.potential)?;
+                }
+            }
+        }
+        // a file whose rows became keys is no longer named
+        let named = toml::to_string(&table).map_err(|e| e.to_string())?;
+        files.retain(|(_, name)| named.contains(&**name));
     }
     let run = inner(&mut table, "run").ok_or("the deck has no run")?;
     if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
@@ -160,16 +193,38 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
 }
 
 /// The numbers of the coarse potential that are others into the law's table.
-fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec) {
+///
+/// # Errors
+/// They are rows of a file that several elements share.
+fn law_numbers(
+    law: &mut Table,
+    deck: &Deck,
+    fine: &PotentialSpec,
+    coarse: &PotentialSpec,
+) -> Result<(), String> {
     let shelf = Shelf::standard();
-    let (Some(fine), Some(coarse)) = (deck.spec.potential(), coarse.potential()) else {
-        return;
-    };
     let (Some(descriptor), Some((_, Value::Table(inside)))) =
         (shelf.descriptor(&coarse.name), law.iter_mut().next())
     else {
-        return;
+        return Ok(());
     };
+    if let Some(rows) = coarse.parameters.rows(FILE) {
+        let [row] = rows else {
+            return Err(format!(
+                "the constants of {} are those of a file with several elements, which has no coarse one: upscale a body of one element, or \
+                 write the file of the coarse atoms yourself (lengths times the factor, energies times its cube)",
+                coarse.name
+            ));
+        };
+        // the kinds come first
+        inside.clear();
+        let columns = descriptor.keys.iter().filter(|k| k.dimension().is_some());
+        for (key, number) in columns.zip(&row[3..]) {
+            let factor = key.dimension().map_or(1.0, |d| deck.units.plain_factor(d));
+            inside.insert(key.name.to_string(), Value::Float(number / factor));
+        }
+        return Ok(());
+    }
     for key in &descriptor.keys {
         let Some(new) = coarse.parameters.number(key.name) else {
             continue;
@@ -181,4 +236,5 @@ fn law_numbers(law: &mut Table, deck: &Deck, coarse: &Spec) {
             inside.insert(key.name.to_string(), Value::Float(new / factor));
         }
     }
+    Ok(())
 }

@@ -1,12 +1,13 @@
 //! Atoms of several kinds, and atoms with terms of more than two: their crystals.
 
 use super::{UpscaleError, current, lattice};
+use crate::crystal::cells::determinant;
 use crate::crystal::arrangement::arrangement;
 use crate::crystal::{Atom, Crystal, CrystalError, Reference, kinds};
 use peridyne::law::fan;
 use peridyne::law::potential::mixture::Given;
 use peridyne::run::Shelf;
-use peridyne::spec::Spec;
+use peridyne::spec::{FamilyChoice, LawSpec, Spec};
 
 /// Has it several kinds of atoms, or terms of more than two? Such atoms live on current neighbours, and theory knows their potentials
 /// by names.
@@ -58,6 +59,20 @@ impl<const D: usize> Atoms<D> {
         }
     }
 
+    /// Energy per volume of the reference where it is strained by ε (x → x + ε x) with all atoms carried along.
+    pub fn energy_density(&self, strain: [[f64; 3]; 3]) -> Option<f64> {
+        let moved = |x: [f64; D]| -> [f64; D] {
+            std::array::from_fn(|a| x[a] + (0..D).map(|b| strain[a][b] * x[b]).sum::<f64>())
+        };
+        let atom = |a: &Atom<D>| Atom {
+            place: moved(a.place),
+            ..*a
+        };
+        let atoms: Vec<Atom<D>> = self.atoms.iter().map(atom).collect();
+        let found = kinds::crystal(&self.given, self.cell.map(moved), &atoms).ok();
+        found.map(|(_, energy)| energy / determinant(&self.cell).abs())
+    }
+
     pub fn crystal(&self) -> Result<(Crystal<D>, Reference), CrystalError> {
         let (crystal, energy) = kinds::crystal(&self.given, self.cell, &self.atoms)?;
         let sites = self.atoms.len();
@@ -69,4 +84,47 @@ impl<const D: usize> Atoms<D> {
         };
         Ok((crystal, reference))
     }
+}
+
+/// All potentials of atoms at n times the spacing, which `coarse` has already: lengths times n, energies times n^D.
+///
+/// # Errors
+/// The kinds do not lie there as they lie here.
+pub(super) fn grow(fine: &Spec, coarse: &mut Spec, n: f64) -> Result<(), UpscaleError> {
+    let energy = n.powi(fine.dimension as i32);
+    for material in &mut coarse.materials {
+        if let LawSpec::Atoms(potential) = &mut material.law {
+            *potential = potential.scaled(n, energy).map_err(CrystalError::Potential)?;
+        }
+    }
+    for acting in &mut coarse.potentials {
+        let scaled = acting.potential.scaled(n, energy);
+        acting.potential = scaled.map_err(CrystalError::Potential)?;
+    }
+    coarse.family = FamilyChoice::Neighbours;
+    let alike = match fine.dimension {
+        1 => alike::<1>(fine, coarse, n),
+        2 => alike::<2>(fine, coarse, n),
+        _ => alike::<3>(fine, coarse, n),
+    };
+    match alike? {
+        true => Ok(()),
+        false => Err(UpscaleError::OtherArrangement),
+    }
+}
+
+/// Is one the other, `n` times as large?
+fn alike<const D: usize>(fine: &Spec, coarse: &Spec, n: f64) -> Result<bool, UpscaleError> {
+    let a = arrangement::<D>(fine)?;
+    let b = match arrangement::<D>(coarse) {
+        Err(CrystalError::NotPeriodic) => return Ok(false),
+        found => found?,
+    };
+    let kinds = |sites: &[([f64; D], usize)]| {
+        let mut all: Vec<usize> = sites.iter().map(|(_, kind)| *kind).collect();
+        all.sort_unstable();
+        all
+    };
+    let volumes = determinant(&b.cell).abs() / determinant(&a.cell).abs();
+    Ok(kinds(&a.sites) == kinds(&b.sites) && (volumes / n.powi(D as i32) - 1.0).abs() < 1e-9)
 }

@@ -1,5 +1,6 @@
 //! The error card of an upscaling: what both models say of the same crystal, side by side.
 
+use super::atoms::{Atoms, has_basis_or_fans};
 use super::{Rule, UpscaleError, crystal, lattice};
 use crate::crystal::Crystal;
 use crate::exact::polynomial::Monomial;
@@ -141,7 +142,14 @@ fn card_in<const D: usize>(
     if rule == Rule::Reduced {
         notes.push("The length scale of Lennard-Jones is the spacing: shocks and their oscillations change with h.".into());
     }
-    if rule == Rule::Shells && a_reference.is_some() {
+    if a.basis.len() > 1 {
+        notes.push(optical(&a, factor));
+    }
+    let current = has_basis_or_fans(fine);
+    if current {
+        notes.push("The coarse atoms feel those that are near now, as the fine ones do: the coarse crystal is the fine one, larger and heavier; defects, surfaces and thermal motion of it are not those of the fine one.".into());
+    }
+    if rule == Rule::Shells && a_reference.is_some() && !current {
         notes.push("Neighbours are those of the reference: beyond a compression of a tenth some that would enter are missing; bonds never change partners (no diffusion, melting, slip).".into());
     }
     let energies = energies(fine, coarse, &mut notes);
@@ -196,6 +204,20 @@ fn card_in<const D: usize>(
         dispersion,
         notes,
     })
+}
+
+/// What becomes of the waves in which the sites of a cell move against each other.
+fn optical<const D: usize>(fine: &Crystal<D>, factor: u32) -> String {
+    let squares = fine.squares([0.0; D]);
+    let each: Vec<String> = { squares.iter().skip(D) }
+        .map(|s| format!("{:.6e}", s.abs().sqrt().copysign(*s)))
+        .collect();
+    format!(
+        "The cell has {} sites. Acoustic waves are kept, and so are mass density and elastic constants with sites relaxed; the {} optical branches of the fine model, ω = {} where all cells move alike, are lost: those of the coarse model lie at 1/{factor} of these and stand for nothing.",
+        fine.basis.len(),
+        squares.len() - D,
+        each.join(", ")
+    )
 }
 
 /// Of both models, where both have a value.
@@ -259,19 +281,37 @@ fn side<const D: usize>(
     })
 }
 
-/// Energies of a periodic block on fixed neighbours under homogeneous strains.
+/// Energy density of a homogeneous strain.
+type Strained<'a> = Box<dyn Fn([[f64; 3]; 3]) -> f64 + 'a>;
+
+/// Of a perfect crystal, its sites carried along; where neighbours are fixed, of a periodic block.
+fn strained(spec: &Spec) -> Option<Strained<'_>> {
+    if has_basis_or_fans(spec) {
+        return match spec.dimension {
+            1 => cell_under_strain::<1>(spec),
+            2 => cell_under_strain::<2>(spec),
+            _ => cell_under_strain::<3>(spec),
+        };
+    }
+    let options = Options {
+        trust_time_step: true,
+        ..Options::default()
+    };
+    let block = build(&block(spec)?, options).ok()?;
+    Some(Box::new(move |strain| block.energy_under_strain(strain)[0]))
+}
+
+fn cell_under_strain<const D: usize>(spec: &Spec) -> Option<Strained<'_>> {
+    let atoms = Atoms::<D>::of(spec).ok()?;
+    Some(Box::new(move |strain| {
+        atoms.energy_density(strain).unwrap_or(f64::NAN) / spec.section
+    }))
+}
+
+/// Energies of both models under homogeneous strains.
 fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRow> {
     let d = fine.dimension;
-    let blocks = [fine, coarse].map(|spec| {
-        block(spec).and_then(|s| {
-            let options = Options {
-                trust_time_step: true,
-                ..Options::default()
-            };
-            build(&s, options).ok()
-        })
-    });
-    let [Some(a), Some(b)] = &blocks else {
+    let [Some(a), Some(b)] = [fine, coarse].map(strained) else {
         notes.push(
             "Energies under strain are left out: no periodic block holds the neighbours.".into(),
         );
@@ -290,13 +330,12 @@ fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRo
         modes.push(("uniaxial", uniaxial));
         modes.push(("shear", shear));
     }
-    let [rest_a, rest_b] = [a, b].map(|s| s.energy_under_strain([[0.0; 3]; 3])[0]);
+    let [rest_a, rest_b] = [&a, &b].map(|energy| energy([[0.0; 3]; 3]));
     let mut rows = vec![];
     for (mode, shape) in modes {
         for strain in STRAINS {
             let tensor = shape.map(|row| row.map(|x| strain * x));
-            let at = |s: &dyn peridyne::run::Simulation| s.energy_under_strain(tensor)[0];
-            let (fine, coarse) = (at(a.as_ref()) - rest_a, at(b.as_ref()) - rest_b);
+            let (fine, coarse) = (a(tensor) - rest_a, b(tensor) - rest_b);
             if !(fine.is_finite() && coarse.is_finite()) {
                 notes.push(format!(
                     "Under a {mode} strain of {strain} the energy has no value (ρ_h ≤ 0)."

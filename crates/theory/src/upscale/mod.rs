@@ -6,6 +6,11 @@
 //! | a potential whose form allows it (Lennard-Jones) on fixed neighbours, without cut-off | σ̄, ε̄, reach | M = N/n (seleson2009 (5.3)) |
 //! | any other potential | energy density under every homogeneous strain, number of shells | lengths times n, energies times n^D (seleson2014 (3.3)) |
 //!
+//! Atoms of several kinds in a cell, and potentials of fans, keep their shells too, on current neighbours: the coarse crystal is the fine one
+//! n times as large with masses n^D times as large. Mass density, pressure, energy density and elastic constants, sites relaxed, are the
+//! same, and so are long acoustic waves; at the wave vector k/n it has 1/n of all frequencies at k. Optical waves are lost: those of the
+//! coarse crystal lie at 1/n of theirs, and stand for nothing.
+//!
 //! What a constant of a potential is multiplied by follows from its dimension, and stands with the potential
 //! ([`Described::scaled`](peridyne::law::potential::Described::scaled), `keeping_reach`).
 //!
@@ -39,10 +44,15 @@ pub enum UpscaleError {
     #[error("only a lattice body can be upscaled: its coarse points are lattice points, too")]
     NoLattice,
     #[error(
-        "a body with several materials is not upscaled: one law has one upscaling, and of unlike atoms in a cell a coarser lattice would \
-         keep the acoustic waves alone and lose the optical ones"
+        "a body with several materials is not upscaled, unless they are atoms whose kinds repeat from cell to cell: one law has one \
+         upscaling"
     )]
     SeveralMaterials,
+    #[error(
+        "the materials do not lie on the coarse lattice as they lie on this one: name sublattices by the sites of the cell, \
+         `sets.NAME = {{ basis = [2] }}`, which grow with it"
+    )]
+    OtherArrangement,
     #[error("{what} {number} is not divisible by the factor {factor}: choose one of {choices}")]
     NotDivisible {
         what: &'static str,
@@ -173,7 +183,7 @@ pub fn upscale_keeping(
         return Err(UpscaleError::Factor(factor));
     }
     let (kind, fine) = lattice(spec)?;
-    if spec.materials.len() != 1 {
+    if spec.materials.len() != 1 && spec.potential().is_none() {
         return Err(UpscaleError::SeveralMaterials);
     }
     let n = f64::from(factor);
@@ -208,6 +218,13 @@ pub fn upscale_keeping(
     };
     let shells = keep == Some(Keep::Shells);
     let rule = match &spec.materials[0].law {
+        LawSpec::Atoms(_) if has_basis_or_fans(spec) => {
+            if keep == Some(Keep::Reach) {
+                return Err(UpscaleError::NoReach);
+            }
+            atoms::grow(spec, &mut coarse, n)?;
+            Rule::Shells
+        }
         LawSpec::Atoms(potential) => {
             let fixed = !current(spec) && potential.cut_off().is_infinite();
             let kept = match fixed && !shells {

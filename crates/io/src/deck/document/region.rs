@@ -49,6 +49,9 @@ pub struct Set {
     pub mark: Option<At<Mark>>,
     /// Points where this expression of x, y, z is not 0, such as "noise(x/l, y/l, 0) > 0.2".
     pub r#where: Option<Number>,
+    /// Points of a lattice on these sites of its cell, counted from 1: of bcc the corner and the middle; of fcc the corner and the
+    /// middles of the faces x, y and z; of diamond those four, then the same moved by a quarter.
+    pub basis: Option<At<Vec<At<usize>>>>,
     /// Points drawn at random.
     pub random: Option<At<Drawn>>,
 }

@@ -27,6 +27,7 @@ pub(super) fn sets(
             ("region", set.value.region.is_some()),
             ("mark", set.value.mark.is_some()),
             ("where", set.value.r#where.is_some()),
+            ("basis", set.value.basis.is_some()),
             ("random", set.value.random.is_some()),
         ];
         context.one_of(&set.span, &format!("the set \"{name}\""), &given)?;
@@ -40,6 +41,7 @@ pub(super) fn sets(
             return Err(context.error_with(&set.span, "all points of a body", help));
         }
         let members = match (&set.value.region, &set.value.mark, &set.value.r#where) {
+            _ if let Some(sites) = &set.value.basis => sublattice(context, sites, of)?,
             _ if let Some(drawn) = &set.value.random => {
                 if let Some(piece) = &set.value.body {
                     let message = "points are drawn from all bodies: leave `body` out";
@@ -102,6 +104,36 @@ pub(super) fn of_file(cloud: &Cloud, name: &str) -> Option<Members> {
     let mark = || cloud.names.iter().find(|(_, known)| known == name);
     set.map(|(_, ids)| Members::Points(ids.clone()))
         .or_else(|| mark().map(|(mark, _)| Members::Mark(*mark)))
+}
+
+/// Points on sites of the cell of a lattice.
+fn sublattice(context: &Context, sites: &At<Vec<At<usize>>>, body: &BodySpec) -> Result<Members> {
+    let kind = match body {
+        BodySpec::Lattice { kind, perturb: None, .. } | BodySpec::Sites { kind, .. } => *kind,
+        BodySpec::Lattice { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => {
+            return Err(context.error_with(
+                &sites.span,
+                "basis is for a lattice that is not perturbed: other points lie on no sites of a cell",
+                "say region, where or mark instead",
+            ));
+        }
+    };
+    let count = kind.basis().len();
+    if let Some(wrong) = sites.value.iter().find(|n| !(1..=count).contains(&n.value)) {
+        let message = format!(
+            "the cell of a {} lattice has {count} site{}, there is no site {}",
+            kind.name(),
+            if count == 1 { "" } else { "s" },
+            wrong.value
+        );
+        let help = "sites are counted from 1; what repeats in larger cells is an expression, such as \
+                    where = \"floor(x/a + 0.5) - 2*floor(0.5*floor(x/a + 0.5)) > 0.5\"";
+        return Err(context.error_with(&wrong.span, message, help));
+    }
+    if sites.value.is_empty() {
+        return Err(context.error(&sites.span, "no sites, no points"));
+    }
+    Ok(Members::Basis(sites.value.iter().map(|n| n.value - 1).collect()))
 }
 
 fn marked(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<Members> {
