@@ -23,7 +23,7 @@ mod tests;
 
 pub use describe::describe;
 pub use error::DeckError;
-pub use schema::schema;
+pub use schema::{law_schema, schema};
 pub use source::Flag;
 pub use units::{Constants, Dim, UnitSystem};
 

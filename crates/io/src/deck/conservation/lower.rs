@@ -37,29 +37,58 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     let u = grid.sample(|x| initial.eval(x, 0.0));
     if let Some(n) = u.iter().position(|u| !u.is_finite()) {
         let place = &grid.place(n)[..grid.dimension];
-        return Err(context.error(&document.initial.span, format!("u is {} at {place:?}", u[n])));
+        return Err(context.error(
+            &document.initial.span,
+            format!("u is {} at {place:?}", u[n]),
+        ));
     }
     let [low, high] = measure::extremes(&u);
     let both = &document.horizon;
     let advection = document.advection.as_ref().map(|a| {
         let flux = flux(&context, &a.value.flux)?;
-        flux.evaluable(low, high, "advection.flux").map_err(explained)?;
-        let horizon = horizon(&context, a.value.horizon.as_ref().or(both.as_ref()), &a.span)?;
-        let kernel = kernel(&context, &a.value.kernel, Parity::Odd, horizon, "advection.kernel")?;
+        flux.evaluable(low, high, "advection.flux")
+            .map_err(explained)?;
+        let horizon = horizon(
+            &context,
+            a.value.horizon.as_ref().or(both.as_ref()),
+            &a.span,
+        )?;
+        let kernel = kernel(
+            &context,
+            &a.value.kernel,
+            Parity::Odd,
+            horizon,
+            "advection.kernel",
+        )?;
         Ok((flux, direction(&context, &a.value)?, kernel))
     });
     let advection = advection.transpose()?;
     let diffusion = document.diffusion.as_ref().map(|d| {
-        let horizon = horizon(&context, d.value.horizon.as_ref().or(both.as_ref()), &d.span)?;
-        let kernel = kernel(&context, &d.value.kernel, Parity::Even, horizon, "diffusion.kernel")?;
+        let horizon = horizon(
+            &context,
+            d.value.horizon.as_ref().or(both.as_ref()),
+            &d.span,
+        )?;
+        let kernel = kernel(
+            &context,
+            &d.value.kernel,
+            Parity::Even,
+            horizon,
+            "diffusion.kernel",
+        )?;
         Ok((context.finite(&d.value.viscosity, VISCOSITY)?, kernel))
     });
     let diffusion = diffusion.transpose()?;
-    let horizons = [advection.as_ref().map(|a| a.2.horizon()), diffusion.as_ref().map(|d| d.1.horizon())];
+    let horizons = [
+        advection.as_ref().map(|a| a.2.horizon()),
+        diffusion.as_ref().map(|d| d.1.horizon()),
+    ];
     let law = Law::new(
         grid,
         boundary(&context, document, &grid, dimension, horizons)?,
-        advection.as_ref().map(|(f, d, k)| (f.clone(), d.clone(), k)),
+        advection
+            .as_ref()
+            .map(|(f, d, k)| (f.clone(), d.clone(), k)),
         diffusion.as_ref().map(|(e, k)| (*e, k)),
     )
     .map_err(explained)?;
@@ -111,7 +140,10 @@ fn count(context: &Context, written: &Option<At<u64>>, what: &str) -> Result<u64
 fn grid(context: &Context, document: &LawDocument) -> Result<Grid> {
     let ends = |at: &At<[Number; 2]>| -> Result<[f64; 2]> {
         let [a, b] = &at.value;
-        Ok([context.finite(a, Dim::LENGTH)?, context.finite(b, Dim::LENGTH)?])
+        Ok([
+            context.finite(a, Dim::LENGTH)?,
+            context.finite(b, Dim::LENGTH)?,
+        ])
     };
     let domain = &document.domain.value;
     let x = ends(&domain.x)?;
@@ -129,12 +161,22 @@ fn grid(context: &Context, document: &LawDocument) -> Result<Grid> {
 fn horizon(context: &Context, written: Option<&Number>, span: &Range<usize>) -> Result<f64> {
     match written {
         Some(number) => context.positive(number, Dim::LENGTH, "the horizon"),
-        None => Err(context.error_with(span, "the key `horizon` is missing", "write horizon = a length, for the deck or here")),
+        None => Err(context.error_with(
+            span,
+            "the key `horizon` is missing",
+            "write horizon = a length, for the deck or here",
+        )),
     }
 }
 
 /// Collars that are as wide as the horizon; each must say what u is in it.
-fn boundary(context: &Context, document: &LawDocument, grid: &Grid, dimension: Dim, horizons: [Option<f64>; 2]) -> Result<Boundary> {
+fn boundary(
+    context: &Context,
+    document: &LawDocument,
+    grid: &Grid,
+    dimension: Dim,
+    horizons: [Option<f64>; 2],
+) -> Result<Boundary> {
     let at = &document.boundary;
     let Or::Table(collars) = &at.value else {
         return Ok(Boundary::Periodic);
@@ -144,7 +186,9 @@ fn boundary(context: &Context, document: &LawDocument, grid: &Grid, dimension: D
     let empty = |what: &str, write: &str| {
         context.error_with(
             &at.span,
-            format!("the {what} is empty: bonds reach {width} beyond the end, and u is not given there"),
+            format!(
+                "the {what} is empty: bonds reach {width} beyond the end, and u is not given there"
+            ),
             format!("write {write}, or boundary = \"periodic\""),
         )
     };
@@ -161,15 +205,30 @@ fn boundary(context: &Context, document: &LawDocument, grid: &Grid, dimension: D
     };
     let values: Values = if grid.dimension == 1 {
         foreign(&collars.around, "a line has two collars, left and right")?;
-        let left = collars.left.as_ref().ok_or_else(|| empty("left collar", "left = \"0\""))?;
-        let right = collars.right.as_ref().ok_or_else(|| empty("right collar", "right = \"0\""))?;
+        let left = collars
+            .left
+            .as_ref()
+            .ok_or_else(|| empty("left collar", "left = \"0\""))?;
+        let right = collars
+            .right
+            .as_ref()
+            .ok_or_else(|| empty("right collar", "right = \"0\""))?;
         let (left, right) = (given(left)?, given(right)?);
         let low = grid.low[0];
-        Arc::new(move |x, t| if x[0] < low { left.eval(x, t) } else { right.eval(x, t) })
+        Arc::new(move |x, t| {
+            if x[0] < low {
+                left.eval(x, t)
+            } else {
+                right.eval(x, t)
+            }
+        })
     } else {
         foreign(&collars.left, "a plane has one collar, around")?;
         foreign(&collars.right, "a plane has one collar, around")?;
-        let around = collars.around.as_ref().ok_or_else(|| empty("collar", "around = \"0\""))?;
+        let around = collars
+            .around
+            .as_ref()
+            .ok_or_else(|| empty("collar", "around = \"0\""))?;
         let around = given(around)?;
         Arc::new(move |x, t| around.eval(x, t))
     };
@@ -182,12 +241,17 @@ fn direction(context: &Context, transport: &Transport) -> Result<Direction> {
     };
     let [x, y, _] = context.expressions(written, Dim::NUMBER)?;
     if [&x, &y].iter().any(|e| e.depends_on_time()) {
-        return Err(context.error(&written.span, "the direction does not change in time: use x and y only"));
+        return Err(context.error(
+            &written.span,
+            "the direction does not change in time: use x and y only",
+        ));
     }
     if let (Some(x), Some(y)) = (x.as_constant(), y.as_constant()) {
         return Ok(Direction::Constant([x, y]));
     }
-    Ok(Direction::Field([x, y].map(|e| Arc::new(move |p: &[f64; 3], t: f64| e.eval(p, t)) as Values)))
+    Ok(Direction::Field([x, y].map(|e| {
+        Arc::new(move |p: &[f64; 3], t: f64| e.eval(p, t)) as Values
+    })))
 }
 
 fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>) -> Result<Flux> {
@@ -206,10 +270,17 @@ fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>) -> Result<Flux> {
         return Ok(Flux::linear(context.finite(speed, Dim::VELOCITY)?));
     }
     if let Some(written) = &form.polynomial {
-        let each = written.value.iter().map(|c| context.finite(c, Dim::VELOCITY));
+        let each = written
+            .value
+            .iter()
+            .map(|c| context.finite(c, Dim::VELOCITY));
         let coefficients: Vec<f64> = each.collect::<Result<_>>()?;
         if coefficients.len() > peridyne_transport::flux::HIGHEST + 1 {
-            return Err(context.error_with(&written.span, "a polynomial flux goes up to u⁸", "write it as an expression"));
+            return Err(context.error_with(
+                &written.span,
+                "a polynomial flux goes up to u⁸",
+                "write it as an expression",
+            ));
         }
         return Ok(Flux::of_mean(&coefficients));
     }
@@ -217,11 +288,19 @@ fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>) -> Result<Flux> {
         return Err(context.error(&at.span, "flux needs one of linear, polynomial, expression"));
     };
     let psi = of_one_variable(context, written, "u", 'x', &[])?;
-    Ok(Flux::Function(Arc::new(move |u| psi.eval(&[u, 0.0, 0.0], 0.0))))
+    Ok(Flux::Function(Arc::new(move |u| {
+        psi.eval(&[u, 0.0, 0.0], 0.0)
+    })))
 }
 
 /// An expression of one variable, which stands in the place of the coordinate `slot`: both have one letter, so that places in the text stay.
-fn of_one_variable(context: &Context, written: &At<String>, variable: &str, slot: char, more: &[(&str, f64)]) -> Result<Expression> {
+fn of_one_variable(
+    context: &Context,
+    written: &At<String>,
+    variable: &str,
+    slot: char,
+    more: &[(&str, f64)],
+) -> Result<Expression> {
     let letter = |c: char| c.is_alphanumeric() || c == '_';
     let mut text = String::new();
     let mut rest = written.value.as_str();
@@ -262,7 +341,13 @@ fn bump(context: &Context, name: BumpName, power: &Option<At<u32>>) -> Result<Bu
     }
 }
 
-fn kernel(context: &Context, at: &At<KernelForm>, parity: Parity, horizon: f64, path: &str) -> Result<Kernel> {
+fn kernel(
+    context: &Context,
+    at: &At<KernelForm>,
+    parity: Parity,
+    horizon: f64,
+    path: &str,
+) -> Result<Kernel> {
     let form = &at.value;
     let given = [
         ("bump", form.bump.is_some()),
@@ -271,7 +356,10 @@ fn kernel(context: &Context, at: &At<KernelForm>, parity: Parity, horizon: f64, 
     ];
     context.one_of(&at.span, "kernel", &given)?;
     if let (Some(f), true) = (&form.form, parity == Parity::Odd || form.bump.is_none()) {
-        return Err(context.error(&f.span, "form belongs to a bump of diffusion; of transport it is −2b′"));
+        return Err(context.error(
+            &f.span,
+            "form belongs to a bump of diffusion; of transport it is −2b′",
+        ));
     }
     if let (Some(p), None) = (&form.power, &form.bump) {
         return Err(context.error(&p.span, "power belongs to bump = \"polynomial\""));
@@ -299,7 +387,14 @@ fn kernel(context: &Context, at: &At<KernelForm>, parity: Parity, horizon: f64, 
         let each = points.map(|[z, f]| Ok([number(z, Dim::LENGTH)?, number(f, value)?]));
         Profile::Table(each.collect::<Result<_>>()?)
     };
-    let made = Kernel::new(parity, profile, horizon, context.dimension, form.normalise, path);
+    let made = Kernel::new(
+        parity,
+        profile,
+        horizon,
+        context.dimension,
+        form.normalise,
+        path,
+    );
     made.map_err(|e| explain(context.source, &e))
 }
 

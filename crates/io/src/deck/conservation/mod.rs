@@ -94,7 +94,9 @@ impl LawDeck {
     }
 
     fn folder(&self) -> &Path {
-        Path::new(self.source.file()).parent().unwrap_or(Path::new(""))
+        Path::new(self.source.file())
+            .parent()
+            .unwrap_or(Path::new(""))
     }
 
     pub fn grid(&self) -> &Grid {
