@@ -29,3 +29,9 @@ pub fn run_to(law: &mut Evolution, time: f64) -> Result<(), Failure> {
 pub fn failed(error: impl std::fmt::Display) -> Failure {
     Failure::new(error.to_string())
 }
+
+/// Numbers with four digits.
+pub fn digits(values: &[f64]) -> String {
+    let each: Vec<String> = values.iter().map(|v| format!("{v:.3e}")).collect();
+    each.join(", ")
+}

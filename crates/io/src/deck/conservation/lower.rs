@@ -24,6 +24,8 @@ pub(super) const VISCOSITY: Dim = Dim([2, 0, -1, 0]);
 const SAFETY: f64 = 0.5;
 
 pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> {
+    // the only one there is
+    let KindName::ConservationLaw = document.kind;
     let units = lower::units_of(document.units.as_ref());
     let mut context = Context::new(source, units, Dim::TIME, &document.constants)?;
     context.dimension = 1 + usize::from(document.domain.value.y.is_some());
