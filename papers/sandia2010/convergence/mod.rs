@@ -73,7 +73,10 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         .y("largest error", "")
         .log_x()
         .log_y();
-    for (key, flux) in [("before", "burgers"), ("before-energy", "energy_conserving")] {
+    for (key, flux) in [
+        ("before", "burgers"),
+        ("before-energy", "energy_conserving"),
+    ] {
         let mut errors = vec![];
         for delta in &deltas {
             let mut e = burgers(*delta, flux, 0.0, points(*delta))?;
@@ -115,13 +118,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
 }
 
 /// Past the shock, without viscosity, with the flux that conserves energy and the one that does not: mean errors of the first.
-fn past(
-    context: &Context,
-    deltas: &[f64],
-    found: &mut Findings,
-) -> Result<Vec<f64>, Failure> {
+fn past(context: &Context, deltas: &[f64], found: &mut Findings) -> Result<Vec<f64>, Failure> {
     let mut kept = vec![];
-    let mut profiles = Plot::new("past the shock, without viscosity").x("x", "").y("u", "");
+    let mut profiles = Plot::new("past the shock, without viscosity")
+        .x("x", "")
+        .y("u", "");
     let mut variations = vec![];
     for flux in ["energy_conserving", "burgers"] {
         let mut errors = vec![];
@@ -139,7 +140,12 @@ fn past(
             let exact: Vec<f64> = x.iter().map(|x| entropy(*x, PAST)).collect();
             errors.push(measure::mean_distance(&e.u, &exact, grid.cell()));
             energies.push(measure::energy(&e.u, grid.cell()) / begin - 1.0);
-            variations.push(measure::total_variation(&e.u, grid.cells, grid.spacing, true));
+            variations.push(measure::total_variation(
+                &e.u,
+                grid.cells,
+                grid.spacing,
+                true,
+            ));
             if *delta == deltas[1] {
                 profiles = profiles.line(flux, &x, &e.u);
                 if flux == "burgers" {

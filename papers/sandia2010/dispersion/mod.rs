@@ -31,8 +31,8 @@ fn measured(name: &str, k: f64, points: usize) -> Result<[f64; 2], Failure> {
     let changes = [
         ("constants.k", k.to_string()),
         ("points", points.to_string()),
-        ("advection.kernel", format!("{{ bump = \"{name}\" }}")),
-        ("diffusion.kernel", format!("{{ bump = \"{name}\" }}")),
+        ("advection.kernel.bump", name.to_string()),
+        ("diffusion.kernel.bump", name.to_string()),
     ];
     let mut wave = law(DECK, &changes)?;
     let x = places(&wave);
@@ -94,7 +94,14 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.number("decay", worst[1]);
     found.number("closed", worst[2]);
     let flux = Flux::burgers();
-    let kernel = Kernel::new(Parity::Odd, Profile::Slope(Bump::Smooth), DELTA, 1, false, "kernel");
+    let kernel = Kernel::new(
+        Parity::Odd,
+        Profile::Slope(Bump::Smooth),
+        DELTA,
+        1,
+        false,
+        "kernel",
+    );
     let kernel = kernel.map_err(failed)?;
     let noll = Noll {
         flux: &flux,

@@ -10,7 +10,7 @@ pub use fourier::Transform;
 
 use crate::flux::Flux;
 use crate::grid::{Boundary, Grid, Padded, Values};
-use crate::kernel::{Kernel, Parity};
+use crate::kernel::Kernel;
 use crate::weights::Stencil;
 use fourier::Fourier;
 use peridyne::error::BuildError;
@@ -523,15 +523,5 @@ fn conjugate_gradients(
         Ok(())
     } else {
         Err(left)
-    }
-}
-
-impl Parity {
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Parity::Odd => "antisymmetric",
-            Parity::Even => "symmetric",
-        }
     }
 }
