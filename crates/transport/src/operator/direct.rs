@@ -1,9 +1,9 @@
 //! Sums over bonds, point by point. Products and sums alone, in one order: the bits are those of any instruction set.
 
-use super::Law;
 use crate::flux::Flux;
 use crate::grid::Padded;
 use crate::kernel::Parity;
+use crate::law::Law;
 use crate::weights::Stencil;
 
 /// Points whose sums stay in registers: eight registers of AVX2, four of AVX-512.
