@@ -9,6 +9,7 @@ mod report;
 use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, note, say};
+use crate::law;
 use crate::run::{enough_disk, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
@@ -116,6 +117,9 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             report(arguments, subject, threads);
             Ok(())
         });
+    }
+    if let Some(deck) = law::read(input)? {
+        return law::check(arguments, deck);
     }
     let deck = deck::read(input)?;
     if !arguments.allow_outside {

@@ -78,13 +78,19 @@ pub fn text(input: &Input) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|e| Failure::input(format!("{name}: not text: {e}")))
 }
 
+/// Variables are those of scripts.
+pub fn no_variables(input: &Input) -> Result<(), Failure> {
+    match input.var.first() {
+        None => Ok(()),
+        Some((name, _)) => Err(Failure::input(format!(
+            "--var {name}: variables belong to LAMMPS scripts; a deck takes --set key=value"
+        ))),
+    }
+}
+
 pub fn read(input: &Input) -> Result<Deck, Failure> {
     let text = text(input)?;
-    if let Some((name, _)) = input.var.first() {
-        return Err(Failure::input(format!(
-            "--var {name}: variables belong to LAMMPS scripts; a deck takes --set key=value"
-        )));
-    }
+    no_variables(input)?;
     let name = input.file.to_string_lossy();
     Deck::parse(&text, &name, &input.set).map_err(|e| Failure::Input(e.into()))
 }

@@ -7,6 +7,7 @@ mod converge;
 mod deck;
 mod failure;
 mod fields;
+mod law;
 mod laws;
 mod progress;
 mod reproduce;
@@ -53,7 +54,21 @@ enum Verb {
     /// List the laws, lattices and influence functions with their parameters.
     Laws,
     /// Print the JSON schema of decks, for editors.
-    Schema,
+    Schema(SchemaArguments),
+}
+
+#[derive(clap::Args)]
+struct SchemaArguments {
+    /// Of decks of this kind; of bodies if not given.
+    #[arg(long)]
+    kind: Option<DeckKind>,
+}
+
+/// What a deck says of itself by `kind`.
+#[derive(Clone, Copy, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum DeckKind {
+    ConservationLaw,
 }
 
 /// What `run` and `check` both take.
@@ -100,7 +115,7 @@ fn main() -> ExitCode {
         Verb::Bar(arguments) => bar::bar(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),
-        Verb::Schema => print_schema(),
+        Verb::Schema(arguments) => print_schema(arguments.kind),
     };
     match outcome.and_then(|()| failure::printed()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -123,9 +138,12 @@ fn answered(answer: &clap::Error) -> ExitCode {
     }
 }
 
-fn print_schema() -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(&peridyne_io::deck::schema())
-        .map_err(|e| Failure::Run(e.to_string()))?;
+fn print_schema(kind: Option<DeckKind>) -> Result<(), Failure> {
+    let schema = match kind {
+        None => peridyne_io::deck::schema(),
+        Some(DeckKind::ConservationLaw) => peridyne_io::deck::law_schema(),
+    };
+    let text = serde_json::to_string_pretty(&schema).map_err(|e| Failure::Run(e.to_string()))?;
     failure::say(&text);
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, note, say};
+use crate::law;
 use crate::progress::Terminal;
 use crate::script;
 use crate::signals;
@@ -42,6 +43,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             let out = arguments.out.as_deref();
             script::run(&arguments.input, out, arguments.allow_outside, threads)
         });
+    }
+    if let Some(deck) = law::read(&arguments.input)? {
+        return law::run(arguments, deck);
     }
     let deck = deck::read(&arguments.input)?;
     if !arguments.allow_outside {

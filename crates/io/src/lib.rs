@@ -1,6 +1,7 @@
 //! peridyne-io: decks, meshes and files of atoms in; VTU, CSV, JSON, dumps and pictures out.
 
 pub mod balance;
+pub mod conservation;
 pub mod continuum;
 pub mod deck;
 pub mod drive;

@@ -175,3 +175,37 @@ fn a_lattice_takes_at_most_150_bytes_per_point() {
     let bytes = info.bytes as f64 / info.points as f64;
     assert!((72.0..=150.0).contains(&bytes), "{bytes} bytes per point");
 }
+
+/// Laws: the good ones run, the bad ones say what their first line expects.
+#[test]
+fn decks_of_conservation_laws() {
+    use peridyne_io::deck::conservation::LawDeck;
+    let good = decks("good/conservation");
+    assert!(good.len() >= 5);
+    for (path, text) in good {
+        let name = path.to_str().unwrap();
+        assert!(LawDeck::is_one(&text, &[]), "{name}");
+        let mut deck = LawDeck::parse(&text, name, &[])
+            .unwrap_or_else(|e| panic!("{name}:{:?}: {e} ({:?})", e.line, e.help));
+        let step = deck.evolution.next_step(deck.duration).unwrap();
+        deck.evolution.step(step).unwrap();
+        // bodies have no kind
+        let told = Deck::parse(&text, name, &[]).unwrap_err();
+        assert!(told.message.contains("has no body"), "{told}");
+    }
+    let bad = decks("bad/conservation");
+    assert!(bad.len() >= 20);
+    let mut wrong = Vec::new();
+    for (path, text) in &bad {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let (message, line) = expectation(text).unwrap_or_else(|| panic!("{name}"));
+        match LawDeck::parse(text, path.to_str().unwrap(), &[]) {
+            Ok(_) => wrong.push(format!("{name}: was accepted")),
+            Err(e) if !e.message.contains(message) || line.is_some() && e.line != line => {
+                wrong.push(format!("{name}: said {:?} at line {:?}", e.message, e.line));
+            }
+            Err(_) => {}
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}

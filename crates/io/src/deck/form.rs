@@ -20,6 +20,24 @@ const SEVERAL: [&str; 7] = [
 /// Tables that it has one of.
 const ONE: [&str; 6] = ["run", "statics", "output", "thermal", "constants", "sets"];
 
+/// `kind` is a word of other decks than those of bodies.
+pub(super) fn kind(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
+    let Some(at) = deck.get("kind") else {
+        return Ok(());
+    };
+    let (message, help) = match at.get_ref().as_str() {
+        Some("conservation_law") => (
+            "a deck of a conservation law has no body",
+            "it is for `peridyne run` and `peridyne check`",
+        ),
+        _ => (
+            "this kind of deck is not known",
+            "write kind = \"conservation_law\", or leave it out for a body",
+        ),
+    };
+    Err(source.error(Some(at.span()), message, Some(help.into())))
+}
+
 pub(super) fn check(source: &Source, deck: &DeTable) -> Result<(), DeckError> {
     let error = |at: &Spanned<DeValue>, message: String, help: String| {
         Err(source.error(Some(at.span()), message, Some(help)))

@@ -4,6 +4,7 @@
 //! finds its way back to the deck through [`Deck::explain`].
 
 pub mod coarsened;
+pub mod conservation;
 mod describe;
 mod document;
 mod error;
@@ -22,7 +23,7 @@ mod tests;
 
 pub use describe::describe;
 pub use error::DeckError;
-pub use schema::schema;
+pub use schema::{law_schema, schema};
 pub use source::Flag;
 pub use units::{Constants, Dim, UnitSystem};
 
@@ -119,6 +120,7 @@ impl Deck {
 
     fn of_source(source: Source) -> Result<Deck, DeckError> {
         let mut tree = source.tree()?;
+        form::kind(&source, tree.get_ref())?;
         form::check(&source, tree.get_ref())?;
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());

@@ -1,5 +1,6 @@
 //! JSON schema of the deck, for editors.
 
+use super::conservation::LawDocument;
 use super::document::Document;
 
 /// JSON schema (2020-12) of a deck.
@@ -8,6 +9,11 @@ use super::document::Document;
 /// expressions are known to the reader only.
 pub fn schema() -> serde_json::Value {
     schemars::schema_for!(Document).to_value()
+}
+
+/// JSON schema of a deck of a conservation law.
+pub fn law_schema() -> serde_json::Value {
+    schemars::schema_for!(LawDocument).to_value()
 }
 
 #[cfg(test)]
@@ -118,14 +124,17 @@ mod tests {
         all
     }
 
-    #[test]
-    fn good_decks_pass_and_faults_of_form_do_not() {
-        let schema = schema();
-        assert!(jsonschema::meta::is_valid(&schema));
-        let validator = jsonschema::validator_for(&schema).unwrap();
+    /// Good decks of a folder pass their schema, faults of form do not, and neither do bad decks that are not read.
+    fn compare(
+        schema: &Value,
+        good: &str,
+        bad: &[&str],
+        read: impl Fn(&Value) -> bool,
+    ) -> (usize, usize) {
+        assert!(jsonschema::meta::is_valid(schema));
+        let validator = jsonschema::validator_for(schema).unwrap();
         let (mut wrong, mut refused) = (Vec::new(), 0);
-        let good = decks("decks/good");
-        assert!(good.len() >= 23);
+        let good = decks(good);
         for (path, deck) in &good {
             if let Some(error) = validator.iter_errors(deck).next() {
                 wrong.push(format!("{}: {error}", path.display()));
@@ -138,7 +147,7 @@ mod tests {
                 refused += usize::from(!read(&fault));
             }
         }
-        for folder in ["decks/bad", "decks/bad/build"] {
+        for folder in bad {
             for (path, deck) in decks(folder) {
                 if !read(&deck) && validator.is_valid(&deck) {
                     wrong.push(format!("{} passed", path.display()));
@@ -151,6 +160,27 @@ mod tests {
             wrong.len(),
             wrong[..wrong.len().min(12)].join("\n")
         );
+        (good.len(), refused)
+    }
+
+    #[test]
+    fn decks_of_laws_pass_and_faults_of_form_do_not() {
+        let read = |deck: &Value| {
+            let text = toml::to_string(deck).unwrap();
+            let source = Source::new(&text, "deck.toml", &[]);
+            let tree = source.tree().unwrap();
+            LawDocument::deserialize(toml::de::Deserializer::from(tree)).is_ok()
+        };
+        let good = "decks/good/conservation";
+        let (decks, refused) = compare(&law_schema(), good, &["decks/bad/conservation"], read);
+        assert!(decks >= 5 && refused > 500, "{decks} {refused}");
+    }
+
+    #[test]
+    fn good_decks_pass_and_faults_of_form_do_not() {
+        let bad = ["decks/bad", "decks/bad/build"];
+        let (decks, refused) = compare(&schema(), "decks/good", &bad, read);
+        assert!(decks >= 23);
         assert!(refused > 2000, "{refused}");
     }
 }

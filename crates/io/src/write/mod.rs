@@ -2,6 +2,7 @@
 
 pub mod atomic;
 pub mod card;
+pub mod conservation;
 pub mod continuum;
 pub mod data;
 pub mod dump;

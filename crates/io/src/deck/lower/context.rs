@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub(super) type Result<T> = std::result::Result<T, DeckError>;
+pub(in crate::deck) type Result<T> = std::result::Result<T, DeckError>;
 
-pub(super) struct Context<'a> {
+pub(in crate::deck) struct Context<'a> {
     pub source: &'a Source,
     pub units: UnitSystem,
     pub dimension: usize,
@@ -198,6 +198,19 @@ impl<'a> Context<'a> {
             None => span.clone(),
         };
         self.source.error(Some(inner), error.message, error.help)
+    }
+
+    /// An expression in plain numbers of the deck, with more constants besides the deck's.
+    pub fn plain_expression(
+        &self,
+        text: &str,
+        span: &Range<usize>,
+        more: &[(&str, f64)],
+    ) -> Result<Expression> {
+        let own = self.constants.iter().map(|(n, v)| (n.as_str(), v.0));
+        let constants: Vec<(&str, f64)> = more.iter().copied().chain(own).collect();
+        Expression::parse(text, &constants)
+            .map_err(|error| self.expression_error(text, span, error))
     }
 
     fn constant_value(&self, expression: Expression, span: &Range<usize>) -> Result<f64> {

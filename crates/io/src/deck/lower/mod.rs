@@ -3,7 +3,7 @@
 mod atoms;
 mod bodies;
 mod body;
-mod context;
+pub(super) mod context;
 mod fields;
 mod interface;
 mod law;
@@ -23,7 +23,7 @@ pub(super) use schedule::{MANY_STEPS, steps};
 use super::OutputSpec;
 use super::document::{
     Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName,
-    SurfaceName,
+    SurfaceName, UnitName, Units,
 };
 use super::error::DeckError;
 use super::source::Source;
@@ -424,7 +424,11 @@ fn surface_factors(
 
 /// What plain numbers of the deck mean.
 pub(super) fn units(document: &Document) -> UnitSystem {
-    match document.units.as_ref().map(|u| &u.value) {
+    units_of(document.units.as_ref())
+}
+
+pub(super) fn units_of(written: Option<&At<Or<UnitName, Units>>>) -> UnitSystem {
+    match written.map(|u| &u.value) {
         None => UnitSystem::default(),
         Some(Or::Bare(name)) => name.system(Constants::default()),
         Some(Or::Table(u)) => {

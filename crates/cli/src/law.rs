@@ -1,0 +1,196 @@
+//! `peridyne run` and `peridyne check` of conservation laws.
+
+use crate::Input;
+use crate::check::CheckArguments;
+use crate::deck;
+use crate::failure::{Failure, note, say};
+use crate::run::RunArguments;
+use crate::signals;
+use peridyne_io::conservation::{self, Listener, evaluation_name, method_name};
+use peridyne_io::deck::Dim;
+use peridyne_io::deck::conservation::LawDeck;
+use peridyne_io::drive::default_dir;
+use peridyne_transport::{exact, measure};
+use serde_json::json;
+use std::time::{Duration, Instant};
+
+/// Between lines about progress.
+const INTERVAL: Duration = Duration::from_secs(5);
+/// Time spent on trial steps.
+const TRIAL: Duration = Duration::from_millis(300);
+
+/// The law, if the deck is one of a law.
+pub fn read(input: &Input) -> Result<Option<LawDeck>, Failure> {
+    let text = deck::text(input)?;
+    if !LawDeck::is_one(&text, &input.set) {
+        return Ok(None);
+    }
+    deck::no_variables(input)?;
+    if input.simd.is_some() {
+        return Err(Failure::input(
+            "--simd belongs to bodies: a conservation law takes the widest instruction set, and gives the same bits on all",
+        ));
+    }
+    let name = input.file.to_string_lossy();
+    let read = LawDeck::parse(&text, &name, &input.set);
+    Ok(Some(read.map_err(|e| Failure::Input(e.into()))?))
+}
+
+struct Terminal {
+    spoken: Instant,
+}
+
+impl Listener for Terminal {
+    fn step(&mut self, part: f64, steps: u64) {
+        if self.spoken.elapsed() >= INTERVAL {
+            self.spoken = Instant::now();
+            note(&format!("{:.1} % of the time, step {steps}", 100.0 * part));
+        }
+    }
+
+    fn ended(&mut self) -> Option<String> {
+        signals::received().map(|s| s.to_string())
+    }
+}
+
+pub fn run(arguments: &RunArguments, mut deck: LawDeck) -> Result<(), Failure> {
+    if arguments.threads == Some(0) {
+        return Err(Failure::input("--threads 0: at least one thread must run"));
+    }
+    if !arguments.allow_outside && arguments.out.is_none() {
+        deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
+    }
+    let dir = arguments.out.clone().or(deck.dir.clone());
+    let dir = dir.unwrap_or_else(|| default_dir(&arguments.input.file));
+    say(&headline(&deck));
+    say(&format!("results in {}", dir.display()));
+    let mut terminal = Terminal {
+        spoken: Instant::now(),
+    };
+    let report = conservation::run(&mut deck, &dir, &mut terminal)
+        .map_err(|e| Failure::Run(e.to_string()))?;
+    say(&format!(
+        "{}: {} steps in {:.2} s{}",
+        report.outcome(),
+        report.steps,
+        report.seconds_stepping,
+        report.ns_per_point_step.map_or(String::new(), |ns| format!(
+            ", {ns:.1} ns per point and step"
+        )),
+    ));
+    match signals::received() {
+        Some(signal) if report.ended_by.is_some() => Err(Failure::Ended(signal)),
+        _ => Ok(()),
+    }
+}
+
+/// What the deck makes, in a few lines.
+fn headline(deck: &LawDeck) -> String {
+    let e = &deck.evolution;
+    let (law, grid) = (e.operator.law(), deck.grid());
+    let length = |x: f64| deck.units.write(x, Dim::LENGTH);
+    let time = |t: f64| deck.units.write(t, Dim::TIME);
+    let mut text = match deck.title.as_str() {
+        "" => String::new(),
+        title => format!("{title}\n"),
+    };
+    text += &format!(
+        "points    {} in {}-D, spacing {}, {}\n",
+        grid.points(),
+        grid.dimension,
+        length(grid.spacing),
+        if law.periodic() {
+            "periodic"
+        } else {
+            "collars"
+        },
+    );
+    let names = ["transport", "diffusion"];
+    for ((name, horizon), bonds) in names.iter().zip(deck.horizons).zip(law.bonds()) {
+        if let Some(horizon) = horizon {
+            let ratio = horizon / grid.spacing;
+            text += &format!(
+                "{name} horizon {} = {ratio:.3} spacings, {bonds} bonds of a point\n",
+                length(horizon)
+            );
+        }
+    }
+    text += &format!(
+        "sums      {}, step by {}, stable up to {} at the start",
+        evaluation_name(e.operator.evaluation()),
+        method_name(e.method()),
+        time(e.stable_step()),
+    );
+    if let Some(t) = shock_time(deck) {
+        text += &format!(
+            "\nshock     of the local law without diffusion at t = {}",
+            time(t)
+        );
+    }
+    text
+}
+
+/// When characteristics of the local law cross; on a line only.
+fn shock_time(deck: &LawDeck) -> Option<f64> {
+    let e = &deck.evolution;
+    let law = e.operator.law();
+    let flux = &law.advection.as_ref()?.flux;
+    let line = deck.grid().dimension == 1;
+    line.then(|| exact::shock_time(flux, &e.u, deck.grid().spacing))
+        .flatten()
+}
+
+pub fn check(arguments: &CheckArguments, mut deck: LawDeck) -> Result<(), Failure> {
+    if !arguments.allow_outside {
+        deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
+    }
+    let grid = *deck.grid();
+    let e = &deck.evolution;
+    let [low, high] = measure::extremes(&e.u);
+    let (mass, energy) = (
+        measure::mass(&e.u, grid.cell()),
+        measure::energy(&e.u, grid.cell()),
+    );
+    let energy_rate = e.operator.energy_rate(&e.u, 0.0);
+    let stable = e.stable_step();
+    let [waves, decay] = e.operator.spectrum();
+    let head = headline(&deck);
+    let shock = shock_time(&deck);
+    let step = deck.evolution.next_step(deck.duration);
+    let step = step.map_err(|e| Failure::input(e.to_string()))?;
+    let (begin, mut steps) = (Instant::now(), 0u32);
+    let mut failed = None;
+    while begin.elapsed() < TRIAL && failed.is_none() {
+        failed = deck.evolution.step(step).err().map(|e| e.to_string());
+        steps += u32::from(failed.is_none());
+    }
+    let per_step = begin.elapsed().as_secs_f64() / f64::from(steps.max(1));
+    let all = (deck.duration / step).ceil();
+    if arguments.json {
+        let text = json!({
+            "kind": "conservation_law", "title": deck.title, "points": grid.points(), "dimension": grid.dimension, "spacing": grid.spacing,
+            "horizons": deck.horizons, "bonds_of_a_point": deck.evolution.operator.law().bonds(),
+            "evaluation": evaluation_name(deck.evolution.operator.evaluation()), "method": method_name(deck.evolution.method()),
+            "wave_frequency_at_unit_speed": waves, "decay_rate": decay, "stable_step": stable, "first_step": step, "steps": all,
+            "shock_time": shock, "min": low, "max": high, "mass": mass, "energy": energy, "energy_rate_exact": energy_rate,
+            "seconds_per_step": per_step, "trial_failed": failed,
+        });
+        say(&format!("{text:#}"));
+        return Ok(());
+    }
+    say(&head);
+    say(&format!(
+        "state     u from {low:.6e} to {high:.6e}, mass {mass:.9e}, energy {energy:.9e}, its rate {energy_rate:.6e}\n\
+         spectrum  waves {waves:.6e} at unit speed, decay {decay:.6e}\n\
+         steps     about {all:.0} of {}; {:.1} ns per point and step, {:.1} s in all",
+        deck.units.write(step, Dim::TIME),
+        per_step * 1e9 / grid.points() as f64,
+        per_step * all,
+    ));
+    if let Some(failed) = failed {
+        note(&format!(
+            "warning: a trial of {steps} steps ended: {failed}"
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,199 @@
+//! Decks of conservation laws through the program: files, numbers in them, mistakes, signals.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+fn deck(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../decks")
+        .join(name)
+}
+
+fn peridyne(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// Numbers of a column of a CSV file.
+fn column(path: &Path, name: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let place = lines.next().unwrap().split(',').position(|c| c == name);
+    let place = place.unwrap_or_else(|| panic!("{name}: {text}"));
+    lines
+        .map(|l| l.split(',').nth(place).unwrap().parse().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_run_writes_frames_history_pictures_and_a_report() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let file = deck("good/conservation/burgers_viscous.toml");
+    let done = peridyne(&[
+        "run",
+        file.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--set",
+        "points=128",
+    ]);
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    for name in [
+        "frames.npz",
+        "history.csv",
+        "profiles.png",
+        "space_time.png",
+        "run.json",
+    ] {
+        assert!(out.join(name).metadata().unwrap().len() > 300, "{name}");
+    }
+    let history = out.join("history.csv");
+    let get = |name: &str| column(&history, name);
+    let (t, mass, energy) = (get("t"), get("mass"), get("energy"));
+    assert_eq!(t.len(), 101);
+    assert!((t[100] - 3.0).abs() < 1e-9);
+    assert!(mass.iter().all(|m| (m - mass[0]).abs() < 1e-13), "{mass:?}");
+    assert!(energy.windows(2).all(|w| w[1] < w[0]));
+    let (measured, exact) = (get("energy_rate"), get("energy_rate_exact"));
+    let most = exact.iter().fold(0.0f64, |m, e| m.max(e.abs()));
+    for (m, e) in measured.iter().zip(&exact) {
+        assert!((m - e).abs() < 1e-3 * most, "{m} {e}");
+    }
+    assert!(get("total_variation")[0] > 3.99 && get("min").len() == 101 && get("max").len() == 101);
+    let report = std::fs::read_to_string(out.join("run.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["status"], "done");
+    assert_eq!(report["points"], 128);
+}
+
+#[test]
+fn a_plane_has_its_pictures() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = deck("good/conservation/swirl.toml");
+    let out = dir.path().to_str().unwrap();
+    let done = peridyne(&[
+        "run",
+        file.to_str().unwrap(),
+        "--out",
+        out,
+        "--set",
+        "run.duration=0.05",
+    ]);
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    assert!(dir.path().join("last.png").exists() && dir.path().join("profiles.svg").exists());
+}
+
+#[test]
+fn check_says_what_would_run_and_writes_nothing() {
+    let file = deck("good/conservation/riemann.toml");
+    let told = peridyne(&["check", file.to_str().unwrap()]);
+    let text = String::from_utf8_lossy(&told.stdout).to_string();
+    for part in [
+        "points    600 in 1-D",
+        "10.000 spacings",
+        "stable up to",
+        "collars",
+        "direct",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let told = peridyne(&["check", "--json", file.to_str().unwrap()]);
+    let found: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
+    assert_eq!(found["kind"], "conservation_law");
+    assert!(found["stable_step"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn mistakes_name_the_line_and_leave_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    for name in ["collar_empty", "step_unstable", "kernel_of_half_the_moment"] {
+        let file = deck(&format!("bad/conservation/{name}.toml"));
+        let told = peridyne(&[
+            "run",
+            file.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert_eq!(told.status.code(), Some(2), "{name}");
+        let text = String::from_utf8_lossy(&told.stderr);
+        assert!(text.contains(&format!("{name}.toml:")), "{text}");
+        assert!(!out.exists(), "{name}");
+    }
+    let file = deck("good/conservation/riemann.toml");
+    let told = peridyne(&[
+        "run",
+        file.to_str().unwrap(),
+        "--set",
+        "run.time_step=1",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(told.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&told.stderr).contains("--set run.time_step"));
+    let told = peridyne(&["waves", file.to_str().unwrap()]);
+    assert_eq!(told.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&told.stderr).contains("has no body"));
+}
+
+/// SIGINT ends at the next step with the state so far, and the folder is held while the run goes on.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_keeps_its_last_state() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let file = deck("good/conservation/burgers_viscous.toml");
+    let arguments = [
+        "run",
+        file.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--set",
+        "run.duration=100000",
+    ];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args(arguments)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begin = Instant::now();
+    let rows = || std::fs::read_to_string(out.join("history.csv")).map_or(0, |t| t.lines().count());
+    while rows() < 2 {
+        assert!(begin.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let second = peridyne(&arguments);
+    assert_eq!(second.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&second.stderr).contains("another run writes there"));
+    Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    let ended = child.wait().unwrap();
+    let mut said = String::new();
+    child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut said)
+        .unwrap();
+    assert_eq!(ended.code(), Some(130), "{said}");
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("run.json")).unwrap()).unwrap();
+    assert_eq!(report["ended_by"], "SIGINT");
+    assert!(out.join("frames.npz").exists());
+}

@@ -1,0 +1,201 @@
+//! Runs a conservation law: frames and history at their times, pictures and a report at the end.
+
+use crate::deck::conservation::LawDeck;
+use crate::write::WriteError;
+use crate::write::conservation::{Frames, Report, write_pictures};
+use crate::write::folder::Folder;
+use crate::write::history::{Column, History};
+use crate::write::run_json::{Status, deck_hash, peak_memory_bytes};
+use peridyne_transport::{Evaluation, Method, RunError, measure};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Why a run did not end well.
+#[derive(Debug, thiserror::Error)]
+pub enum LawError {
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    #[error("{error}\nthe last good state, t = {time:.6e} after {steps} steps, is in {}", dir.display())]
+    Run {
+        error: RunError,
+        time: f64,
+        steps: u64,
+        dir: PathBuf,
+    },
+}
+
+/// Listens to a run.
+pub trait Listener {
+    /// After each step: at which part of the duration, and how many steps.
+    fn step(&mut self, part: f64, steps: u64);
+    /// Shall the run end here, and who says so?
+    fn ended(&mut self) -> Option<String>;
+}
+
+/// Name of a method in reports.
+pub fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::Ssprk3 => "ssprk3",
+        Method::Rk4 => "rk4",
+        Method::Imex => "imex",
+    }
+}
+
+/// Name of an evaluation in reports.
+pub fn evaluation_name(evaluation: Evaluation) -> &'static str {
+    match evaluation {
+        Evaluation::Direct => "direct",
+        Evaluation::Fourier => "fourier",
+    }
+}
+
+fn columns(deck: &LawDeck) -> Vec<Column> {
+    let unit = |dim| deck.units.unit(dim);
+    let u = deck.dimension;
+    let length = |power: i8| crate::deck::Dim([power, 0, 0, 0]);
+    let space = deck.grid().dimension as i8;
+    let of = |square: i8, more: i8, time: i8| {
+        let value = (0..square).try_fold(crate::deck::Dim([0, 0, time, 0]), |d, _| d.times(u, 1));
+        value
+            .and_then(|d| d.times(length(more), 1))
+            .map_or(String::new(), unit)
+    };
+    [
+        ("t", unit(crate::deck::Dim::TIME)),
+        ("mass", of(1, space, 0)),
+        ("energy", of(2, space, 0)),
+        ("energy_rate", of(2, space, -1)),
+        ("energy_rate_exact", of(2, space, -1)),
+        ("total_variation", of(1, space - 1, 0)),
+        ("min", unit(u)),
+        ("max", unit(u)),
+    ]
+    .map(|(name, unit)| Column::new(name, &unit))
+    .to_vec()
+}
+
+/// The row of now.
+fn row(deck: &mut LawDeck) -> Result<[f64; 8], RunError> {
+    let e = &mut deck.evolution;
+    let dt = e.next_step(e.time + deck.duration / deck.rows as f64)?;
+    let slope = e.energy_slope(dt)?;
+    let (law, u) = (e.operator.law(), &e.u);
+    let grid = law.grid;
+    let [low, high] = measure::extremes(u);
+    Ok([
+        e.time,
+        measure::mass(u, grid.cell()),
+        measure::energy(u, grid.cell()),
+        slope,
+        e.operator.energy_rate(u, e.time),
+        measure::total_variation(u, grid.cells, grid.spacing, law.periodic()),
+        low,
+        high,
+    ])
+}
+
+/// Steps to a time; who ended the run there, if somebody did.
+fn advance(
+    deck: &mut LawDeck,
+    end: f64,
+    stepping: &mut Duration,
+    listener: &mut dyn Listener,
+) -> Result<Option<String>, RunError> {
+    let e = &mut deck.evolution;
+    while e.time < end * (1.0 - 1e-12) {
+        if let Some(signal) = listener.ended() {
+            return Ok(Some(signal));
+        }
+        let begin = Instant::now();
+        let done = e.next_step(end).and_then(|dt| e.step(dt));
+        *stepping += begin.elapsed();
+        done?;
+        listener.step(e.time / deck.duration, e.steps);
+    }
+    Ok(None)
+}
+
+/// Runs and writes: `frames.npz`, `history.csv`, pictures and `run.json` in `dir`. A run that fails or is ended leaves its last good state as a last frame.
+///
+/// # Errors
+/// What stopped the run, or the first file that could not be written.
+pub fn run(
+    deck: &mut LawDeck,
+    dir: &Path,
+    listener: &mut dyn Listener,
+) -> Result<Report, LawError> {
+    let _held = Folder::claim(dir)?;
+    let mut history = History::create(&dir.join("history.csv"), &columns(deck))?;
+    let mut frames = Frames::new(deck.grid());
+    let (mut ended, mut stopped) = (None, None);
+    let mut stepping = Duration::ZERO;
+    let (mut frame, mut line) = (0, 0);
+    let at = |number: u64, of: u64, end: f64| end * number as f64 / of as f64;
+    loop {
+        let [next_frame, next_row] = [
+            at(frame, deck.frames, deck.duration),
+            at(line, deck.rows, deck.duration),
+        ];
+        let due = next_frame.min(next_row);
+        match advance(deck, due, &mut stepping, listener) {
+            Ok(signal) => ended = signal,
+            Err(error) => stopped = Some(error),
+        }
+        let whole = ended.is_none() && stopped.is_none();
+        if next_frame <= due * (1.0 + 1e-12) || !whole {
+            frames.push(deck.evolution.time, &deck.evolution.u);
+            frame += 1;
+        }
+        if whole && next_row <= due * (1.0 + 1e-12) {
+            match row(deck) {
+                Ok(values) => history.push(deck.evolution.steps, &values)?,
+                Err(error) => stopped = Some(error),
+            }
+            line += 1;
+        }
+        if ended.is_some() || stopped.is_some() || frame > deck.frames && line > deck.rows {
+            break;
+        }
+    }
+    history.finish()?;
+    frames.push_last(deck.evolution.time, &deck.evolution.u);
+    frames.write(&dir.join("frames.npz"))?;
+    if deck.pictures {
+        write_pictures(dir, deck, &frames)?;
+    }
+    let e = &deck.evolution;
+    let seconds = stepping.as_secs_f64();
+    let visits = e.u.len() as f64 * e.steps as f64;
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        kind: "conservation_law",
+        deck: deck.file().to_string(),
+        deck_hash: deck_hash(deck.text().as_bytes()),
+        title: deck.title.clone(),
+        status: match &stopped {
+            Some(error) => Status::Stopped(error.to_string()),
+            None if ended.is_some() => Status::Ended,
+            None => Status::Done,
+        },
+        ended_by: ended,
+        points: e.u.len(),
+        bonds_of_a_point: e.operator.law().bonds(),
+        evaluation: evaluation_name(e.operator.evaluation()),
+        method: method_name(e.method()),
+        time: e.time,
+        steps: e.steps,
+        seconds_stepping: seconds,
+        ns_per_point_step: (visits > 0.0).then(|| seconds * 1e9 / visits),
+        peak_memory_bytes: peak_memory_bytes(),
+    };
+    report.write(&dir.join("run.json"))?;
+    match stopped {
+        None => Ok(report),
+        Some(error) => Err(LawError::Run {
+            error,
+            time: e.time,
+            steps: e.steps,
+            dir: dir.to_path_buf(),
+        }),
+    }
+}

@@ -1,0 +1,431 @@
+//! From the deck as written to a law with its state.
+
+use super::document::*;
+use super::{LawDeck, explain};
+use crate::deck::error::DeckError;
+use crate::deck::lower;
+use crate::deck::lower::context::{Context, Result};
+use crate::deck::source::Source;
+use crate::deck::units::Dim;
+use crate::deck::value::{At, Number, Or, Written};
+use peridyne::expression::Expression;
+use peridyne_transport::grid::Values;
+use peridyne_transport::{
+    Boundary, Bump, Direction, Evaluation, Evolution, Flux, Grid, Kernel, Law, Method, Operator,
+    Parity, Profile, StepSize, measure,
+};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// length²/time
+pub(super) const VISCOSITY: Dim = Dim([2, 0, -1, 0]);
+
+/// Safety of steps that nobody gives.
+const SAFETY: f64 = 0.5;
+
+pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> {
+    // the only one there is
+    let KindName::ConservationLaw = document.kind;
+    let units = lower::units_of(document.units.as_ref());
+    let mut context = Context::new(source, units, Dim::TIME, &document.constants)?;
+    context.dimension = 1 + usize::from(document.domain.value.y.is_some());
+    let explained = |e| explain(source, &e);
+    let grid = grid(&context, document)?;
+    let dimension = match document.advection.as_ref().map(|a| &a.value.flux.value) {
+        Some(Or::Bare(FluxName::Burgers | FluxName::EnergyConserving)) => Dim::VELOCITY,
+        Some(Or::Table(_)) | None => Dim::NUMBER,
+    };
+    let initial = context.expression(&document.initial, dimension)?;
+    let u = grid.sample(|x| initial.eval(x, 0.0));
+    if let Some(n) = u.iter().position(|u| !u.is_finite()) {
+        let place = &grid.place(n)[..grid.dimension];
+        return Err(context.error(
+            &document.initial.span,
+            format!("u is {} at {place:?}", u[n]),
+        ));
+    }
+    let [low, high] = measure::extremes(&u);
+    let both = &document.horizon;
+    let advection = document.advection.as_ref().map(|a| {
+        let flux = flux(&context, &a.value.flux)?;
+        flux.evaluable(low, high, "advection.flux")
+            .map_err(explained)?;
+        let horizon = horizon(
+            &context,
+            a.value.horizon.as_ref().or(both.as_ref()),
+            &a.span,
+        )?;
+        let kernel = kernel(
+            &context,
+            &a.value.kernel,
+            Parity::Odd,
+            horizon,
+            "advection.kernel",
+        )?;
+        Ok((flux, direction(&context, &a.value)?, kernel))
+    });
+    let advection = advection.transpose()?;
+    let diffusion = document.diffusion.as_ref().map(|d| {
+        let horizon = horizon(
+            &context,
+            d.value.horizon.as_ref().or(both.as_ref()),
+            &d.span,
+        )?;
+        let kernel = kernel(
+            &context,
+            &d.value.kernel,
+            Parity::Even,
+            horizon,
+            "diffusion.kernel",
+        )?;
+        Ok((context.finite(&d.value.viscosity, VISCOSITY)?, kernel))
+    });
+    let diffusion = diffusion.transpose()?;
+    let horizons = [
+        advection.as_ref().map(|a| a.2.horizon()),
+        diffusion.as_ref().map(|d| d.1.horizon()),
+    ];
+    let law = Law::new(
+        grid,
+        boundary(&context, document, &grid, dimension, horizons)?,
+        advection
+            .as_ref()
+            .map(|(f, d, k)| (f.clone(), d.clone(), k)),
+        diffusion.as_ref().map(|(e, k)| (*e, k)),
+    )
+    .map_err(explained)?;
+    let run = &document.run.value;
+    let evaluation = match run.evaluation.as_ref().map(|e| e.value) {
+        Some(EvaluationName::Direct) => Evaluation::Direct,
+        Some(EvaluationName::Fourier) => Evaluation::Fourier,
+        Some(EvaluationName::Auto) | None => Evaluation::choose(&law),
+    };
+    let operator = Operator::new(law, evaluation).map_err(|e| match &*e.path {
+        "evaluation" => explain(source, &e.at("run.evaluation")),
+        _ => explained(e),
+    })?;
+    let method = match run.method {
+        Some(MethodName::Ssprk3) => Method::Ssprk3,
+        Some(MethodName::Rk4) | None => Method::Rk4,
+        Some(MethodName::Imex) => Method::Imex,
+    };
+    let duration = context.positive(&run.duration, Dim::TIME, "the duration")?;
+    let size = step_size(&context, run)?;
+    let evolution = Evolution::new(operator, u, method, size);
+    if let (Err(e), Some(at)) = (evolution.next_step(duration), &run.time_step) {
+        return Err(context.error_with(&at.span, e.to_string(), "or add force_unstable = true"));
+    }
+    let output = &document.output;
+    Ok(LawDeck {
+        title: String::new(),
+        units,
+        dimension,
+        evolution,
+        horizons,
+        duration,
+        frames: count(&context, &output.frames, "frames")?,
+        rows: count(&context, &output.history, "history")?,
+        pictures: true,
+        dir: None,
+        source: source.clone(),
+    })
+}
+
+fn count(context: &Context, written: &Option<At<u64>>, what: &str) -> Result<u64> {
+    match written {
+        None => Ok(100),
+        Some(n) if (1..=1_000_000).contains(&n.value) => Ok(n.value),
+        Some(n) => Err(context.error(&n.span, format!("{what} is a number from 1 to 1000000"))),
+    }
+}
+
+fn grid(context: &Context, document: &LawDocument) -> Result<Grid> {
+    let ends = |at: &At<[Number; 2]>| -> Result<[f64; 2]> {
+        let [a, b] = &at.value;
+        Ok([
+            context.finite(a, Dim::LENGTH)?,
+            context.finite(b, Dim::LENGTH)?,
+        ])
+    };
+    let domain = &document.domain.value;
+    let x = ends(&domain.x)?;
+    let n = document.points.value;
+    let made = match &domain.y {
+        None => Grid::line(x[0], x[1], n),
+        Some(y) => {
+            let y = ends(y)?;
+            Grid::plane([x[0], y[0]], [x[1], y[1]], n)
+        }
+    };
+    made.map_err(|e| explain(context.source, &e))
+}
+
+fn horizon(context: &Context, written: Option<&Number>, span: &Range<usize>) -> Result<f64> {
+    match written {
+        Some(number) => context.positive(number, Dim::LENGTH, "the horizon"),
+        None => Err(context.error_with(
+            span,
+            "the key `horizon` is missing",
+            "write horizon = a length, for the deck or here",
+        )),
+    }
+}
+
+/// Collars that are as wide as the horizon; each must say what u is in it.
+fn boundary(
+    context: &Context,
+    document: &LawDocument,
+    grid: &Grid,
+    dimension: Dim,
+    horizons: [Option<f64>; 2],
+) -> Result<Boundary> {
+    let at = &document.boundary;
+    let Or::Table(collars) = &at.value else {
+        return Ok(Boundary::Periodic);
+    };
+    let width = horizons.into_iter().flatten().fold(0.0, f64::max);
+    let width = context.units.write(width, Dim::LENGTH);
+    let empty = |what: &str, write: &str| {
+        context.error_with(
+            &at.span,
+            format!(
+                "the {what} is empty: bonds reach {width} beyond the end, and u is not given there"
+            ),
+            format!("write {write}, or boundary = \"periodic\""),
+        )
+    };
+    let given = |number: &Number| -> Result<Expression> {
+        let expression = context.expression(number, dimension)?;
+        match expression.eval(&grid.place(0), 0.0).is_finite() {
+            true => Ok(expression),
+            false => Err(context.error(&number.span, "u in the collar is no finite number")),
+        }
+    };
+    let foreign = |number: &Option<Number>, what: &str| match number {
+        Some(n) => Err(context.error(&n.span, what)),
+        None => Ok(()),
+    };
+    let values: Values = if grid.dimension == 1 {
+        foreign(&collars.around, "a line has two collars, left and right")?;
+        let left = collars
+            .left
+            .as_ref()
+            .ok_or_else(|| empty("left collar", "left = \"0\""))?;
+        let right = collars
+            .right
+            .as_ref()
+            .ok_or_else(|| empty("right collar", "right = \"0\""))?;
+        let (left, right) = (given(left)?, given(right)?);
+        let low = grid.low[0];
+        Arc::new(move |x, t| {
+            if x[0] < low {
+                left.eval(x, t)
+            } else {
+                right.eval(x, t)
+            }
+        })
+    } else {
+        foreign(&collars.left, "a plane has one collar, around")?;
+        foreign(&collars.right, "a plane has one collar, around")?;
+        let around = collars
+            .around
+            .as_ref()
+            .ok_or_else(|| empty("collar", "around = \"0\""))?;
+        let around = given(around)?;
+        Arc::new(move |x, t| around.eval(x, t))
+    };
+    Ok(Boundary::Collars(values))
+}
+
+fn direction(context: &Context, transport: &Transport) -> Result<Direction> {
+    let Some(written) = &transport.direction else {
+        return Ok(Direction::Constant([1.0, 0.0]));
+    };
+    let [x, y, _] = context.expressions(written, Dim::NUMBER)?;
+    if [&x, &y].iter().any(|e| e.depends_on_time()) {
+        return Err(context.error(
+            &written.span,
+            "the direction does not change in time: use x and y only",
+        ));
+    }
+    if let (Some(x), Some(y)) = (x.as_constant(), y.as_constant()) {
+        return Ok(Direction::Constant([x, y]));
+    }
+    Ok(Direction::Field([x, y].map(|e| {
+        Arc::new(move |p: &[f64; 3], t: f64| e.eval(p, t)) as Values
+    })))
+}
+
+fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>) -> Result<Flux> {
+    let form = match &at.value {
+        Or::Bare(FluxName::Burgers) => return Ok(Flux::burgers()),
+        Or::Bare(FluxName::EnergyConserving) => return Ok(Flux::energy_conserving()),
+        Or::Table(form) => form,
+    };
+    let given = [
+        ("linear", form.linear.is_some()),
+        ("polynomial", form.polynomial.is_some()),
+        ("expression", form.expression.is_some()),
+    ];
+    context.one_of(&at.span, "flux", &given)?;
+    if let Some(speed) = &form.linear {
+        return Ok(Flux::linear(context.finite(speed, Dim::VELOCITY)?));
+    }
+    if let Some(written) = &form.polynomial {
+        let each = written
+            .value
+            .iter()
+            .map(|c| context.finite(c, Dim::VELOCITY));
+        let coefficients: Vec<f64> = each.collect::<Result<_>>()?;
+        if coefficients.len() > peridyne_transport::flux::HIGHEST + 1 {
+            return Err(context.error_with(
+                &written.span,
+                "a polynomial flux goes up to u⁸",
+                "write it as an expression",
+            ));
+        }
+        return Ok(Flux::of_mean(&coefficients));
+    }
+    let Some(written) = &form.expression else {
+        return Err(context.error(&at.span, "flux needs one of linear, polynomial, expression"));
+    };
+    let psi = of_one_variable(context, written, "u", 'x', &[])?;
+    Ok(Flux::Function(Arc::new(move |u| {
+        psi.eval(&[u, 0.0, 0.0], 0.0)
+    })))
+}
+
+/// An expression of one variable, which stands in the place of the coordinate `slot`: both have one letter, so that places in the text stay.
+fn of_one_variable(
+    context: &Context,
+    written: &At<String>,
+    variable: &str,
+    slot: char,
+    more: &[(&str, f64)],
+) -> Result<Expression> {
+    let letter = |c: char| c.is_alphanumeric() || c == '_';
+    let mut text = String::new();
+    let mut rest = written.value.as_str();
+    while let Some(start) = rest.find(letter) {
+        let (before, word) = rest.split_at(start);
+        let end = word.find(|c| !letter(c)).unwrap_or(word.len());
+        let (word, after) = word.split_at(end);
+        if ["x", "y", "z", "t"].contains(&word) && word != variable {
+            return Err(context.error_with(
+                &written.span,
+                format!("this is a function of {variable} alone, and names {word}"),
+                format!("write it with {variable} and constants"),
+            ));
+        }
+        text += before;
+        match word == variable {
+            true => text.push(slot),
+            false => text += word,
+        }
+        rest = after;
+    }
+    text += rest;
+    context.plain_expression(&text, &written.span, more)
+}
+
+fn bump(context: &Context, name: BumpName, power: &Option<At<u32>>) -> Result<Bump> {
+    match (name, power) {
+        (BumpName::Polynomial, Some(p)) if !(1..=20).contains(&p.value) => {
+            Err(context.error(&p.span, "the power of a bump is a number from 1 to 20"))
+        }
+        (BumpName::Polynomial, p) => Ok(Bump::Polynomial(p.as_ref().map_or(2, |p| p.value))),
+        (BumpName::Hat | BumpName::Cosine | BumpName::Smooth, Some(p)) => {
+            Err(context.error(&p.span, "power belongs to bump = \"polynomial\""))
+        }
+        (BumpName::Hat, None) => Ok(Bump::Hat),
+        (BumpName::Cosine, None) => Ok(Bump::Cosine),
+        (BumpName::Smooth, None) => Ok(Bump::Smooth),
+    }
+}
+
+fn kernel(
+    context: &Context,
+    at: &At<KernelForm>,
+    parity: Parity,
+    horizon: f64,
+    path: &str,
+) -> Result<Kernel> {
+    let form = &at.value;
+    let given = [
+        ("bump", form.bump.is_some()),
+        ("expression", form.expression.is_some()),
+        ("table", form.table.is_some()),
+    ];
+    context.one_of(&at.span, "kernel", &given)?;
+    if let (Some(f), true) = (&form.form, parity == Parity::Odd || form.bump.is_none()) {
+        return Err(context.error(
+            &f.span,
+            "form belongs to a bump of diffusion; of transport it is −2b′",
+        ));
+    }
+    if let (Some(p), None) = (&form.power, &form.bump) {
+        return Err(context.error(&p.span, "power belongs to bump = \"polynomial\""));
+    }
+    let profile = if let Some(name) = form.bump {
+        let b = bump(context, name, &form.power)?;
+        match (parity, form.form.as_ref().map(|f| f.value)) {
+            (Parity::Odd, _) => Profile::Slope(b),
+            (Parity::Even, None | Some(FormName::Value)) => Profile::Value(b),
+            (Parity::Even, Some(FormName::SlopeOverDistance)) => Profile::SlopeOverDistance(b),
+            (Parity::Even, Some(FormName::SecondDerivative)) => Profile::Curvature(b),
+        }
+    } else if let Some(written) = &form.expression {
+        let e = of_one_variable(context, written, "z", 'z', &[("delta", horizon)])?;
+        Profile::Function(Arc::new(move |z| e.eval(&[0.0, 0.0, z], 0.0)))
+    } else {
+        let points = form.table.iter().flat_map(|t| &t.value);
+        let number = |n: &Number, dim| context.finite(n, dim);
+        // of transport 1/length², of diffusion 1/length³, and a length more in a plane
+        let power = match parity {
+            Parity::Odd => 1 + context.dimension as i8,
+            Parity::Even => 2 + context.dimension as i8,
+        };
+        let value = Dim([-power, 0, 0, 0]);
+        let each = points.map(|[z, f]| Ok([number(z, Dim::LENGTH)?, number(f, value)?]));
+        Profile::Table(each.collect::<Result<_>>()?)
+    };
+    let made = Kernel::new(
+        parity,
+        profile,
+        horizon,
+        context.dimension,
+        form.normalise,
+        path,
+    );
+    made.map_err(|e| explain(context.source, &e))
+}
+
+fn step_size(context: &Context, run: &LawRun) -> std::result::Result<StepSize, DeckError> {
+    let Some(at) = &run.time_step else {
+        return Ok(StepSize::Part(SAFETY));
+    };
+    match &at.value {
+        Or::Bare(Written::Text(text)) if text == "auto" => Ok(StepSize::Part(SAFETY)),
+        Or::Bare(number) => {
+            let number = At {
+                value: number.clone(),
+                span: at.span.clone(),
+            };
+            Ok(StepSize::Fixed {
+                step: context.positive(&number, Dim::TIME, "the time step")?,
+                force_unstable: run.force_unstable,
+            })
+        }
+        Or::Table(LawSafety { safety }) => {
+            let part = context.positive(safety, Dim::NUMBER, "the safety factor")?;
+            match part <= 1.0 || run.force_unstable {
+                true => Ok(StepSize::Part(part)),
+                false => Err(context.error_with(
+                    &safety.span,
+                    format!("the step would be unstable: a safety factor of {part} is above the stability limit"),
+                    "use 0.5, or add force_unstable = true",
+                )),
+            }
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! peridyne-transport: nonlocal conservation laws, `u_t + ∫ F(u(x), u(y)) φ_a(y, x) dy = ε ∫ (u(y) − u(x)) φ_s(y, x) dy`.
+//!
+//! sandia2010, chapter 2, read with its errata: for `F = ψ((u + v)/2)` the local limit is `u_t + ψ(u)_x = ε u_xx` if the first moment of φ_a and the second one of φ_s are 2
+//! ([`kernel`]). `∫u` is kept exactly ([`weights`]); the flux `(u² + uv + v²)/6` keeps `∫u²` besides ([`flux`]). Past the time of a shock the inviscid
+//! nonlocal solution oscillates and does not tend to the entropy solution; nothing here adds dissipation of its own.
+//!
+//! The chapter has scalar laws on a line only; there are no systems in it. In a plane a scalar law carries along a direction field.
+
+pub mod exact;
+pub mod flux;
+pub mod grid;
+pub mod kernel;
+pub mod law;
+pub mod measure;
+pub mod noll;
+pub mod operator;
+pub mod quadrature;
+pub mod step;
+pub mod wave;
+pub mod weights;
+
+pub use flux::Flux;
+pub use grid::{Boundary, Grid};
+pub use kernel::{Bump, Kernel, Parity, Profile};
+pub use law::{Direction, Law};
+pub use operator::{Evaluation, Operator};
+pub use step::{Evolution, Method, RunError, StepSize};

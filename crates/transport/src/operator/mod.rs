@@ -1,0 +1,388 @@
+//! The right-hand side `−∫ F(u(x), u(y)) φ_a dy + ε ∫ (u(y) − u(x)) φ_s dy` (sandia2010 (2.0.5), (2.0.14)) on a grid.
+//!
+//! With a polynomial flux, `S_p(v) = Σ_q A_pq v^q` and the direction d at points, `φ_a(y, x) = α(y − x)·(d(x) + d(y))/2`:
+//! `∫ F φ_a dy = Σ_p u^p Σ_c ½ (d_c (α_c * S_p) + α_c * (S_p d_c))`, where α_c * is a convolution, summed directly or by Fourier transforms.
+
+mod direct;
+mod fourier;
+
+pub use fourier::Transform;
+
+use crate::flux::Flux;
+use crate::grid::{Boundary, Padded};
+use crate::law::{Direction, Law};
+use crate::weights::Stencil;
+use fourier::Fourier;
+use peridyne::error::BuildError;
+
+/// How sums over bonds are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Evaluation {
+    Direct,
+    Fourier,
+}
+
+/// From this many bonds of a point on Fourier transforms are faster (`cargo run --release --example cost`).
+pub const FOURIER_FROM: usize = 48;
+
+impl Evaluation {
+    /// The faster one.
+    pub fn choose(law: &Law) -> Evaluation {
+        match law.is_convolution() && law.bonds().into_iter().sum::<usize>() >= FOURIER_FROM {
+            true => Evaluation::Fourier,
+            false => Evaluation::Direct,
+        }
+    }
+}
+
+/// Sums over the bonds of a law.
+#[derive(Debug)]
+pub struct Operator {
+    law: Law,
+    padded: Padded,
+    /// On the padded grid, for each axis.
+    direction: Vec<Vec<f64>>,
+    /// Kernels that carry: one for each axis, or that along a constant direction; and the one that spreads.
+    carrying: Vec<Stencil>,
+    fourier: Option<Fourier>,
+    /// Of waves of unit speed, and ε times that of diffusion (1/time).
+    spectrum: [f64; 2],
+    values: Vec<f64>,
+    source: Vec<f64>,
+    sums: Vec<f64>,
+}
+
+impl Operator {
+    /// # Errors
+    /// Fourier transforms where they cannot be; a direction that is not finite; a diffusion that sharpens waves.
+    pub fn new(law: Law, evaluation: Evaluation) -> Result<Operator, BuildError> {
+        if evaluation == Evaluation::Fourier && !law.is_convolution() {
+            return Err(BuildError::unsupported(
+                "evaluation",
+                "Fourier transforms need a periodic grid and a flux that is a polynomial",
+            )
+            .help("write evaluation = \"direct\""));
+        }
+        let reach = match evaluation {
+            Evaluation::Direct => law.reach(),
+            Evaluation::Fourier => 0,
+        };
+        let padded = Padded::new(law.grid, reach);
+        let direction = law.direction(&padded);
+        if direction.iter().flatten().any(|d| !d.is_finite()) {
+            return Err(BuildError::invalid(
+                "advection.direction",
+                "the direction is not finite everywhere",
+            ));
+        }
+        let carrying: Vec<Stencil> = match &law.advection {
+            None => vec![],
+            Some(a) => match a.direction {
+                Direction::Constant(d) => {
+                    let weights = a
+                        .stencil
+                        .weights
+                        .iter()
+                        .map(|w| [w[0] * d[0] + w[1] * d[1], 0.0]);
+                    vec![Stencil {
+                        weights: weights.collect(),
+                        ..a.stencil.clone()
+                    }]
+                }
+                Direction::Field(_) => vec![a.stencil.clone()],
+            },
+        };
+        let dimension = law.grid.dimension;
+        let longest = (0..direction.first().map_or(0, Vec::len))
+            .map(|p| direction.iter().map(|d| d[p] * d[p]).sum::<f64>())
+            .fold(0.0, f64::max)
+            .sqrt();
+        let spectrum = [
+            law.advection.as_ref().map_or(0.0, |a| {
+                0.5 * longest * fourier::largest(&a.stencil, dimension)
+            }),
+            law.diffusion.as_ref().map_or(0.0, |d| {
+                d.viscosity * fourier::largest(&d.stencil, dimension)
+            }),
+        ];
+        let fourier = (evaluation == Evaluation::Fourier).then(|| {
+            let mut fourier = Fourier::new(law.grid.cells);
+            // numbered: axes of transport, then diffusion
+            for (stencil, axis) in of_axes(&carrying, &law) {
+                fourier.add(stencil, axis);
+            }
+            if let Some(d) = &law.diffusion {
+                fourier.add(&d.stencil, 0);
+            }
+            fourier
+        });
+        let operator = Operator {
+            sums: vec![0.0; law.grid.points()],
+            values: vec![],
+            source: vec![],
+            law,
+            padded,
+            direction,
+            carrying,
+            fourier,
+            spectrum,
+        };
+        operator.spreads()?;
+        Ok(operator)
+    }
+
+    /// Does diffusion damp all waves?
+    fn spreads(&self) -> Result<(), BuildError> {
+        let Some(d) = self.law.diffusion.as_ref().filter(|d| d.viscosity > 0.0) else {
+            return Ok(());
+        };
+        if d.stencil.weights.iter().all(|w| w[0] >= 0.0) {
+            return Ok(());
+        }
+        let n = (8 * d.stencil.reach() + 8).next_power_of_two();
+        let mut transform = Transform::new([n, if self.law.grid.dimension == 1 { 1 } else { n }]);
+        let symbol = transform.symbol(&d.stencil, 0);
+        let most = symbol
+            .iter()
+            .map(|s| s.re)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let least = symbol.iter().map(|s| s.re).fold(0.0, f64::min);
+        match most > -1e-9 * least {
+            false => Ok(()),
+            true => Err(BuildError::ill_posed(
+                "diffusion.kernel",
+                format!("this kernel makes waves grow, by exp({:.6e} t) at the worst: its Fourier transform is above its value at 0", d.viscosity * most),
+            )
+            .help("use a kernel that is not negative, such as kernel = { bump = \"smooth\" }")),
+        }
+    }
+
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    pub fn evaluation(&self) -> Evaluation {
+        match self.fourier {
+            Some(_) => Evaluation::Fourier,
+            None => Evaluation::Direct,
+        }
+    }
+
+    /// Largest frequency of waves for a speed of 1 (half of each two-point flux is the partner's), and largest rate of decay by diffusion (1/length, 1/time).
+    pub fn spectrum(&self) -> [f64; 2] {
+        self.spectrum
+    }
+
+    /// Subtracts `∫ F φ_a dy` at time t from `out`, for all points of the grid.
+    pub fn carry(&mut self, u: &[f64], t: f64, out: &mut [f64]) {
+        let Some(advection) = &self.law.advection else {
+            return;
+        };
+        self.padded.fill(u, &self.law.boundary, t, &mut self.values);
+        let a = match &advection.flux {
+            Flux::Polynomial(a) => a,
+            flux @ Flux::Function(_) => {
+                direct::carry(
+                    &self.law,
+                    flux,
+                    &self.padded,
+                    &self.direction,
+                    &self.values,
+                    out,
+                );
+                return;
+            }
+        };
+        let constant = matches!(advection.direction, Direction::Constant(_));
+        for (p, row) in a.iter().enumerate() {
+            // what does not depend on the partner carries nothing, unless the direction does
+            if row.iter().skip(usize::from(constant)).all(|c| *c == 0.0) {
+                continue;
+            }
+            for (number, (stencil, axis)) in of_axes(&self.carrying, &self.law).enumerate() {
+                let polynomial = |v: &f64| row.iter().rev().fold(0.0, |sum, c| sum * v + c);
+                self.source.clear();
+                self.source.extend(self.values.iter().map(polynomial));
+                let mut convolve = |source: &[f64], sums: &mut [f64]| match &mut self.fourier {
+                    Some(fourier) => fourier.convolve(number, source, sums),
+                    None => direct::convolve(stencil, axis, &self.padded, source, sums),
+                };
+                convolve(&self.source, &mut self.sums);
+                if constant {
+                    add(out, u, &self.sums, p as i32, None);
+                    continue;
+                }
+                let d = &self.direction[axis];
+                let n = self.law.grid.cells[0];
+                let padded = &self.padded;
+                let own = |k: usize| d[padded.row(k / n) + k % n];
+                add(out, u, &self.sums, p as i32, Some(&own));
+                self.source.iter_mut().zip(d).for_each(|(s, d)| *s *= d);
+                convolve(&self.source, &mut self.sums);
+                add(out, u, &self.sums, p as i32, Some(&|_| 1.0));
+            }
+        }
+    }
+
+    /// Adds `ε ∫ (u(y) − u(x)) φ_s dy` at time t.
+    pub fn spread(&mut self, u: &[f64], t: f64, out: &mut [f64]) {
+        let Some(diffusion) = &self.law.diffusion else {
+            return;
+        };
+        self.padded.fill(u, &self.law.boundary, t, &mut self.values);
+        match &mut self.fourier {
+            Some(fourier) => {
+                let number = of_axes(&self.carrying, &self.law).count();
+                fourier.convolve(number, &self.values, &mut self.sums);
+            }
+            None => direct::convolve(
+                &diffusion.stencil,
+                0,
+                &self.padded,
+                &self.values,
+                &mut self.sums,
+            ),
+        }
+        for (out, s) in out.iter_mut().zip(&self.sums) {
+            *out += diffusion.viscosity * s;
+        }
+    }
+
+    /// `u_t`
+    pub fn rate(&mut self, u: &[f64], t: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        self.carry(u, t, out);
+        self.spread(u, t, out);
+    }
+
+    /// Solves `(1 − factor ε S) u = u` in place, with the collars of time t: in Fourier space, or by conjugate gradients.
+    ///
+    /// # Errors
+    /// The residual that conjugate gradients end with above 1e-13 of the right side.
+    pub fn solve(&mut self, factor: f64, t: f64, u: &mut [f64]) -> Result<(), f64> {
+        let Some(diffusion) = &self.law.diffusion else {
+            return Ok(());
+        };
+        let factor = factor * diffusion.viscosity;
+        if let Some(fourier) = &mut self.fourier {
+            let number = of_axes(&self.carrying, &self.law).count();
+            fourier.solve(number, factor, u);
+            return Ok(());
+        }
+        let (stencil, padded) = (&diffusion.stencil, &self.padded);
+        let mut around = self.law.boundary.clone();
+        if let Boundary::Collars(_) = around {
+            // what the collars give is known
+            let zero = vec![0.0; u.len()];
+            padded.fill(&zero, &around, t, &mut self.values);
+            direct::convolve(stencil, 0, padded, &self.values, &mut self.sums);
+            u.iter_mut()
+                .zip(&self.sums)
+                .for_each(|(u, s)| *u += factor * s);
+            around = Boundary::Collars(std::sync::Arc::new(|_, _| 0.0));
+        }
+        let (values, sums) = (&mut self.values, &mut self.sums);
+        conjugate_gradients(u, |p, out| {
+            padded.fill(p, &around, t, values);
+            direct::convolve(stencil, 0, padded, values, sums);
+            for ((out, p), s) in out.iter_mut().zip(p).zip(sums.iter()) {
+                *out = p - factor * s;
+            }
+        })
+    }
+
+    /// The exact law of `d/dt ∫u²/2`, by pairs: each pair of points that a bond joins adds `w F(u, v)(v − u)` and `−ε w (v − u)²`. A partner in a
+    /// collar keeps its value, and only the point's part counts. Summed directly, whatever the evaluation.
+    pub fn energy_rate(&self, u: &[f64], t: f64) -> f64 {
+        let padded = Padded::new(self.law.grid, self.law.reach());
+        let direction = self.law.direction(&padded);
+        let mut v = vec![];
+        padded.fill(u, &self.law.boundary, t, &mut v);
+        let flux = self.law.advection.as_ref().map(|a| &a.flux);
+        let viscosity = self.law.diffusion.as_ref().map_or(0.0, |d| d.viscosity);
+        let mut sum = 0.0;
+        direct::pairs(
+            &self.law,
+            &padded,
+            &direction,
+            |p, q, first, second, carried, spread| {
+                let inside = |k: usize, is: bool| if is { v[k] } else { 0.0 };
+                let moved = inside(q, second) - inside(p, first);
+                if let Some(flux) = flux.filter(|_| carried != 0.0) {
+                    sum += carried * flux.value(v[p], v[q]) * moved;
+                }
+                sum -= viscosity * spread * (v[q] - v[p]) * moved;
+            },
+        );
+        sum * self.law.grid.cell()
+    }
+}
+
+/// The kernels of transport with the axes that their weights are of.
+fn of_axes<'a>(carrying: &'a [Stencil], law: &Law) -> impl Iterator<Item = (&'a Stencil, usize)> {
+    let field = law
+        .advection
+        .as_ref()
+        .is_some_and(|a| matches!(a.direction, Direction::Field(_)));
+    let axes = if field { law.grid.dimension } else { 1 };
+    carrying
+        .iter()
+        .flat_map(move |s| (0..axes).map(move |a| (s, a)))
+}
+
+/// Subtracts `u^p sums`, or half of it times a factor of the point.
+fn add(out: &mut [f64], u: &[f64], sums: &[f64], p: i32, factor: Option<&dyn Fn(usize) -> f64>) {
+    let terms = out.iter_mut().zip(u).zip(sums);
+    match (p, factor) {
+        (0, None) => terms.for_each(|((out, _), s)| *out -= s),
+        (1, None) => terms.for_each(|((out, u), s)| *out -= u * s),
+        (p, None) => terms.for_each(|((out, u), s)| *out -= u.powi(p) * s),
+        (p, Some(factor)) => {
+            let each = terms.enumerate();
+            each.for_each(|(k, ((out, u), s))| *out -= 0.5 * factor(k) * u.powi(p) * s);
+        }
+    }
+}
+
+/// Conjugate gradients for a symmetric positive operator; `u` is the right side and becomes the solution.
+fn conjugate_gradients(
+    u: &mut [f64],
+    mut apply: impl FnMut(&[f64], &mut [f64]),
+) -> Result<(), f64> {
+    const CLOSE: f64 = 1e-14;
+    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let right = dot(u, u);
+    let mut a = vec![0.0; u.len()];
+    // the right side is a good first guess
+    apply(u, &mut a);
+    let mut residual: Vec<f64> = u.iter().zip(&a).map(|(u, a)| u - a).collect();
+    let mut p = residual.clone();
+    let mut square = dot(&residual, &residual);
+    for _ in 0..10 * u.len() + 100 {
+        if square <= CLOSE * CLOSE * right {
+            return Ok(());
+        }
+        apply(&p, &mut a);
+        let step = square / dot(&p, &a);
+        u.iter_mut().zip(&p).for_each(|(u, p)| *u += step * p);
+        residual
+            .iter_mut()
+            .zip(&a)
+            .for_each(|(r, a)| *r -= step * a);
+        let next = dot(&residual, &residual);
+        if !(next.is_finite() && step > 0.0) {
+            break;
+        }
+        p.iter_mut()
+            .zip(&residual)
+            .for_each(|(p, r)| *p = r + next / square * *p);
+        square = next;
+    }
+    let left = (square / right).sqrt();
+    // round-off of long sums
+    if left <= 10.0 * CLOSE {
+        Ok(())
+    } else {
+        Err(left)
+    }
+}

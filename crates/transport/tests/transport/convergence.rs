@@ -1,0 +1,144 @@
+//! To the local laws as the horizon shrinks, and in h and ε.
+
+use crate::sample::{evolution, line};
+use peridyne_transport::exact::{ColeHopf, characteristics, shock_time};
+use peridyne_transport::{Bump, Evaluation, Flux, Method, StepSize, measure};
+
+/// Before the shock: second order in δ, for each bump and for both fluxes of Burgers.
+#[test]
+fn second_order_in_the_horizon_before_the_shock() {
+    let g = |x: f64| 0.2 + x.sin();
+    let t = 0.5;
+    for bump in [Bump::Hat, Bump::Polynomial(2), Bump::Smooth] {
+        for flux in [Flux::burgers(), Flux::energy_conserving()] {
+            let deltas = [0.2, 0.1, 0.05];
+            let errors = deltas.map(|delta| {
+                let law = line(1024, Some(flux.clone()), bump, delta, 0.0);
+                let u0 = law.grid.sample(|x| g(x[0]));
+                let shock = shock_time(&flux, &u0, law.grid.spacing).unwrap();
+                assert!((shock - 1.0).abs() < 1e-4, "{shock}");
+                let mut e = evolution(
+                    &law,
+                    Evaluation::Fourier,
+                    g,
+                    Method::Rk4,
+                    StepSize::Part(0.5),
+                );
+                e.run_to(t).unwrap();
+                let exact = law.grid.sample(|x| characteristics(&flux, g, 1.3, x[0], t));
+                measure::distance(&e.u, &exact)
+            });
+            let orders = measure::orders(&deltas, &errors);
+            assert!(
+                orders.iter().all(|o| (o - 2.0).abs() < 0.15),
+                "{bump:?} {flux:?}: {errors:?} {orders:?}"
+            );
+        }
+    }
+}
+
+/// With viscosity second order for all times, also where the inviscid law has a shock.
+#[test]
+fn second_order_in_the_horizon_with_viscosity() {
+    let epsilon = 0.1;
+    let exact = ColeHopf::new(|y: f64| -y.cos(), 1.0, epsilon).unwrap();
+    let t = 2.0;
+    let deltas = [0.2, 0.1, 0.05];
+    let errors = deltas.map(|delta| {
+        let law = line(1024, Some(Flux::burgers()), Bump::Smooth, delta, epsilon);
+        let mut e = evolution(
+            &law,
+            Evaluation::Fourier,
+            f64::sin,
+            Method::Imex,
+            StepSize::Part(0.1),
+        );
+        e.run_to(t).unwrap();
+        let places: Vec<usize> = (0..1024).step_by(16).collect();
+        let off = |n: &usize| (e.u[*n] - exact.value(law.grid.place(*n)[0], t)).abs();
+        places.iter().map(off).fold(0.0, f64::max)
+    });
+    let orders = measure::orders(&deltas, &errors);
+    assert!(
+        orders.iter().all(|o| (o - 2.0).abs() < 0.2),
+        "{errors:?} {orders:?}"
+    );
+}
+
+/// Cole and Hopf's integral solves the equation: by differences of it.
+#[test]
+fn cole_and_hopf_solve_burgers() {
+    let exact = ColeHopf::new(|y: f64| -y.cos(), 1.0, 0.1).unwrap();
+    let (x, t, d) = (2.2, 0.8, 1e-3);
+    let u = exact.value(x, t);
+    let slope = (exact.value(x + d, t) - exact.value(x - d, t)) / (2.0 * d);
+    let bend = (exact.value(x + d, t) - 2.0 * u + exact.value(x - d, t)) / (d * d);
+    let rate = (exact.value(x, t + d) - exact.value(x, t - d)) / (2.0 * d);
+    assert!(
+        (rate + u * slope - 0.1 * bend).abs() < 1e-5,
+        "{}",
+        rate + u * slope - 0.1 * bend
+    );
+    assert!((exact.value(x, 1e-4) - x.sin()).abs() < 2e-4);
+}
+
+/// At a fixed horizon that is no whole number of spacings: second order for a kernel that jumps there, third for one whose second derivative does.
+#[test]
+fn orders_in_the_spacing() {
+    for (bump, order) in [(Bump::Hat, 1.9), (Bump::Polynomial(3), 2.8)] {
+        let state = |n: usize| {
+            let law = line(n, Some(Flux::burgers()), bump, 0.8, 0.02);
+            let mut e = evolution(
+                &law,
+                Evaluation::Fourier,
+                f64::sin,
+                Method::Rk4,
+                StepSize::Part(0.1),
+            );
+            e.run_to(0.4).unwrap();
+            // at places that all grids share: middles of three cells' middle one
+            let shared = n / 16;
+            (0..16)
+                .map(|k| e.u[k * shared + shared / 2])
+                .collect::<Vec<f64>>()
+        };
+        let sizes = [48, 144, 432, 1296];
+        let states = sizes.map(state);
+        let errors: Vec<f64> = (0..2)
+            .map(|k| measure::distance(&states[k], &states[3]))
+            .collect();
+        let orders = measure::orders(&[1.0, 1.0 / 3.0], &errors);
+        assert!(orders[0] > order, "{bump:?}: {errors:?} {orders:?}");
+    }
+}
+
+/// In ε: the viscous nonlocal solution tends to the inviscid nonlocal one linearly before the shock.
+#[test]
+fn first_order_in_the_viscosity_before_the_shock() {
+    let run = |epsilon: f64| {
+        let law = line(
+            256,
+            Some(Flux::energy_conserving()),
+            Bump::Cosine,
+            0.2,
+            epsilon,
+        );
+        let mut e = evolution(
+            &law,
+            Evaluation::Fourier,
+            f64::sin,
+            Method::Rk4,
+            StepSize::Part(0.5),
+        );
+        e.run_to(0.5).unwrap();
+        e.u
+    };
+    let inviscid = run(0.0);
+    let values = [4e-3, 2e-3, 1e-3];
+    let errors = values.map(|e| measure::distance(&run(e), &inviscid));
+    let orders = measure::orders(&values, &errors);
+    assert!(
+        orders.iter().all(|o| (o - 1.0).abs() < 0.1),
+        "{errors:?} {orders:?}"
+    );
+}

@@ -1,0 +1,117 @@
+//! Mistakes are told.
+
+use crate::sample::odd;
+use peridyne_transport::weights::Stencil;
+use peridyne_transport::{
+    Boundary, Bump, Direction, Evaluation, Flux, Grid, Kernel, Law, Operator, Parity, Profile,
+};
+use std::sync::Arc;
+
+fn kernel(
+    parity: Parity,
+    f: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    normalise: bool,
+) -> Result<Kernel, String> {
+    Kernel::new(
+        parity,
+        Profile::Function(Arc::new(f)),
+        0.5,
+        1,
+        normalise,
+        "k",
+    )
+    .map_err(|e| format!("{e}; {}", e.help.clone().unwrap_or_default()))
+}
+
+#[test]
+fn moments_and_parities_are_asked_for() {
+    // ∫ z·12z = 12·2·δ³/3 = 1: sandia2010's −δ′ is half of what the limit needs
+    let told = kernel(Parity::Odd, |z| 12.0 * z, false).unwrap_err();
+    assert!(
+        told.contains("is 1.000000000, not 2")
+            && told.contains("0.5")
+            && told.contains("multiply it by 2.0"),
+        "{told}"
+    );
+    assert!((kernel(Parity::Odd, |z| 12.0 * z, true).unwrap().moment() - 2.0).abs() < 1e-12);
+    assert!(kernel(Parity::Odd, |z| 24.0 * z, false).is_ok());
+    let told = kernel(Parity::Odd, |z| 24.0 * z + 0.1, false).unwrap_err();
+    assert!(told.contains("not antisymmetric"), "{told}");
+    let told = kernel(Parity::Even, |z| 24.0 + z, false).unwrap_err();
+    assert!(told.contains("not symmetric"), "{told}");
+    // (2.0.15) as printed sharpens
+    let told = kernel(Parity::Even, |_| -24.0, false).unwrap_err();
+    assert!(
+        told.contains("is -2.000000000, not 2") && told.contains("multiply it by -1.0"),
+        "{told}"
+    );
+    let told = kernel(Parity::Odd, |z| 1.0 / (z - 0.25).max(0.0), false).unwrap_err();
+    assert!(told.contains("inf"), "{told}");
+    let table = Profile::Table(vec![[0.0, 1.0], [0.3, 0.0]]);
+    let told = Kernel::new(Parity::Odd, table, 0.5, 1, true, "k").unwrap_err();
+    assert!(told.message.contains("the table goes from"), "{told}");
+    let told = Kernel::new(
+        Parity::Even,
+        Profile::Curvature(Bump::Hat),
+        0.5,
+        1,
+        true,
+        "k",
+    )
+    .unwrap_err();
+    assert!(told.message.contains("no second derivative"), "{told}");
+}
+
+#[test]
+fn a_table_is_its_lines() {
+    // 24 z on both sides, and on one
+    let lines = [
+        vec![[-0.5, -12.0], [0.5, 12.0]],
+        vec![[0.0, 0.0], [0.2, 4.8], [0.5, 12.0]],
+    ];
+    for table in lines {
+        let k = Kernel::new(Parity::Odd, Profile::Table(table), 0.5, 1, false, "k").unwrap();
+        assert!((k.value(0.31) - 24.0 * 0.31).abs() < 1e-12 && k.value(0.51) == 0.0);
+    }
+}
+
+#[test]
+fn horizons_are_resolved() {
+    let grid = Grid::line(0.0, 1.0, 10).unwrap();
+    let told = Stencil::new(&odd(Bump::Cosine, 0.15, 1), &grid, "k").unwrap_err();
+    assert!(
+        told.message.contains("under-resolved") && told.message.contains("1.500 spacings"),
+        "{told}"
+    );
+    assert!(Stencil::new(&odd(Bump::Cosine, 0.3, 1), &grid, "k").is_ok());
+}
+
+#[test]
+fn second_derivatives_of_bumps_damp_where_they_can_and_others_are_refused() {
+    let grid = Grid::line(0.0, 1.0, 60).unwrap();
+    let law = |profile: Profile| {
+        let s = Kernel::new(Parity::Even, profile, 0.2, 1, true, "diffusion.kernel").unwrap();
+        let law = Law::new(grid, Boundary::Periodic, None, Some((0.1, &s))).unwrap();
+        Operator::new(law, Evaluation::Direct)
+    };
+    assert!(law(Profile::SlopeOverDistance(Bump::Cosine)).is_ok());
+    // the symbol of b″ is −k² b̂, and b̂ of a compact bump changes its sign
+    let told = law(Profile::Curvature(Bump::Cosine)).unwrap_err();
+    assert!(told.message.contains("makes waves grow"), "{told}");
+}
+
+#[test]
+fn laws_say_what_they_need() {
+    let grid = Grid::line(0.0, 1.0, 60).unwrap();
+    assert!(Law::new(grid, Boundary::Periodic, None, None).is_err());
+    let a = odd(Bump::Cosine, 0.2, 1);
+    let flux = (
+        Flux::Function(Arc::new(f64::exp)),
+        Direction::Constant([1.0, 0.0]),
+        &a,
+    );
+    let law = Law::new(grid, Boundary::Periodic, Some(flux), None).unwrap();
+    let told = Operator::new(law, Evaluation::Fourier).unwrap_err();
+    assert!(told.message.contains("polynomial"), "{told}");
+    assert!(Grid::line(1.0, 0.0, 10).is_err() && Grid::plane([0.0; 2], [1.0, 0.55], 10).is_err());
+}

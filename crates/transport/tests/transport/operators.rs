@@ -1,0 +1,225 @@
+//! Operators: both evaluations alike, symbols, Noll's flux, moments.
+
+use crate::sample::{BUMPS, even, line, odd, operator};
+use peridyne_transport::noll::Noll;
+use peridyne_transport::quadrature::Gauss;
+use peridyne_transport::{Boundary, Bump, Direction, Evaluation, Flux, Grid, Law, measure};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+fn rough(n: usize) -> Vec<f64> {
+    (0..n)
+        .map(|i| ((i * i) as f64 * 0.37).sin() + 0.3)
+        .collect()
+}
+
+/// Fluxes of each kind.
+fn fluxes() -> [Flux; 4] {
+    [
+        Flux::linear(1.3),
+        Flux::burgers(),
+        Flux::energy_conserving(),
+        Flux::of_mean(&[0.2, -1.0, 0.0, 0.4, 0.1]),
+    ]
+}
+
+#[test]
+fn direct_sums_and_fourier_transforms_are_equal_to_round_off() {
+    for n in [96, 257] {
+        for flux in fluxes() {
+            for bump in BUMPS {
+                let law = line(n, Some(flux.clone()), bump, 0.9, 0.2);
+                let u = rough(n);
+                let [a, b] = [Evaluation::Direct, Evaluation::Fourier].map(|e| {
+                    let mut rate = vec![0.0; n];
+                    operator(&law, e).rate(&u, 0.0, &mut rate);
+                    rate
+                });
+                let size = a.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+                let off = measure::distance(&a, &b);
+                assert!(
+                    off < 1e-13 * size.max(1.0),
+                    "{flux:?} {bump:?}: {off:e} of {size:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn in_a_plane_too_with_a_field_of_directions() {
+    let (a, s) = (odd(Bump::Polynomial(3), 0.7, 2), even(Bump::Smooth, 0.7, 2));
+    let grid = Grid::plane([0.0, 0.0], [2.0 * PI, PI], 48).unwrap();
+    let field = Direction::Field([
+        Arc::new(|x, _| x[1].sin()),
+        Arc::new(|x, _| (2.0 * x[0]).cos()),
+    ]);
+    for direction in [Direction::Constant([0.6, -0.8]), field] {
+        for flux in fluxes() {
+            let law = Law::new(
+                grid,
+                Boundary::Periodic,
+                Some((flux, direction.clone(), &a)),
+                Some((0.1, &s)),
+            )
+            .unwrap();
+            let u = rough(grid.points());
+            let [a, b] = [Evaluation::Direct, Evaluation::Fourier].map(|e| {
+                let mut rate = vec![0.0; u.len()];
+                operator(&law, e).rate(&u, 0.0, &mut rate);
+                rate
+            });
+            let size = a.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+            assert!(
+                measure::distance(&a, &b) < 1e-13 * size,
+                "{:e}",
+                measure::distance(&a, &b) / size
+            );
+            // nothing is made: what leaves a point comes to another
+            assert!(measure::mass(&a, grid.cell()).abs() < 1e-13 * size);
+        }
+    }
+}
+
+/// The same flux as a function: bond by bond, and by convolutions.
+#[test]
+fn a_flux_that_is_a_function_carries_like_its_polynomial() {
+    let psi = |u: f64| 0.2 - u + 0.4 * u.powi(3);
+    for collars in [false, true] {
+        let a = odd(Bump::Cosine, 0.5, 1);
+        let grid = Grid::line(0.0, 2.0 * PI, 80).unwrap();
+        let boundary = || match collars {
+            true => Boundary::Collars(Arc::new(|x, t| x[0].cos() + t)),
+            false => Boundary::Periodic,
+        };
+        let rates = [
+            Flux::Function(Arc::new(psi)),
+            Flux::of_mean(&[0.2, -1.0, 0.0, 0.4]),
+        ]
+        .map(|flux| {
+            let flux = Some((flux, Direction::Constant([1.0, 0.0]), &a));
+            let law = Law::new(grid, boundary(), flux, None).unwrap();
+            let mut rate = vec![0.0; 80];
+            operator(&law, Evaluation::Direct).rate(&rough(80), 0.4, &mut rate);
+            rate
+        });
+        assert!(measure::distance(&rates[0], &rates[1]) < 1e-12);
+    }
+}
+
+/// `∫ φ_a (u(y) + u(x))/2 dy` of a wave is iα(k), α the symbol; of bumps `k b̂(kδ)`. The operator on a wave of the grid gives that of the weights.
+#[test]
+fn waves_follow_the_symbol() {
+    // a whole number of spacings of all grids
+    let delta = PI / 4.0;
+    for bump in BUMPS {
+        let (a, s) = (odd(bump, delta, 1), even(bump, delta, 1));
+        for k in [1.0, 3.0, 7.0] {
+            if let Some(b) = bump.transform(k * delta) {
+                assert!(
+                    (a.symbol(k) - k * b).abs() < 1e-12 * k,
+                    "{bump:?} {k}: {} {}",
+                    a.symbol(k),
+                    k * b
+                );
+            }
+            let mut off = vec![];
+            let sizes = [64, 128, 256];
+            for n in sizes {
+                let grid = Grid::line(0.0, 2.0 * PI, n).unwrap();
+                let u = grid.sample(|x| (k * x[0]).cos());
+                let linear = (Flux::linear(1.0), Direction::Constant([1.0, 0.0]), &a);
+                let law =
+                    Law::new(grid, Boundary::Periodic, Some(linear), Some((1.0, &s))).unwrap();
+                let mut operator = operator(&law, Evaluation::Fourier);
+                let (mut carried, mut spread) = (vec![0.0; n], vec![0.0; n]);
+                operator.carry(&u, 0.0, &mut carried);
+                operator.spread(&u, 0.0, &mut spread);
+                // projected on sin kx and cos kx: a pure wave stays one
+                let part = |f: fn(f64) -> f64, v: &[f64]| {
+                    grid.sample(|x| f(k * x[0]))
+                        .iter()
+                        .zip(v)
+                        .map(|(a, b)| a * b)
+                        .sum::<f64>()
+                        * 2.0
+                        / n as f64
+                };
+                let (omega, decay) = (part(f64::sin, &carried), part(f64::cos, &spread));
+                assert!(
+                    part(f64::cos, &carried).abs() < 1e-12 && part(f64::sin, &spread).abs() < 1e-11
+                );
+                off.push((omega - a.symbol(k)).abs() + (decay - s.symbol(k)).abs());
+            }
+            // smooth kernels beyond any order, those with kinks at second order or better
+            assert!(off[2] < 2e-3 * k * k * k, "{bump:?} {k}: {off:?}");
+            assert!(
+                off[2] < 1e-9 || off[2] < 0.27 * off[1],
+                "{bump:?} {k}: {off:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn closed_transforms_are_those_of_the_bumps() {
+    let x = 2.3f64;
+    let parabola = 3.0 * (x.sin() - x * x.cos()) / x.powi(3);
+    assert!((Bump::Polynomial(1).transform(x).unwrap() - parabola).abs() < 1e-14);
+    assert!((Bump::Cosine.transform(PI).unwrap() - 0.5).abs() < 1e-12);
+    for bump in BUMPS {
+        // slopes are slopes
+        for s in [0.2, 0.5, 0.81] {
+            let d = 1e-5;
+            assert!(
+                ((bump.value(s + d) - bump.value(s - d)) / (2.0 * d) - bump.slope(s)).abs() < 1e-8,
+                "{bump:?}"
+            );
+            assert!(
+                ((bump.slope(s + d) - bump.slope(s - d)) / (2.0 * d) - bump.curvature(s)).abs()
+                    < 1e-7,
+                "{bump:?}"
+            );
+        }
+    }
+}
+
+/// (2.0.9a) and (2.0.9b), to 1e-10.
+#[test]
+fn the_divergence_of_nolls_flux_is_the_operator() {
+    for flux in fluxes()
+        .into_iter()
+        .chain([Flux::Function(Arc::new(|u: f64| (1.5 * u).sin()))])
+    {
+        for bump in BUMPS {
+            let kernel = odd(bump, 0.6, 1);
+            let noll = Noll {
+                flux: &flux,
+                kernel: &kernel,
+                u: |x: f64| (2.0 * x).sin() + 0.4 * (x - 0.3).cos(),
+                gauss: Gauss::new(4),
+            };
+            let [flow, integral] = noll.identity(0.2, 1.5);
+            assert!(
+                (flow - integral).abs() < 1e-10,
+                "{flux:?} {bump:?}: {flow} {integral}"
+            );
+            assert!(flow.abs() > 1e-3);
+        }
+    }
+}
+
+/// A constant state has the local flux: the speed of shocks is that of Rankine and Hugoniot.
+#[test]
+fn nolls_flux_of_a_constant_is_the_local_flux() {
+    for flux in fluxes() {
+        let kernel = odd(Bump::Smooth, 0.6, 1);
+        let noll = Noll {
+            flux: &flux,
+            kernel: &kernel,
+            u: |_| 0.7,
+            gauss: Gauss::new(16),
+        };
+        assert!((noll.flux(0.0) - flux.local(0.7)).abs() < 1e-12);
+    }
+}

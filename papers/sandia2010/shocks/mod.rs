@@ -1,0 +1,219 @@
+//! The regularized equation (2.0.14): travelling waves against ε/δ, the threshold of monotone tails, fans and expansion shocks, entropy.
+
+use peridyne_io::write::plot::Plot;
+use peridyne_io::write::table::Table;
+use peridyne_transport::exact::riemann;
+use peridyne_transport::{Bump, Flux, Kernel, Parity, Profile, measure, wave};
+
+use super::laws::{failed, law, places, run_to};
+use crate::{Context, Failure, Findings};
+
+experiment!(
+    Shocks,
+    "shocks",
+    "Travelling waves, fans and expansion shocks",
+    ["../laws.rs", "deck.toml"]
+);
+
+const DECK: &str = include_str!("deck.toml");
+/// δ of the deck.
+const DELTA: f64 = 0.05;
+/// An overshoot that is one; above what is left of the start.
+const SEEN: f64 = 1e-6;
+
+/// A profile when it has settled.
+struct Wave {
+    x: Vec<f64>,
+    u: Vec<f64>,
+    front: measure::Front,
+}
+
+fn settled(ratio: f64, time: f64) -> Result<Wave, Failure> {
+    let mut e = law(DECK, &[("constants.epsilon", (ratio * DELTA).to_string())])?;
+    run_to(&mut e, time)?;
+    let x = places(&e);
+    let front = measure::front(&x, &e.u, 1.0, 0.0);
+    let front = front.ok_or_else(|| Failure::new("there is no front any more"))?;
+    Ok(Wave { x, u: e.u, front })
+}
+
+fn run(context: &Context) -> Result<Findings, Failure> {
+    let mut found = Findings::new();
+    speed(&mut found)?;
+    threshold(context, &mut found)?;
+    waves(context, &mut found)?;
+    rise(context, &mut found)?;
+    Ok(found)
+}
+
+/// The speed over a whole number of cells, so that the front stands the same on the grid.
+fn speed(found: &mut Findings) -> Result<(), Failure> {
+    let mut e = law(
+        DECK,
+        &[
+            ("constants.delta", "0.02".into()),
+            ("constants.epsilon", "0.016".into()),
+            ("points", "1200".into()),
+        ],
+    )?;
+    run_to(&mut e, 2.0)?;
+    let x = places(&e);
+    let place = |u: &[f64]| {
+        let front = measure::front(&x, u, 1.0, 0.0);
+        front
+            .map(|f| f.position)
+            .ok_or_else(|| Failure::new("no front"))
+    };
+    let (first, begin) = (place(&e.u)?, e.time);
+    let spacing = x[1] - x[0];
+    run_to(&mut e, begin + 2.0 * 100.0 * spacing)?;
+    found.number("speed", (place(&e.u)? - first) / (e.time - begin));
+    Ok(())
+}
+
+/// ε/δ from which on the settled wave does not overshoot: by bisection of runs, beside what the exponents of the tail give.
+fn threshold(context: &Context, found: &mut Findings) -> Result<(), Failure> {
+    let kernel =
+        |parity, profile| Kernel::new(parity, profile, DELTA, 1, false, "kernel").map_err(failed);
+    let bump = Bump::Polynomial(2);
+    let odd = kernel(Parity::Odd, Profile::Slope(bump))?;
+    let even = kernel(Parity::Even, Profile::Value(bump))?;
+    let (least, exponent) = wave::monotone_threshold(&Flux::burgers(), 1.0, 0.0, &odd, &even);
+    let expected = least / DELTA;
+    found.measured(
+        "threshold of ε/δ by the exponents of the tail",
+        expected,
+        "",
+    );
+    found.measured("its exponent times δ", exponent * DELTA, "");
+    let (mut low, mut high) = (0.3 * expected, 2.0 * expected);
+    let rounds = if context.small { 5 } else { 8 };
+    for _ in 0..rounds {
+        let middle = 0.5 * (low + high);
+        match settled(middle, 2.0)?.front.overshoot > SEEN {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    found.number("threshold", 0.5 * (low + high) / expected);
+    found.measured("threshold of ε/δ by runs", 0.5 * (low + high), "");
+    Ok(())
+}
+
+fn waves(context: &Context, found: &mut Findings) -> Result<(), Failure> {
+    let ratios = [0.1, 0.2, 0.4, 0.8];
+    let mut plot = Plot::new("travelling waves")
+        .x("(x − x_s)/δ", "")
+        .y("u", "")
+        .x_range(-12.0, 6.0);
+    let mut rows: Vec<[f64; 4]> = vec![];
+    for ratio in ratios {
+        let w = settled(ratio, 2.0)?;
+        let x: Vec<f64> = w.x.iter().map(|x| (x - w.front.position) / DELTA).collect();
+        plot = plot.line(&format!("ε/δ = {ratio}"), &x, &w.u);
+        rows.push([
+            ratio,
+            w.front.width / DELTA,
+            w.front.overshoot,
+            w.front.undershoot,
+        ]);
+    }
+    let falls = rows.windows(2).all(|w| w[1][2] <= w[0][2]);
+    found.holds(
+        "overshoot-falls",
+        format!("{:.3?}", rows.iter().map(|r| r[2]).collect::<Vec<_>>()),
+        falls && rows[0][2] > 0.05,
+    );
+    // only ε/δ matters: half the horizon, half the lengths and times
+    let half = law(
+        DECK,
+        &[
+            ("constants.delta", (0.5 * DELTA).to_string()),
+            ("constants.epsilon", (0.1 * DELTA).to_string()),
+            ("domain.x", "[-0.75, 0.75]".into()),
+            ("initial", "0.5*(1 - tanh((x + 0.375)/(4*epsilon)))".into()),
+        ],
+    );
+    let mut half = half?;
+    run_to(&mut half, 1.0)?;
+    found.number("scaling", measure::distance(&half.u, &settled(0.2, 2.0)?.u));
+    found.picture(plot.save(&context.out, "waves")?);
+    let path = context.out.join("waves.csv");
+    let column = |k: usize| rows.iter().map(|r| r[k]).collect::<Vec<f64>>();
+    Table::new()
+        .column("epsilon/delta", "", column(0))
+        .column("width/delta", "", column(1))
+        .column("overshoot", "", column(2))
+        .column("undershoot", "", column(3))
+        .save(&path)?;
+    found.file(path);
+    Ok(())
+}
+
+/// From −1 up to 1, with viscosity and without: does the nonlocal flux hold the jump that the local one could?
+fn rise(context: &Context, found: &mut Findings) -> Result<(), Failure> {
+    let changed = |epsilon: f64, points: usize| {
+        law(
+            DECK,
+            &[
+                ("constants.epsilon", epsilon.to_string()),
+                ("boundary", "{ left = -1, right = 1 }".into()),
+                ("initial", "x < 0 ? -1 : 1".into()),
+                ("points", points.to_string()),
+            ],
+        )
+    };
+    let time = 0.8;
+    let mut plot = Plot::new("from −1 up to 1").x("x", "").y("u", "");
+    let mut jump = 0.0;
+    let mut produced = 0.0;
+    let viscous = [0.04, 0.02, 0.01];
+    let mut distances = vec![];
+    for epsilon in [0.0].into_iter().chain(viscous) {
+        let mut e = changed(epsilon, 480)?;
+        let start = e.u.clone();
+        let mut rate = vec![0.0; start.len()];
+        e.operator.rate(&start, 0.0, &mut rate);
+        run_to(&mut e, time)?;
+        let x = places(&e);
+        let exact: Vec<f64> = x
+            .iter()
+            .map(|x| riemann(&Flux::burgers(), -1.0, 1.0, x / time))
+            .collect();
+        let cell = e.operator.law().grid.cell();
+        let off = measure::mean_distance(&e.u, &exact, cell);
+        found.measured(
+            &format!("mean distance from the fan at t = {time}, ε = {epsilon}"),
+            off,
+            "",
+        );
+        plot = plot.line(&format!("ε = {epsilon}"), &x, &e.u);
+        if epsilon == 0.0 {
+            jump = e.u.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+            // η = u²/2, q = u³/3
+            produced = measure::entropy_production(
+                |u| u,
+                |u| u * u * u / 3.0,
+                &start,
+                &rate,
+                cell,
+                [-1.0, 1.0],
+            );
+        } else {
+            distances.push(off);
+            if epsilon == viscous[1] {
+                plot = plot.dashed("entropy solution", &x, &exact);
+            }
+        }
+    }
+    found.holds(
+        "expansion-shock",
+        format!("largest step between neighbours {jump:.3} at t = {time}, of 2 at the start"),
+        jump < 1.9,
+    );
+    let orders = measure::orders(&viscous, &distances);
+    found.number("fan", orders[orders.len() - 1]);
+    found.number("production", produced);
+    found.picture(plot.save(&context.out, "fan")?);
+    Ok(())
+}
