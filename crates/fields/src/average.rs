@@ -1,6 +1,6 @@
 //! Means over frames, with their standard errors: what is kept does not grow with the number of frames.
 
-use crate::fields::{Fields, Quantity};
+use crate::fields::{Fields, NO_VELOCITIES, Quantity};
 
 /// Means of all fields at points.
 #[derive(Debug, Clone, Default)]
@@ -8,6 +8,8 @@ pub struct Average {
     frames: usize,
     /// For each quantity, number by number: how many frames had a value, mean, and sum of squares about it.
     columns: Vec<Vec<[f64; 3]>>,
+    /// Why the last frame did not have a quantity.
+    why_not: Vec<&'static str>,
 }
 
 impl Average {
@@ -19,6 +21,7 @@ impl Average {
     pub fn add(&mut self, fields: &Fields) {
         self.frames += 1;
         self.columns.resize(Quantity::ALL.len(), vec![]);
+        self.why_not = Quantity::ALL.map(|q| fields.why_not(q)).to_vec();
         for (column, quantity) in self.columns.iter_mut().zip(Quantity::ALL) {
             let Some(values) = fields.get(quantity) else {
                 continue;
@@ -42,6 +45,13 @@ impl Average {
             quantity,
             |[n, mean, _]| if n > 0.0 { mean } else { f64::NAN },
         )
+    }
+
+    /// Why there is no mean of a quantity, if there is none.
+    pub fn why_not(&self, quantity: Quantity) -> &'static str {
+        let place = Quantity::ALL.iter().position(|q| *q == quantity);
+        let own = place.and_then(|p| self.why_not.get(p));
+        own.copied().unwrap_or(NO_VELOCITIES)
     }
 
     /// Standard error of the mean, as if frames were independent: `√(Σ(x − x̄)²/(n (n − 1)))`. Frames that follow each other closely

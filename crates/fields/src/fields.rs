@@ -188,6 +188,10 @@ impl Quantity {
 
 /// Why a field is not there.
 pub const NO_VELOCITIES: &str = "the frame has no velocities";
+/// The same.
+pub const NO_POTENTIAL: &str = "the law has no potential whose slopes its forces are";
+/// The same.
+pub const NO_TEMPERATURE: &str = "points of a peridynamic body are no atoms";
 
 /// Exact rates at fixed points, from velocities and forces of the instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -262,6 +266,8 @@ pub struct Fields {
     pub points: Vec<[f64; 3]>,
     /// In the order of [`Quantity::ALL`]; empty where the frame does not allow it.
     columns: Vec<Vec<f64>>,
+    /// What was left out, and why.
+    missing: Vec<(Quantity, &'static str)>,
     /// One for each part of the potential, if they were to be kept apart.
     pub parts: Vec<Part>,
     /// Where they were asked for.
@@ -329,6 +335,22 @@ impl Fields {
         (column.len() == self.len() * quantity.components()).then_some(column)
     }
 
+    /// Why there is no field of a quantity, if there is none.
+    pub fn why_not(&self, quantity: Quantity) -> &'static str {
+        let own = self.missing.iter().find(|(q, _)| *q == quantity);
+        own.map_or(NO_VELOCITIES, |(_, why)| why)
+    }
+
+    /// Takes fields away that the particles do not allow, and says why.
+    pub fn leave_out(&mut self, quantities: &[Quantity], why: &'static str) {
+        for (place, quantity) in Quantity::ALL.iter().enumerate() {
+            if quantities.contains(quantity) {
+                self.columns[place].clear();
+                self.missing.push((*quantity, why));
+            }
+        }
+    }
+
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn finish(
         points: Vec<[f64; 3]>,
@@ -350,6 +372,7 @@ impl Fields {
         };
         let mut fields = Fields {
             columns: vec![vec![]; Quantity::ALL.len()],
+            missing: vec![],
             parts: match apart {
                 true => names.into_iter().map(part).collect(),
                 false => vec![],

@@ -204,6 +204,13 @@ impl Frame {
         Ok(())
     }
 
+    /// Velocities less this one; empty where there are none.
+    pub(crate) fn velocities_beside(&self, drift: [f64; 3]) -> Vec<[f64; 3]> {
+        let all = self.velocity.iter().flatten();
+        all.map(|v| std::array::from_fn(|a| v[a] - drift[a]))
+            .collect()
+    }
+
     /// Velocity of the centre of mass.
     pub fn drift(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];

@@ -19,7 +19,7 @@
 //! z is linear in β, so what is left of it depends on differences of β alone: at a fixed point these fall as `s⁻²` relative to β
 //! with the width s of φ, and so does z relative to stress. At the scale of atoms it is not small.
 //!
-//! [`sums::evaluate`] does the work; [`residuals`] measures how well the balance laws hold.
+//! [`sums::evaluate`] does the work, [`pairs::evaluate`] for peridynamic bodies; [`residuals`] measures how well the balance laws hold.
 
 mod accumulate;
 pub mod average;
@@ -30,6 +30,7 @@ pub mod frame;
 pub mod kernel;
 pub mod molecules;
 pub mod neighbours;
+pub mod pairs;
 pub mod partition;
 pub mod residuals;
 pub mod sums;

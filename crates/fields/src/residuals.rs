@@ -26,12 +26,12 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Relative to what cancels; 0 where nothing happens.
+    /// Relative to what cancels; 0 where nothing happens, not a number where it was not measured.
     pub fn relative(&self) -> f64 {
         if self.scale > 0.0 {
             self.value / self.scale
         } else {
-            0.0
+            0.0 * self.value
         }
     }
 }
@@ -92,6 +92,53 @@ pub fn of(
     step: f64,
     signs: Signs,
 ) -> Result<Residuals, FieldsError> {
+    let (targets, method) = asked(frame, method, points, step)?;
+    let fields = evaluate(frame, sites, &targets, &method)?;
+    let rates: Vec<Rates> = match around {
+        None => of_instant(&fields),
+        Some([before, after]) => {
+            let times = [before.time, frame.time, after.time];
+            let [Some(a), Some(b), Some(c)] = times else {
+                return Err(FieldsError(
+                    "rates from frames need the times of the frames".into(),
+                ));
+            };
+            if !(c > b) || ((c - b) - (b - a)).abs() > 1e-9 * (c - a) {
+                return Err(FieldsError(format!(
+                    "rates need frames at equal steps of time, not at {a}, {b}, {c}"
+                )));
+            }
+            let targets = Targets::Points(points.to_vec());
+            let [before, after] = [before, after].map(|f| evaluate(f, sites, &targets, &method));
+            differences(&before?, &after?, c - a)
+        }
+    };
+    Ok(measure(&fields, &rates, step, signs))
+}
+
+/// Residuals of a frame whose fields somebody else makes, at the points and by the method that they are then told, with rates of the instant.
+///
+/// # Errors
+/// As [`of_frame`].
+pub fn of_fields(
+    frame: &Frame,
+    method: &Method,
+    points: &[[f64; 3]],
+    step: f64,
+    fields: &mut dyn FnMut(&Targets, &Method) -> Result<Fields, FieldsError>,
+) -> Result<Residuals, FieldsError> {
+    let (targets, method) = asked(frame, method, points, step)?;
+    let fields = fields(&targets, &method)?;
+    Ok(measure(&fields, &of_instant(&fields), step, RIGHT))
+}
+
+/// Where fields are needed, and how.
+fn asked(
+    frame: &Frame,
+    method: &Method,
+    points: &[[f64; 3]],
+    step: f64,
+) -> Result<(Targets, Method), FieldsError> {
     if frame.velocity.is_none() {
         return Err(FieldsError(
             "balance laws need velocities, which the frame does not have".into(),
@@ -119,27 +166,11 @@ pub fn of(
         by_part: false,
         ..method.clone()
     };
-    let fields = evaluate(frame, sites, &Targets::Points(all), &method)?;
-    let rates: Vec<Rates> = match around {
-        None => fields.rates.iter().step_by(STENCIL).copied().collect(),
-        Some([before, after]) => {
-            let times = [before.time, frame.time, after.time];
-            let [Some(a), Some(b), Some(c)] = times else {
-                return Err(FieldsError(
-                    "rates from frames need the times of the frames".into(),
-                ));
-            };
-            if !(c > b) || ((c - b) - (b - a)).abs() > 1e-9 * (c - a) {
-                return Err(FieldsError(format!(
-                    "rates need frames at equal steps of time, not at {a}, {b}, {c}"
-                )));
-            }
-            let targets = Targets::Points(points.to_vec());
-            let [before, after] = [before, after].map(|f| evaluate(f, sites, &targets, &method));
-            differences(&before?, &after?, c - a)
-        }
-    };
-    Ok(measure(&fields, &rates, step, signs))
+    Ok((Targets::Points(all), method))
+}
+
+fn of_instant(fields: &Fields) -> Vec<Rates> {
+    fields.rates.iter().step_by(STENCIL).copied().collect()
 }
 
 /// A point and its twelve neighbours.
@@ -184,7 +215,8 @@ fn fluxes(fields: &Fields, p: usize, signs: Signs) -> [[f64; 3]; 5] {
         }
         all[4][a] += e * v[a];
         for (q, sign) in heat {
-            all[4][a] += sign * of(q)[a];
+            // what is left out says nothing of energy
+            all[4][a] += sign * of(q).get(a).copied().unwrap_or(f64::NAN);
         }
     }
     all
@@ -199,7 +231,8 @@ fn measure(fields: &Fields, rates: &[Rates], step: f64, signs: Signs) -> Residua
             .map(|n| fluxes(fields, k * STENCIL + n, signs))
             .collect();
         // where there is no mass there is no velocity
-        if here.iter().flatten().flatten().any(|x| !x.is_finite()) {
+        let momenta = here.iter().flat_map(|fluxes| &fluxes[..4]);
+        if momenta.flatten().any(|x| !x.is_finite()) {
             continue;
         }
         points += 1;

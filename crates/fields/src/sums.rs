@@ -80,12 +80,7 @@ pub fn evaluate(
     };
     let parts = names.len();
     let drift = frame.drift();
-    let velocity: Vec<[f64; 3]> = frame
-        .velocity
-        .iter()
-        .flatten()
-        .map(|v| std::array::from_fn(|a| v[a] - drift[a]))
-        .collect();
+    let velocity = frame.velocities_beside(drift);
     let collector = Collector {
         frame,
         sites,
@@ -104,13 +99,9 @@ pub fn evaluate(
     };
     let mut sums = Sums {
         bonds: vec![0.0; targets.len() * parts * BOND],
-        particles: vec![0.0; targets.len() * layout.stride()],
+        particles: vec![],
     };
-    let mut own = Own {
-        energy: vec![0.0; frame.len() * parts],
-        force: vec![[0.0; 3]; frame.len()],
-        power: vec![0.0; frame.len()],
-    };
+    let mut own = Own::new(frame.len(), parts);
     let mut totals = Totals::new(frame);
     // bonded partners may be farther than the potential reaches
     let wide = sites
@@ -141,35 +132,13 @@ pub fn evaluate(
         }
     }
     totals.energy = own.energy.iter().sum();
-    for first in (0..blocks.count).step_by(batch) {
-        let some: Vec<_> = (first..(first + batch).min(blocks.count))
-            .into_par_iter()
-            .map(|b| {
-                let (members, bounds) = blocks.members(&neighbours, b);
-                let patch = bins.patch(bounds);
-                if patch.index.is_empty() {
-                    return (vec![], vec![]);
-                }
-                let mut columns = Columns::default();
-                for i in members {
-                    columns.push(frame, &layout, &own, &velocity, drift, i as usize);
-                    columns.position.push(neighbours.wrapped[i as usize]);
-                }
-                let of = Particles {
-                    position: &columns.position,
-                    width: layout.width(),
-                    value: &columns.value,
-                    slopes: layout.moving.then_some(&columns.slope[..]),
-                    slope_width: layout.slopes(),
-                };
-                let sums = accumulate::particles(&method.kernel, &patch, &of);
-                (patch.index, sums)
-            })
-            .collect();
-        for (index, part) in some {
-            add(&mut sums.particles, &index, &part, layout.stride());
-        }
-    }
+    let moving = Moving {
+        frame,
+        velocity: &velocity,
+        drift,
+        layout: &layout,
+    };
+    sums.particles = moving.sums(&neighbours, &bins, &method.kernel, &own);
     Ok(Fields::finish(
         targets.positions(&frame.cell),
         names,
@@ -190,7 +159,7 @@ fn widened(bounds: [[f64; 3]; 2], by: [f64; 3]) -> [[f64; 3]; 2] {
     ]
 }
 
-fn add(sums: &mut [f64], index: &[u32], part: &[f64], stride: usize) {
+pub(crate) fn add(sums: &mut [f64], index: &[u32], part: &[f64], stride: usize) {
     for (p, part) in index.iter().zip(part.chunks_exact(stride.max(1))) {
         let own = &mut sums[*p as usize * stride..][..stride];
         for (sum, value) in own.iter_mut().zip(part) {
@@ -199,14 +168,78 @@ fn add(sums: &mut [f64], index: &[u32], part: &[f64], stride: usize) {
     }
 }
 
+/// Particles and how they move, velocities from the drift.
+pub(crate) struct Moving<'a> {
+    pub frame: &'a Frame,
+    pub velocity: &'a [[f64; 3]],
+    pub drift: [f64; 3],
+    pub layout: &'a Layout,
+}
+
+impl Moving<'_> {
+    /// Sums of all particles at the points, block by block.
+    pub fn sums(
+        &self,
+        neighbours: &Neighbours,
+        bins: &Bins,
+        kernel: &Kernel,
+        own: &Own,
+    ) -> Vec<f64> {
+        let layout = self.layout;
+        let blocks = Blocks::new(neighbours, self.frame.len());
+        let mut sums = vec![0.0; bins.points() * layout.stride()];
+        let batch = 2 * rayon::current_num_threads();
+        for first in (0..blocks.count).step_by(batch) {
+            let some: Vec<_> = (first..(first + batch).min(blocks.count))
+                .into_par_iter()
+                .map(|b| {
+                    let (members, bounds) = blocks.members(neighbours, b);
+                    let patch = bins.patch(bounds);
+                    if patch.index.is_empty() {
+                        return (vec![], vec![]);
+                    }
+                    let mut columns = Columns::default();
+                    for i in members {
+                        columns.push(self, own, i as usize);
+                        columns.position.push(neighbours.wrapped[i as usize]);
+                    }
+                    let of = Particles {
+                        position: &columns.position,
+                        width: layout.width(),
+                        value: &columns.value,
+                        slopes: layout.moving.then_some(&columns.slope[..]),
+                        slope_width: layout.slopes(),
+                    };
+                    let sums = accumulate::particles(kernel, &patch, &of);
+                    (patch.index, sums)
+                })
+                .collect();
+            for (index, part) in some {
+                add(&mut sums, &index, &part, layout.stride());
+            }
+        }
+        sums
+    }
+}
+
 /// What atoms have of all terms.
-struct Own {
-    energy: Vec<f64>,
-    force: Vec<[f64; 3]>,
-    power: Vec<f64>,
+pub(crate) struct Own {
+    /// For each part.
+    pub energy: Vec<f64>,
+    pub force: Vec<[f64; 3]>,
+    /// `Σ_k v_k · ∂U^(j)/∂x_k` (4.0.107).
+    pub power: Vec<f64>,
 }
 
 impl Own {
+    pub fn new(particles: usize, parts: usize) -> Own {
+        Own {
+            energy: vec![0.0; particles * parts],
+            force: vec![[0.0; 3]; particles],
+            power: vec![0.0; particles],
+        }
+    }
+
     fn take(&mut self, block: &Block, parts: usize) {
         for (n, share) in block.shares.iter().enumerate() {
             let i = share.atom as usize;
@@ -230,23 +263,16 @@ struct Columns {
 }
 
 impl Columns {
-    fn push(
-        &mut self,
-        frame: &Frame,
-        layout: &Layout,
-        own: &Own,
-        velocity: &[[f64; 3]],
-        drift: [f64; 3],
-        i: usize,
-    ) {
-        let m = frame.mass[i];
+    fn push(&mut self, of: &Moving, own: &Own, i: usize) {
+        let (layout, drift) = (of.layout, of.drift);
+        let m = of.frame.mass[i];
         let energy = &own.energy[i * layout.parts..][..layout.parts];
         self.value.extend([1.0, m]);
         self.value.extend(energy);
         if !layout.moving {
             return;
         }
-        let v = velocity[i];
+        let v = of.velocity[i];
         let square = dot(v, v);
         let potential: f64 = energy.iter().sum();
         self.value.extend(v.map(|c| m * c));

@@ -167,6 +167,11 @@ impl<'a> Bins<'a> {
         Ok(all)
     }
 
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.wrapped.len()
+    }
+
     fn place(&self, x: [f64; 3]) -> usize {
         let s = self.cell.fraction(x);
         let b: [i32; 3] = std::array::from_fn(|a| match self.counts[a] {

@@ -88,4 +88,7 @@ pub struct BondForce<const D: usize> {
     pub y: [f64; D],
     /// What i gets from the bond: that of its own force state and that of its partner's (force / volume).
     pub force: [f64; D],
+    /// That of its own force state: `∂W_i/∂y`, with the memory of the law held, so that V_i times it is `∂(W_i V_i)/∂x_j`. `None`: the
+    /// law has no potential, or terms of more than two points.
+    pub own: Option<[f64; D]>,
 }

@@ -69,6 +69,34 @@ impl<const D: usize> Stretched<D> {
     ) -> f64 {
         law.scaled_pull(k, self.g, p, q, factors)
     }
+
+    /// The same, and that of the first end's own energy.
+    pub fn tensions<W: Law>(
+        &self,
+        law: W,
+        k: f64,
+        factors: BondFactors<f64>,
+        fields: [[f64; 2]; 2],
+    ) -> [f64; 2] {
+        let [p, q] = fields;
+        [
+            self.tension(law, k, factors, fields),
+            law.own_pull(k, self.g, p, q, factors),
+        ]
+    }
+}
+
+impl<const D: usize> BondForce<D> {
+    /// Along y, from the coefficients of the whole force and of that of its own force state.
+    pub(super) fn central([i, j]: [usize; 2], y: [f64; D], [pull, own]: [f64; 2]) -> Self {
+        BondForce {
+            i,
+            j,
+            y,
+            force: y.map(|c| pull * c),
+            own: Some(y.map(|c| own * c)),
+        }
+    }
 }
 
 impl<const D: usize> BondTangent<D> {
@@ -93,19 +121,32 @@ impl<const D: usize> BondTangent<D> {
             j: self.j,
             y: self.y,
             force: self.y.map(|y| self.tension * y),
+            own: None,
         }
     }
 
-    /// The same of a linear law.
+    /// The same of a potential of one kind of atom, from F′ of both ends: a pair's energy is in halves, embedding is the atom's own.
+    pub(super) fn force_of_potential(&self, [own, other]: [f64; 2]) -> BondForce<D> {
+        let force = self.force();
+        let half = |a: usize| 0.5 * (force.force[a] + (own - other) * self.pull[0][a]);
+        BondForce {
+            own: Some(std::array::from_fn(half)),
+            ..force
+        }
+    }
+
+    /// The same of a linear law, whose bonds store as much at either end.
     pub(super) fn linear_force(&self, u: &Field<D>) -> BondForce<D> {
         let eta: [f64; D] = std::array::from_fn(|a| u[a][self.j] - u[a][self.i]);
+        let force = self
+            .stiffness
+            .map(|row| row.iter().zip(&eta).map(|(c, e)| c * e).sum());
         BondForce {
             i: self.i,
             j: self.j,
             y: self.y,
-            force: self
-                .stiffness
-                .map(|row| row.iter().zip(&eta).map(|(c, e)| c * e).sum()),
+            force,
+            own: Some(force.map(|f| 0.5 * f)),
         }
     }
 

@@ -87,6 +87,19 @@ pub trait Law: Copy + Send + Sync + 'static {
         self.pull(k, g, i, j) * factors.pair
     }
 
+    /// The part of [`Law::scaled_pull`] that W_i alone has for a slope: `∂W_i/∂r / r`.
+    #[inline(always)]
+    fn own_pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2], factors: BondFactors<L>) -> L {
+        // x = k r0² s² has the slope 2 k g r
+        let pair = self.pair_energy(k * g * factors.pair, i, j);
+        let own = pair + pair;
+        match Self::SHARES {
+            // r0/r = 1 − g
+            true => (i[0] * factors.own * k).fma(L::splat(1.0) - g, own),
+            false => own,
+        }
+    }
+
     /// Energy density at i of one bond, proportional to `x = k r0² s²`.
     fn pair_energy<L: Lane>(self, x: L, i: [L; 2], j: [L; 2]) -> L;
 

@@ -32,10 +32,15 @@ pub struct FamilyBond {
 pub struct PointForce {
     /// Id of the point.
     pub id: usize,
+    /// Id of the partner; through a periodic boundary it may be the same.
+    pub partner: usize,
     /// To the partner now; of linear models in the reference (length).
     pub y: Point,
     /// Force density (force / volume).
     pub force: Point,
+    /// What of it the energy of the point alone has for a slope: with the volume V_i of the point, `V_i own = ∂(W_i V_i)/∂x_partner`
+    /// with the memory of the law held. `None`: the law has no potential, or terms of more than two points.
+    pub own: Option<Point>,
 }
 
 /// The state of a model of any dimension, by point id. Components of axes beyond the dimension are 0.

@@ -5,7 +5,7 @@ use super::{AtomBond, Examined, Families, ModeShape};
 use crate::body::zeros;
 use crate::error::{RunError, SolveError};
 use crate::interaction::Sweep;
-use crate::observe::Observed;
+use crate::observe::{Observed, PointForce, State};
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, LinearBody};
 use crate::statics::Solved;
@@ -44,6 +44,10 @@ impl<const D: usize> Examined for Model<D> {
             pairs.add_energy_density(body, &self.u, &mut out.repulsion);
         }
         self.observed_of(&out)
+    }
+
+    fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool {
+        self.view().each_force(visit)
     }
 
     fn virial(&mut self) -> [f64; 6] {

@@ -43,7 +43,7 @@ use crate::condition::carried::Motion;
 use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
-use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot, Values};
+use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, Values};
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, Influence, Stepper};
 use crate::statics::Solved;
@@ -269,6 +269,9 @@ pub trait Examined {
     fn forces_under(&mut self, u: &[Point]) -> Vec<Point>;
     /// The same of the current state.
     fn observed(&mut self) -> Observed;
+    /// Every force of a pair now, seen from each of its points: bonds, repulsion inside families, contact; loads and friction are not
+    /// among them. False: a law has no forces of single bonds.
+    fn each_force(&mut self, visit: &mut dyn FnMut(PointForce)) -> bool;
     /// Σ over pairs of distance times force, xx yy zz xy xz yz (energy), of bonds and repulsion, positive where pairs
     /// repel: of the last force evaluation if that was watched, else of the current state with the bonds that are whole.
     fn virial(&mut self) -> [f64; 6];

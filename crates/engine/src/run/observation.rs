@@ -12,7 +12,7 @@ use crate::observe::{Column, FamilyBond, Observed, PointForce, Snapshot, State, 
 use crate::space::Point;
 
 /// The state of a model, and what was computed of it already.
-struct View<'a, const D: usize> {
+pub(super) struct View<'a, const D: usize> {
     model: &'a mut Model<D>,
     /// Id of every slot of a point.
     id: Vec<u32>,
@@ -135,8 +135,10 @@ impl<const D: usize> State for View<'_, D> {
         self.model.each_pair_force(&mut |bond| {
             visit(PointForce {
                 id: id[bond.i] as usize,
+                partner: id[bond.j] as usize,
                 y: padded(&bond.y),
                 force: padded(&bond.force),
+                own: bond.own.as_ref().map(padded),
             });
         })
     }
@@ -153,7 +155,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Brings velocities and images up to date.
-    fn view(&mut self) -> View<'_, D> {
+    pub(super) fn view(&mut self) -> View<'_, D> {
         self.finish();
         self.refresh_images();
         View {
@@ -171,6 +173,7 @@ impl<const D: usize> Model<D> {
             return self.interaction.each_force(&self.body, &u, &mut |bond| {
                 visit(BondForce {
                     force: bond.force.map(|f| f / small),
+                    own: bond.own.map(|own| own.map(|f| f / small)),
                     ..bond
                 });
             });
@@ -185,7 +188,14 @@ impl<const D: usize> Model<D> {
                 for (i, j, sign) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
                     let y = touch.y.map(|y| sign * y);
                     let force = y.map(|y| pull * body.volume.at(j) * y);
-                    visit(BondForce { i, j, y, force });
+                    let own = Some(force.map(|f| 0.5 * f));
+                    visit(BondForce {
+                        i,
+                        j,
+                        y,
+                        force,
+                        own,
+                    });
                 }
             });
         }

@@ -182,7 +182,16 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         u: &Field<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
-        self.tangents(body, u, &mut |bond| visit(bond.force()));
+        if P::EMBEDDED {
+            self.check(body, &[u]);
+            self.embed(body, u);
+        }
+        let slope = self.slope.clone();
+        let slope = |s: usize| slope.get(s).copied().unwrap_or(0.0);
+        self.tangents(body, u, &mut |bond| {
+            let ends = [bond.i, bond.j].map(slope);
+            visit(bond.force_of_potential(ends));
+        });
         true
     }
 

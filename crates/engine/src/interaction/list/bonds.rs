@@ -74,9 +74,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         let view = self.view(&self.moved);
         self.each_line(|row, line, [i, j]| {
             let (pull, y) = view.pull_of(i, j, self.is_whole(row, line));
-            if pull != 0.0 {
-                let force = y.map(|c| pull * c);
-                visit(BondForce { i, j, y, force });
+            if pull[0] != 0.0 {
+                visit(BondForce::central([i, j], y, pull));
             }
         });
     }

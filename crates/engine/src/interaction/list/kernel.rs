@@ -14,7 +14,7 @@ use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::pairs::{BondLanes, BondTable};
 use crate::interaction::weight::BondWeight;
-use crate::law::Law;
+use crate::law::{BondFactors, Law};
 pub use energies::Energies;
 pub use forces::Forces;
 pub use share::Share;
@@ -235,7 +235,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
 
     /// Coefficient of `ξ+η` at row i that its directed bond to slot j has as a whole one, with repulsion where there is
     /// any, and the two vectors; `alive`: is it whole? Plain numbers.
-    pub fn pull_of(&self, i: usize, j: usize, alive: bool) -> (f64, [f64; D]) {
+    pub fn pull_of(&self, i: usize, j: usize, alive: bool) -> ([f64; 2], [f64; D]) {
         let (row, partner) = (i as u32, j as u32);
         // SAFETY: both are slots
         unsafe {
@@ -243,10 +243,12 @@ impl<const D: usize, W: Law> View<'_, D, W> {
             let b = self.bond::<f64>(&i, &j, &row, &partner);
             let (rows, partners) = ([row; TILE], [partner; TILE]);
             let repulsion = self.repel(&b, j.volume, rows.as_ptr(), partners.as_ptr());
-            let mut pull = repulsion.0;
+            let mut pull = [repulsion.0, 0.5 * repulsion.0];
             if alive {
                 let (k, own, other) = self.acting(&b, i.field, j.field);
-                pull += self.law.pull(k, Extension::exact(b.e), own, other);
+                let g = Extension::exact(b.e);
+                pull[0] += self.law.pull(k, g, own, other);
+                pull[1] += self.law.own_pull(k, g, own, other, BondFactors::ONE);
             }
             (pull, b.y)
         }

@@ -1,7 +1,7 @@
 //! One bond after the other, in plain numbers: homogeneous strains, forces bond by bond.
 
 use super::family::{Family, Slots};
-use super::sweeps::pull;
+use super::sweeps::{own_pull, pull};
 use super::{MaterialInteraction, Room};
 use crate::body::{Body, Field};
 use crate::execute::lane::TILE;
@@ -145,15 +145,16 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
                 let j = self.family.ends(group, k).slot(l);
                 // SAFETY: a bond of the family
-                let (mut force, y) = unsafe {
+                let (mut force, mut own, y) = unsafe {
                     let at = view.group::<f64>(group, l);
                     let point = view.point::<f64>(at.rows);
                     let force = pull::<f64, D, F, M>(&view, &at, &point, k, l);
+                    let own = own_pull::<f64, D, F, M>(&view, &at, &point, k, l);
                     let uj =
                         F::displacement::<f64>(&view.moved, self.family.ends(group, k).from(l));
                     let (xi, _) = self.family.bond(group, k, l);
                     let y: [f64; D] = std::array::from_fn(|a| xi[a] + uj[a] - at.u[a]);
-                    (force, y)
+                    (force, own, y)
                 };
                 if let Some(push) = pushed
                     .as_ref()
@@ -161,6 +162,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 {
                     for a in 0..D {
                         force[a] += push.pull * push.y[a];
+                        own[a] += 0.5 * push.pull * push.y[a];
                     }
                 }
                 if force != [0.0; D] {
@@ -169,6 +171,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                         j: original(j),
                         y,
                         force,
+                        own: M::POTENTIAL.then_some(own),
                     });
                 }
             }

@@ -132,6 +132,34 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     }
 }
 
+/// What of it is the point's own force state; `pull` has the rest.
+///
+/// # Safety
+/// As of [`pull`].
+#[inline(always)]
+pub unsafe fn own_pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
+    v: &View<D, F, M>,
+    at: &GroupOf<L, D, F, M>,
+    point: &M::Point<L>,
+    k: usize,
+    part: usize,
+) -> [L; D] {
+    // SAFETY: the caller's promise
+    unsafe {
+        let ends = v.family.ends(at.number, k).from(part);
+        let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
+        let (bond, weight) = v.bond::<L>(at, k, ends, dead);
+        let memory = v.memory::<L>(at.number, k, part);
+        let end = End {
+            constants: &at.constants,
+            point,
+            memory: &memory,
+        };
+        let own = v.law.answer(&bond, &end).alone(&bond);
+        own.map(|x| weight * x)
+    }
+}
+
 /// What bonds and points remember at the end of a step.
 pub struct Remember<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,

@@ -174,24 +174,20 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
                 let eta: [f64; D] = std::array::from_fn(|a| u[a][j] - u[a][i]);
                 let xi = b.back.map(|x| -x);
                 let ends = [i, original(j)];
-                let mut pull = 0.0;
+                let mut pull = [0.0; 2];
                 let bond = Stretched::new(xi, eta);
                 if alive {
                     let fields = [i, j].map(|s| self.field(s));
                     let factors = self.scale.of(p.n, b.number as usize, p.lane);
-                    pull = bond.tension(self.law, b.k, factors, fields);
+                    pull = bond.tensions(self.law, b.k, factors, fields);
                 }
                 if let Some(repulsion) = &self.repulsion {
                     let materials = ends.map(|s| body.material_of(s));
-                    pull += repulsion.pull(&xi, &bond.y, materials, self.volume);
+                    let push = repulsion.pull(&xi, &bond.y, materials, self.volume);
+                    pull = [pull[0] + push, pull[1] + 0.5 * push];
                 }
-                if pull != 0.0 {
-                    visit(BondForce {
-                        i,
-                        j: ends[1],
-                        y: bond.y,
-                        force: bond.y.map(|c| pull * c),
-                    });
+                if pull[0] != 0.0 {
+                    visit(BondForce::central(ends, bond.y, pull));
                 }
             }
         }

@@ -65,6 +65,7 @@ fn increment<N: Number, const D: usize>(dv: &Matrix<N, D>, v: &Matrix<N, D>) -> 
 impl<const D: usize> Classical<D> for Hypoelastic {
     type Constants<N: Number> = [N; 2];
     type Past<N: Number> = Past<N, D>;
+    const POTENTIAL: bool = false;
 
     fn columns(&self) -> Vec<Declaration> {
         vec![

@@ -19,6 +19,8 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
     type Constants<N: Number>: Numbers<N>;
     /// What a point remembers.
     type Past<N: Number>: Numbers<N>;
+    /// [`Material::POTENTIAL`]
+    const POTENTIAL: bool = true;
 
     /// What a point remembers, in the order of its numbers.
     fn columns(&self) -> Vec<Declaration> {
@@ -117,6 +119,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 1;
     const STRETCHES: bool = false;
+    const POTENTIAL: bool = L::POTENTIAL;
     const FORM_OF_WHOLE: bool = true;
 
     fn columns(&self) -> Columns {

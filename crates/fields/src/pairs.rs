@@ -1,0 +1,235 @@
+//! Fields of particles that say themselves what they do to each other, pair by pair: peridynamic bodies.
+//!
+//! A peridynamic body is a system of particles of mass `m_i = ρ_i V_i` whose parts of the energy are `U^(i) = W_i V_i`. With force states T,
+//! `∂U^(i)/∂x_k = V_i V_k T_i⟨ξ_ik⟩` and `f_ik = V_i V_k (T_i⟨ξ_ik⟩ − T_k⟨ξ_ki⟩) = ∂U^(i)/∂x_k − ∂U^(k)/∂x_i`: the pair force (4.0.26) of
+//! differences with the partition by sites, central or not. So nothing churns, and with β along the segments between the points
+//! as they are now, density, stress and heat flux are those of any other particles ([`crate::evaluate`]).
+
+use crate::FieldsError;
+use crate::accumulate::{self, BOND};
+use crate::bonds::Bonds;
+use crate::fields::{Fields, Layout, NO_POTENTIAL, Quantity, Sums, Totals};
+use crate::frame::Frame;
+use crate::kernel::dot;
+use crate::neighbours::Neighbours;
+use crate::partition::{PairForce, Partition};
+use crate::sums::{Method, Moving, Own, add};
+use crate::targets::{Bins, Targets};
+use rayon::prelude::*;
+
+/// What a particle gets from a partner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pull {
+    pub i: u32,
+    pub k: u32,
+    /// From i to the image of k that pulls; what it is off the positions by does not matter below half a period (length).
+    pub y: [f64; 3],
+    /// On i (force).
+    pub force: [f64; 3],
+    /// `∂U^(i)/∂x_k` (force). `None`: there is no such energy.
+    pub own: Option<[f64; 3]>,
+}
+
+/// Calls what it is given with every pull, from both particles of a pair.
+pub type Pulls<'a> = dyn FnMut(&mut dyn FnMut(Pull)) + 'a;
+
+/// The choices that a body of particles with force states leaves: those that they are.
+pub fn method(method: Method) -> Method {
+    Method {
+        partition: Partition::Site,
+        pair_force: PairForce::Differences,
+        by_part: false,
+        molecules: None,
+        ..method
+    }
+}
+
+/// Pairs that are held at a time, and those of a block.
+const HELD: usize = 1 << 15;
+const BLOCK: usize = 1 << 10;
+
+/// Fields of a frame whose particles have these energies `U^(i)` and pulls. Of `method` the choices that [`method`] makes are not read.
+///
+/// # Errors
+/// A frame that makes no sense, energies of another number of particles, a pull that is not finite.
+pub fn evaluate(
+    frame: &Frame,
+    energy: &[f64],
+    pulls: &mut Pulls,
+    targets: &Targets,
+    method: &Method,
+) -> Result<Fields, FieldsError> {
+    frame.check()?;
+    if energy.len() != frame.len() {
+        return Err(FieldsError(format!(
+            "{} energies of {} particles",
+            energy.len(),
+            frame.len()
+        )));
+    }
+    // for blocks of particles alone
+    let neighbours = Neighbours::new(frame, method.kernel.width())?;
+    let bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    let drift = frame.drift();
+    let velocity = frame.velocities_beside(drift);
+    let layout = Layout {
+        parts: 1,
+        moving: !velocity.is_empty(),
+        rates: method.rates && !velocity.is_empty(),
+    };
+    let mut gather = Gather {
+        frame,
+        wrapped: &neighbours.wrapped,
+        velocity: &velocity,
+        bins: &bins,
+        method,
+        own: Own {
+            energy: energy.to_vec(),
+            ..Own::new(frame.len(), 1)
+        },
+        totals: Totals::new(frame),
+        held: Bonds::default(),
+        sums: vec![0.0; targets.len() * BOND],
+        potential: true,
+        wrong: None,
+    };
+    pulls(&mut |pull| gather.take(&pull));
+    gather.flush();
+    let Gather {
+        own,
+        mut totals,
+        sums,
+        potential,
+        wrong,
+        ..
+    } = gather;
+    if let Some(wrong) = wrong {
+        return Err(wrong);
+    }
+    totals.energy = own.energy.iter().sum();
+    let moving = Moving {
+        frame,
+        velocity: &velocity,
+        drift,
+        layout: &layout,
+    };
+    let sums = Sums {
+        particles: moving.sums(&neighbours, &bins, &method.kernel, &own),
+        bonds: sums,
+    };
+    let mut fields = Fields::finish(
+        targets.positions(&frame.cell),
+        vec!["all".into()],
+        layout,
+        &sums,
+        drift,
+        method.boltzmann,
+        totals,
+        own.force,
+    );
+    if !potential {
+        let lost = [
+            Quantity::Churning,
+            Quantity::HeatPotential,
+            Quantity::HeatChurning,
+            Quantity::ChurningSource,
+        ];
+        fields.leave_out(&lost, NO_POTENTIAL);
+    }
+    Ok(fields)
+}
+
+/// Pulls as they come, and what has been made of them.
+struct Gather<'a> {
+    frame: &'a Frame,
+    wrapped: &'a [[f64; 3]],
+    velocity: &'a [[f64; 3]],
+    bins: &'a Bins<'a>,
+    method: &'a Method,
+    own: Own,
+    totals: Totals,
+    held: Bonds,
+    sums: Vec<f64>,
+    potential: bool,
+    wrong: Option<FieldsError>,
+}
+
+impl Gather<'_> {
+    fn take(&mut self, pull: &Pull) {
+        let [i, k] = [pull.i, pull.k].map(|n| n as usize);
+        let Pull { force, .. } = *pull;
+        if !(force.iter().chain(&pull.y).all(|c| c.is_finite())) {
+            self.wrong.get_or_insert_with(|| {
+                FieldsError(format!("the force on particle {} is not finite", i + 1))
+            });
+            return;
+        }
+        for c in 0..3 {
+            self.own.force[i][c] += force[c];
+        }
+        self.potential &= pull.own.is_some();
+        let own = pull.own.unwrap_or([0.0; 3]);
+        let velocity = |n: usize| self.velocity.get(n).copied().unwrap_or([0.0; 3]);
+        let (vi, vk) = (velocity(i), velocity(k));
+        let apart: [f64; 3] = std::array::from_fn(|c| vk[c] - vi[c]);
+        self.own.power[i] += dot(own, apart);
+        // a pair once; one of a particle and its own image from the side that looks ahead
+        let ahead = || pull.y.iter().find(|c| **c != 0.0).is_some_and(|c| *c > 0.0);
+        if i > k || (i == k && !ahead()) {
+            return;
+        }
+        let x = self.frame.position[i];
+        let at = std::array::from_fn(|c| x[c] + pull.y[c]);
+        let (_, off) = self.frame.cell.nearest(at, self.frame.position[k]);
+        let y: [f64; 3] = std::array::from_fn(|c| pull.y[c] + off[c]);
+        for n in 0..9 {
+            self.totals.virial[n] -= y[n / 3] * force[n % 3];
+        }
+        let back: [f64; 3] = std::array::from_fn(|c| own[c] - force[c]);
+        let x = self.wrapped[i];
+        self.held.end.push(std::array::from_fn(|c| x[c] + y[c]));
+        self.held.bond.push(y.map(|c| -c));
+        self.held.value.extend(force);
+        // f = D_ik − D_ki: nothing churns
+        self.held.value.extend([0.0; 3]);
+        self.held.value.push(dot(own, vk) - dot(back, vi));
+        if self.held.end.len() == HELD {
+            self.flush();
+        }
+    }
+
+    /// Adds the pairs that are held to the points.
+    fn flush(&mut self) {
+        let held = std::mem::take(&mut self.held);
+        let (bins, kernel, cell) = (self.bins, &self.method.kernel, &self.frame.cell);
+        let pairs = held.end.len();
+        let width = held.value.len() / pairs.max(1);
+        let starts: Vec<usize> = (0..pairs).step_by(BLOCK).collect();
+        let some: Vec<_> = starts
+            .into_par_iter()
+            .map(|from| {
+                let to = (from + BLOCK).min(pairs);
+                let block = Bonds {
+                    end: held.end[from..to].to_vec(),
+                    bond: held.bond[from..to].to_vec(),
+                    value: held.value[from * width..to * width].to_vec(),
+                };
+                let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+                for (end, bond) in block.end.iter().zip(&block.bond) {
+                    let other = std::array::from_fn(|c| end[c] + bond[c]);
+                    for s in [cell.fraction(*end), cell.fraction(other)] {
+                        for a in 0..3 {
+                            (low[a], high[a]) = (low[a].min(s[a]), high[a].max(s[a]));
+                        }
+                    }
+                }
+                let patch = bins.patch([low, high]);
+                let sums = accumulate::bonds(kernel, &patch, &block, 1);
+                (patch.index, sums)
+            })
+            .collect();
+        for (index, part) in some {
+            add(&mut self.sums, &index, &part, BOND);
+        }
+    }
+}
