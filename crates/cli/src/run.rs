@@ -9,6 +9,8 @@ use crate::signals;
 use peridyne::error::{BuildError, size};
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
+use peridyne_io::continuum::Units;
+use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
 use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
@@ -210,6 +212,12 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
             }),
         },
         fields: fields(deck),
+        continuum: (!deck.fields.is_empty()).then(|| FieldsPlan {
+            asked: deck.fields.clone(),
+            spec: deck.spec.clone(),
+            corner: deck.corner,
+            units: Units::Deck(deck.units),
+        }),
         units: deck.units,
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),

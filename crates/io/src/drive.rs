@@ -8,8 +8,10 @@ use peridyne::error::{RunError, SolveError};
 use peridyne::observe::{Ledger, Snapshot, Values, temperature_of};
 use peridyne::run::Simulation;
 use peridyne::spec::AnyLinearBody;
+use peridyne_fields::FieldsError;
 
 use crate::balance::BalanceWatch;
+use crate::continuum::run::{FieldsPlan, RunningFields};
 use crate::deck::UnitSystem;
 use crate::read::{Atoms, Species};
 use crate::write::data::write_data;
@@ -51,6 +53,8 @@ pub struct Plan {
     pub threads: usize,
     /// What atoms have besides.
     pub atoms: Option<AtomsPlan>,
+    /// Continuum fields, where any are asked for.
+    pub continuum: Option<FieldsPlan>,
 }
 
 impl Plan {
@@ -217,6 +221,8 @@ pub enum DriveError {
         step: u64,
         dir: PathBuf,
     },
+    #[error("[[fields]]: {0}")]
+    Fields(#[from] FieldsError),
     #[error("the modes were not found: {error}\nthe last state is in {}", dir.display())]
     Modes { error: SolveError, dir: PathBuf },
 }
@@ -259,6 +265,9 @@ pub fn drive(
             trajectories.push(trajectory.with_ase_velocity(atoms.ase_velocity));
         }
     }
+    let asked = plan.continuum.as_ref();
+    let running = asked.map(|asked| RunningFields::new(sim, asked, &plan.dir));
+    let mut running = running.transpose()?;
     let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
     sim.start(true);
     let mut stepping = Duration::ZERO;
@@ -332,6 +341,12 @@ pub fn drive(
             trajectories.iter_mut().try_for_each(|t| t.push(&frame))?;
             framed = Some(sim.step_number());
         }
+        if let Some(running) = &mut running {
+            for text in running.look(sim, n, last)? {
+                progress.warning(&text);
+                warnings.push(text);
+            }
+        }
         if !last
             && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
             && (plan.series.points || plan.series.bonds || plan.series.dump.is_some())
@@ -346,6 +361,9 @@ pub fn drive(
     series.write(&snapshot)?;
     series.finish(&snapshot)?;
     history.finish()?;
+    if let Some(running) = running {
+        running.finish()?;
+    }
     for mut trajectory in trajectories {
         // of a run that stopped, the last good state
         if let Some(atoms) = plan

@@ -2,7 +2,10 @@
 
 pub mod elements;
 pub mod frame;
+pub mod live;
+pub mod plan;
 pub mod potential;
+pub mod run;
 pub mod units;
 
 pub use frame::{Masses, frame};

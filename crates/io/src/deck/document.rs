@@ -2,6 +2,7 @@
 
 mod condition;
 mod crack;
+mod fields;
 mod law;
 mod molecules;
 mod names;
@@ -13,6 +14,7 @@ mod units;
 use super::value::{At, Named, Number, Or, Vector, Written};
 pub use condition::{Condition, Contact, Indenter, Initial};
 pub use crack::{BondFactor, FlatShape, Precrack};
+pub use fields::{Centre, Fields};
 pub use law::{Given, Law};
 pub use molecules::Molecules;
 pub use names::*;
@@ -109,6 +111,9 @@ pub struct Document {
     /// Measurements over time: columns of history.csv.
     #[serde(default)]
     pub probe: Vec<At<Probe>>,
+    /// Continuum fields of the running model: density, momentum, stress, heat flux.
+    #[serde(default)]
+    pub fields: Vec<At<Fields>>,
     /// Motion in time; instead of statics.
     pub run: Option<At<Run>>,
     /// Equilibrium under conditions that grow with t; instead of run.

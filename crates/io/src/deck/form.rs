@@ -7,8 +7,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Tables that a deck has several of.
-const SEVERAL: [&str; 6] = [
+const SEVERAL: [&str; 7] = [
     "probe",
+    "fields",
     "condition",
     "initial",
     "precrack",

@@ -26,6 +26,7 @@ pub use schema::schema;
 pub use source::Flag;
 pub use units::{Constants, Dim, UnitSystem};
 
+use crate::continuum::plan::FieldsSpec;
 use crate::write::trajectory::Format;
 use document::Document;
 use lower::Files;
@@ -41,6 +42,8 @@ use std::path::{Path, PathBuf};
 pub struct Deck {
     pub spec: Spec,
     pub output: OutputSpec,
+    /// Continuum fields to make.
+    pub fields: Vec<FieldsSpec>,
     /// Names of the atoms of each material, where a file says it; none where they are no atoms.
     pub(crate) named: Vec<Option<String>>,
     /// Lower corner of the periods.
@@ -129,6 +132,7 @@ impl Deck {
         Ok(Deck {
             spec: lowered.spec,
             output: lowered.output,
+            fields: lowered.fields,
             named: lowered.species,
             corner: lowered.corner,
             units,

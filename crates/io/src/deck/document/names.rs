@@ -24,6 +24,32 @@ names! {
         /// σ⁶ = ½(σ_i⁶ + σ_j⁶), ε = 2 √(ε_i ε_j) σ_i³ σ_j³ / (σ_i⁶ + σ_j⁶).
         Sixthpower,
     }
+    KernelName {
+        /// c (1 − r²/S²)ⁿ, n the smoothness.
+        Polynomial,
+        /// Cubic spline that ends at S.
+        Bspline,
+        /// Quartic spline that ends at S.
+        Quartic,
+        /// c exp(−r²/(2 S²)), to 8 S.
+        Gaussian,
+        /// c for r < S.
+        Step,
+        /// c in a cube of edge S.
+        Cell,
+    }
+    PartitionName {
+        /// All of a term to its centre, a pair's in halves to its ends.
+        Site,
+        /// In equal parts to all atoms of a term.
+        Equal,
+    }
+    PairForceName {
+        /// Along the lines between particles: stress is symmetric.
+        Distances,
+        /// From the star of a term's centre.
+        Differences,
+    }
     InterfaceName {
         /// Harmonic mean: the two half bonds in series.
         Series,

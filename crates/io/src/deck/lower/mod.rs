@@ -4,6 +4,7 @@ mod atoms;
 mod bodies;
 mod body;
 mod context;
+mod fields;
 mod interface;
 mod law;
 mod material;
@@ -28,6 +29,7 @@ use super::error::DeckError;
 use super::source::Source;
 use super::units::{Constants, Dim, UnitSystem, short};
 use super::value::{At, Or, Written};
+use crate::continuum::plan::FieldsSpec;
 use crate::read::eam::{self, EamFile};
 use crate::read::entries::Entry;
 use crate::read::{Frame, Points};
@@ -117,6 +119,7 @@ pub(super) struct Lowered {
     /// Lower corner of the periods.
     pub corner: [f64; 3],
     pub output: OutputSpec,
+    pub fields: Vec<FieldsSpec>,
     pub threads: Option<usize>,
     pub duration: Option<f64>,
     pub modes: usize,
@@ -271,6 +274,7 @@ pub(super) fn lower(
     Ok(Lowered {
         corner: periods::corner(&context, &document.body.value, &spec.body),
         species: species.collect(),
+        fields: fields::fields(&context, &document.fields, current)?,
         spec,
         output,
         threads: run.threads,

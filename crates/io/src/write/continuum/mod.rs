@@ -1,12 +1,14 @@
 //! Continuum fields at points: a table, NumPy arrays, a VTK image, a picture of a slice, and what all of it is.
 
 mod arrays;
+mod collected;
 mod describe;
 mod image;
 mod slice;
 mod table;
 
 pub use arrays::write_arrays;
+pub use collected::{Collected, Origin, examined};
 pub use describe::{About, Frame, describe};
 pub use image::write_image;
 pub use slice::write_slice;
@@ -63,6 +65,7 @@ impl Table {
     pub fn of_frame(fields: &Fields, units: Units, grid: Option<([usize; 3], Cell)>) -> Table {
         let column = |quantity: Quantity| {
             let values = fields.get(quantity).map(<[f64]>::to_vec);
+            let values = values.ok_or_else(|| fields.why_not(quantity));
             of(quantity, units, values, None)
         };
         let mut columns: Vec<Column> = ORDER.into_iter().map(column).collect();
@@ -85,7 +88,9 @@ impl Table {
     ) -> Table {
         let column = |quantity: Quantity| {
             let errors = average.error(quantity).filter(|_| average.frames() > 1);
-            of(quantity, units, average.mean(quantity), errors)
+            let values = average.mean(quantity);
+            let values = values.ok_or_else(|| average.why_not(quantity));
+            of(quantity, units, values, errors)
         };
         Table {
             points,
@@ -98,7 +103,7 @@ impl Table {
 fn of(
     quantity: Quantity,
     units: Units,
-    values: Option<Vec<f64>>,
+    values: Result<Vec<f64>, &'static str>,
     errors: Option<Vec<f64>>,
 ) -> Column {
     let factor = units.factor(quantity);
@@ -107,7 +112,7 @@ fn of(
         quantity,
         name: quantity.symbol().into(),
         unit: units.unit(quantity),
-        values: values.map(scaled).ok_or(NO_VELOCITIES),
+        values: values.map(scaled),
         errors: errors.map(scaled),
     }
 }
@@ -122,7 +127,10 @@ fn of_part(part: &Part, units: Units) -> Vec<Column> {
     ]
     .into_iter()
     .map(|(quantity, values)| {
-        let values = (!values.is_empty()).then(|| values.clone());
+        let values = match values.is_empty() {
+            true => Err(NO_VELOCITIES),
+            false => Ok(values.clone()),
+        };
         let own = of(quantity, units, values, None);
         Column {
             name: format!("{}({})", own.name, part.name),

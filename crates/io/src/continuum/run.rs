@@ -1,0 +1,164 @@
+//! The fields of a run: at which steps they are made, and where they go.
+
+use super::live::Live;
+use super::plan::{FieldsSpec, Place};
+use super::units::Units;
+use crate::write::atomic::WriteError;
+use crate::write::continuum::{Collected, Origin, examined};
+use peridyne::run::Simulation;
+use peridyne::spec::Spec;
+use peridyne_fields::{Cell, FieldsError, Frame, Method, Targets};
+use std::path::Path;
+
+/// What a deck asks for, and of which model.
+#[derive(Debug, Clone)]
+pub struct FieldsPlan {
+    pub asked: Vec<FieldsSpec>,
+    pub spec: Spec,
+    /// Lower corner of the periods.
+    pub corner: [f64; 3],
+    pub units: Units,
+}
+
+/// Fields that are being made.
+pub struct RunningFields {
+    live: Live,
+    each: Vec<One>,
+}
+
+struct One {
+    asked: FieldsSpec,
+    cell: Cell,
+    targets: Targets,
+    method: Method,
+    collected: Collected,
+    /// Frames met so far, those passed over too.
+    met: u64,
+    /// Why there are no more.
+    stopped: bool,
+}
+
+impl RunningFields {
+    /// # Errors
+    /// What is asked for makes no sense with this model.
+    pub fn new(
+        sim: &mut dyn Simulation,
+        plan: &FieldsPlan,
+        dir: &Path,
+    ) -> Result<RunningFields, FieldsError> {
+        let live = Live::new(sim, &plan.spec, plan.corner)?;
+        let mut each = vec![];
+        for asked in &plan.asked {
+            let cell = live.cell(&asked.place)?;
+            let (targets, method) = live.method(asked, &cell)?;
+            each.push(One {
+                collected: Collected::new(dir.join(&asked.name), plan.units, asked.each),
+                asked: asked.clone(),
+                cell,
+                targets,
+                method,
+                met: 0,
+                stopped: false,
+            });
+        }
+        Ok(RunningFields { live, each })
+    }
+
+    /// Makes what is due at this step. Returns what the user should know: fields that end here, and why.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn look(
+        &mut self,
+        sim: &mut dyn Simulation,
+        step: u64,
+        last: bool,
+    ) -> Result<Vec<String>, WriteError> {
+        let mut said = vec![];
+        for one in &mut self.each {
+            if !one.is_due(step, last) {
+                continue;
+            }
+            if let Err(why) = one.take(&self.live, sim)? {
+                one.stopped = true;
+                said.push(format!(
+                    "no {} from step {} on: {why}",
+                    one.asked.name,
+                    sim.step_number()
+                ));
+            }
+        }
+        Ok(said)
+    }
+
+    /// Writes what stands for all frames.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn finish(self) -> Result<(), WriteError> {
+        let of = self.live.source();
+        let all = self.each.into_iter();
+        all.map(|one| one.collected.finish("the run", of, &one.method))
+            .collect()
+    }
+}
+
+impl One {
+    fn is_due(&mut self, step: u64, last: bool) -> bool {
+        if self.stopped {
+            return false;
+        }
+        let due = self.asked.every.is_some_and(|every| step % every == 0);
+        if due {
+            self.met += 1;
+        }
+        // a run that ends before the first has its end
+        (due && self.met > self.asked.skip) || (last && self.collected.frames() == 0)
+    }
+
+    /// A frame, or why there is none.
+    fn take(
+        &mut self,
+        live: &Live,
+        sim: &mut dyn Simulation,
+    ) -> Result<Result<(), FieldsError>, WriteError> {
+        let frame = live.frame(sim, &self.cell);
+        let found = match live.fields(sim, &frame, &self.targets, &self.method) {
+            Ok(found) => found,
+            Err(why) => return Ok(Err(why)),
+        };
+        let grid = match self.asked.place {
+            Place::Grid { counts, .. } => Some((counts, self.cell.clone())),
+            Place::Points(_) => None,
+        };
+        let origin = Origin {
+            index: self.collected.frames(),
+            step: Some(sim.step_number()),
+            time: Some(sim.time()),
+            cell: &self.cell,
+            grid: grid.is_some(),
+            force: None,
+        };
+        let residuals = self.residuals(live, sim, &frame);
+        let about = examined(&found, &origin, residuals);
+        self.collected.push(&found, about, grid).map(Ok)
+    }
+
+    fn residuals(
+        &self,
+        live: &Live,
+        sim: &mut dyn Simulation,
+        frame: &Frame,
+    ) -> Result<peridyne_fields::residuals::Residuals, String> {
+        if self.asked.residuals == 0 {
+            return Err("not asked for".into());
+        }
+        let all = self.targets.positions(&self.cell);
+        let step = all.len().div_ceil(self.asked.residuals).max(1);
+        let points: Vec<[f64; 3]> = all.into_iter().step_by(step).collect();
+        // a small part of the distance over which φ changes
+        let h = self.method.kernel.width() / 40.0;
+        live.residuals(sim, frame, &self.method, &points, h)
+            .map_err(|e| e.to_string())
+    }
+}
