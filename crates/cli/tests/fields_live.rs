@@ -1,0 +1,170 @@
+//! `[[fields]]` of a deck: what a run writes, and that it is what `peridyne fields` makes of its frames.
+
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+/// Exit code, standard output and error of the program in a folder.
+fn peridyne(dir: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args(arguments)
+        .current_dir(dir)
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.code(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+fn run(dir: &Path, deck: &str) {
+    std::fs::write(dir.join("deck.toml"), deck).unwrap();
+    let (code, _, error) = peridyne(dir, &["run", "deck.toml", "--out", "out", "--threads", "2"]);
+    assert_eq!(code, Some(0), "{error}");
+}
+
+/// Numbers of a table by the names of its columns; empty fields are not numbers.
+fn table(path: &Path) -> Vec<(String, Vec<f64>)> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let names = lines.next().unwrap().split(',');
+    let mut columns: Vec<(String, Vec<f64>)> = names.map(|n| (n.to_string(), vec![])).collect();
+    for line in lines {
+        for (column, field) in columns.iter_mut().zip(line.split(',')) {
+            column.1.push(field.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+/// Columns of one name agree to so much of the largest of those that begin alike.
+fn same(live: &Path, files: &Path, tolerance: f64) {
+    let (live, files) = (table(live), table(files));
+    assert_eq!(live.len(), files.len());
+    for ((name, a), (other, b)) in live.iter().zip(&files) {
+        assert_eq!(name, other);
+        let kind = name.split('_').next().unwrap();
+        let alike = files.iter().filter(|c| c.0.split('_').next() == Some(kind));
+        let size = alike.flat_map(|c| &c.1).fold(0.0f64, |m, x| m.max(x.abs()));
+        // what churns by round-off alone, beside stress
+        let stress = files.iter().find(|c| c.0 == "s_xx").unwrap();
+        let size = size.max(stress.1.iter().fold(0.0, |m, x| m.max(x.abs())));
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() <= tolerance * size, "{name}: {a} {b}");
+        }
+    }
+}
+
+const POINTS: &str = "0.3 0.2 0.1\n1.7 2.2 0.4\n3.1 0.9 2.8\n2.0 2.0 2.0\n";
+
+fn inline() -> String {
+    let rows = POINTS
+        .lines()
+        .map(|l| format!("[{}]", l.replace(' ', ", ")));
+    rows.collect::<Vec<_>>().join(", ")
+}
+
+/// Means over three frames of a liquid, and silicon with parts of the potential kept apart.
+#[test]
+fn fields_of_running_atoms_are_those_of_their_frames() {
+    let dir = TempDir::new().unwrap();
+    let at = dir.path();
+    std::fs::write(at.join("points.txt"), POINTS).unwrap();
+    let deck = format!(
+        "units = \"lj\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
+         body = {{ lattice = \"fcc\", spacing = 1.6, cells = [4, 4, 4] }}\n\
+         material = {{ mass = 1, law = {{ lennard_jones = {{ epsilon = 1, sigma = 1, cutoff = 2.5, end = \"smooth\" }} }} }}\n\
+         thermal = {{ temperature = 0.8, seed = 2 }}\n\
+         run = {{ steps = 20, time_step = 0.005 }}\n\
+         output = {{ every = 10, vtu = false, trajectory = \"frames.extxyz\" }}\n\
+         [[fields]]\nkernel = \"bspline\"\nwidth = 1.5\npoints = [{}]\nevery = 10\npartition = \"equal\"\n",
+        inline()
+    );
+    run(at, &deck);
+    let flags = "--frames out/frames.extxyz --potential lj --with epsilon=1 --with sigma=1 --with cutoff=2.5 --with end=smooth --units lj \
+         --kernel bspline --width 1.5 --points points.txt --partition equal --out files";
+    let mut words: Vec<&str> = vec!["fields"];
+    words.extend(flags.split_whitespace());
+    let (code, _, error) = peridyne(at, &words);
+    assert_eq!(code, Some(0), "{error}");
+    same(
+        &at.join("out/fields/points.csv"),
+        &at.join("files/points.csv"),
+        1e-11,
+    );
+    same(
+        &at.join("out/fields/errors.csv"),
+        &at.join("files/errors.csv"),
+        1e-11,
+    );
+
+    let silicon = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/Si.sw");
+    std::fs::copy(silicon, at.join("Si.sw")).unwrap();
+    let deck = format!(
+        "units = \"metal\"\nperiodic = [\"x\", \"y\", \"z\"]\n\
+         body = {{ lattice = \"diamond\", spacing = 5.431, cells = [2, 2, 2] }}\n\
+         material = {{ mass = 28.0855, law = {{ stillinger_weber = {{ file = \"Si.sw\" }} }} }}\n\
+         thermal = {{ temperature = 900, seed = 3 }}\n\
+         run = {{ steps = 10, time_step = 0.001 }}\n\
+         output = {{ vtu = false, trajectory = \"silicon.extxyz\" }}\n\
+         [[fields]]\nname = \"stress\"\nkernel = \"gaussian\"\nwidth = \"1.5 Å\"\npoints = [{}]\nparts = true\npair_force = \"differences\"\n",
+        inline()
+    );
+    run(at, &deck);
+    let flags = "--frames out/silicon.extxyz --skip 1 --potential stillinger_weber --file Si.sw --element Si --units metal --mass Si=28.0855 \
+         --kernel gaussian --width 1.5 --points points.txt --parts --pair-force differences --out silicon";
+    let mut words: Vec<&str> = vec!["fields"];
+    words.extend(flags.split_whitespace());
+    let (code, _, error) = peridyne(at, &words);
+    assert_eq!(code, Some(0), "{error}");
+    same(
+        &at.join("out/stress/points.csv"),
+        &at.join("silicon/points.csv"),
+        1e-11,
+    );
+}
+
+/// A plate with a crack, pulled: an image for each frame, their collection, the picture, and why there is no temperature.
+#[test]
+fn fields_of_a_body_are_written_as_those_of_atoms() {
+    let dir = TempDir::new().unwrap();
+    let at = dir.path();
+    let deck = "horizon = { m_ratio = 3 }\nplane = \"strain\"\nthickness = \"2 mm\"\n\
+         body = { lattice = \"square\", spacing = \"1 mm\", region = { block = { low = [0, 0], high = [\"20 mm\", \"16 mm\"] } } }\n\
+         material = { density = \"2500 kg/m^3\", law = { lps = { young = \"70 GPa\", poisson = 0.22 } } }\n\
+         initial = [{ velocity = [0, \"10 m/s * (y - 8e-3) / (8 mm)\"] }]\n\
+         run = { steps = 8 }\noutput = { vtu = false }\n\
+         [[fields]]\nkernel = \"polynomial\"\nwidth = \"3 mm\"\ngrid = [20, 16]\nevery = 4\neach = true\n\
+         [[fields]]\nname = \"profile\"\nkernel = \"bspline\"\nwidth = \"4 mm\"\naverage = [\"x\"]\n\
+         line = { from = [0, \"2 mm\"], to = [0, \"14 mm\"], count = 5 }\n";
+    run(at, deck);
+    for file in [
+        "fields.vti",
+        "fields.npz",
+        "fields.json",
+        "stress.png",
+        "frames.pvd",
+        "frame.000000.vti",
+        "frame.000002.vti",
+    ] {
+        assert!(at.join("out/fields").join(file).exists(), "{file}");
+    }
+    let profile = table(&at.join("out/profile/points.csv"));
+    let column = |name: &str| &profile.iter().find(|c| c.0 == name).unwrap().1;
+    assert!(column("s_yy").iter().all(|s| *s > 0.0));
+    assert!(column("T").iter().all(|t| t.is_nan()));
+    let reason = profile.last().unwrap();
+    assert!(reason.0.starts_with("no T: "), "{}", reason.0);
+    let text = std::fs::read_to_string(at.join("out/fields/fields.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["frames_read"], 3);
+    assert_eq!(json["pair_force"], "differences");
+    for law in ["mass", "momentum", "energy"] {
+        let left = json["residuals"][format!("{law}_extrapolated")]
+            .as_f64()
+            .unwrap();
+        assert!(left < 1e-3, "{law}: {left:e}");
+    }
+}
