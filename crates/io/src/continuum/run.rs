@@ -52,7 +52,12 @@ impl RunningFields {
             let cell = live.cell(&asked.place)?;
             let (targets, method) = live.method(asked, &cell)?;
             each.push(One {
-                collected: Collected::new(dir.join(&asked.name), plan.units, asked.each),
+                collected: Collected::new(
+                    dir.join(&asked.name),
+                    plan.units,
+                    asked.each,
+                    asked.pressure,
+                ),
                 asked: asked.clone(),
                 cell,
                 targets,
