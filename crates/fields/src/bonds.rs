@@ -67,6 +67,14 @@ impl Bonds {
         self.value.reserve(more * parts * WIDTH);
     }
 
+    fn clear(&mut self) {
+        self.origins.clear();
+        self.origin.clear();
+        self.end.clear();
+        self.bond.clear();
+        self.value.clear();
+    }
+
     /// A centre after the others.
     pub fn centre(&mut self, x: [f64; 3]) {
         self.origins.push(x);
@@ -194,6 +202,13 @@ struct Here {
 /// No bond from the start.
 const NONE: u32 = u32::MAX;
 
+/// Room that one block after the other uses.
+#[derive(Default)]
+pub struct Spare {
+    rows: Rows,
+    pub bonds: Bonds,
+}
+
 /// Neighbours of the centres of a block, row by row.
 #[derive(Default)]
 struct Rows {
@@ -229,10 +244,13 @@ impl Collector<'_> {
     ///
     /// # Errors
     /// A term that is not finite, or weights that do not add up.
-    pub fn collect(&self, centres: &[u32]) -> Result<Block, FieldsError> {
+    pub fn collect(&self, centres: &[u32], spare: &mut Spare) -> Result<Block, FieldsError> {
         let mut room = Room {
             of: self,
-            out: Block::default(),
+            out: Block {
+                bonds: std::mem::take(&mut spare.bonds),
+                ..Block::default()
+            },
             shares: vec![0; self.frame.len()],
             places: Map::default(),
             here: vec![],
@@ -240,10 +258,12 @@ impl Collector<'_> {
             gradient: vec![],
             pull: vec![],
         };
+        room.out.bonds.clear();
         for i in centres {
             room.out.bonds.centre(self.neighbours.wrapped[*i as usize]);
         }
-        let rows = self.rows(centres, &mut room);
+        let rows = &mut spare.rows;
+        self.rows(centres, &mut room, rows);
         let mut near: Vec<Near> = vec![];
         for (row, &i) in centres.iter().enumerate() {
             let end = rows.first.get(row + 1).copied().unwrap_or(rows.here.len());
@@ -286,11 +306,12 @@ impl Collector<'_> {
     }
 
     /// Neighbours of all centres, with a bond for each pair; the centres are the first of the shares.
-    fn rows(&self, centres: &[u32], room: &mut Room) -> Rows {
+    fn rows(&self, centres: &[u32], room: &mut Room, rows: &mut Rows) {
         for &i in centres {
             room.share(i);
         }
-        let mut rows = Rows::default();
+        rows.first.clear();
+        rows.here.clear();
         let mut partners: Vec<Partner> = vec![];
         for (row, &i) in centres.iter().enumerate() {
             rows.first.push(rows.here.len());
@@ -325,7 +346,6 @@ impl Collector<'_> {
                 });
             }
         }
-        rows
     }
 
     /// What a centre is bonded to, the nearest images of it.

@@ -6,7 +6,7 @@
 
 use crate::FieldsError;
 use crate::accumulate::{self, BOND, Form, Particles};
-use crate::bonds::{Block, Collector};
+use crate::bonds::{Block, Collector, Spare};
 use crate::fields::{Fields, Layout, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::{Kernel, dot};
@@ -16,7 +16,7 @@ use crate::partition::{PairForce, Partition};
 use crate::targets::{Bins, Targets};
 use peridyne::law::terms::Sites;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// How fields are made.
 #[derive(Debug, Clone)]
@@ -105,6 +105,7 @@ pub fn evaluate(
     let wide = sites
         .reach()
         .max(molecules.map_or(0.0, |m| m.longest(frame)));
+    let spares: Mutex<Vec<Spare>> = Mutex::default();
     let batch = 2 * rayon::current_num_threads();
     for first in (0..blocks.count).step_by(batch) {
         let some: Vec<_> = (first..(first + batch).min(blocks.count))
@@ -117,14 +118,20 @@ pub fn evaluate(
                 if patch.index.is_empty() || centres.is_empty() {
                     return Ok((Block::default(), None, centres.is_empty()));
                 }
-                let mut block = collector.collect(&centres)?;
+                let spare = spares.lock().ok().and_then(|mut all| all.pop());
+                let mut room = spare.unwrap_or_default();
+                let mut block = collector.collect(&centres, &mut room)?;
                 let form = match block.churns || method.pair_force == PairForce::Differences {
                     true => Form::Whole,
                     false if layout.moving => Form::Moving,
                     false => Form::Still,
                 };
-                let of = std::mem::take(&mut block.bonds);
-                let sums = accumulate::bonds(&method.kernel, &patch, &of, parts, form);
+                room.bonds = std::mem::take(&mut block.bonds);
+                let of = &room.bonds;
+                let sums = accumulate::bonds(&method.kernel, &patch, of, parts, form);
+                if let Ok(mut all) = spares.lock() {
+                    all.push(room);
+                }
                 Ok((block, Some((patch.index, sums)), true))
             })
             .collect();
