@@ -34,6 +34,7 @@ pub mod partition;
 pub mod residuals;
 pub mod sums;
 pub mod targets;
+mod wide;
 
 pub use fields::{Fields, Quantity};
 pub use frame::{Cell, Frame};

@@ -2,9 +2,11 @@
 
 pub mod elements;
 pub mod frame;
+pub mod kinds;
 pub mod potential;
 pub mod units;
 
 pub use frame::{Masses, frame};
-pub use potential::{Model, model};
+pub use kinds::Kind;
+pub use potential::{Model, model, of_deck};
 pub use units::Units;
