@@ -143,7 +143,7 @@ fn frames(
         let about = examined(&atoms, &state, &found, here, residuals, grid.is_some());
         done.read.push(about);
         done.average.add(&found);
-        let table = Table::of_frame(&found, request.units, grid.clone());
+        let table = Table::of_frame(&found, request.units, grid.clone(), request.pressure);
         if request.each {
             hold(request, folder)?;
             let stem = format!("frame.{here:06}");
@@ -294,7 +294,13 @@ fn save(request: &Request, done: Done, folder: &mut Option<Folder>) -> Result<()
     // of one frame it is that frame, with the parts of the potential
     let table = match frames {
         1 => last,
-        _ => Table::of_average(&done.average, done.points, request.units, done.grid),
+        _ => Table::of_average(
+            &done.average,
+            done.points,
+            request.units,
+            done.grid,
+            request.pressure,
+        ),
     };
     let name = request.frames.display().to_string();
     let Some((method, read)) = request.last_method(&table).zip(Some(done.read)) else {

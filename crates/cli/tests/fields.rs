@@ -216,6 +216,55 @@ fn grids_are_images_with_means_and_each_frame() {
     assert!(a == b, "flags and keys give the same arrays");
 }
 
+/// Lines and planes are lists of points, and the pressure is a third of the trace.
+#[test]
+fn lines_planes_and_pressure() {
+    let dir = TempDir::new().unwrap();
+    let dir = dir.path();
+    std::fs::write(dir.join("a.dump"), dump(2, true, true)).unwrap();
+    let run = |more: &[&str], out: &str| {
+        let all = [&["--frames", "a.dump", "--out", out][..], more].concat();
+        let (code, _, error) = fields(dir, &with(&all));
+        assert_eq!(code, Some(0), "{error}");
+        rows(&dir.join(out).join("points.csv"))
+    };
+    let line = run(
+        &["--line", "-1,0,0.5", "1,2,0.5", "5", "--pressure"],
+        "line",
+    );
+    let plane = ["--plane", "-1,0,0.5", "0,0,1", "2,2,0", "2,5"];
+    let plane = run(&plane, "plane");
+    assert_eq!((line.len(), plane.len()), (6, 11));
+    let number = |rows: &[Vec<String>], n: usize, name: &str| -> f64 {
+        let place = rows[0].iter().position(|c| c == name).unwrap();
+        rows[n][place].parse().unwrap()
+    };
+    for n in 1..6 {
+        for name in ["x", "y", "z", "rho", "s_xy", "qU_z"] {
+            // the first edge is the fastest
+            let [a, b] = [number(&line, n, name), number(&plane, 2 * n - 1, name)];
+            assert!((a - b).abs() < 1e-12 * (1.0 + a.abs()), "{name}: {a} {b}");
+        }
+        let trace: f64 = ["s_xx", "s_yy", "s_zz"]
+            .map(|s| number(&line, n, s))
+            .iter()
+            .sum();
+        let pressure = number(&line, n, "pressure");
+        assert!((pressure + trace / 3.0).abs() < 1e-12 * (1.0 + pressure.abs()));
+    }
+    assert!(!plane[0].contains(&"pressure".to_string()));
+    let text = std::fs::read_to_string(dir.join("line/fields.json")).unwrap();
+    assert!(text.contains("-(s_xx + s_yy + s_zz)/3"));
+    // the same from a file of keys
+    let deck = "frames = \"a.dump\"\npotential = \"lj\"\nunits = \"lj\"\nkernel = \"polynomial\"\nwidth = 1.5\nout = \"keys\"\n\
+                with = { epsilon = 1, sigma = 1.0, cutoff = 2 }\npressure = true\n\
+                line = { from = [-1, 0, 0.5], to = [1, 2, 0.5], points = 5 }\n";
+    std::fs::write(dir.join("fields.toml"), deck).unwrap();
+    let (code, _, error) = fields(dir, &["fields.toml"]);
+    assert_eq!(code, Some(0), "{error}");
+    assert_eq!(rows(&dir.join("keys/points.csv")), line);
+}
+
 /// Without velocities: what can be had is there, the rest is empty, and the first line says why.
 #[test]
 fn frames_without_velocities_have_fewer_fields() {
@@ -256,6 +305,10 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     packed.write_all(good.repeat(20).as_bytes()).unwrap();
     let packed = packed.finish().unwrap();
     std::fs::write(dir.join("cut.dump.gz"), &packed[..packed.len() / 2]).unwrap();
+    let mut flipped = packed.clone();
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 0x55;
+    std::fs::write(dir.join("flipped.dump.gz"), flipped).unwrap();
     std::fs::write(dir.join("cut.dump"), &good[..good.len() - 100]).unwrap();
     let fewer = dump(1, true, true).replace("ATOMS\n27", "ATOMS\n26");
     let fewer = fewer.trim_end().rsplit_once('\n').unwrap().0.to_string();
@@ -318,6 +371,112 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
             "no potential named lenard",
         ),
         (changed("--points", "bad"), "bad:2: expected x y z"),
+        // a box of a few, and a reach of thousands
+        (
+            frames("good.dump")
+                .iter()
+                .map(|a| if *a == "cutoff=2" { "cutoff=4000" } else { a })
+                .collect(),
+            "is many times the cell",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--line",
+                "0,0,0",
+                "1,1",
+                "5",
+                "--out",
+                "out",
+            ]),
+            "--line: expected x,y,z, three finite numbers, found `1,1`",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--line",
+                "0,0,0",
+                "1,1,1",
+                "1",
+                "--out",
+                "out",
+            ]),
+            "--line: expected a number of points from 2",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--plane",
+                "0,0,0",
+                "1,0,0",
+                "0,1,0",
+                "5",
+                "--out",
+                "out",
+            ]),
+            "--plane: expected N,M",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--line",
+                "0,0,0",
+                "1,1,1",
+                "3",
+                "--grid",
+                "2,2,2",
+                "--out",
+                "out",
+            ]),
+            "--grid and --line: give one of them",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--points",
+                "p",
+                "--molecules",
+                "good.data",
+                "--out",
+                "out",
+            ]),
+            "--special is missing",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--points",
+                "p",
+                "--molecules",
+                "good.data",
+                "--special",
+                "0,0",
+                "--out",
+                "out",
+            ]),
+            "--special 0,0: expected three numbers",
+        ),
+        (
+            with(&[
+                "--frames",
+                "good.dump",
+                "--points",
+                "p",
+                "--molecules",
+                "none.data",
+                "--special",
+                "0,0,0",
+                "--out",
+                "out",
+            ]),
+            "none.data",
+        ),
         (changed("--points", "nowhere"), "nowhere: cannot read it"),
         (changed("--frames", "nowhere.dump"), "cannot read it"),
         (changed("--with", "epsilom=1"), "epsilom"),
@@ -341,6 +500,20 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         (frames("cut.dump.gz"), "damaged or cut off"),
         (frames("cut.dump"), "cut.dump:"),
         (frames("changing.dump"), "frame 1: it has 26 atoms"),
+        // frames that were written go too
+        (
+            with(&[
+                "--frames",
+                "changing.dump",
+                "--grid",
+                "2,2,2",
+                "--each",
+                "--out",
+                "out",
+            ]),
+            "frame 1: it has 26 atoms",
+        ),
+        (frames("flipped.dump.gz"), "flipped.dump.gz"),
         (metal("unknown.xyz"), "Qq has no mass"),
         (frames("two.xyz"), "Ni, Cu"),
         (frames("same.xyz"), "coincide"),

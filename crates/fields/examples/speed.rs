@@ -1,5 +1,8 @@
-//! Seconds of the fields of embedded atoms on a grid: `speed [CELLS] [GRID] [WIDTH]`, a block of CELLS³ cells of copper (4 atoms each) with
-//! thermal displacements and velocities, one thread; then a small block beside a loop over all bonds for each point.
+//! What the fields of embedded atoms cost: a block of CELLS³ cells of copper (4 atoms each) with thermal displacements and velocities, one
+//! thread.
+//!
+//! `speed [CELLS] [GRID] [WIDTH]`: one grid (GRID³ points) and width (Å); `speed table [CELLS]`: several of both. Beside each stands a loop over
+//! all bonds for each point, measured on eight points and scaled to all, and what β alone costs on points that wait side by side.
 
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
@@ -64,74 +67,146 @@ fn copper(cells: usize) -> Frame {
     }
 }
 
-/// Potential stress at the points of a grid: all bonds, for each point.
-fn naive(frame: &Frame, sites: &dyn Sites, kernel: &Kernel, points: &[[f64; 3]]) -> Vec<f64> {
+/// Potential stress at some points: all bonds, for each point; with the number of bonds, each from both ends, and their whole length.
+fn naive(
+    frame: &Frame,
+    sites: &dyn Sites,
+    kernel: &Kernel,
+    points: &[[f64; 3]],
+) -> (Vec<f64>, [f64; 2]) {
     let neighbours = Neighbours::new(frame, CUT).unwrap();
+    let side = frame.cell.edges[0][0];
+    let mut sums = vec![0.0; 9 * points.len()];
+    let mut count = [0.0; 2];
     let mut partners = vec![];
-    let mut bonds = vec![];
     for i in 0..frame.len() {
         neighbours.near(i, &mut partners);
         let near: Vec<Near> = partners.iter().map(|p| Near { kind: 0, y: p.y }).collect();
+        let mut pulls = vec![0.0; near.len()];
         sites.terms(0, &near, &mut |t| {
-            for &(_, b, g) in &t.pulls {
-                bonds.push((neighbours.wrapped[i], near[b as usize - 1].y, g));
-            }
+            t.pulls.iter().for_each(|p| pulls[p.1 as usize - 1] += p.2);
         });
-    }
-    let side = frame.cell.edges[0][0];
-    let mut all = vec![0.0; 9 * points.len()];
-    for (p, x) in points.iter().enumerate() {
-        for (from, y, g) in &bonds {
-            // the image that is nearest to the point
-            let d: [f64; 3] = std::array::from_fn(|a| {
-                let d = x[a] - from[a] - 0.5 * y[a];
-                d - (d / side).round() * side + 0.5 * y[a]
-            });
-            let beta = kernel.bond(d, *y);
-            if beta != 0.0 {
-                (0..9).for_each(|n| all[9 * p + n] += g * y[n / 3] * y[n % 3] * beta);
+        let from = neighbours.wrapped[i];
+        for (Near { y, .. }, g) in near.iter().zip(pulls) {
+            count[0] += 1.0;
+            count[1] += y.iter().map(|c| c * c).sum::<f64>().sqrt();
+            for (p, x) in points.iter().enumerate() {
+                // the image that is nearest to the point
+                let d: [f64; 3] = std::array::from_fn(|a| {
+                    let d = x[a] - from[a] - 0.5 * y[a];
+                    d - (d / side).round() * side + 0.5 * y[a]
+                });
+                let beta = kernel.bond(d, *y);
+                if beta != 0.0 {
+                    (0..9).for_each(|n| sums[9 * p + n] += g * y[n / 3] * y[n % 3] * beta);
+                }
             }
         }
     }
-    all
+    (sums, count)
+}
+
+/// Seconds that this thread has worked, where the system says so: other programs on the machine do not count.
+fn clock() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(1e-9 * text.split(' ').next()?.parse::<f64>().ok()?)
 }
 
 fn seconds<T>(work: impl FnOnce() -> T) -> (T, f64) {
-    let begun = Instant::now();
+    let (begun, before) = (Instant::now(), clock());
     let out = work();
-    (out, begun.elapsed().as_secs_f64())
+    let worked = clock().zip(before).map(|(b, a)| b - a);
+    (out, worked.unwrap_or(begun.elapsed().as_secs_f64()))
+}
+
+/// β of a bond at points that wait side by side (ns for each).
+fn limit(kernel: &Kernel) -> f64 {
+    let n = 512;
+    let spread = |k: usize, by: f64| {
+        (0..n)
+            .map(|i| kernel.width() * (((i * k) as f64 * by).fract() - 0.5))
+            .collect::<Vec<f64>>()
+    };
+    let columns = [spread(1, 0.618), spread(3, 0.414), spread(7, 0.732)];
+    let mut out = vec![0.0; n];
+    let rounds = 20_000;
+    let (_, time) = seconds(|| {
+        for _ in 0..rounds {
+            let d = [&columns[0][..], &columns[1], &columns[2]];
+            peridyne_fields::bond::bonds(
+                std::hint::black_box(kernel),
+                d,
+                [0.0; 3],
+                [1.5, -1.2, 0.9],
+                std::hint::black_box(&mut out),
+            );
+        }
+    });
+    1e9 * time / (rounds * n) as f64
+}
+
+fn row(frame: &Frame, grid: usize, width: f64) {
+    let sites = OfSites(Copper);
+    let method = Method::new(Kernel::new(Shape::Polynomial(3), width).unwrap());
+    let targets = Targets::Grid([grid; 3]);
+    let (own, time) = seconds(|| -> Fields { evaluate(frame, &sites, &targets, &method).unwrap() });
+    let points = targets.positions(&frame.cell);
+    let some: Vec<usize> = (0..8).map(|k| k * (points.len() - 1) / 7).collect();
+    let at: Vec<[f64; 3]> = some.iter().map(|p| points[*p]).collect();
+    let ((other, [both, length]), slow) = seconds(|| naive(frame, &sites, &method.kernel, &at));
+    let stress = own.get(Quantity::StressPotential).unwrap();
+    let size = other.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let pairs = some
+        .iter()
+        .enumerate()
+        .flat_map(|(k, p)| (0..9).map(move |n| (9 * k + n, 9 * p + n)));
+    let off = pairs
+        .map(|(a, b)| (other[a] - stress[b]).abs())
+        .fold(0.0, f64::max)
+        / size;
+    // points in the balls about both ends and the cylinder between them
+    let count = both / 2.0;
+    let round = std::f64::consts::PI * width * width;
+    let density = points.len() as f64 / frame.cell.volume();
+    let near = density * (count * round * width * 4.0 / 3.0 + round * length / 2.0);
+    println!(
+        "| {grid}³ | {width} | {time:.2} | {:.1} | {:.1} | {:.1} | {:.1} | {:.0} | {off:.0e} |",
+        1e6 * time / frame.len() as f64,
+        near / count,
+        1e9 * time / near,
+        limit(&method.kernel),
+        slow / 8.0 * points.len() as f64 / time,
+    );
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1).map(|a| a.parse::<f64>().unwrap());
-    let cells = arguments.next().unwrap_or(63.0) as usize;
-    let grid = arguments.next().unwrap_or(64.0) as usize;
-    let width = arguments.next().unwrap_or(8.0);
-    let sites = OfSites(Copper);
-    let method = Method::new(Kernel::new(Shape::Polynomial(3), width).unwrap());
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let table = words.first().is_some_and(|w| w == "table");
+    let mut numbers = words
+        .iter()
+        .skip(usize::from(table))
+        .map(|a| a.parse::<f64>().unwrap());
+    let cells = numbers.next().unwrap_or(if table { 32.0 } else { 63.0 }) as usize;
+    let grid = numbers.next().unwrap_or(64.0) as usize;
+    let width = numbers.next().unwrap_or(8.0);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
         .unwrap();
     pool.install(|| {
         let frame = copper(cells);
-        let run = || -> Fields { evaluate(&frame, &sites, &Targets::Grid([grid; 3]), &method).unwrap() };
-        let (_, time) = seconds(run);
-        println!(
-            "{} atoms, {grid}^3 points, width {width}: {time:.2} s on one thread",
-            frame.len()
-        );
-        let small = copper(6);
-        let targets = Targets::Grid([8; 3]);
-        let (own, fast) = seconds(|| evaluate(&small, &sites, &targets, &method).unwrap());
-        let points = targets.positions(&small.cell);
-        let (other, slow) = seconds(|| naive(&small, &sites, &method.kernel, &points));
-        let stress = own.get(Quantity::StressPotential).unwrap();
-        let size = other.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let off = stress.iter().zip(&other).fold(0.0f64, |m, (a, b)| m.max((a - b).abs())) / size;
-        println!(
-            "{} atoms, 8^3 points: {fast:.3} s, potential stress alone bond by bond {slow:.3} s, difference {off:.1e}",
-            small.len()
-        );
+        println!("{} atoms, one thread", frame.len());
+        println!("| grid | width (Å) | s | µs per atom | points per bond | ns per bond and point | of β alone | naive, times as long | difference |");
+        println!("|---|---|---|---|---|---|---|---|---|");
+        match table {
+            true => {
+                for grid in [16, 32, 64] {
+                    for width in [4.0, 8.0, 12.0] {
+                        row(&frame, grid, width);
+                    }
+                }
+            }
+            false => row(&frame, grid, width),
+        }
     });
 }

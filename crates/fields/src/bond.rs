@@ -2,7 +2,9 @@
 //!
 //! Along a bond the squared distance from the point is `p² + ℓ²(λ − λ₀)²` with the distance p of its line, so β is an integral over
 //! the part of the bond that lies in the ball of φ:
-//! - polynomials of smoothness n are polynomials of degree 2n there, which n + 1 Gauss points integrate exactly;
+//! - polynomials of smoothness n are polynomials of degree 2n there: with the middle m and the half length h of what is inside,
+//!   `1 − r²/S² = A − B s² − E s`, `A = 1 − (p² + ℓ²m²)/S²`, `B = ℓ²h²/S²`, `E = 2ℓ²mh/S²`, −1 < s < 1, whose powers have the means
+//!   `Σ n!/((n−2k−j)! j! (2k)!) A^(n−2k−j) (−B)^j E^2k/(2j + 2k + 1)`;
 //! - splines are powers of the distance, whose integrals are elementary (`asinh`);
 //! - the Gaussian gives error functions; steps and cells the length of what is inside.
 //!
@@ -11,56 +13,78 @@
 //! `β = φ`, in the limit 1/V, the virial's.
 
 use crate::kernel::{GAUSSIAN_END, Kernel, Shape, dot};
+use crate::wide::widest;
+
+widest!(
+    /// β (1 / volume) at several points: columns x, y, z of the vectors to them from a place that lies `off` from the end k, all 0 along
+    /// axes that are averaged over; `bond` is from k to the end j.
+    pub bonds, (kernel: &Kernel, d: [&[f64]; 3], off: [f64; 3], bond: [f64; 3], out: &mut [f64]) -> (), Kernel::along
+);
 
 impl Kernel {
     /// β (1 / volume) at a point: from the end k to the point, and from k to the end j.
     pub fn bond(&self, d: [f64; 3], bond: [f64; 3]) -> f64 {
         let mut out = [0.0];
-        self.bonds([&d[..1], &d[1..2], &d[2..]], bond, &mut out);
+        let d = self.project(d);
+        self.along([&d[..1], &d[1..2], &d[2..]], [0.0; 3], bond, &mut out);
         out[0]
     }
 
-    /// β at several points: columns x, y, z of the vectors from the end k to them; `bond` is from k to the end j.
-    pub fn bonds(&self, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
+    /// As [`bonds`], for whatever instructions the caller has.
+    #[inline(always)]
+    pub(crate) fn along(&self, d: [&[f64]; 3], off: [f64; 3], bond: [f64; 3], out: &mut [f64]) {
         let bond = self.project(bond);
         let length = dot(bond, bond);
         // a bond along averaged axes is a point
-        if length < 1e-24 * self.radius() * self.radius() {
-            for (n, out) in out.iter_mut().enumerate() {
-                *out = self.value([d[0][n], d[1][n], d[2][n]]);
-            }
-            return;
-        }
+        let point = length < 1e-24 * self.radius() * self.radius();
         match self.shape() {
-            Shape::Polynomial(n) => wide(self, n, d, bond, out),
-            Shape::CubicSpline => self.each(d, bond, out, |k, s| k.spline_part(s, 3)),
-            Shape::QuarticSpline => self.each(d, bond, out, |k, s| k.spline_part(s, 4)),
-            Shape::Gaussian => self.each(d, bond, out, Kernel::gaussian_part),
-            Shape::Cell => {
+            Shape::Polynomial(n) if !point => polynomial(self, n, d, off, bond, out),
+            _ => {
                 for (n, out) in out.iter_mut().enumerate() {
-                    *out = self.cell_part([d[0][n], d[1][n], d[2][n]], bond);
+                    let d = [d[0][n] + off[0], d[1][n] + off[1], d[2][n] + off[2]];
+                    *out = match point {
+                        true => self.value(d),
+                        false => self.part(d, bond),
+                    };
                 }
             }
         }
     }
 
-    /// φ at several points, from columns of the vectors to them.
-    pub fn values(&self, d: [&[f64]; 3], out: &mut [f64]) {
-        for (n, out) in out.iter_mut().enumerate() {
-            *out = self.value([d[0][n], d[1][n], d[2][n]]);
+    /// β of shapes other than polynomials.
+    fn part(&self, d: [f64; 3], bond: [f64; 3]) -> f64 {
+        let segment = || Segment::new(d, bond);
+        match self.shape() {
+            Shape::CubicSpline => self.norm * self.spline_part(&segment(), 3),
+            Shape::QuarticSpline => self.norm * self.spline_part(&segment(), 4),
+            Shape::Gaussian => self.norm * self.gaussian_part(&segment()),
+            Shape::Cell => self.cell_part(d, bond),
+            Shape::Polynomial(_) => f64::NAN,
         }
     }
 
-    fn each(
-        &self,
-        d: [&[f64]; 3],
-        bond: [f64; 3],
-        out: &mut [f64],
-        part: impl Fn(&Kernel, &Segment) -> f64,
-    ) {
-        for (n, out) in out.iter_mut().enumerate() {
-            let segment = Segment::new(self.project([d[0][n], d[1][n], d[2][n]]), bond);
-            *out = self.norm * part(self, &segment);
+    /// φ at several points, from columns of the vectors to them.
+    #[inline(always)]
+    pub(crate) fn values(&self, d: [&[f64]; 3], out: &mut [f64]) {
+        let [x, y, z] = d.map(|d| &d[..out.len()]);
+        let over = 1.0 / (self.radius() * self.radius());
+        match self.shape() {
+            Shape::Polynomial(power) => {
+                for (n, out) in out.iter_mut().enumerate() {
+                    let q = x[n].mul_add(x[n], y[n].mul_add(y[n], z[n] * z[n]));
+                    let rest = (-q).mul_add(over, 1.0);
+                    let mut value = self.norm;
+                    for _ in 0..power {
+                        value *= rest;
+                    }
+                    *out = if rest > 0.0 { value } else { 0.0 };
+                }
+            }
+            Shape::CubicSpline | Shape::QuarticSpline | Shape::Gaussian | Shape::Cell => {
+                for (n, out) in out.iter_mut().enumerate() {
+                    *out = self.value([x[n], y[n], z[n]]);
+                }
+            }
         }
     }
 
@@ -100,7 +124,7 @@ impl Kernel {
         let (mut low, mut high) = (0.0f64, 1.0f64);
         let half = 0.5 * self.width();
         for a in 0..3 {
-            let d = d[a] * self.counts[a];
+            let d = d[a];
             if bond[a] == 0.0 {
                 if !(d > -half && d <= half) {
                     return 0.0;
@@ -164,92 +188,63 @@ impl Segment {
     }
 }
 
-/// Nodes and weights of Gauss's rule on [0, 1] with n points.
-pub(crate) fn gauss(n: usize) -> Vec<[f64; 2]> {
-    let m = n as f64;
-    let mut rule = vec![];
-    for k in 0..n {
-        let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (m + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..100 {
-            let (mut before, mut value) = (1.0, x);
-            for j in 2..=n {
-                let j = j as f64;
-                (before, value) = (
-                    value,
-                    ((2.0 * j - 1.0) * x * value - (j - 1.0) * before) / j,
-                );
-            }
-            slope = m * (x * value - before) / (x * x - 1.0);
-            let step = value / slope;
-            x -= step;
-            if step.abs() < 1e-16 {
-                break;
-            }
-        }
-        rule.push([0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)]);
-    }
-    rule
-}
-
-/// Loops over points with the widest instructions: additions and products alone, in one order, so the bits are the same.
-fn wide(kernel: &Kernel, n: u32, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("avx512dq")
-        {
-            // SAFETY: just detected
-            return unsafe { avx512(kernel, n, d, bond, out) };
-        }
-        if is_x86_feature_detected!("avx2") {
-            // SAFETY: just detected
-            return unsafe { avx2(kernel, n, d, bond, out) };
-        }
-    }
-    polynomial(kernel, n, d, bond, out);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-fn avx512(kernel: &Kernel, n: u32, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
-    polynomial(kernel, n, d, bond, out);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn avx2(kernel: &Kernel, n: u32, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
-    polynomial(kernel, n, d, bond, out);
-}
-
 #[inline(always)]
-fn polynomial(kernel: &Kernel, n: u32, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
-    match n {
-        0 => of_degree::<0, 1>(kernel, d, bond, out),
-        1 => of_degree::<1, 2>(kernel, d, bond, out),
-        2 => of_degree::<2, 3>(kernel, d, bond, out),
-        3 => of_degree::<3, 4>(kernel, d, bond, out),
-        4 => of_degree::<4, 5>(kernel, d, bond, out),
-        5 => of_degree::<5, 6>(kernel, d, bond, out),
-        6 => of_degree::<6, 7>(kernel, d, bond, out),
-        _ => of_degree::<7, 8>(kernel, d, bond, out),
-    }
-}
-
-/// Nodes and weights for 1 to 8 points.
-static RULES: std::sync::LazyLock<Vec<Vec<[f64; 2]>>> =
-    std::sync::LazyLock::new(|| (0..=8).map(gauss).collect());
-
-#[inline(always)]
-fn of_degree<const N: usize, const POINTS: usize>(
+fn polynomial(
     kernel: &Kernel,
-    [dx, dy, dz]: [&[f64]; 3],
+    n: u32,
+    d: [&[f64]; 3],
+    off: [f64; 3],
     bond: [f64; 3],
     out: &mut [f64],
 ) {
-    let rule: [[f64; 2]; POINTS] = std::array::from_fn(|k| RULES[POINTS][k]);
-    let [cx, cy, cz] = kernel.counts;
+    match n {
+        0 => of_degree::<0>(kernel, d, off, bond, out),
+        1 => of_degree::<1>(kernel, d, off, bond, out),
+        2 => of_degree::<2>(kernel, d, off, bond, out),
+        3 => of_degree::<3>(kernel, d, off, bond, out),
+        4 => of_degree::<4>(kernel, d, off, bond, out),
+        5 => of_degree::<5>(kernel, d, off, bond, out),
+        6 => of_degree::<6>(kernel, d, off, bond, out),
+        _ => of_degree::<7>(kernel, d, off, bond, out),
+    }
+}
+
+/// `½ ∫₋₁¹ (A − B s² − E s)ⁿ ds = Σ c[k][j] A^(n−2k−j) B^j E^2k`.
+type Means = [[f64; 8]; 4];
+
+const fn means(n: usize) -> Means {
+    const fn factorial(n: usize) -> f64 {
+        let (mut product, mut k) = (1.0, 1);
+        while k <= n {
+            product *= k as f64;
+            k += 1;
+        }
+        product
+    }
+    let mut all = [[0.0; 8]; 4];
+    let mut k = 0;
+    while 2 * k <= n {
+        let mut j = 0;
+        while 2 * k + j <= n {
+            let ways = factorial(n) / (factorial(n - 2 * k - j) * factorial(j) * factorial(2 * k));
+            let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
+            all[k][j] = sign * ways / (2 * (j + k) + 1) as f64;
+            j += 1;
+        }
+        k += 1;
+    }
+    all
+}
+
+#[inline(always)]
+fn of_degree<const N: usize>(
+    kernel: &Kernel,
+    [dx, dy, dz]: [&[f64]; 3],
+    off: [f64; 3],
+    bond: [f64; 3],
+    out: &mut [f64],
+) {
+    let table: Means = const { means(N) };
     let radius = kernel.radius() * kernel.radius();
     let length = dot(bond, bond);
     let (over_length, over_radius) = (1.0 / length, 1.0 / radius);
@@ -257,11 +252,16 @@ fn of_degree<const N: usize, const POINTS: usize>(
     let norm = kernel.norm;
     let count = out.len();
     let (dx, dy, dz) = (&dx[..count], &dy[..count], &dz[..count]);
+    let [bx, by, bz] = bond;
     for n in 0..count {
-        let (x, y, z) = (dx[n] * cx, dy[n] * cy, dz[n] * cz);
-        let foot = (x * bond[0] + y * bond[1] + z * bond[2]) * over_length;
-        let (ax, ay, az) = (x - foot * bond[0], y - foot * bond[1], z - foot * bond[2]);
-        let rest = radius - (ax * ax + ay * ay + az * az);
+        let (x, y, z) = (dx[n] + off[0], dy[n] + off[1], dz[n] + off[2]);
+        let foot = x.mul_add(bx, y.mul_add(by, z * bz)) * over_length;
+        let (ax, ay, az) = (
+            (-foot).mul_add(bx, x),
+            (-foot).mul_add(by, y),
+            (-foot).mul_add(bz, z),
+        );
+        let rest = (-ax).mul_add(ax, (-ay).mul_add(ay, (-az).mul_add(az, radius)));
         let rest = if rest > 0.0 { rest } else { 0.0 };
         let half = (rest * over_length).sqrt();
         let (low, high) = (foot - half, foot + half);
@@ -269,16 +269,24 @@ fn of_degree<const N: usize, const POINTS: usize>(
         let high = if high < 1.0 { high } else { 1.0 };
         let span = high - low;
         let span = if span > 0.0 { span } else { 0.0 };
-        let rest = rest * over_radius;
+        // 1 − r²/S² is A − B s² − E s with s from −1 to 1
+        let middle = 0.5f64.mul_add(low + high, -foot);
+        let m = along * (middle * middle);
+        let a = rest.mul_add(over_radius, -m);
+        let b = (0.25 * along) * (span * span);
+        let e = 4.0 * m * b;
+        let mut power = [1.0; 8];
+        for k in 0..N {
+            power[k + 1] = power[k] * a;
+        }
         let mut sum = 0.0;
-        for [node, weight] in rule {
-            let t = low + span * node - foot;
-            let value = rest - along * (t * t);
-            let mut power = 1.0;
-            for _ in 0..N {
-                power *= value;
+        for k in (0..=N / 2).rev() {
+            let most = N - 2 * k;
+            let mut part = table[k][most];
+            for j in (0..most).rev() {
+                part = part.mul_add(b, table[k][j] * power[most - j]);
             }
-            sum += weight * power;
+            sum = e.mul_add(sum, part);
         }
         out[n] = norm * span * sum;
     }
@@ -358,7 +366,35 @@ mod tests {
         all
     }
 
-    /// The midpoint rule on many pieces.
+    /// Nodes and weights of Gauss's rule on [0, 1] with n points.
+    fn gauss(n: usize) -> Vec<[f64; 2]> {
+        let m = n as f64;
+        let mut rule = vec![];
+        for k in 0..n {
+            let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (m + 0.5)).cos();
+            let mut slope = 1.0;
+            for _ in 0..100 {
+                let (mut before, mut value) = (1.0, x);
+                for j in 2..=n {
+                    let j = j as f64;
+                    (before, value) = (
+                        value,
+                        ((2.0 * j - 1.0) * x * value - (j - 1.0) * before) / j,
+                    );
+                }
+                slope = m * (x * value - before) / (x * x - 1.0);
+                let step = value / slope;
+                x -= step;
+                if step.abs() < 1e-16 {
+                    break;
+                }
+            }
+            rule.push([0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)]);
+        }
+        rule
+    }
+
+    /// Gauss's rule on many pieces.
     fn quadrature(kernel: &Kernel, d: [f64; 3], bond: [f64; 3], pieces: usize) -> f64 {
         let rule = gauss(8);
         let mut sum = 0.0;

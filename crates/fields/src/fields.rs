@@ -1,6 +1,6 @@
 //! Fields at points, made of sums.
 
-use crate::accumulate::BOND;
+use crate::accumulate::{BOND, SYMMETRIC};
 use crate::bonds::Block;
 use crate::frame::Frame;
 use crate::kernel::dot;
@@ -23,6 +23,7 @@ pub enum Quantity {
     HeatPotential,
     HeatChurning,
     ChurningSource,
+    Pressure,
 }
 
 /// Powers of units; mass and energy are apart, as users write them.
@@ -36,7 +37,7 @@ pub struct Powers {
 }
 
 impl Quantity {
-    pub const ALL: [Quantity; 15] = [
+    pub const ALL: [Quantity; 16] = [
         Quantity::Density,
         Quantity::Momentum,
         Quantity::Velocity,
@@ -52,6 +53,7 @@ impl Quantity {
         Quantity::HeatPotential,
         Quantity::HeatChurning,
         Quantity::ChurningSource,
+        Quantity::Pressure,
     ];
 
     /// Short name, in columns of tables.
@@ -72,6 +74,7 @@ impl Quantity {
             Quantity::HeatPotential => "qU",
             Quantity::HeatChurning => "qC",
             Quantity::ChurningSource => "zv",
+            Quantity::Pressure => "pressure",
         }
     }
 
@@ -92,6 +95,7 @@ impl Quantity {
             Quantity::HeatPotential => "potential heat flux",
             Quantity::HeatChurning => "churning heat flux",
             Quantity::ChurningSource => "churning heat source",
+            Quantity::Pressure => "pressure",
         }
     }
 
@@ -113,6 +117,7 @@ impl Quantity {
             Quantity::HeatPotential => "(4.0.114)",
             Quantity::HeatChurning => "(4.0.115)",
             Quantity::ChurningSource => "(4.0.120), z^ab dv^b/dx^a",
+            Quantity::Pressure => "-(s_xx + s_yy + s_zz)/3 of the Cauchy stress",
         }
     }
 
@@ -124,7 +129,8 @@ impl Quantity {
             | Quantity::Energy
             | Quantity::InternalEnergy
             | Quantity::PotentialEnergy
-            | Quantity::ChurningSource => 1,
+            | Quantity::ChurningSource
+            | Quantity::Pressure => 1,
             Quantity::Momentum
             | Quantity::Velocity
             | Quantity::HeatKinetic
@@ -156,7 +162,8 @@ impl Quantity {
             | Quantity::StressKinetic
             | Quantity::StressPotential
             | Quantity::Stress
-            | Quantity::Churning => of(0, 1, -3, 0, 0),
+            | Quantity::Churning
+            | Quantity::Pressure => of(0, 1, -3, 0, 0),
             Quantity::HeatKinetic | Quantity::HeatPotential | Quantity::HeatChurning => {
                 of(0, 1, -2, -1, 0)
             }
@@ -181,7 +188,8 @@ impl Quantity {
             | Quantity::HeatKinetic
             | Quantity::HeatPotential
             | Quantity::HeatChurning
-            | Quantity::ChurningSource => true,
+            | Quantity::ChurningSource
+            | Quantity::Pressure => true,
         }
     }
 }
@@ -283,6 +291,8 @@ pub(crate) struct Layout {
     pub parts: usize,
     pub moving: bool,
     pub rates: bool,
+    /// Is there anything that churns?
+    pub churns: bool,
 }
 
 impl Layout {
@@ -291,12 +301,12 @@ impl Layout {
         2 + self.parts + if self.moving { 15 } else { 0 } + if self.rates { 4 } else { 0 }
     }
 
-    /// Numbers times ∇φ: m, m v; m v⊗v, ε v.
+    /// Numbers times ∇φ: m, m v (of what churns and for rates); m v⊗v, ε v.
     pub fn slopes(&self) -> usize {
         match (self.moving, self.rates) {
-            (false, _) => 0,
-            (true, false) => 4,
             (true, true) => 13,
+            (true, false) if self.churns => 4,
+            (true | false, _) => 0,
         }
     }
 
@@ -310,9 +320,6 @@ pub(crate) struct Sums {
     pub bonds: Vec<f64>,
     pub particles: Vec<f64>,
 }
-
-/// Places in xx, yy, zz, yz, xz, xy of the nine components.
-const SYMMETRIC: [usize; 9] = [0, 5, 4, 5, 1, 3, 4, 3, 2];
 
 fn three(s: &[f64]) -> [f64; 3] {
     [s[0], s[1], s[2]]
@@ -461,6 +468,8 @@ impl Fields {
             Q::Stress,
             &std::array::from_fn::<f64, 9, _>(|n| kinetic[n] + stress[n]),
         );
+        let normal: f64 = [0, 4, 8].iter().map(|n| kinetic[*n] + stress[*n]).sum();
+        self.put(Q::Pressure, &[-normal / 3.0]);
         let trace = flow[0] + flow[1] + flow[2];
         let (third, carried) = (&rest[9..12], &rest[12..15]);
         let heat_kinetic: [f64; 3] = std::array::from_fn(|a| {
@@ -476,13 +485,15 @@ impl Fields {
         self.put(Q::HeatChurning, &churned);
         let slopes = &own[layout.width()..];
         // ∂v_b/∂x_a = (∂π_b/∂x_a − v_b ∂ρ/∂x_a)/ρ
-        let source: f64 = (0..9)
-            .map(|n| {
-                let (a, b) = (n / 3, n % 3);
-                let slope = (slopes[3 * (1 + b) + a] - v[b] * slopes[a]) / density;
-                churning[n] * slope
-            })
-            .sum();
+        let source = |n: usize| {
+            let (a, b) = (n / 3, n % 3);
+            churning[n] * (slopes[3 * (1 + b) + a] - v[b] * slopes[a]) / density
+        };
+        let source: f64 = match slopes.is_empty() {
+            // 0, where there is a velocity
+            true => 0.0 / density,
+            false => (0..9).map(source).sum(),
+        };
         self.put(Q::ChurningSource, &[source]);
         if layout.rates {
             self.rates.push(rates(&rest[15..], slopes, drift));

@@ -36,6 +36,7 @@ pub mod residuals;
 pub mod specimen;
 pub mod sums;
 pub mod targets;
+mod wide;
 
 pub use fields::{Fields, Quantity};
 pub use frame::{Cell, Frame};

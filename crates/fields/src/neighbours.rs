@@ -27,6 +27,8 @@ pub struct Neighbours<'a> {
     /// First place of each bin in `order`.
     start: Vec<u32>,
     order: Vec<u32>,
+    /// Where those of `order` are.
+    sorted: Vec<[f64; 3]>,
     /// Bins to look through on each side.
     span: [i32; 3],
 }
@@ -88,6 +90,7 @@ impl<'a> Neighbours<'a> {
             extent,
             start: vec![0; bins.iter().product::<i32>() as usize + 1],
             order: vec![0; frame.len()],
+            sorted: vec![],
             span,
         };
         let place: Vec<u32> = all.wrapped.iter().map(|x| all.bin(*x)).collect();
@@ -103,6 +106,8 @@ impl<'a> Neighbours<'a> {
             all.order[*next as usize] = i as u32;
             *next += 1;
         }
+        let sorted = all.order.iter().map(|i| all.wrapped[*i as usize]);
+        all.sorted = sorted.collect();
         Ok(all)
     }
 
@@ -140,30 +145,23 @@ impl<'a> Neighbours<'a> {
     /// All that are nearer to a particle than the reach, in an order of their own.
     pub fn near(&self, i: usize, out: &mut Vec<Partner>) {
         out.clear();
-        let cell = &self.frame.cell;
         let x = self.wrapped[i];
         let home = self.triple(x);
         let limit = self.reach * self.reach;
-        // bins of an axis, wrapped, with the image they stand for
-        let line = |a: usize, n: i32| -> Option<(i32, i32)> {
-            let count = self.bins[a];
-            match cell.periodic[a] {
-                true => Some((n.rem_euclid(count), n.div_euclid(count))),
-                false => (0..count).contains(&n).then_some((n, 0)),
-            }
-        };
-        let range = |a: usize| home[a] - self.span[a]..=home[a] + self.span[a];
-        for b0 in range(0).filter_map(|n| line(0, n)) {
-            for b1 in range(1).filter_map(|n| line(1, n)) {
-                for b2 in range(2).filter_map(|n| line(2, n)) {
-                    let image = [b0.1, b1.1, b2.1];
+        for (b0, m0) in self.line(0, home[0]) {
+            for (b1, m1) in self.line(1, home[1]) {
+                let row = (b0 * self.bins[1] + b1) * self.bins[2];
+                for [from, to, m2] in self.runs(home[2]) {
+                    let image = [m0, m1, m2];
                     let shift = match image == [0; 3] {
                         true => [0.0; 3],
-                        false => cell.shift(image),
+                        false => self.frame.cell.shift(image),
                     };
-                    for &atom in self.members([b0.0, b1.0, b2.0]) {
-                        let other = self.wrapped[atom as usize];
-                        let y: [f64; 3] = std::array::from_fn(|a| other[a] + shift[a] - x[a]);
+                    let off: [f64; 3] = std::array::from_fn(|a| shift[a] - x[a]);
+                    let [from, to] = [from, to].map(|b| self.start[(row + b) as usize] as usize);
+                    let all = self.order[from..to].iter().zip(&self.sorted[from..to]);
+                    for (&atom, other) in all {
+                        let y: [f64; 3] = std::array::from_fn(|a| other[a] + off[a]);
                         let q = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
                         if q < limit && !(atom as usize == i && image == [0; 3]) {
                             out.push(Partner { atom, image, y });
@@ -172,6 +170,30 @@ impl<'a> Neighbours<'a> {
                 }
             }
         }
+    }
+
+    /// Bins of an axis to look through, wrapped, with the image they stand for.
+    fn line(&self, a: usize, home: i32) -> impl Iterator<Item = (i32, i32)> + use<'_> {
+        let (count, repeats) = (self.bins[a], self.frame.cell.periodic[a]);
+        (home - self.span[a]..=home + self.span[a]).filter_map(move |n| match repeats {
+            true => Some((n.rem_euclid(count), n.div_euclid(count))),
+            false => (0..count).contains(&n).then_some((n, 0)),
+        })
+    }
+
+    /// Bins of the last axis to look through, from and to before, in pieces of an image each.
+    fn runs(&self, home: i32) -> impl Iterator<Item = [i32; 3]> + use<'_> {
+        let (count, repeats) = (self.bins[2], self.frame.cell.periodic[2]);
+        let (mut next, mut end) = (home - self.span[2], home + self.span[2] + 1);
+        if !repeats {
+            (next, end) = (next.max(0), end.min(count));
+        }
+        std::iter::from_fn(move || {
+            let (at, image) = (next.rem_euclid(count), next.div_euclid(count));
+            let here = (end - next).min(count - at);
+            next += here;
+            (here > 0).then_some([at, at + here, image])
+        })
     }
 }
 

@@ -6,14 +6,14 @@
 //! as they are now, density, stress and heat flux are those of any other particles ([`crate::evaluate`]).
 
 use crate::FieldsError;
-use crate::accumulate::{self, BOND};
-use crate::bonds::Bonds;
+use crate::accumulate::{self, BOND, Form};
+use crate::bonds::{Bonds, WIDTH};
 use crate::fields::{Fields, Layout, NO_POTENTIAL, Quantity, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::dot;
 use crate::neighbours::Neighbours;
 use crate::partition::{PairForce, Partition};
-use crate::sums::{Method, Moving, Own, add};
+use crate::sums::{Method, Moving, Own};
 use crate::targets::{Bins, Targets};
 use rayon::prelude::*;
 
@@ -45,7 +45,7 @@ pub fn method(method: Method) -> Method {
 }
 
 /// Pairs that are held at a time, and those of a block.
-const HELD: usize = 1 << 15;
+const HELD: usize = 1 << 16;
 const BLOCK: usize = 1 << 10;
 
 /// Fields of a frame whose particles have these energies `U^(i)` and pulls. Of `method` the choices that [`method`] makes are not read.
@@ -76,6 +76,7 @@ pub fn evaluate(
         parts: 1,
         moving: !velocity.is_empty(),
         rates: method.rates && !velocity.is_empty(),
+        churns: false,
     };
     let mut gather = Gather {
         frame,
@@ -88,7 +89,7 @@ pub fn evaluate(
             ..Own::new(frame.len(), 1)
         },
         totals: Totals::new(frame),
-        held: Bonds::default(),
+        held: vec![],
         sums: vec![0.0; targets.len() * BOND],
         potential: true,
         wrong: None,
@@ -139,6 +140,14 @@ pub fn evaluate(
     Ok(fields)
 }
 
+/// A pair that waits.
+struct Held {
+    i: u32,
+    y: [f64; 3],
+    force: [f64; 3],
+    power: f64,
+}
+
 /// Pulls as they come, and what has been made of them.
 struct Gather<'a> {
     frame: &'a Frame,
@@ -148,7 +157,7 @@ struct Gather<'a> {
     method: &'a Method,
     own: Own,
     totals: Totals,
-    held: Bonds,
+    held: Vec<Held>,
     sums: Vec<f64>,
     potential: bool,
     wrong: Option<FieldsError>,
@@ -185,37 +194,49 @@ impl Gather<'_> {
         for n in 0..9 {
             self.totals.virial[n] -= y[n / 3] * force[n % 3];
         }
+        // f = D_ik − D_ki
         let back: [f64; 3] = std::array::from_fn(|c| own[c] - force[c]);
-        let x = self.wrapped[i];
-        self.held.end.push(std::array::from_fn(|c| x[c] + y[c]));
-        self.held.bond.push(y.map(|c| -c));
-        self.held.value.extend(force);
-        // f = D_ik − D_ki: nothing churns
-        self.held.value.extend([0.0; 3]);
-        self.held.value.push(dot(own, vk) - dot(back, vi));
-        if self.held.end.len() == HELD {
+        self.held.push(Held {
+            i: pull.i,
+            y,
+            force,
+            power: dot(own, vk) - dot(back, vi),
+        });
+        if self.held.len() == HELD {
             self.flush();
         }
+    }
+
+    /// What a block of pairs holds, those of a particle about its place.
+    fn block(&self, held: &[Held]) -> Bonds {
+        let mut bonds = Bonds::default();
+        let (mut centres, mut last) = (0, None);
+        for pair in held {
+            let x = self.wrapped[pair.i as usize];
+            if last != Some(pair.i) {
+                bonds.centre(x);
+                (centres, last) = (centres + 1, Some(pair.i));
+            }
+            let end = std::array::from_fn(|c| x[c] + pair.y[c]);
+            let n = bonds.add(centres - 1, end, pair.y.map(|c| -c), 1) as usize;
+            let value = &mut bonds.value[n * WIDTH..][..WIDTH];
+            // nothing churns
+            value[..3].copy_from_slice(&pair.force);
+            value[6] = pair.power;
+        }
+        bonds
     }
 
     /// Adds the pairs that are held to the points.
     fn flush(&mut self) {
         let held = std::mem::take(&mut self.held);
         let (bins, kernel, cell) = (self.bins, &self.method.kernel, &self.frame.cell);
-        let pairs = held.end.len();
-        let width = held.value.len() / pairs.max(1);
-        let starts: Vec<usize> = (0..pairs).step_by(BLOCK).collect();
-        let some: Vec<_> = starts
-            .into_par_iter()
-            .map(|from| {
-                let to = (from + BLOCK).min(pairs);
-                let block = Bonds {
-                    end: held.end[from..to].to_vec(),
-                    bond: held.bond[from..to].to_vec(),
-                    value: held.value[from * width..to * width].to_vec(),
-                };
+        let some: Vec<_> = held
+            .par_chunks(BLOCK)
+            .map(|some| {
+                let bonds = self.block(some);
                 let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-                for (end, bond) in block.end.iter().zip(&block.bond) {
+                for (end, bond) in bonds.end.iter().zip(&bonds.bond) {
                     let other = std::array::from_fn(|c| end[c] + bond[c]);
                     for s in [cell.fraction(*end), cell.fraction(other)] {
                         for a in 0..3 {
@@ -224,12 +245,15 @@ impl Gather<'_> {
                     }
                 }
                 let patch = bins.patch([low, high]);
-                let sums = accumulate::bonds(kernel, &patch, &block, 1);
-                (patch.index, sums)
+                let found = (!patch.index.is_empty())
+                    .then(|| accumulate::bonds(kernel, &patch, &bonds, 1, Form::Whole));
+                (patch.index, found)
             })
             .collect();
-        for (index, part) in some {
-            add(&mut self.sums, &index, &part, BOND);
+        for (index, found) in some {
+            if let Some(found) = found {
+                found.add_to(&mut self.sums, &index, 1);
+            }
         }
     }
 }

@@ -5,8 +5,8 @@
 //! number of threads. Velocities are counted from the drift of the whole frame, so that a fast body loses no digits of its heat.
 
 use crate::FieldsError;
-use crate::accumulate::{self, BOND, Particles};
-use crate::bonds::{Block, Collector};
+use crate::accumulate::{self, BOND, Form, Particles};
+use crate::bonds::{Block, Collector, Spare};
 use crate::fields::{Fields, Layout, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::{Kernel, dot};
@@ -16,7 +16,7 @@ use crate::partition::{PairForce, Partition};
 use crate::targets::{Bins, Targets};
 use peridyne::law::terms::Sites;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// How fields are made.
 #[derive(Debug, Clone)]
@@ -92,21 +92,20 @@ pub fn evaluate(
         velocity: &velocity,
     };
     let blocks = Blocks::new(&neighbours, frame.len());
-    let layout = Layout {
+    let mut layout = Layout {
         parts,
         moving: !velocity.is_empty(),
         rates: method.rates && !velocity.is_empty(),
+        churns: false,
     };
-    let mut sums = Sums {
-        bonds: vec![0.0; targets.len() * parts * BOND],
-        particles: vec![],
-    };
+    let mut bonds = vec![0.0; targets.len() * parts * BOND];
     let mut own = Own::new(frame.len(), parts);
     let mut totals = Totals::new(frame);
     // bonded partners may be farther than the potential reaches
     let wide = sites
         .reach()
         .max(molecules.map_or(0.0, |m| m.longest(frame)));
+    let spares: Mutex<Vec<Spare>> = Mutex::default();
     let batch = 2 * rayon::current_num_threads();
     for first in (0..blocks.count).step_by(batch) {
         let some: Vec<_> = (first..(first + batch).min(blocks.count))
@@ -117,16 +116,31 @@ pub fn evaluate(
                 let patch = bins.patch(widened(bounds, reach));
                 // far from all points: nothing of it is seen
                 if patch.index.is_empty() || centres.is_empty() {
-                    return Ok((Block::default(), vec![], vec![], centres.is_empty()));
+                    return Ok((Block::default(), None, centres.is_empty()));
                 }
-                let block = collector.collect(&centres)?;
-                let sums = accumulate::bonds(&method.kernel, &patch, &block.bonds, parts);
-                Ok((block, patch.index, sums, true))
+                let spare = spares.lock().ok().and_then(|mut all| all.pop());
+                let mut room = spare.unwrap_or_default();
+                let mut block = collector.collect(&centres, &mut room)?;
+                let form = match block.churns || method.pair_force == PairForce::Differences {
+                    true => Form::Whole,
+                    false if layout.moving => Form::Moving,
+                    false => Form::Still,
+                };
+                room.bonds = std::mem::take(&mut block.bonds);
+                let of = &room.bonds;
+                let sums = accumulate::bonds(&method.kernel, &patch, of, parts, form);
+                if let Ok(mut all) = spares.lock() {
+                    all.push(room);
+                }
+                Ok((block, Some((patch.index, sums)), true))
             })
             .collect();
         for result in some {
-            let (block, index, part, seen) = result?;
-            add(&mut sums.bonds, &index, &part, parts * BOND);
+            let (block, part, seen) = result?;
+            if let Some((index, part)) = part {
+                part.add_to(&mut bonds, &index, parts);
+            }
+            layout.churns |= block.churns;
             own.take(&block, parts);
             totals.take(&block, seen);
         }
@@ -138,7 +152,10 @@ pub fn evaluate(
         drift,
         layout: &layout,
     };
-    sums.particles = moving.sums(&neighbours, &bins, &method.kernel, &own);
+    let sums = Sums {
+        bonds,
+        particles: moving.sums(&neighbours, &bins, &method.kernel, &own),
+    };
     Ok(Fields::finish(
         targets.positions(&frame.cell),
         names,
@@ -207,7 +224,7 @@ impl Moving<'_> {
                         position: &columns.position,
                         width: layout.width(),
                         value: &columns.value,
-                        slopes: layout.moving.then_some(&columns.slope[..]),
+                        slopes: (layout.slopes() > 0).then_some(&columns.slope[..]),
                         slope_width: layout.slopes(),
                     };
                     let sums = accumulate::particles(kernel, &patch, &of);
@@ -279,6 +296,9 @@ impl Columns {
         self.value.extend(products(v).map(|c| m * c));
         self.value.extend(v.map(|c| m * square * c));
         self.value.extend(v.map(|c| potential * c));
+        if layout.slopes() == 0 {
+            return;
+        }
         self.slope.push(m);
         self.slope.extend(v.map(|c| m * c));
         if !layout.rates {

@@ -397,3 +397,51 @@ fn embedded_atoms_are_a_peridynamic_body() {
         );
     }
 }
+
+/// What passes through a section 5 mm above a crack of 16 mm, over the load; `lim σ_yy √(2πr)` as a line in r, over K of J.
+fn crack(spacing: f64) -> [f64; 2] {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good/crack_fields.toml");
+    let deck = std::fs::read_to_string(file).unwrap();
+    let own = format!("d = \"{spacing} mm\"");
+    let mut case = Case::new(&deck.replace("d = \"0.5 mm\"", &own));
+    case.sim.start(true);
+    case.sim.step().unwrap();
+    let measured = case.sim.measure();
+    let (young, poisson) = (70e9, 0.22);
+    let k = (measured[0] * young / (1.0 - poisson * poisson)).sqrt();
+    let step = 0.05e-3;
+    let line: Vec<_> = (0..880)
+        .map(|n| [-2e-3 + step * (f64::from(n) + 0.5), 5e-3, 0.0])
+        .collect();
+    let found = case.fields(&line);
+    let all = found.get(Quantity::StressPotential).unwrap();
+    let force = step * all.chunks_exact(9).map(|s| s[4]).sum::<f64>();
+    let load = 1e6 / 2e-3 * 4.0 * 1e-3 * spacing * 40e-3;
+    let radius: Vec<f64> = (0..11).map(|n| 3e-3 + 0.5e-3 * f64::from(n)).collect();
+    let points: Vec<_> = radius.iter().map(|r| [16e-3 + r, 0.0, 0.0]).collect();
+    let found = case.fields(&points);
+    let stress = found.get(Quantity::Stress).unwrap();
+    let scaled: Vec<f64> = radius
+        .iter()
+        .zip(stress.chunks_exact(9))
+        .map(|(r, s)| s[4] * (2.0 * std::f64::consts::PI * r).sqrt())
+        .collect();
+    let mean =
+        |x: &dyn Fn(usize) -> f64| (0..radius.len()).map(x).sum::<f64>() / radius.len() as f64;
+    let (r, s) = (mean(&|i| radius[i]), mean(&|i| scaled[i]));
+    let slope = mean(&|i| (radius[i] - r) * (scaled[i] - s)) / mean(&|i| (radius[i] - r).powi(2));
+    [force / load, (s - slope * r) / k]
+}
+
+/// The flux of momentum through a section is the load, whatever the horizon. Ahead of the tip stress falls with the root of the distance, by
+/// a K that goes to that of J, which knows nothing of fields, as the horizon (three spacings) does to 0.
+#[test]
+fn stress_ahead_of_a_crack_is_that_of_its_j() {
+    let [wide, narrow] = [1.0, 0.5].map(crack);
+    println!("force over load, K over that of J: {wide:?} {narrow:?}");
+    for [force, _] in [wide, narrow] {
+        assert!((force - 1.0).abs() < 1e-4, "{force}");
+    }
+    let [wide, narrow] = [wide, narrow].map(|c| (c[1] - 1.0).abs());
+    assert!(narrow < 0.6 * wide && narrow < 0.12, "{wide} {narrow}");
+}

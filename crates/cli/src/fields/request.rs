@@ -6,7 +6,7 @@ use peridyne::spec::BondedSpec;
 use peridyne_fields::molecules::Molecules;
 use peridyne_fields::{Cell, FieldsError, Kernel, Method, PairForce, Partition, Shape, Targets};
 use peridyne_io::continuum::potential::{ModelError, Words as PotentialWords};
-use peridyne_io::continuum::{Masses, Model, Units, model};
+use peridyne_io::continuum::{Masses, Model, Units, model, of_deck};
 use peridyne_io::read::molecules::molecules;
 use peridyne_io::write::continuum::Table;
 use std::path::{Path, PathBuf};
@@ -25,6 +25,7 @@ pub struct Request {
     partition: Partition,
     pair_force: PairForce,
     pub parts: bool,
+    pub pressure: bool,
     /// What is bonded whatever moves.
     bonded: Option<BondedSpec>,
     pub each: bool,
@@ -32,6 +33,9 @@ pub struct Request {
     pub every: usize,
     pub residuals: usize,
 }
+
+/// Points at most.
+const MANY: usize = 200_000_000;
 
 fn missing(flag: &str, why: &str) -> Failure {
     Failure::input(format!("--{flag} is missing: {why}"))
@@ -48,18 +52,6 @@ impl Request {
         let Some(out) = words.out.clone() else {
             return Err(missing("out", "a folder for the results"));
         };
-        let Some(units) = &words.units else {
-            return Err(missing(
-                "units",
-                &format!("frames do not say theirs; {}", Units::NAMES),
-            ));
-        };
-        let Some(units) = Units::named(units) else {
-            return Err(Failure::input(format!(
-                "--units {units}: expected {}",
-                Units::NAMES
-            )));
-        };
         let targets = targets(words)?;
         let kernel = kernel(words)?;
         let averaged = averaged(words)?;
@@ -68,25 +60,7 @@ impl Request {
                 "--every 0: at least every frame is taken, 1",
             ));
         }
-        let Some(name) = words.potential.clone() else {
-            return Err(missing(
-                "potential",
-                "stress and heat flux need it; `peridyne laws` lists them",
-            ));
-        };
-        let model = model(
-            &PotentialWords {
-                name,
-                with: words.with.clone(),
-                file: words.file.clone(),
-                element: words.element.clone(),
-            },
-            units,
-        );
-        let model = model.map_err(|e| match e {
-            ModelError::Deck(e) => Failure::Input((*e).into()),
-            ModelError::Words(words) => Failure::input(format!("--potential: {words}")),
-        })?;
+        let (model, units) = model_of(words)?;
         let mut masses = Masses::new();
         for (name, mass) in &words.mass {
             let value = mass
@@ -100,6 +74,7 @@ impl Request {
             };
             masses.insert(name.clone(), value);
         }
+        let of_model = model.bonded.as_deref().cloned();
         Ok(Request {
             frames,
             out,
@@ -112,7 +87,8 @@ impl Request {
             partition: partition(words)?,
             pair_force: pair_force(words)?,
             parts: words.parts,
-            bonded: bonded(words)?,
+            pressure: words.pressure,
+            bonded: bonded(words)?.or(of_model),
             each: words.each,
             skip: words.skip,
             every: words.every,
@@ -165,23 +141,130 @@ impl Request {
     }
 }
 
-fn targets(words: &Words) -> Result<Targets, Failure> {
-    match (&words.grid, &words.points) {
-        (Some(_), Some(_)) => Err(Failure::input("--grid and --points: give one of them")),
-        (None, None) => Err(missing(
-            "grid",
-            "NX,NY,NZ, or points of a file, --points FILE",
-        )),
-        (Some(text), None) => {
-            let n: Option<Vec<usize>> = text.split(',').map(|w| w.trim().parse().ok()).collect();
-            match n.as_deref() {
-                Some(&[x, y, z]) if x * y * z > 0 => Ok(Targets::Grid([x, y, z])),
-                _ => Err(Failure::input(format!(
-                    "--grid {text}: expected three positive numbers, e.g. 32,32,1"
-                ))),
-            }
+/// The potential and the units, of flags or of a deck.
+fn model_of(words: &Words) -> Result<(Model, Units), Failure> {
+    let wrong = |flag: &'static str| {
+        move |e: ModelError| match e {
+            ModelError::Deck(e) => Failure::Input((*e).into()),
+            ModelError::Words(words) => Failure::input(format!("--{flag}: {words}")),
         }
-        (None, Some(path)) => points(path).map(Targets::Points),
+    };
+    let units = match &words.units {
+        None => None,
+        Some(name) => match Units::named(name) {
+            Some(units) => Some(units),
+            None => {
+                let message = format!("--units {name}: expected {}", Units::NAMES);
+                return Err(Failure::input(message));
+            }
+        },
+    };
+    if let Some(path) = &words.model {
+        if words.potential.is_some() {
+            return Err(Failure::input("--model and --potential: give one of them"));
+        }
+        let (model, own) = of_deck(path).map_err(wrong("model"))?;
+        return match units {
+            Some(units) if units.name() != own.name() => Err(Failure::input(format!(
+                "--units {}: {} is in {}; leave the flag out",
+                units.name(),
+                path.display(),
+                own.name()
+            ))),
+            _ => Ok((model, own)),
+        };
+    }
+    let Some(units) = units else {
+        let why = format!("frames do not say theirs; {}", Units::NAMES);
+        return Err(missing("units", &why));
+    };
+    let Some(name) = words.potential.clone() else {
+        return Err(missing(
+            "potential",
+            "stress and heat flux need it; `peridyne laws` lists them; several kinds of atoms stand in a deck, --model DECK",
+        ));
+    };
+    let of = PotentialWords {
+        name,
+        with: words.with.clone(),
+        files: words.files.clone(),
+        elements: words.elements.clone(),
+    };
+    Ok((model(&of, units).map_err(wrong("potential"))?, units))
+}
+
+/// Numbers by commas.
+fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let all: Option<Vec<T>> = text.split(',').map(|w| w.trim().parse().ok()).collect();
+    all?.try_into().ok()
+}
+
+/// A place or an edge.
+fn vector(flag: &str, text: &str) -> Result<[f64; 3], Failure> {
+    let found = numbers::<f64, 3>(text).filter(|x| x.iter().all(|c| c.is_finite()));
+    found.ok_or_else(|| {
+        Failure::input(format!(
+            "--{flag}: expected x,y,z, three finite numbers, found `{text}`"
+        ))
+    })
+}
+
+fn targets(words: &Words) -> Result<Targets, Failure> {
+    let given = [
+        ("--grid", words.grid.is_some()),
+        ("--points", words.points.is_some()),
+        ("--line", words.line.is_some()),
+        ("--plane", words.plane.is_some()),
+    ];
+    let given: Vec<&str> = given.iter().filter(|g| g.1).map(|g| g.0).collect();
+    if given.len() > 1 {
+        let message = format!("{}: give one of them", given.join(" and "));
+        return Err(Failure::input(message));
+    }
+    if let Some(path) = &words.points {
+        return points(path).map(Targets::Points);
+    }
+    if let Some(line) = &words.line {
+        let [from, to, count] = &line[..] else {
+            return Err(Failure::input("--line: expected A B N"));
+        };
+        let found = count.parse().ok().filter(|n| (2..=MANY).contains(n));
+        let count = found.ok_or_else(|| {
+            Failure::input(format!(
+                "--line: expected a number of points from 2 to {MANY}, found `{count}`"
+            ))
+        })?;
+        return Ok(Targets::line(
+            vector("line", from)?,
+            vector("line", to)?,
+            count,
+        ));
+    }
+    if let Some(plane) = &words.plane {
+        let [corner, e, f, counts] = &plane[..] else {
+            return Err(Failure::input("--plane: expected A E F N,M"));
+        };
+        let fits = |n: &[usize; 2]| n.iter().all(|n| (2..=MANY).contains(n)) && n[0] * n[1] <= MANY;
+        let found = numbers::<usize, 2>(counts).filter(fits);
+        let counts = found.ok_or_else(|| {
+            Failure::input(format!(
+                "--plane: expected N,M, from 2 points along each edge to {MANY} in all, found `{counts}`"
+            ))
+        })?;
+        let edges = [vector("plane", e)?, vector("plane", f)?];
+        return Ok(Targets::plane(vector("plane", corner)?, edges, counts));
+    }
+    let Some(text) = &words.grid else {
+        return Err(missing(
+            "grid",
+            "NX,NY,NZ, or points of a file, --points FILE, or --line, --plane",
+        ));
+    };
+    match numbers::<usize, 3>(text) {
+        Some(n) if !n.contains(&0) => Ok(Targets::Grid(n)),
+        _ => Err(Failure::input(format!(
+            "--grid {text}: expected three positive numbers, e.g. 32,32,1"
+        ))),
     }
 }
 

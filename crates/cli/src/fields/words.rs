@@ -29,12 +29,16 @@ pub struct FieldsArguments {
     /// A constant of the potential by the name it has in decks, e.g. `--with epsilon=1 --with cutoff=2.5`; may be repeated.
     #[arg(long, value_name = "KEY=VALUE", value_parser = crate::pair)]
     pub with: Vec<(String, String)>,
-    /// File of the potential.
+    /// File of the potential; of several funcfl files, an element each, repeat it.
     #[arg(long, value_name = "FILE")]
-    pub file: Option<String>,
-    /// Element of a file that has several.
-    #[arg(long, value_name = "NAME")]
+    pub file: Vec<String>,
+    /// Elements of the file, in the order of the types of the frames, e.g. `Ni,Al`; species with names are found by them.
+    #[arg(long, value_name = "NAME,…")]
     pub element: Option<String>,
+    /// Instead of --potential: the potentials between the materials of a deck, with `mixing`, `[[pair]]`, masses, molecules, units. Nothing
+    /// but `units` and `[material.NAME]` is needed of it; species are materials by name, element or order of types.
+    #[arg(long, value_name = "DECK", conflicts_with_all = ["potential", "with", "file", "element"])]
+    pub model: Option<PathBuf>,
     /// LAMMPS data file with bonds, angles, dihedrals and their coefficients, of atoms in order of their ids.
     #[arg(long, value_name = "FILE")]
     pub molecules: Option<PathBuf>,
@@ -65,6 +69,16 @@ pub struct FieldsArguments {
     /// Fields at the points of this file: x y z in each row, by blanks or commas.
     #[arg(long, value_name = "FILE")]
     pub points: Option<PathBuf>,
+    /// Fields at N points from A to B, both included, e.g. `--line 0,0,5 20,0,5 101`.
+    #[arg(long, num_args = 3, value_names = ["A", "B", "N"], allow_hyphen_values = true)]
+    pub line: Option<Vec<String>>,
+    /// Fields at N,M points of the parallelogram at a corner A with the edges E and F, borders included, e.g. `--plane 0,0,5 20,0,0 0,20,0
+    /// 41,41`.
+    #[arg(long, num_args = 4, value_names = ["A", "E", "F", "N,M"], allow_hyphen_values = true)]
+    pub plane: Option<Vec<String>>,
+    /// Also the pressure, minus a third of the trace of the Cauchy stress.
+    #[arg(long)]
+    pub pressure: bool,
     /// Whose a term's energy is: site (its centre's), equal (in equal parts its atoms'), or centre:W (W its centre's).
     #[arg(long, value_name = "NAME")]
     pub partition: Option<String>,
@@ -115,6 +129,53 @@ impl Scalar {
     }
 }
 
+/// A word, or a list of them.
+#[derive(Deserialize, Clone)]
+#[serde(untagged)]
+enum OneOrMore {
+    One(String),
+    More(Vec<String>),
+}
+
+impl Default for OneOrMore {
+    fn default() -> OneOrMore {
+        OneOrMore::More(vec![])
+    }
+}
+
+impl OneOrMore {
+    fn all(&self) -> &[String] {
+        match self {
+            OneOrMore::One(one) => std::slice::from_ref(one),
+            OneOrMore::More(all) => all,
+        }
+    }
+}
+
+/// Points on a line.
+#[derive(Deserialize, Clone)]
+#[serde(deny_unknown_fields)]
+struct LineKeys {
+    from: [f64; 3],
+    to: [f64; 3],
+    points: usize,
+}
+
+/// Points on a parallelogram.
+#[derive(Deserialize, Clone)]
+#[serde(deny_unknown_fields)]
+struct PlaneKeys {
+    corner: [f64; 3],
+    edges: [[f64; 3]; 2],
+    points: [usize; 2],
+}
+
+/// As flags have it.
+fn listed(x: &[f64]) -> String {
+    let all: Vec<String> = x.iter().map(|c| format!("{c:?}")).collect();
+    all.join(",")
+}
+
 /// The keys of a file.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -122,8 +183,9 @@ struct Keys {
     frames: Option<PathBuf>,
     potential: Option<String>,
     with: BTreeMap<String, Scalar>,
-    file: Option<PathBuf>,
-    element: Option<String>,
+    file: OneOrMore,
+    element: OneOrMore,
+    model: Option<PathBuf>,
     molecules: Option<PathBuf>,
     special: Option<[f64; 3]>,
     mass: BTreeMap<String, f64>,
@@ -134,6 +196,9 @@ struct Keys {
     average: Option<String>,
     grid: Option<[usize; 3]>,
     points: Option<PathBuf>,
+    line: Option<LineKeys>,
+    plane: Option<PlaneKeys>,
+    pressure: bool,
     partition: Option<String>,
     pair_force: Option<String>,
     parts: bool,
@@ -151,8 +216,9 @@ pub struct Words {
     pub frames: Option<PathBuf>,
     pub potential: Option<String>,
     pub with: Vec<(String, String)>,
-    pub file: Option<String>,
-    pub element: Option<String>,
+    pub files: Vec<String>,
+    pub elements: Vec<String>,
+    pub model: Option<PathBuf>,
     pub molecules: Option<PathBuf>,
     pub special: Option<String>,
     pub mass: Vec<(String, String)>,
@@ -163,6 +229,9 @@ pub struct Words {
     pub average: Option<String>,
     pub grid: Option<String>,
     pub points: Option<PathBuf>,
+    pub line: Option<Vec<String>>,
+    pub plane: Option<Vec<String>>,
+    pub pressure: bool,
     pub partition: Option<String>,
     pub pair_force: Option<String>,
     pub parts: bool,
@@ -205,22 +274,53 @@ impl FieldsArguments {
         mass.retain(|(k, _)| self.mass.iter().all(|(own, _)| own != k));
         mass.extend(self.mass.clone());
         let grid = keys.grid.map(|[x, y, z]| format!("{x},{y},{z}"));
-        let (mut grid, mut points) = (self.grid.clone().or(grid), path(&self.points, &keys.points));
-        match (&self.grid, &self.points) {
-            (Some(_), None) => points = None,
-            (None, Some(_)) => grid = None,
-            _ => {}
-        }
-        let file = keys.file.as_ref().map(|f| joined(&f.to_string_lossy()));
+        let line = keys.line.map(|l| {
+            let ends = [l.from, l.to].map(|x| listed(&x));
+            [&ends[..], &[l.points.to_string()]].concat()
+        });
+        let plane = keys.plane.map(|p| {
+            let [n, m] = p.points;
+            let sides = [p.corner, p.edges[0], p.edges[1]].map(|x| listed(&x));
+            [&sides[..], &[format!("{n},{m}")]].concat()
+        });
+        // a flag that says where takes the place of all keys that do
+        let flags = [
+            self.grid.is_some(),
+            self.points.is_some(),
+            self.line.is_some(),
+            self.plane.is_some(),
+        ];
+        let own = flags.contains(&true);
+        let grid = self.grid.clone().or(grid.filter(|_| !own));
+        let points = match own {
+            true => self.points.clone(),
+            false => path(&None, &keys.points),
+        };
+        let line = self.line.clone().or(line.filter(|_| !own));
+        let plane = self.plane.clone().or(plane.filter(|_| !own));
+        let of_keys = keys.file.all().iter();
+        let of_keys = of_keys.map(|f| joined(f).to_string_lossy().into_owned());
+        let files = match self.file.is_empty() {
+            true => of_keys.collect(),
+            false => self.file.clone(),
+        };
+        let listed = |names: &str| names.split(',').map(|n| n.trim().to_string()).collect();
+        let elements = match &self.element {
+            Some(names) => listed(names),
+            None => keys
+                .element
+                .all()
+                .iter()
+                .flat_map(|n| -> Vec<String> { listed(n) })
+                .collect(),
+        };
         Ok(Words {
             frames: path(&self.frames, &keys.frames),
             potential: self.potential.clone().or(keys.potential),
             with,
-            file: self
-                .file
-                .clone()
-                .or(file.map(|f| f.to_string_lossy().into_owned())),
-            element: self.element.clone().or(keys.element),
+            files,
+            elements,
+            model: path(&self.model, &keys.model),
             molecules: path(&self.molecules, &keys.molecules),
             special: self
                 .special
@@ -234,6 +334,9 @@ impl FieldsArguments {
             average: self.average.clone().or(keys.average),
             grid,
             points,
+            line,
+            plane,
+            pressure: self.pressure || keys.pressure,
             partition: self.partition.clone().or(keys.partition),
             pair_force: self.pair_force.clone().or(keys.pair_force),
             parts: self.parts || keys.parts,

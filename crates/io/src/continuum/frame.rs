@@ -1,6 +1,7 @@
 //! A frame of a file as particles: masses found, velocities in the units of the frame, the cell as it is.
 
 use super::elements::weight;
+use super::kinds::kinds_of;
 use super::potential::Model;
 use super::units::Units;
 use crate::read::Atoms;
@@ -18,22 +19,30 @@ pub fn frame(atoms: &Atoms, units: Units, masses: &Masses, model: &Model) -> Res
     if atoms.is_empty() {
         return Err("the frame has no atoms".into());
     }
-    let mut mass = vec![];
-    let mut kind = vec![];
+    let kind = kinds_of(&model.kinds, &model.name, atoms)?;
     let mut used = vec![false; atoms.species.len()];
     atoms.kind.iter().for_each(|k| used[*k as usize] = true);
-    for (species, used) in atoms.species.iter().zip(used) {
+    let mut mass = vec![];
+    for (n, species) in atoms.species.iter().enumerate() {
         let name = &species.name;
-        if !used {
+        if !used[n] {
             mass.push(f64::NAN);
-            kind.push(0);
             continue;
         }
-        kind.push(model.kind(name, atoms)?);
-        let of_element = || weight(name).and_then(|w| units.molar(w));
-        let own = masses.get(name).copied().or(species.mass);
+        let kind = &model.kinds[kind[n] as usize];
+        let mut names = kind.names.iter().chain(&kind.element);
+        let given = masses
+            .get(name)
+            .or_else(|| names.find_map(|own| masses.get(own)));
+        let of_element = |name: &String| weight(name).and_then(|w| units.molar(w));
+        let element = || of_element(name).or(kind.element.as_ref().and_then(of_element));
         let plain = units.molar(1.0).is_none().then_some(1.0);
-        let found = own.or(model.mass).or_else(of_element).or(plain);
+        let found = given
+            .copied()
+            .or(species.mass)
+            .or(kind.mass)
+            .or_else(element)
+            .or(plain);
         let Some(found) = found else {
             return Err(format!(
                 "{name} has no mass: the file does not say it and it is no element that is known; give --mass {name}=MASS"

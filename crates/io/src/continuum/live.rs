@@ -32,6 +32,7 @@ pub struct Live {
     spacing: f64,
     corner: [f64; 3],
     periodic: [Option<f64>; 3],
+    resting: bool,
     /// Of the body at the start, with half a spacing around it.
     bounds: [[f64; 3]; 2],
 }
@@ -84,8 +85,14 @@ impl Live {
             spacing: sim.info().spacing,
             corner,
             periodic: spec.periodic,
+            resting: spec.schedule.statics().is_some(),
             bounds,
         })
+    }
+
+    /// Are its steps increments of load?
+    pub fn is_static(&self) -> bool {
+        self.resting
     }
 
     /// Name of what pulls, for descriptions.

@@ -2,6 +2,7 @@
 
 pub mod elements;
 pub mod frame;
+pub mod kinds;
 pub mod live;
 pub mod plan;
 pub mod potential;
@@ -9,5 +10,6 @@ pub mod run;
 pub mod units;
 
 pub use frame::{Masses, frame};
-pub use potential::{Model, model};
+pub use kinds::Kind;
+pub use potential::{Model, model, of_deck};
 pub use units::Units;

@@ -21,6 +21,8 @@ pub struct FieldsSpec {
     pub skip: u64,
     /// Write each frame.
     pub each: bool,
+    /// Write the pressure, too.
+    pub pressure: bool,
     /// Points at which residuals are measured.
     pub residuals: usize,
 }

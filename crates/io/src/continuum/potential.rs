@@ -1,55 +1,24 @@
-//! A potential on the command line: its keys are those of decks, and take the way of all decks.
+//! A potential on the command line: its keys are those of decks, and take the way of all decks. Of several kinds of atoms it is the elements
+//! of files, or the materials of a deck.
 
+use super::kinds::Kind;
 use super::units::Units;
 use crate::deck::{Deck, DeckError, Flag};
-use crate::read::Atoms;
 use peridyne::law::descriptor::{Descriptor, Value};
 use peridyne::law::terms::Sites;
 use peridyne::run::Shelf;
+use peridyne::spec::BondedSpec;
+use std::path::Path;
+use std::sync::Arc;
 
 /// A potential, term by term, and what its file says of atoms.
 pub struct Model {
     pub name: String,
     pub sites: Box<dyn Sites>,
-    /// The element that it is made for, where it says so.
-    pub element: Option<String>,
-    /// Mass of its atoms in the user's units, where its file says so.
-    pub mass: Option<f64>,
-}
-
-impl Model {
-    /// The kind that a species is for the potential.
-    ///
-    /// # Errors
-    /// In words: a species that it does not know.
-    pub fn kind(&self, name: &str, atoms: &Atoms) -> Result<u32, String> {
-        let numbered = name.parse::<u32>().is_ok();
-        if let Some(own) = &self.element
-            && !numbered
-            && own != name
-        {
-            return Err(format!(
-                "the frame has {name}, which {} does not know: it is of {own}",
-                self.name
-            ));
-        }
-        let mut used: Vec<u32> = atoms.kind.clone();
-        used.sort_unstable();
-        used.dedup();
-        if used.len() > 1 {
-            let names: Vec<_> = used
-                .iter()
-                .map(|k| &*atoms.species[*k as usize].name)
-                .collect();
-            return Err(format!(
-                "the frame has {} kinds of atoms, {}: {} knows one",
-                names.len(),
-                names.join(", "),
-                self.name
-            ));
-        }
-        Ok(0)
-    }
+    /// As `sites` counts them.
+    pub kinds: Vec<Kind>,
+    /// What the deck bonds whatever moves.
+    pub bonded: Option<Arc<BondedSpec>>,
 }
 
 /// What a user says of a potential.
@@ -57,14 +26,16 @@ impl Model {
 pub struct Words {
     pub name: String,
     pub with: Vec<(String, String)>,
-    pub file: Option<String>,
-    pub element: Option<String>,
+    /// One, or one for each element.
+    pub files: Vec<String>,
+    /// In order of the types of frames.
+    pub elements: Vec<String>,
 }
 
 /// Other names.
 const ALSO: [(&str, &str); 1] = [("lj", "lennard_jones")];
 /// Kinds of files; the law is the one that takes tables.
-const FILES: [&str; 4] = ["setfl", "funcfl", "eam/alloy", "eam"];
+const FILES: [&str; 5] = ["setfl", "funcfl", "eam/alloy", "eam/fs", "eam"];
 
 /// The key that takes a file, and whether it is a table, which says mass and everything else.
 fn file_key(of: &Descriptor) -> Option<(&'static str, bool)> {
@@ -92,6 +63,29 @@ impl From<String> for ModelError {
     }
 }
 
+fn flag(name: &str, key: &str, value: String) -> Flag {
+    Flag {
+        name: format!("--{name}"),
+        key: key.into(),
+        value,
+    }
+}
+
+/// A body for materials that are on none, in whose unit cubes a mass is a density: `sets` are the places of the materials.
+fn stage(sets: &[String]) -> Vec<Flag> {
+    let mut flags = vec![
+        flag("potential", "body.lattice", "\"cubic\"".into()),
+        flag("potential", "body.spacing", "1".into()),
+        flag("potential", "body.cells", "[1, 1, 1]".into()),
+        flag("potential", "run.steps", "1".into()),
+    ];
+    for set in sets {
+        let key = format!("sets.{set:?}.random");
+        flags.push(flag("potential", &key, "{ part = 0.5, seed = 1 }".into()));
+    }
+    flags
+}
+
 /// The potential that a user names.
 ///
 /// # Errors
@@ -116,70 +110,195 @@ pub fn model(words: &Words, units: Units) -> Result<Model, ModelError> {
         )
         .into());
     };
-    let key = &descriptor.name;
-    let flag = |name: &str, key: &str, value: String| Flag {
-        name: format!("--{name}"),
-        key: key.into(),
-        value,
+    let deck = Deck::of_flags(&flags(words, descriptor, units)?);
+    let deck = deck.map_err(|e| ModelError::Deck(Box::new(e)))?;
+    let mut made = of_spec(&deck, &words.name)?;
+    let tables = reads_tables(descriptor);
+    for (n, kind) in made.kinds.iter_mut().enumerate() {
+        // names of materials are places here
+        kind.names.clear();
+        kind.element = kind.element.take().or(words.elements.get(n).cloned());
+        let density = deck.spec.materials[n].density;
+        kind.mass = Some(density / units.mass()).filter(|m| tables && *m > 0.0);
+    }
+    Ok(made)
+}
+
+/// The deck of a potential on the command line.
+fn flags(words: &Words, of: &Descriptor, units: Units) -> Result<Vec<Flag>, ModelError> {
+    let key = &of.name;
+    let file = file_key(of);
+    let wrong = |message: String| Err(ModelError::Words(message));
+    let count = words.elements.len().max(words.files.len()).max(1);
+    match file {
+        Some(_) if !words.files.is_empty() && units == Units::Real => {
+            return wrong("files of potentials are in Å and eV: use --units metal".into());
+        }
+        Some((_, true)) if words.files.is_empty() => {
+            return wrong(format!("{key} needs a file: --file FILE"));
+        }
+        None if !words.files.is_empty() => {
+            return wrong(format!(
+                "{key} reads no file: give its constants by --with KEY=VALUE"
+            ));
+        }
+        Some(_) | None => {}
+    }
+    if count > 1 && words.files.is_empty() {
+        return wrong(format!(
+            "{count} elements need a file that knows them: --file FILE; constants of several kinds stand in a deck, --model DECK"
+        ));
+    }
+    let [files, elements] = [words.files.len(), words.elements.len()];
+    if files > 1 && elements > 0 && files != elements {
+        return wrong(format!(
+            "{files} files and {elements} elements: give one file, or one for each element in the same order"
+        ));
+    }
+    let names: Vec<String> = (0..count).map(|n| format!("type{:03}", n + 1)).collect();
+    let sets = if count > 1 { &names[..] } else { &[] };
+    let mut flags = vec![flag("units", "units", format!("{:?}", units.deck().name()))];
+    flags.extend(stage(sets));
+    for (n, name) in names.iter().enumerate() {
+        let material = match count {
+            1 => "material".to_string(),
+            _ => format!("material.{name}"),
+        };
+        let law = format!("{material}.law.{key}");
+        flags.push(flag("potential", &law, "{}".into()));
+        if let (Some((of, _)), Some(first)) = (file, words.files.first()) {
+            let own = words.files.get(n).unwrap_or(first);
+            flags.push(flag("file", &format!("{law}.{of}"), format!("{own:?}")));
+        }
+        if !file.is_some_and(|(_, table)| table) {
+            flags.push(flag("potential", &format!("{material}.mass"), "1".into()));
+        }
+        if let Some(element) = words.elements.get(n) {
+            flags.push(flag(
+                "element",
+                &format!("{law}.element"),
+                format!("{element:?}"),
+            ));
+        }
+        for (name, value) in &words.with {
+            let mut with = flag("with", &format!("{law}.{name}"), value.clone());
+            with.name = format!("--with {name}");
+            flags.push(with);
+        }
+    }
+    Ok(flags)
+}
+
+/// The potentials between the materials of a deck, which may have nothing but `units`, `[material]`, `[[pair]]` and `mixing`; and the
+/// units of the deck.
+///
+/// # Errors
+/// The deck is wrong, or its materials are no atoms.
+pub fn of_deck(path: &Path) -> Result<(Model, Units), ModelError> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| format!("--model {name}: cannot read it: {e}"))?;
+    // what is wrong with the text the deck says, with its line
+    let written: toml::Table = toml::from_str(&text).unwrap_or_default();
+    let bare = !written.contains_key("body");
+    let (flags, unknown) = match bare {
+        true => lacking(&written),
+        false => (vec![], vec![]),
     };
-    let mut flags = vec![
-        flag("units", "units", format!("{:?}", units.deck().name())),
-        flag("potential", &format!("material.law.{key}"), "{}".into()),
-        flag("potential", "body.lattice", "\"cubic\"".into()),
-        flag("potential", "body.spacing", "1".into()),
-        flag("potential", "body.cells", "[1, 1, 1]".into()),
-        flag("potential", "run.steps", "1".into()),
-    ];
-    let of = file_key(descriptor);
-    match (of, &words.file) {
-        (Some(_), Some(_)) if units == Units::Real => {
-            return Err("files of potentials are in Å and eV: use --units metal"
-                .to_string()
-                .into());
+    let deck = Deck::with_flags(&text, &name, &flags);
+    let deck = deck.map_err(|e| ModelError::Deck(Box::new(e)))?;
+    let units = Units::Deck(deck.units);
+    let mut made = of_spec(&deck, &name)?;
+    for (n, (kind, mass)) in made.kinds.iter_mut().zip(deck.masses()).enumerate() {
+        let name = &deck.spec.materials[n].name;
+        kind.mass = mass
+            .map(|m| m / units.mass())
+            .filter(|_| !unknown.contains(name));
+    }
+    Ok((made, units))
+}
+
+/// What a deck without a body lacks, and the materials that do not say their mass.
+fn lacking(written: &toml::Table) -> (Vec<Flag>, Vec<String>) {
+    let shelf = Shelf::standard();
+    let none = toml::Table::new();
+    let materials = written.get("material").and_then(|m| m.as_table());
+    let materials = materials.unwrap_or(&none);
+    if materials.contains_key("law") {
+        let mut flags = stage(&[]);
+        return match has_mass(materials, &shelf) {
+            true => (flags, vec![]),
+            false => {
+                flags.push(flag("model", "material.mass", "1".into()));
+                (flags, vec!["material".into()])
+            }
+        };
+    }
+    let (mut sets, mut masses, mut unknown) = (vec![], vec![], vec![]);
+    for (name, material) in materials {
+        let Some(material) = material.as_table() else {
+            continue;
+        };
+        let set = material.get("set").and_then(|s| s.as_str());
+        sets.push(set.unwrap_or(name).to_string());
+        if !has_mass(material, &shelf) {
+            let key = format!("material.{name:?}.mass");
+            masses.push(flag("model", &key, "1".into()));
+            unknown.push(name.clone());
         }
-        (Some((of, _)), Some(file)) => {
-            let place = format!("material.law.{key}.{of}");
-            flags.push(flag("file", &place, format!("{file:?}")));
-        }
-        (Some((_, true)), None) => return Err(format!("{key} needs a file: --file FILE").into()),
-        (Some((_, false)) | None, None) => {}
-        (None, Some(_)) => {
-            return Err(
-                format!("{key} reads no file: give its constants by --with KEY=VALUE").into(),
-            );
-        }
     }
-    let tables = of.is_some_and(|(_, table)| table);
-    if !tables {
-        flags.push(flag("potential", "material.mass", "1".into()));
-    }
-    if let Some(element) = &words.element {
-        let place = format!("material.law.{key}.element");
-        flags.push(flag("element", &place, format!("{element:?}")));
-    }
-    for (name, value) in &words.with {
-        let place = format!("material.law.{key}.{name}");
-        let mut with = flag("with", &place, value.clone());
-        with.name = format!("--with {name}");
-        flags.push(with);
-    }
-    let deck = Deck::of_flags(&flags).map_err(|e| ModelError::Deck(Box::new(e)))?;
-    let Some(spec) = deck.spec.potential() else {
-        return Err(format!("{key} is no potential").into());
+    let own: Vec<String> = match sets.len() > 1 {
+        true => sets,
+        false => sets.into_iter().filter(|s| s != "all").collect(),
     };
-    if spec.cut_off().is_infinite() {
-        return Err(format!("{key} has no cut-off: give --with cutoff=LENGTH").into());
+    let written = written.get("sets").and_then(|s| s.as_table());
+    let own = own.into_iter();
+    let own: Vec<String> = own
+        .filter(|s| written.is_none_or(|w| !w.contains_key(s)))
+        .collect();
+    let mut flags = stage(&own);
+    flags.extend(masses);
+    (flags, unknown)
+}
+
+/// Does a material say its mass, or the file of its law?
+fn has_mass(material: &toml::Table, shelf: &Shelf) -> bool {
+    let law = material.get("law").and_then(|l| l.as_table());
+    let mut names = law.into_iter().flat_map(|l| l.keys());
+    let of_file = names.any(|name| shelf.descriptor(name).is_some_and(reads_tables));
+    of_file || material.contains_key("mass") || material.contains_key("density")
+}
+
+fn of_spec(deck: &Deck, name: &str) -> Result<Model, ModelError> {
+    let shelf = Shelf::standard();
+    let kind = |n: usize| {
+        let material = &deck.spec.materials[n];
+        let mut names = vec![material.name.clone(), material.set.clone()];
+        names.dedup();
+        Kind {
+            names,
+            element: deck.named.get(n).cloned().flatten(),
+            mass: None,
+        }
+    };
+    for material in &deck.spec.materials {
+        let Some(potential) = material.law.potential() else {
+            return Err(format!("{name}: its materials are no atoms").into());
+        };
+        if potential.cut_off().is_infinite() {
+            return Err(format!(
+                "{} has no cut-off: give --with cutoff=LENGTH",
+                potential.name
+            )
+            .into());
+        }
     }
-    let sites = shelf.sites(spec).map_err(|e| e.to_string())?;
-    // an atom in a cube of edge 1
-    let of_file = tables.then(|| {
-        let density = deck.spec.materials.first().map_or(f64::NAN, |m| m.density);
-        density / units.mass()
-    });
+    let sites = shelf.sites_of(&deck.spec);
+    let sites = sites.map_err(|e| ModelError::Deck(Box::new(deck.explain(&e))))?;
     Ok(Model {
-        name: words.name.clone(),
+        name: name.to_string(),
         sites,
-        element: { deck.named.first().cloned().flatten() }.or(words.element.clone()),
-        mass: of_file.filter(|m| *m > 0.0),
+        kinds: (0..deck.spec.materials.len()).map(kind).collect(),
+        bonded: deck.spec.bonded.clone(),
     })
 }

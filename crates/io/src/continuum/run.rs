@@ -52,7 +52,12 @@ impl RunningFields {
             let cell = live.cell(&asked.place)?;
             let (targets, method) = live.method(asked, &cell)?;
             each.push(One {
-                collected: Collected::new(dir.join(&asked.name), plan.units, asked.each),
+                collected: Collected::new(
+                    dir.join(&asked.name),
+                    plan.units,
+                    asked.each,
+                    asked.pressure,
+                ),
                 asked: asked.clone(),
                 cell,
                 targets,
@@ -97,9 +102,8 @@ impl RunningFields {
     /// A file cannot be written.
     pub fn finish(self) -> Result<(), WriteError> {
         let of = self.live.source();
-        let all = self.each.into_iter();
-        all.map(|one| one.collected.finish("the run", of, &one.method))
-            .collect()
+        let mut all = self.each.into_iter();
+        all.try_for_each(|one| one.collected.finish("the run", of, &one.method))
     }
 }
 
@@ -108,7 +112,10 @@ impl One {
         if self.stopped {
             return false;
         }
-        let due = self.asked.every.is_some_and(|every| step % every == 0);
+        let due = self
+            .asked
+            .every
+            .is_some_and(|every| step.is_multiple_of(every));
         if due {
             self.met += 1;
         }
@@ -152,6 +159,11 @@ impl One {
     ) -> Result<peridyne_fields::residuals::Residuals, String> {
         if self.asked.residuals == 0 {
             return Err("not asked for".into());
+        }
+        if live.is_static() {
+            return Err(
+                "in equilibrium nothing changes that the fluxes could be compared with".into(),
+            );
         }
         let all = self.targets.positions(&self.cell);
         let step = all.len().div_ceil(self.asked.residuals).max(1);

@@ -111,11 +111,15 @@ impl Deck {
     /// # Errors
     /// The first mistake found, with the flag that made it.
     pub fn of_flags(flags: &[Flag]) -> Result<Deck, DeckError> {
-        Self::of_source(Source::with_flags(
-            "",
-            "the command line",
-            flags.iter().cloned(),
-        ))
+        Self::with_flags("", "the command line", flags)
+    }
+
+    /// A deck over which the keys of a command line are laid.
+    ///
+    /// # Errors
+    /// The first mistake found, with its place in the deck or the flag that made it.
+    pub fn with_flags(source: &str, file_name: &str, flags: &[Flag]) -> Result<Deck, DeckError> {
+        Self::of_source(Source::with_flags(source, file_name, flags.iter().cloned()))
     }
 
     fn of_source(source: Source) -> Result<Deck, DeckError> {
@@ -158,6 +162,13 @@ impl Deck {
             (named.clone().unwrap_or_else(|| own.into()), m.density)
         })
         .collect()
+    }
+
+    /// Mass of an atom of each material, in units of computation; `None` where points have different volumes.
+    pub fn masses(&self) -> Vec<Option<f64>> {
+        let volume = lower::point_volume(&self.spec.body, self.spec.dimension);
+        let each = self.spec.materials.iter();
+        each.map(|m| volume.map(|v| m.density * v)).collect()
     }
 
     /// Do all names of files that the deck gives stay inside the folder of the results (`dir`: inside the folder it is

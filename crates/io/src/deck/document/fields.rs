@@ -37,6 +37,9 @@ pub struct Fields {
     /// Write the fields of each frame, too; false when left out. Else they are means over frames alone.
     #[serde(default)]
     pub each: bool,
+    /// Write the pressure, too: minus a third of the trace of the Cauchy stress; false when left out.
+    #[serde(default)]
+    pub pressure: bool,
     /// Whose a term's energy is, of atoms: site when left out, equal, or { centre = 0.5 }.
     pub partition: Option<At<Or<PartitionName, Centre>>>,
     /// Of atoms; distances when left out. A peridynamic body has that of its force states, differences.

@@ -64,6 +64,7 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
         every,
         skip: written.skip.unwrap_or(0),
         each: written.each,
+        pressure: written.pressure,
         residuals: written.residuals.unwrap_or(16),
     })
 }

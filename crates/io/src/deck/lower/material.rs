@@ -222,7 +222,7 @@ pub(super) fn law(context: &Context, written: &At<Law>) -> Result<LawSpec> {
 }
 
 /// Volume of every point (length^D), if it is the same.
-fn point_volume(body: &BodySpec, dimension: usize) -> Option<f64> {
+pub(in crate::deck) fn point_volume(body: &BodySpec, dimension: usize) -> Option<f64> {
     match body {
         BodySpec::Lattice { kind, spacing, .. } | BodySpec::Sites { kind, spacing, .. } => {
             Some(kind.site_volume() * spacing.powi(dimension as i32))

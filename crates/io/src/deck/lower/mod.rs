@@ -18,6 +18,7 @@ mod sets;
 mod warnings;
 
 pub(super) use atoms::boltzmann;
+pub(super) use material::point_volume;
 pub(super) use schedule::{MANY_STEPS, steps};
 
 use super::OutputSpec;

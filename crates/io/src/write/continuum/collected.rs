@@ -17,6 +17,8 @@ pub struct Collected {
     units: Units,
     /// Write each frame.
     each: bool,
+    /// Write the pressure, too.
+    pressure: bool,
     read: Vec<Frame>,
     average: Average,
     last: Option<(Table, Option<f64>)>,
@@ -25,12 +27,13 @@ pub struct Collected {
 
 impl Collected {
     /// Nothing is written before the first frame, and no folder made.
-    pub fn new(dir: PathBuf, units: Units, each: bool) -> Collected {
+    pub fn new(dir: PathBuf, units: Units, each: bool, pressure: bool) -> Collected {
         Collected {
             pvd: Pvd::new(dir.join("frames.pvd")),
             dir,
             units,
             each,
+            pressure,
             read: vec![],
             average: Average::default(),
             last: None,
@@ -54,7 +57,7 @@ impl Collected {
         let (index, time) = (about.index, about.time);
         let shown = time.or(about.step.map(|s| s as f64));
         self.average.add(found);
-        let table = Table::of_frame(found, self.units, grid);
+        let table = Table::of_frame(found, self.units, grid, self.pressure);
         if self.each {
             create_directory(&self.dir)?;
             let stem = format!("frame.{index:06}");
@@ -83,7 +86,13 @@ impl Collected {
         let frames = self.read.len();
         let table = match frames {
             1 => last,
-            _ => Table::of_average(&self.average, last.points, self.units, last.grid),
+            _ => Table::of_average(
+                &self.average,
+                last.points,
+                self.units,
+                last.grid,
+                self.pressure,
+            ),
         };
         let about = About {
             frames: source,

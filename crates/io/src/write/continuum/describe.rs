@@ -77,6 +77,7 @@ fn frame(of: &Frame) -> Value {
         "atoms": of.atoms,
         "volume": of.volume,
         "potential_energy": of.totals.complete.then_some(of.totals.energy),
+        "virial_stress": of.totals.complete.then(|| of.totals.virial.map(|x| number(-x / of.volume))),
         "residuals": residuals,
         "asymmetry_of_stress": number(of.asymmetry),
         "mean_stress_against_virial": of.virial.map(number),

@@ -41,7 +41,7 @@ pub struct Table {
     pub columns: Vec<Column>,
 }
 
-/// In the order of the table's columns.
+/// In the order of the table's columns; pressure follows where it is asked for.
 pub const ORDER: [Quantity; 15] = [
     Quantity::Density,
     Quantity::Momentum,
@@ -60,15 +60,26 @@ pub const ORDER: [Quantity; 15] = [
     Quantity::ChurningSource,
 ];
 
+/// Quantities of a table.
+fn asked(pressure: bool) -> impl Iterator<Item = Quantity> {
+    let more = pressure.then_some(Quantity::Pressure);
+    ORDER.into_iter().chain(more)
+}
+
 impl Table {
-    /// Of one frame.
-    pub fn of_frame(fields: &Fields, units: Units, grid: Option<([usize; 3], Cell)>) -> Table {
+    /// Of one frame, with the pressure if it is asked for.
+    pub fn of_frame(
+        fields: &Fields,
+        units: Units,
+        grid: Option<([usize; 3], Cell)>,
+        pressure: bool,
+    ) -> Table {
         let column = |quantity: Quantity| {
             let values = fields.get(quantity).map(<[f64]>::to_vec);
             let values = values.ok_or_else(|| fields.why_not(quantity));
             of(quantity, units, values, None)
         };
-        let mut columns: Vec<Column> = ORDER.into_iter().map(column).collect();
+        let mut columns: Vec<Column> = asked(pressure).map(column).collect();
         for part in &fields.parts {
             columns.extend(of_part(part, units));
         }
@@ -85,6 +96,7 @@ impl Table {
         points: Vec<[f64; 3]>,
         units: Units,
         grid: Option<([usize; 3], Cell)>,
+        pressure: bool,
     ) -> Table {
         let column = |quantity: Quantity| {
             let errors = average.error(quantity).filter(|_| average.frames() > 1);
@@ -95,7 +107,7 @@ impl Table {
         Table {
             points,
             grid,
-            columns: ORDER.into_iter().map(column).collect(),
+            columns: asked(pressure).map(column).collect(),
         }
     }
 }
