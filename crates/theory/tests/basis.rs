@@ -8,8 +8,8 @@ use peridyne::law::potential::mixture::Mixture;
 use peridyne::law::potential::tabulated::{Eam, Tabulated};
 use peridyne::run::{Options, build};
 use peridyne::spec::*;
-use peridyne_theory::crystal::Crystal;
 use peridyne_theory::crystal::Atom;
+use peridyne_theory::crystal::Crystal;
 use peridyne_theory::dispersion::hermitian::{Matrix, eigen};
 
 const CELLS: usize = 4;

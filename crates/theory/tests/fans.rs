@@ -27,7 +27,10 @@ fn rows(text: &str, width: usize, elements: &[&str]) -> Vec<Vec<f64>> {
     words
         .chunks(width + 3)
         .filter_map(|entry| {
-            let mut row = entry[..3].iter().map(|w| kind(w)).collect::<Option<Vec<f64>>>()?;
+            let mut row = entry[..3]
+                .iter()
+                .map(|w| kind(w))
+                .collect::<Option<Vec<f64>>>()?;
             row.extend(entry[3..].iter().map(|w| w.parse::<f64>().unwrap()));
             Some(row)
         })
@@ -86,7 +89,12 @@ fn body(
 }
 
 fn diamond(spacing: f64, mass: f64, potential: PotentialSpec) -> Spec {
-    body(LatticeKind::Diamond, spacing, 3.0, &[(Members::All, mass, potential)])
+    body(
+        LatticeKind::Diamond,
+        spacing,
+        3.0,
+        &[(Members::All, mass, potential)],
+    )
 }
 
 /// Silicon carbide: the second four sites of diamond are the other element.
@@ -112,7 +120,12 @@ fn as_lammps(csv: &str, spec: impl Fn(f64, [f64; 2]) -> Spec) -> Crystal<3> {
     assert!(found.residual() < 1e-12, "{}", found.residual());
     let bar = 1e-4 * GPA;
     let pressure = reference.unwrap().pressure;
-    assert!((pressure / bar - first[3]).abs() < 1e-3, "{} {}", pressure / bar, first[3]);
+    assert!(
+        (pressure / bar - first[3]).abs() < 1e-3,
+        "{} {}",
+        pressure / bar,
+        first[3]
+    );
     let relaxed = found.stress_strain().unwrap().cubic(1e-9).unwrap();
     let mut rigid = found.rigid_elastic_constants();
     for (a, b) in [(0, 0), (1, 1), (2, 2), (3, 3), (4, 4), (5, 5)] {
@@ -120,7 +133,9 @@ fn as_lammps(csv: &str, spec: impl Fn(f64, [f64; 2]) -> Spec) -> Crystal<3> {
         rigid.c[a][b] -= pressure;
     }
     let rigid = [rigid.c[0][0], rigid.c[0][1] + pressure, rigid.c[3][3]];
-    let all = [relaxed.c11, relaxed.c12, relaxed.c44].into_iter().chain(rigid);
+    let all = [relaxed.c11, relaxed.c12, relaxed.c44]
+        .into_iter()
+        .chain(rigid);
     for (x, y) in all.zip(&first[4..10]) {
         assert!((x / GPA / y - 1.0).abs() < 1e-5, "{} {y}", x / GPA);
     }
@@ -156,7 +171,9 @@ fn silicon_of_stillinger_and_weber() {
 fn silicon_of_tersoff() {
     let csv = include_str!("../../../verify/phonons/tersoff_silicon.csv");
     let text = include_str!("../../../verify/lammps/fans/Si.tersoff");
-    as_lammps(csv, |edge, [mass, _]| diamond(edge, mass, tersoff(text, &["Si"])));
+    as_lammps(csv, |edge, [mass, _]| {
+        diamond(edge, mass, tersoff(text, &["Si"]))
+    });
 }
 
 #[test]
@@ -228,7 +245,11 @@ fn silicon_rests_where_its_constants_say() {
     spec = diamond(found, 1.0, silicon());
     let reference = crystal::<3>(&spec).unwrap().1.unwrap();
     assert!(reference.pressure.abs() < 1e-12);
-    assert!((reference.energy + 2.0 * 2.1683).abs() < 1e-4, "{}", reference.energy);
+    assert!(
+        (reference.energy + 2.0 * 2.1683).abs() < 1e-4,
+        "{}",
+        reference.energy
+    );
 }
 
 fn lj(i: usize, j: usize) -> LennardJones {
@@ -241,7 +262,12 @@ const END: f64 = 1.9;
 fn salt(kind: LatticeKind, spacing: f64, cells: f64, members: [Members; 2]) -> Spec {
     let ended = |i, j| PotentialSpec::of(lj(i, j)).ended(END, End::ShiftedForce);
     let [a, b] = members;
-    let mut spec = body(kind, spacing, cells, &[(a, 1.3, ended(0, 0)), (b, 4.1, ended(1, 1))]);
+    let mut spec = body(
+        kind,
+        spacing,
+        cells,
+        &[(a, 1.3, ended(0, 0)), (b, 4.1, ended(1, 1))],
+    );
     spec.potentials = vec![ActingSpec {
         potential: ended(0, 1),
         on: Acting::Between([0, 1]),
@@ -290,12 +316,19 @@ fn rock_salt_of_an_expression() {
     for k in [[0.0; 3], [0.4, 0.1, -0.7], [1.0, 0.5, 0.2]] {
         let all = eight.squares(k);
         for w in two.squares(k) {
-            assert!(all.iter().any(|x| (x - w).abs() < 1e-9 * all[23]), "{k:?}: {w}");
+            assert!(
+                all.iter().any(|x| (x - w).abs() < 1e-9 * all[23]),
+                "{k:?}: {w}"
+            );
         }
     }
     let dynamics = lattice_dynamics(&spec, 1e-3, 2).unwrap();
     assert_eq!(dynamics.sites, 2);
-    let names: Vec<&str> = dynamics.directions.iter().map(|d| d.name.as_str()).collect();
+    let names: Vec<&str> = dynamics
+        .directions
+        .iter()
+        .map(|d| d.name.as_str())
+        .collect();
     assert_eq!(names, ["Γ–X", "Γ–K", "Γ–L"]);
     assert_eq!(dynamics.path[0].branches.len(), 6);
 }
@@ -313,7 +346,10 @@ fn cells_of_decorated_lattices() {
     assert_eq!(b2, (LatticeKind::Cubic, 1.0, [1, 1]));
     let l12 = cell(LatticeKind::Fcc, [basis(&[0]), basis(&[1, 2, 3])]);
     assert_eq!(l12, (LatticeKind::Cubic, 1.0, [1, 3]));
-    let blende = cell(LatticeKind::Diamond, [basis(&[0, 1, 2, 3]), basis(&[4, 5, 6, 7])]);
+    let blende = cell(
+        LatticeKind::Diamond,
+        [basis(&[0, 1, 2, 3]), basis(&[4, 5, 6, 7])],
+    );
     assert_eq!(blende, (LatticeKind::Fcc, 1.0, [1, 1]));
     // L1_0 is tetragonal: its cell is none of the lattices
     let members = [basis(&[0, 3]), basis(&[1, 2])];

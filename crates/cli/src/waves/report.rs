@@ -84,7 +84,10 @@ fn cell(found: &Found) -> String {
     let s = &found.dynamics;
     let at_rest = s.path.iter().find(|r| r.name == Some("Γ"));
     let mut optical: Vec<(f64, usize)> = vec![];
-    for b in at_rest.iter().flat_map(|r| r.branches.iter().skip(s.dimension)) {
+    for b in at_rest
+        .iter()
+        .flat_map(|r| r.branches.iter().skip(s.dimension))
+    {
         match optical.last_mut() {
             Some((w, count)) if (b.signed() - *w).abs() <= 1e-9 * w.abs() => *count += 1,
             _ => optical.push((b.signed(), 1)),

@@ -4,9 +4,10 @@ use super::feasible::possible;
 use super::model::Model;
 use super::parts::parts;
 use super::reference::SplitMix;
-use crate::body::{Body, Layout, Values};
+use crate::body::{Body, Values};
 use crate::error::BuildError;
 use crate::space::Point;
+use crate::space::lattice::Lattice;
 use crate::spec::{BodySpec, Carriers, Members, Spec};
 
 /// Does a point (index, reference position) belong?
@@ -83,13 +84,29 @@ fn member<'a, const D: usize>(
         Members::Where(condition) => Box::new(|_, x| condition.eval(x, 0.0) != 0.0),
         Members::Mark(mark) => Box::new(|id, _| body.mark.get(id).copied().unwrap_or(0) == *mark),
         Members::Basis(sites) => {
-            let (BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. }) = &spec.body else {
-                let message = format!("set `{set}` is of sites of a cell, and the body is no lattice");
+            let (BodySpec::Lattice {
+                kind,
+                spacing,
+                origin,
+                perturb: None,
+                ..
+            }
+            | BodySpec::Sites {
+                kind,
+                spacing,
+                origin,
+                ..
+            }) = &spec.body
+            else {
+                let message = format!(
+                    "set `{set}` is of sites of a cell, and the body is no lattice, or a perturbed one"
+                );
                 return Err(BuildError::conflict(format!("sets.{set}"), message));
             };
-            let Layout::Grid(grid) = &body.layout else {
-                let message = format!("set `{set}` is of sites of a cell, which a perturbed lattice does not have");
-                return Err(BuildError::conflict(format!("sets.{set}"), message));
+            let lattice = Lattice {
+                kind: *kind,
+                spacing: *spacing,
+                origin: *origin,
             };
             let basis = kind.basis();
             if let Some(n) = sites.iter().find(|n| **n >= basis.len()) {
@@ -101,7 +118,6 @@ fn member<'a, const D: usize>(
                 );
                 return Err(BuildError::invalid(format!("sets.{set}"), message));
             }
-            let lattice = grid.lattice;
             Box::new(move |_, x| {
                 let quarter = lattice.quarter(x).map(|q| q.rem_euclid(4));
                 sites.iter().any(|n| basis[*n] == quarter)

@@ -276,8 +276,23 @@ fn potentials_of_one_body_are_added() {
             _ => 0.0,
         }
     });
-    let found = started(&spec).ledger().unwrap().strain;
+    let sim = started(&spec);
+    let found = sim.ledger().unwrap().strain;
     assert!((found - sum).abs() < 1e-12 * sum.abs(), "{found} {sum}");
+    // a pair is one bond, however many potentials it has
+    let reach = |i, j| match (i, j) {
+        (0, 0) => 2.3,
+        (0, 1) => 1.8,
+        (1, 2) => 2.4,
+        (2, 2) => 2.0,
+        _ => 0.0f64,
+    };
+    let bonds = pairs(&spec, |i, j, q| {
+        f64::from(u8::from(q < reach(i, j) * reach(i, j)))
+    });
+    assert_eq!(sim.info().directed_bonds, 2 * bonds as u64);
+    let sizes: u64 = sim.families().size.iter().map(|n| *n as u64).sum();
+    assert_eq!(sizes, 2 * bonds as u64);
     sites_agree("sum", &spec, found);
     consistent("sum", &spec);
 }

@@ -1,8 +1,8 @@
 //! The deck of an upscaled model: the old deck with the numbers of the new specification.
 
 use super::{Deck, Dim};
-use peridyne::run::Shelf;
 use peridyne::law::fan::FILE;
+use peridyne::run::Shelf;
 use peridyne::spec::{BodySpec, FamilyChoice, Horizon, PotentialSpec, Spec, TimeStep};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};

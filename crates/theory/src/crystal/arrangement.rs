@@ -1,7 +1,7 @@
 //! How the materials of a lattice body repeat: the smallest cell of atoms of several kinds.
 
-use super::cells::{determinant, primitive, reciprocal};
 use super::CrystalError;
+use super::cells::{determinant, primitive, reciprocal};
 use peridyne::run::materials_of;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{BodySpec, Spec};
@@ -35,7 +35,8 @@ impl Points {
     fn of(spec: &Spec, lattice: Lattice) -> Result<Points, CrystalError> {
         let all = materials_of(spec).map_err(|e| CrystalError::Potential(e.message))?;
         let edges = lattice.kind.edges();
-        let quarters = |a: usize, length: f64| (4.0 * length / (lattice.spacing * edges[a])).round();
+        let quarters =
+            |a: usize, length: f64| (4.0 * length / (lattice.spacing * edges[a])).round();
         Ok(Points {
             material: { all.iter() }
                 .map(|(x, material)| (lattice.quarter(x), *material))
@@ -81,9 +82,8 @@ impl Points {
     fn sorted(&self) -> Vec<(Quarters, usize)> {
         let mut all: Vec<(Quarters, usize)> = self.material.iter().map(|(q, m)| (*q, *m)).collect();
         let count = all.len() as f64;
-        let middle: [f64; 3] = std::array::from_fn(|a| {
-            all.iter().map(|(q, _)| f64::from(q[a])).sum::<f64>() / count
-        });
+        let middle: [f64; 3] =
+            std::array::from_fn(|a| all.iter().map(|(q, _)| f64::from(q[a])).sum::<f64>() / count);
         let far = |q: &Quarters| -> f64 {
             let v = self.vector::<3>(*q);
             let m = self.lattice.kind.edges();

@@ -1,6 +1,7 @@
 //! Crystals of fans: second derivatives of the one text by pairs of its particles.
 
-use super::atoms::{Atom, neighbours};
+use super::atoms::{Atom, Near, neighbours};
+use super::cells::determinant;
 use super::{Bond, Coupling, Crystal, CrystalError, Span};
 use peridyne::law::blocks::place;
 use peridyne::law::fan::sites::FanSites;
@@ -32,16 +33,16 @@ impl<const D: usize> Crystal<D> {
         for (s, atom) in atoms.iter().enumerate() {
             let mut ends = vec![(s, [0.0; D])];
             ends.extend(near.iter().filter(|n| n.from == s).map(|n| (n.to, n.xi)));
-            let fan_of: Vec<terms::Near> = { ends[1..].iter() }
-                .map(|(to, xi)| terms::Near {
-                    kind: atoms[*to].kind as u32,
-                    y: std::array::from_fn(|a| if a < D { xi[a] } else { 0.0 }),
-                })
-                .collect();
+            let fan_of = fan_of(s, &near, atoms);
             let kind = atom.kind as u32;
             sites.terms(kind, &fan_of, &mut |t| energy += t.energy);
             let found = second_derivatives(fan, kind, &fan_of);
-            if found.first.iter().chain(&found.second).any(|x| !x.is_finite()) {
+            if found
+                .first
+                .iter()
+                .chain(&found.second)
+                .any(|x| !x.is_finite())
+            {
                 let distance = { near.iter() }.fold(f64::INFINITY, |d, n| d.min(n.r));
                 return Err(CrystalError::Distance { distance });
             }
@@ -92,4 +93,40 @@ impl<const D: usize> Crystal<D> {
             }
         }
     }
+}
+
+/// The neighbours of a site, as fans see them.
+fn fan_of<const D: usize>(site: usize, near: &[Near<D>], atoms: &[Atom<D>]) -> Vec<terms::Near> {
+    let own = near.iter().filter(|n| n.from == site);
+    own.map(|n| terms::Near {
+        kind: atoms[n.to].kind as u32,
+        y: std::array::from_fn(|a| if a < D { n.xi[a] } else { 0.0 }),
+    })
+    .collect()
+}
+
+/// Energy per cell and pressure of a crystal of fans (energy / length^D).
+pub(super) fn state<const D: usize, F: Fan>(
+    fan: &F,
+    cell: [[f64; D]; D],
+    atoms: &[Atom<D>],
+) -> Result<[f64; 2], CrystalError> {
+    let near = neighbours(&cell, atoms, fan.cutoff(), |_, _| fan.cutoff())?;
+    let sites = FanSites(fan.clone());
+    let (mut energy, mut virial) = (0.0, 0.0);
+    for (s, atom) in atoms.iter().enumerate() {
+        let fan_of = fan_of(s, &near, atoms);
+        let at = |n: u32| match n {
+            0 => [0.0; 3],
+            n => fan_of[n as usize - 1].y,
+        };
+        sites.terms(atom.kind as u32, &fan_of, &mut |t| {
+            energy += t.energy;
+            for &(a, b, pull) in &t.pulls {
+                let (x, y) = (at(a), at(b));
+                virial -= pull * (0..3).map(|c| (y[c] - x[c]).powi(2)).sum::<f64>();
+            }
+        });
+    }
+    Ok([energy, virial / (D as f64 * determinant(&cell).abs())])
 }

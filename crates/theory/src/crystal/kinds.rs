@@ -2,15 +2,76 @@
 
 use super::{Atom, Crystal, CrystalError};
 use peridyne::law::descriptor::Wrong;
-use peridyne::law::fan;
-use peridyne::law::potential::mixture::{Given, mixture};
-use peridyne::law::potential::{self, Described};
+use peridyne::law::fan::{self, Fan};
+use peridyne::law::potential::mixture::{Given, Mixture, mixture};
+use peridyne::law::potential::{self, Described, Potential};
 
-/// A crystal and its energy per cell.
-type Made<const D: usize> = Result<(Crystal<D>, f64), CrystalError>;
+/// What is asked of each potential about a cell with these rows (length) and atoms.
+trait Ask<const D: usize> {
+    type Out;
 
-/// The crystal of potentials that are added, by their names and constants: its cell has these rows (length) and atoms, the kinds of
-/// which are those of the constants.
+    fn mixture<P: Potential>(
+        mixture: &Mixture<P>,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<Self::Out, CrystalError>;
+
+    fn fan<F: Fan>(
+        fan: &F,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<Self::Out, CrystalError>;
+}
+
+/// The crystal, and the energy per cell.
+struct Whole;
+
+impl<const D: usize> Ask<D> for Whole {
+    type Out = (Crystal<D>, f64);
+
+    fn mixture<P: Potential>(
+        mixture: &Mixture<P>,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<Self::Out, CrystalError> {
+        Crystal::of_mixture(mixture, cell, atoms)
+    }
+
+    fn fan<F: Fan>(
+        fan: &F,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<Self::Out, CrystalError> {
+        Crystal::of_fan(fan, cell, atoms)
+    }
+}
+
+/// Energy per cell and pressure.
+struct State;
+
+impl<const D: usize> Ask<D> for State {
+    type Out = [f64; 2];
+
+    fn mixture<P: Potential>(
+        mixture: &Mixture<P>,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<Self::Out, CrystalError> {
+        let (crystal, energy) = Crystal::of_mixture(mixture, cell, atoms)?;
+        Ok([energy, crystal.pressure()])
+    }
+
+    fn fan<F: Fan>(
+        fan: &F,
+        cell: [[f64; D]; D],
+        atoms: &[Atom<D>],
+    ) -> Result<Self::Out, CrystalError> {
+        super::fan::state(fan, cell, atoms)
+    }
+}
+
+/// The crystal of potentials that are added, by their names and constants, and its energy per cell. The kinds of its atoms are those of
+/// the constants.
 ///
 /// # Errors
 /// The engine has none of a name, or there is no crystal ([`Crystal::of_mixture`], [`Crystal::of_fan`]).
@@ -18,10 +79,38 @@ pub fn crystal<const D: usize>(
     potentials: &[(String, Given)],
     cell: [[f64; D]; D],
     atoms: &[Atom<D>],
-) -> Made<D> {
-    let mut sum: Option<(Crystal<D>, f64)> = None;
+) -> Result<(Crystal<D>, f64), CrystalError> {
+    let all = ask::<D, Whole>(potentials, cell, atoms)?.into_iter();
+    let sum = all.reduce(|(a, e), (b, f)| (a.plus(b), e + f));
+    sum.ok_or_else(nothing)
+}
+
+/// Energy per cell and pressure (energy / length^D) of the same, without second derivatives.
+///
+/// # Errors
+/// As of [`crystal`].
+pub fn state<const D: usize>(
+    potentials: &[(String, Given)],
+    cell: [[f64; D]; D],
+    atoms: &[Atom<D>],
+) -> Result<[f64; 2], CrystalError> {
+    let all = ask::<D, State>(potentials, cell, atoms)?.into_iter();
+    let sum = all.reduce(|[a, b], [c, d]| [a + c, b + d]);
+    sum.ok_or_else(nothing)
+}
+
+fn nothing() -> CrystalError {
+    CrystalError::Potential("no potential acts between these atoms".into())
+}
+
+fn ask<const D: usize, A: Ask<D>>(
+    potentials: &[(String, Given)],
+    cell: [[f64; D]; D],
+    atoms: &[Atom<D>],
+) -> Result<Vec<A::Out>, CrystalError> {
+    let mut answers = vec![];
     for (name, given) in potentials {
-        let mut find = Find {
+        let mut find = Find::<D, A> {
             name,
             given,
             cell,
@@ -31,24 +120,20 @@ pub fn crystal<const D: usize>(
         potential::each(&mut find);
         fan::each(&mut find);
         let unknown = || CrystalError::Potential(format!("there is no potential named {name}"));
-        let (crystal, energy) = find.found.ok_or_else(unknown)??;
-        sum = Some(match sum {
-            None => (crystal, energy),
-            Some((before, e)) => (before.plus(crystal), e + energy),
-        });
+        answers.push(find.found.ok_or_else(unknown)??);
     }
-    sum.ok_or_else(|| CrystalError::Potential("no potential acts between these atoms".into()))
+    Ok(answers)
 }
 
-struct Find<'a, const D: usize> {
+struct Find<'a, const D: usize, A: Ask<D>> {
     name: &'a str,
     given: &'a Given,
     cell: [[f64; D]; D],
     atoms: &'a [Atom<D>],
-    found: Option<Made<D>>,
+    found: Option<Result<A::Out, CrystalError>>,
 }
 
-impl<const D: usize> Find<'_, D> {
+impl<const D: usize, A: Ask<D>> Find<'_, D, A> {
     /// The atoms, as one that knows so many kinds counts them.
     fn atoms(&self, kinds: usize) -> Vec<Atom<D>> {
         let kind = |k: usize| if kinds == 1 { 0 } else { k };
@@ -69,23 +154,23 @@ fn wrong((key, message): Wrong) -> CrystalError {
     })
 }
 
-impl<const D: usize> potential::Kinds for Find<'_, D> {
+impl<const D: usize, A: Ask<D>> potential::Kinds for Find<'_, D, A> {
     fn kind<P: Described>(&mut self) {
         if P::NAME == self.name {
-            self.found = Some(mixture::<P>(self.given).map_err(wrong).and_then(|made| {
-                Crystal::of_mixture(&made, self.cell, &self.atoms(made.kinds()))
-            }));
+            let made = mixture::<P>(self.given).map_err(wrong);
+            self.found =
+                Some(made.and_then(|made| A::mixture(&made, self.cell, &self.atoms(made.kinds()))));
         }
     }
 }
 
-impl<const D: usize> fan::Kinds for Find<'_, D> {
+impl<const D: usize, A: Ask<D>> fan::Kinds for Find<'_, D, A> {
     fn fan<F: fan::Described>(&mut self) {
         if F::NAME == self.name {
             let made = fan::of_kinds::<F>(self.given).map_err(wrong);
-            self.found = Some(made.and_then(|made| {
-                Crystal::of_fan(&made, self.cell, &self.atoms(made.table().kinds()))
-            }));
+            self.found = Some(
+                made.and_then(|made| A::fan(&made, self.cell, &self.atoms(made.table().kinds()))),
+            );
         }
     }
 }

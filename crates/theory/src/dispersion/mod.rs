@@ -106,9 +106,7 @@ impl<const D: usize> Crystal<D> {
             }
         }
         for coupling in &self.couplings {
-            let wave = |x: &[f64; D]| {
-                Complex64::from_polar(1.0, (0..D).map(|a| k[a] * x[a]).sum())
-            };
+            let wave = |x: &[f64; D]| Complex64::from_polar(1.0, (0..D).map(|a| k[a] * x[a]).sum());
             let rows = coupling.rows(wave);
             match part {
                 Part::Value => coupling.add(&rows, &rows, &mut m),

@@ -84,7 +84,13 @@ pub fn special_points_of<const D: usize>(crystal: &Crystal<D>) -> (Vec<SpecialPo
     let b = crystal.reciprocal();
     let half = |of: &[usize]| -> [f64; 3] {
         let sum = |a: usize| of.iter().map(|i| b[*i][a]).sum::<f64>();
-        std::array::from_fn(|a| if a < D { 0.5 * sum(a) / (2.0 * PI) } else { 0.0 })
+        std::array::from_fn(|a| {
+            if a < D {
+                0.5 * sum(a) / (2.0 * PI)
+            } else {
+                0.0
+            }
+        })
     };
     let point = |name, of: &[usize]| SpecialPoint {
         name,

@@ -1,8 +1,8 @@
 //! Atoms of several kinds, and atoms with terms of more than two: their crystals.
 
 use super::{UpscaleError, current, lattice};
-use crate::crystal::cells::determinant;
 use crate::crystal::arrangement::arrangement;
+use crate::crystal::cells::determinant;
 use crate::crystal::{Atom, Crystal, CrystalError, Reference, kinds};
 use peridyne::law::fan;
 use peridyne::law::potential::mixture::Given;
@@ -69,8 +69,14 @@ impl<const D: usize> Atoms<D> {
             ..*a
         };
         let atoms: Vec<Atom<D>> = self.atoms.iter().map(atom).collect();
-        let found = kinds::crystal(&self.given, self.cell.map(moved), &atoms).ok();
-        found.map(|(_, energy)| energy / determinant(&self.cell).abs())
+        let found = kinds::state(&self.given, self.cell.map(moved), &atoms).ok();
+        found.map(|[energy, _]| energy / determinant(&self.cell).abs())
+    }
+
+    /// Energy per atom and pressure.
+    pub fn state(&self) -> Result<[f64; 2], CrystalError> {
+        let [energy, pressure] = kinds::state(&self.given, self.cell, &self.atoms)?;
+        Ok([energy / self.atoms.len() as f64, pressure])
     }
 
     pub fn crystal(&self) -> Result<(Crystal<D>, Reference), CrystalError> {
@@ -94,7 +100,9 @@ pub(super) fn grow(fine: &Spec, coarse: &mut Spec, n: f64) -> Result<(), Upscale
     let energy = n.powi(fine.dimension as i32);
     for material in &mut coarse.materials {
         if let LawSpec::Atoms(potential) = &mut material.law {
-            *potential = potential.scaled(n, energy).map_err(CrystalError::Potential)?;
+            *potential = potential
+                .scaled(n, energy)
+                .map_err(CrystalError::Potential)?;
         }
     }
     for acting in &mut coarse.potentials {

@@ -3,7 +3,7 @@
 use super::atoms::{Atoms, has_basis_or_fans};
 use super::{lattice, reach};
 use crate::crystal::potential::rest;
-use crate::crystal::{Crystal, Reach, Reference};
+use crate::crystal::{Crystal, Reach};
 use peridyne::law::potential::{Potential, Visitor};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::Spec;
@@ -42,15 +42,15 @@ pub fn equilibrium_spacing(spec: &Spec) -> Option<f64> {
     potential.apply(At { kind, reach }).ok().flatten()
 }
 
-/// The reference of a lattice of a potential at a spacing.
+/// Energy per atom and pressure of a lattice of a potential at a spacing.
 fn at<const D: usize, P: Potential>(
     potential: &P,
     kind: LatticeKind,
     reach: Reach,
-) -> impl Fn(f64) -> Option<Reference> {
+) -> impl Fn(f64) -> Option<[f64; 2]> {
     move |a| {
         let crystal = Crystal::<D>::of_potential(potential, kind, a, 1.0, reach);
-        crystal.ok().map(|(_, reference)| reference)
+        crystal.ok().map(|(_, r)| [r.energy, r.pressure])
     }
 }
 
@@ -60,37 +60,36 @@ fn of_kinds<const D: usize>(spec: &Spec) -> Option<f64> {
     let atoms = Atoms::<D>::of(spec).ok()?;
     let all = spec.materials.iter().filter_map(|m| m.law.potential());
     let reach = all.map(|p| p.cut_off()).fold(0.0, f64::max);
-    let range = [FROM, TO].map(|x| x * 0.5 * reach / kind.nearest());
-    best(range, None, |a| {
-        let made = atoms.grown(a / spacing).crystal();
-        made.ok().map(|(_, reference)| reference)
-    })
+    let range = [FROM, INNER].map(|x| x * 0.5 * reach / kind.nearest());
+    best(range, None, |a| atoms.grown(a / spacing).state().ok())
 }
 
 /// Steps inwards, each by this factor, from the first factor times the length to the last.
 const STEP: f64 = 0.98;
 const FROM: f64 = 2.5;
 const TO: f64 = 0.3;
+/// Of fans, and of kinds: cut-offs are short there, and nearer than a third of them nothing rests.
+const INNER: f64 = 0.6;
 
 fn best(
     [from, to]: [f64; 2],
     made_for: Option<f64>,
-    reference: impl Fn(f64) -> Option<Reference>,
+    state: impl Fn(f64) -> Option<[f64; 2]>,
 ) -> Option<f64> {
     let mut a = from;
     let mut attracts = false;
     let mut best: Option<(f64, f64)> = None;
     while a > to {
         // too far apart there are no neighbours, too near the embedding energy may have no value
-        let pressure = reference(a).map(|r| r.pressure);
+        let pressure = state(a).map(|[_, pressure]| pressure);
         if attracts && pressure.is_some_and(|p| p >= 0.0) {
-            let found = rest([a, a / STEP], |a| Some(reference(a)?.pressure));
-            let state = found.and_then(|rest| Some((rest, reference(rest)?)));
+            let found = rest([a, a / STEP], |a| Some(state(a)?[1]));
+            let there = found.and_then(|rest| Some((rest, state(rest)?)));
             // not where the pressure jumps at a cut-off
-            if let Some((rest, r)) = state
-                && r.pressure.abs() <= 1e-6 * pressure.unwrap_or(0.0)
+            if let Some((rest, [energy, left])) = there
+                && left.abs() <= 1e-6 * pressure.unwrap_or(0.0)
             {
-                let cost = made_for.map_or(r.energy, |aim| (rest - aim).abs());
+                let cost = made_for.map_or(energy, |aim| (rest - aim).abs());
                 if best.is_none_or(|(_, least)| cost < least) {
                     best = Some((rest, cost));
                 }

@@ -14,8 +14,8 @@ mod tangent;
 pub mod tersoff;
 
 pub use bulk::{bulk, pair};
-pub use described::{Described, FILE, Kinds, is_known, of_kinds};
 pub(crate) use described::look_up;
+pub use described::{Described, FILE, Kinds, is_known, of_kinds};
 pub use table::Row;
 pub use tangent::{second_derivatives, tangents};
 

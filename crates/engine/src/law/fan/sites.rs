@@ -130,10 +130,10 @@ impl<F: Fan> Sites for FanSites<F> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::stillinger_weber::StillingerWeber;
-    use super::super::tersoff::Tersoff;
     use super::super::described::make;
+    use super::super::stillinger_weber::StillingerWeber;
     use super::super::tangents;
+    use super::super::tersoff::Tersoff;
     use super::*;
     use crate::samples::Random;
     use crate::spec::Parameters;

@@ -109,7 +109,12 @@ pub(super) fn of_file(cloud: &Cloud, name: &str) -> Option<Members> {
 /// Points on sites of the cell of a lattice.
 fn sublattice(context: &Context, sites: &At<Vec<At<usize>>>, body: &BodySpec) -> Result<Members> {
     let kind = match body {
-        BodySpec::Lattice { kind, perturb: None, .. } | BodySpec::Sites { kind, .. } => *kind,
+        BodySpec::Lattice {
+            kind,
+            perturb: None,
+            ..
+        }
+        | BodySpec::Sites { kind, .. } => *kind,
         BodySpec::Lattice { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => {
             return Err(context.error_with(
                 &sites.span,
@@ -133,7 +138,9 @@ fn sublattice(context: &Context, sites: &At<Vec<At<usize>>>, body: &BodySpec) ->
     if sites.value.is_empty() {
         return Err(context.error(&sites.span, "no sites, no points"));
     }
-    Ok(Members::Basis(sites.value.iter().map(|n| n.value - 1).collect()))
+    Ok(Members::Basis(
+        sites.value.iter().map(|n| n.value - 1).collect(),
+    ))
 }
 
 fn marked(context: &Context, mark: &At<Mark>, body: &BodySpec) -> Result<Members> {
