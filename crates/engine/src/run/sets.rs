@@ -290,7 +290,7 @@ fn of_points<const D: usize>(spec: &Spec) -> Result<Vec<(Point, usize)>, BuildEr
     assign_materials(spec, &mut body, &sets)?;
     let slots = body.slots.iter().map(|s| *s as usize);
     Ok(slots
-        .map(|s| (body.position(s), body.material_of(s) as usize))
+        .map(|s| (body.position(s), body.material_of(s)))
         .collect())
 }
 

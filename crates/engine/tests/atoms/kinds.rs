@@ -276,7 +276,7 @@ fn potentials_of_one_body_are_added() {
             _ => 0.0,
         }
     });
-    let sim = started(&spec);
+    let mut sim = started(&spec);
     let found = sim.ledger().unwrap().strain;
     assert!((found - sum).abs() < 1e-12 * sum.abs(), "{found} {sum}");
     // a pair is one bond, however many potentials it has
