@@ -13,7 +13,10 @@ use peridyne::spec::*;
 use peridyne_theory::crystal::arrangement::{arrangement, bravais};
 use peridyne_theory::crystal::{Atom, Crystal, CrystalError};
 use peridyne_theory::lattice_dynamics::lattice_dynamics;
-use peridyne_theory::upscale::{UpscaleError, crystal, equilibrium_spacing, lattice};
+use peridyne_theory::upscale::card::{Card, card};
+use peridyne_theory::upscale::{
+    Keep, Rule, UpscaleError, crystal, equilibrium_spacing, lattice, upscale, upscale_keeping,
+};
 use std::f64::consts::TAU;
 
 /// GPa in eV/Å³.
@@ -250,6 +253,76 @@ fn silicon_rests_where_its_constants_say() {
         "{}",
         reference.energy
     );
+}
+
+/// Upscaled twice: the same constants and density, half of all frequencies at half of all wave vectors.
+fn twice_as_large(spec: &Spec) -> Card {
+    let (coarse, rule) = upscale(spec, 2).unwrap();
+    assert_eq!(rule, Rule::Shells);
+    let ((a, ra), (b, rb)) = (crystal::<3>(spec).unwrap(), crystal::<3>(&coarse).unwrap());
+    assert_eq!(a.basis.len(), b.basis.len());
+    assert!((b.density() / a.density() - 1.0).abs() < 1e-12);
+    let pressures = [ra, rb].map(|r| r.unwrap().pressure);
+    let size = a.elastic_constants().unwrap().c[0][0];
+    assert!((pressures[0] - pressures[1]).abs() < 1e-12 * size);
+    let (fine, large) = (
+        a.elastic_constants().unwrap(),
+        b.elastic_constants().unwrap(),
+    );
+    for (x, y) in fine.c.iter().flatten().zip(large.c.iter().flatten()) {
+        assert!((x - y).abs() < 1e-10 * size, "{x} {y}");
+    }
+    let k = [0.31, -0.12, 0.54];
+    let most = a.squares(k).into_iter().fold(0.0, f64::max);
+    for (x, y) in a.squares(k).iter().zip(b.squares(k.map(|k| 0.5 * k))) {
+        assert!((x - 4.0 * y).abs() < 1e-11 * most, "{x} {y}");
+    }
+    let card = card(spec, &coarse, 2, rule).unwrap();
+    assert!(
+        card.notes.iter().any(|n| n.contains("are lost")),
+        "{:?}",
+        card.notes
+    );
+    assert!(!card.energies.is_empty());
+    for row in &card.energies {
+        let scale = row.fine.abs().max(1e-6 * size);
+        assert!((row.fine - row.coarse).abs() < 1e-9 * scale, "{row:?}");
+    }
+    card
+}
+
+#[test]
+fn coarse_crystals_with_a_basis_are_larger_and_heavier() {
+    let mut spec = diamond(5.431, 28.0855, silicon());
+    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    let found = twice_as_large(&spec);
+    // silicon against itself: the energy of a small strain is that of the constants with sites held
+    let row = found
+        .energies
+        .iter()
+        .find(|r| r.mode == "isotropic" && r.strain == 0.005);
+    let c = crystal::<3>(&spec).unwrap().0.rigid_elastic_constants().c;
+    let quadratic = 0.5 * 3.0 * (c[0][0] + 2.0 * c[0][1]) * 0.005f64.powi(2);
+    assert!((row.unwrap().fine / quadratic - 1.0).abs() < 0.05);
+    // sublattices by sites grow with the cell
+    let basis = |n: &[usize]| Members::Basis(n.to_vec());
+    twice_as_large(&salt(
+        LatticeKind::Bcc,
+        1.0,
+        8.0,
+        [basis(&[0]), basis(&[1])],
+    ));
+    // expressions do not
+    let pairs = "floor(0.5*x) - 2*floor(0.25*x)";
+    let members = ["< 0.5", "> 0.5"].map(|is| text(&format!("{pairs} {is}")));
+    let spec = salt(LatticeKind::Cubic, 1.0, 8.0, members);
+    assert_eq!(arrangement::<3>(&spec).unwrap().sites.len(), 4);
+    assert_eq!(
+        upscale(&spec, 2).unwrap_err(),
+        UpscaleError::OtherArrangement
+    );
+    let reach = upscale_keeping(&spec, 2, Some(Keep::Reach)).unwrap_err();
+    assert_eq!(reach, UpscaleError::NoReach);
 }
 
 fn lj(i: usize, j: usize) -> LennardJones {
