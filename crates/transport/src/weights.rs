@@ -2,14 +2,14 @@
 //!
 //! `∫ g(z) φ(z) dz ≈ Σ_m w_m g(mh)` with `w_m = h φ(mh) (α + β (m/M)²)`, half at an end that lies on the horizon. Weights of −m and m are
 //! ∓ each other, so the sum over all points telescopes and `Σ u` is kept to round-off; α and β give the moment 2, which the local limit
-//! needs on every grid, and on a line the next moment, which is that of the δ² term.
+//! needs on every grid, and on a line the next moment, which is that of the δ² term, where that leaves the signs of the kernel (else β is 0).
 
 use crate::grid::Grid;
 use crate::kernel::{Kernel, MOMENT, Parity};
 use peridyne::error::BuildError;
 
-/// Spacings that a horizon has at least.
-pub const FEWEST: f64 = 2.0;
+/// Spacings that a horizon has at least: two bonds on either side, though the kernel may be 0 at the horizon, for two moments.
+pub const FEWEST: f64 = 3.0;
 
 /// Half of the bonds of a point: those of +m; a bond of −m has the weight ∓.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,12 +23,12 @@ pub struct Stencil {
 
 impl Stencil {
     /// # Errors
-    /// A horizon of fewer than 2 spacings, and one on which the corrected weights have another sign than the kernel.
+    /// A horizon of fewer than 3 spacings, and more than a million.
     pub fn new(kernel: &Kernel, grid: &Grid, path: &str) -> Result<Stencil, BuildError> {
         let ratio = kernel.horizon() / grid.spacing;
         let coarse = |what: String| {
             Err(BuildError::invalid(path, what).help(format!(
-                "write a horizon of {FEWEST} spacings or more (3 is the least that resolves anything), or more points"
+                "write a horizon of {FEWEST} spacings or more, or more points"
             )))
         };
         if ratio < FEWEST * (1.0 - 1e-9) {
@@ -60,6 +60,7 @@ impl Stencil {
                 })
                 .sum()
         };
+        let one = MOMENT / moment(power, 0);
         let factors = match grid.dimension {
             1 => {
                 let (a, b, c, d) = (
@@ -75,16 +76,18 @@ impl Stencil {
                     (a * next - c * first) / determinant,
                 ]
             }
-            _ => [MOMENT / moment(power, 0), 0.0],
+            _ => [one, 0.0],
         };
-        let corrected: Vec<f64> = { steps.iter().zip(&raw) }
-            .map(|(m, w)| w * (factors[0] + factors[1] * (length(m) / kernel.horizon()).powi(2)))
-            .collect();
-        if let Some(n) = (0..raw.len()).find(|n| !(corrected[*n] * raw[*n] >= 0.0)) {
-            return coarse(format!(
-                "the horizon is under-resolved: with {ratio:.3} spacings the weight of the bond {:?} is {:.3e} where the kernel is {:.3e}",
-                steps[n], corrected[n], raw[n]
-            ));
+        let with = |factors: [f64; 2]| -> Vec<f64> {
+            let each = steps.iter().zip(&raw).map(|(m, w)| {
+                w * (factors[0] + factors[1] * (length(m) / kernel.horizon()).powi(2))
+            });
+            each.collect()
+        };
+        let mut corrected = with(factors);
+        // few bonds: both moments would need a weight of the other sign, one does not
+        if corrected.iter().zip(&raw).any(|(c, w)| !(c * w >= 0.0)) {
+            corrected = with([one, 0.0]);
         }
         let weights = steps.iter().zip(&corrected).map(|(m, w)| {
             let r = ((m[0] * m[0] + m[1] * m[1]) as f64).sqrt();

@@ -23,7 +23,7 @@ pub enum Evaluation {
 }
 
 /// From this many bonds of a point on Fourier transforms are faster (`cargo run --release --example cost`).
-pub const FOURIER_FROM: usize = 48;
+pub const FOURIER_FROM: usize = 80;
 
 impl Evaluation {
     /// The faster one.
