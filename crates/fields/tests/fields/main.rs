@@ -3,6 +3,7 @@
 
 mod balance;
 mod churning;
+mod duals;
 mod pair_forces;
 mod sample;
 mod sums;
