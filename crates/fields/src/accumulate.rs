@@ -6,7 +6,7 @@
 
 use crate::bonds::{Bonds, WIDTH};
 use crate::kernel::Kernel;
-use crate::targets::{EIGHT, Patch, Runs};
+use crate::patch::{EIGHT, Patch, Runs};
 use crate::wide::widest;
 
 /// Numbers that a bond adds at a point, for each part: `−x⊗f`, `x (D·v)`, `x⊗E`, times β.
@@ -396,7 +396,7 @@ mod tests {
             let list = Targets::Points(list.collect());
             for targets in [Targets::Grid([13, 11, 9]), list] {
                 let bins = Bins::new(&targets, &cell, &kernel).unwrap();
-                let patch = bins.patch([[0.2; 3], [0.8; 3]]);
+                let patch = Patch::of(&bins, [[0.2; 3], [0.8; 3]]);
                 for form in [Form::Still, Form::Moving, Form::Whole] {
                     let [wide, single] =
                         [bonds, all_bonds].map(|run| run(&kernel, &patch, &of, 1, form).values);

@@ -13,6 +13,7 @@ use crate::frame::Frame;
 use crate::kernel::dot;
 use crate::neighbours::Neighbours;
 use crate::partition::{PairForce, Partition};
+use crate::patch::Patch;
 use crate::sums::{Method, Moving, Own};
 use crate::targets::{Bins, Targets};
 use rayon::prelude::*;
@@ -244,7 +245,7 @@ impl Gather<'_> {
                         }
                     }
                 }
-                let patch = bins.patch([low, high]);
+                let patch = Patch::of(bins, [low, high]);
                 let found = (!patch.index.is_empty())
                     .then(|| accumulate::bonds(kernel, &patch, &bonds, 1, Form::Whole));
                 (patch.index, found)

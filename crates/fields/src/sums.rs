@@ -6,13 +6,16 @@
 
 use crate::FieldsError;
 use crate::accumulate::{self, BOND, Form, Particles};
-use crate::bonds::{Block, Collector, Spare};
+use crate::bonds::Block;
+use crate::collect::Spare;
 use crate::fields::{Fields, Layout, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::{Kernel, dot};
 use crate::molecules::{self, Molecules};
 use crate::neighbours::Neighbours;
 use crate::partition::{PairForce, Partition};
+use crate::patch::Patch;
+use crate::room::Collector;
 use crate::targets::{Bins, Targets};
 use peridyne::law::terms::Sites;
 use rayon::prelude::*;
@@ -113,7 +116,7 @@ pub fn evaluate(
             .map(|b| -> Result<_, FieldsError> {
                 let (centres, bounds) = blocks.members(&neighbours, b);
                 let reach = std::array::from_fn(|a| wide / frame.cell.height(a));
-                let patch = bins.patch(widened(bounds, reach));
+                let patch = Patch::of(&bins, widened(bounds, reach));
                 // far from all points: nothing of it is seen
                 if patch.index.is_empty() || centres.is_empty() {
                     return Ok((Block::default(), None, centres.is_empty()));
@@ -211,7 +214,7 @@ impl Moving<'_> {
                 .into_par_iter()
                 .map(|b| {
                     let (members, bounds) = blocks.members(neighbours, b);
-                    let patch = bins.patch(bounds);
+                    let patch = Patch::of(bins, bounds);
                     if patch.index.is_empty() {
                         return (vec![], vec![]);
                     }

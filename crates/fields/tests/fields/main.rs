@@ -3,6 +3,7 @@
 
 mod balance;
 mod churning;
+mod duals;
 mod force_states;
 mod pair_forces;
 mod sample;

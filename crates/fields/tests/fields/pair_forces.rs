@@ -3,6 +3,7 @@
 use crate::sample::*;
 use peridyne::law::number::Dual;
 use peridyne::law::potential::Potential;
+use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::law::terms::{Near, OfSites, Sites};
 use peridyne_fields::molecules::Molecules;
 use peridyne_fields::residuals::of_frame;
@@ -154,6 +155,10 @@ fn generalized_forces_are_slopes_to_twelve_digits() {
     }
     check(Smooth);
     check(Embedded);
+    check(LennardJones {
+        epsilon: 0.7,
+        sigma: 1.1,
+    });
 }
 
 /// (4.0.28): pair forces from differences are not central, and stress is not symmetric; those from distances are, also for this
