@@ -15,6 +15,7 @@ use peridyne_io::write::atomic::write_file;
 use peridyne_io::write::continuum::{self, About, Table, describe};
 use peridyne_io::write::folder::Folder;
 use peridyne_io::write::pvd::Pvd;
+use rayon::prelude::*;
 use request::Request;
 use std::fs;
 use std::path::PathBuf;
@@ -86,14 +87,33 @@ fn hold(request: &Request, folder: &mut Option<Folder>) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Atoms and points up to which several frames are computed at once, one for each thread.
+const SMALL: [usize; 2] = [20_000, 100_000];
+
+fn at_once(request: &Request, atoms: usize) -> usize {
+    match atoms <= SMALL[0] && request.targets.len() <= SMALL[1] {
+        true => rayon::current_num_threads(),
+        false => 1,
+    }
+}
+
+fn wrong(request: &Request, index: usize, message: impl std::fmt::Display) -> Failure {
+    let name = request.frames.display();
+    Failure::input(format!("{name}: frame {index}: {message}"))
+}
+
 fn frames(
     request: &Request,
     count: usize,
     folder: &mut Option<Folder>,
     written: &mut Vec<PathBuf>,
 ) -> Result<Done, Failure> {
-    let name = request.frames.display().to_string();
-    let mut source = Frames::open(&request.frames).map_err(|e| Failure::input(e.to_string()))?;
+    let source = Frames::open(&request.frames).map_err(|e| Failure::input(e.to_string()))?;
+    let mut chosen = Chosen {
+        source,
+        index: 0,
+        atoms: None,
+    };
     let mut done = Done {
         read: vec![],
         average: Average::default(),
@@ -103,69 +123,42 @@ fn frames(
     };
     let mut pvd = Pvd::new(request.out.join("frames.pvd"));
     let (begun, mut spoken) = (Instant::now(), Instant::now());
-    let mut atoms_before = None;
-    let mut index = 0;
-    while let Some(atoms) = source
-        .next_frame()
-        .map_err(|e| Failure::input(e.to_string()))?
-    {
-        let here = index;
-        index += 1;
-        if here < request.skip || !(here - request.skip).is_multiple_of(request.every) {
+    let mut some = vec![];
+    loop {
+        let read = chosen.next(request)?;
+        let end = read.is_none();
+        some.extend(read);
+        let wide = some
+            .first()
+            .map_or(1, |(_, atoms)| at_once(request, atoms.len()));
+        if some.len() < wide && !end {
             continue;
         }
-        let wrong = |m: String| Failure::input(format!("{name}: frame {here}: {m}"));
-        if let Some(before) = atoms_before.replace(atoms.len())
-            && before != atoms.len()
-        {
-            return Err(wrong(format!(
-                "it has {} atoms, frames before it {before}: fields are averaged over frames of the same atoms",
-                atoms.len()
-            )));
-        }
-        if atoms.bonded && !request.knows_bonds() {
-            return Err(wrong(
-                "the file has bonds: give --molecules FILE (the same, with coefficients) and --special A,B,C".into(),
-            ));
-        }
-        let state =
-            frame(&atoms, request.units, &request.masses, &request.model).map_err(&wrong)?;
-        let method = request
-            .whole_method(&state.cell, state.len())
-            .map_err(&wrong)?;
-        let found = evaluate(&state, &*request.model.sites, &request.targets, &method)
-            .map_err(|e| wrong(e.to_string()))?;
-        let grid = match &request.targets {
-            Targets::Grid(n) => Some((*n, state.cell.clone())),
-            Targets::Points(_) => None,
-        };
-        let residuals = measured(request, &state, &method);
-        let about = examined(&atoms, &state, &found, here, residuals, grid.is_some());
-        done.read.push(about);
-        done.average.add(&found);
-        let table = Table::of_frame(&found, request.units, grid.clone(), request.pressure);
-        if request.each {
-            hold(request, folder)?;
-            let stem = format!("frame.{here:06}");
-            let failed = |e: peridyne_io::write::WriteError| Failure::Run(e.to_string());
-            match continuum::write_image(&request.out, &stem, &table, atoms.time).map_err(failed)? {
-                Some(path) => {
-                    let own = format!("{}", path.file_name().unwrap_or_default().display());
-                    let time = atoms.time.or(atoms.step.map(|s| s as f64));
-                    written.extend([path, pvd.path().to_path_buf()]);
-                    pvd.push(time.unwrap_or(here as f64), &own)
-                        .map_err(failed)?;
-                }
-                None => {
-                    let path = request.out.join(format!("{stem}.csv"));
-                    continuum::write_table(&path, &table).map_err(failed)?;
-                    written.push(path);
-                }
+        let all: Vec<Result<Computed, Failure>> = std::mem::take(&mut some)
+            .into_par_iter()
+            .map(|(index, atoms)| computed(request, index, atoms))
+            .collect();
+        for one in all {
+            let one = one?;
+            let table = Table::of_frame(
+                &one.found,
+                request.units,
+                one.grid.clone(),
+                request.pressure,
+            );
+            if request.each {
+                hold(request, folder)?;
+                write_frame(request, &one, &table, &mut pvd, written)?;
             }
+            done.average.add(&one.found);
+            done.read.push(one.about);
+            done.points = one.found.points;
+            done.grid = one.grid;
+            done.last = Some((table, one.atoms.time));
         }
-        done.points = found.points;
-        done.grid = grid;
-        done.last = Some((table, atoms.time));
+        if end {
+            return Ok(done);
+        }
         let n = done.read.len();
         if spoken.elapsed() >= INTERVAL && n < count {
             spoken = Instant::now();
@@ -173,7 +166,101 @@ fn frames(
             note(&format!("frame {n} of {count}, {left:.0} s left"));
         }
     }
-    Ok(done)
+}
+
+/// Frames of the file that are taken, one after the other.
+struct Chosen {
+    source: Frames,
+    index: usize,
+    /// Of the frames so far.
+    atoms: Option<usize>,
+}
+
+impl Chosen {
+    fn next(&mut self, request: &Request) -> Result<Option<(usize, Atoms)>, Failure> {
+        loop {
+            let read = self.source.next_frame();
+            let Some(atoms) = read.map_err(|e| Failure::input(e.to_string()))? else {
+                return Ok(None);
+            };
+            let index = self.index;
+            self.index += 1;
+            if index < request.skip || !(index - request.skip).is_multiple_of(request.every) {
+                continue;
+            }
+            if let Some(before) = self.atoms.replace(atoms.len())
+                && before != atoms.len()
+            {
+                let message = format!(
+                    "it has {} atoms, frames before it {before}: fields are averaged over frames of the same atoms",
+                    atoms.len()
+                );
+                return Err(wrong(request, index, message));
+            }
+            if atoms.bonded && !request.knows_bonds() {
+                let message = "the file has bonds: give --molecules FILE (the same, with coefficients) and --special A,B,C";
+                return Err(wrong(request, index, message));
+            }
+            return Ok(Some((index, atoms)));
+        }
+    }
+}
+
+/// The fields of a frame.
+struct Computed {
+    atoms: Atoms,
+    found: Fields,
+    grid: Option<([usize; 3], peridyne_fields::Cell)>,
+    about: continuum::Frame,
+}
+
+fn computed(request: &Request, index: usize, atoms: Atoms) -> Result<Computed, Failure> {
+    let wrong = |message: String| wrong(request, index, message);
+    let state = frame(&atoms, request.units, &request.masses, &request.model).map_err(wrong)?;
+    let method = request
+        .whole_method(&state.cell, state.len())
+        .map_err(wrong)?;
+    let found = evaluate(&state, &*request.model.sites, &request.targets, &method)
+        .map_err(|e| wrong(e.to_string()))?;
+    let grid = match &request.targets {
+        Targets::Grid(n) => Some((*n, state.cell.clone())),
+        Targets::Points(_) => None,
+    };
+    let residuals = measured(request, &state, &method);
+    let about = examined(&atoms, &state, &found, index, residuals, grid.is_some());
+    Ok(Computed {
+        atoms,
+        found,
+        grid,
+        about,
+    })
+}
+
+fn write_frame(
+    request: &Request,
+    one: &Computed,
+    table: &Table,
+    pvd: &mut Pvd,
+    written: &mut Vec<PathBuf>,
+) -> Result<(), Failure> {
+    let failed = |e: peridyne_io::write::WriteError| Failure::Run(e.to_string());
+    let (index, atoms) = (one.about.index, &one.atoms);
+    let stem = format!("frame.{index:06}");
+    match continuum::write_image(&request.out, &stem, table, atoms.time).map_err(failed)? {
+        Some(path) => {
+            let own = format!("{}", path.file_name().unwrap_or_default().display());
+            let time = atoms.time.or(atoms.step.map(|s| s as f64));
+            written.extend([path, pvd.path().to_path_buf()]);
+            pvd.push(time.unwrap_or(index as f64), &own)
+                .map_err(failed)?;
+        }
+        None => {
+            let path = request.out.join(format!("{stem}.csv"));
+            continuum::write_table(&path, table).map_err(failed)?;
+            written.push(path);
+        }
+    }
+    Ok(())
 }
 
 /// Points at which residuals are measured, evenly from those asked for.

@@ -209,11 +209,14 @@ fn grids_are_images_with_means_and_each_frame() {
     let deck = "frames = \"a.dump\"\npotential = \"lennard_jones\"\nunits = \"lj\"\nkernel = \"polynomial\"\nwidth = 9.9\n\
                 grid = [6, 5, 4]\nout = \"other\"\nwith = { epsilon = 1, sigma = 1.0, cutoff = 2 }\n";
     std::fs::write(dir.join("fields.toml"), deck).unwrap();
-    let (code, _, error) = fields(dir, &["fields.toml", "--width", "1.5"]);
+    let (code, _, error) = fields(dir, &["fields.toml", "--width", "1.5", "--threads", "1"]);
     assert_eq!(code, Some(0), "{error}");
     let [a, b] =
         ["out", "other"].map(|out| std::fs::read(dir.join(out).join("fields.npz")).unwrap());
-    assert!(a == b, "flags and keys give the same arrays");
+    assert!(
+        a == b,
+        "flags and keys, and any number of threads, give the same arrays"
+    );
 }
 
 /// Lines and planes are lists of points, and the pressure is a third of the trace.
