@@ -1,5 +1,6 @@
 //! Microseconds per atom and step of potentials of fans on 32,768 atoms of warm silicon: `cargo run --release --example fans [threads]`.
 
+use peridyne::expression::Expression;
 use peridyne::law::fan::stillinger_weber::StillingerWeber;
 use peridyne::law::fan::tersoff::Tersoff;
 use peridyne::run::{Options, build};
@@ -79,7 +80,7 @@ fn time(potential: PotentialSpec, edge: f64) -> f64 {
     let mut spec = Spec::new(3, BodySpec::Cloud(cloud), MASS / volume, law);
     spec.periodic = [Some(edge * f64::from(CELLS)); 3];
     spec.thermal = Some(ThermalSpec {
-        energy: 1000.0 * KELVIN,
+        energy: Expression::constant(1000.0 * KELVIN),
         seed: 376847,
     });
     spec.schedule.time_step = TimeStep::Fixed(0.001);
