@@ -119,7 +119,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         });
     }
     if let Some(deck) = law::read(input)? {
-        return law::check(arguments, deck);
+        return law::check(deck, arguments.json, arguments.allow_outside);
     }
     let deck = deck::read(input)?;
     if !arguments.allow_outside {

@@ -1,10 +1,8 @@
 //! `peridyne run` and `peridyne check` of conservation laws.
 
 use crate::Input;
-use crate::check::CheckArguments;
 use crate::deck;
 use crate::failure::{Failure, note, say};
-use crate::run::RunArguments;
 use crate::signals;
 use peridyne_io::conservation::{self, Listener, evaluation_name, method_name};
 use peridyne_io::deck::Dim;
@@ -12,6 +10,7 @@ use peridyne_io::deck::conservation::LawDeck;
 use peridyne_io::drive::default_dir;
 use peridyne_transport::{exact, measure};
 use serde_json::json;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Between lines about progress.
@@ -53,15 +52,18 @@ impl Listener for Terminal {
     }
 }
 
-pub fn run(arguments: &RunArguments, mut deck: LawDeck) -> Result<(), Failure> {
-    if arguments.threads == Some(0) {
-        return Err(Failure::input("--threads 0: at least one thread must run"));
-    }
-    if !arguments.allow_outside && arguments.out.is_none() {
+/// Runs the law of a deck; results go to `out`, else to where the deck says, which `outside` lets be anywhere.
+pub fn run(
+    file: &Path,
+    mut deck: LawDeck,
+    out: Option<&Path>,
+    outside: bool,
+) -> Result<(), Failure> {
+    if !outside && out.is_none() {
         deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
     }
-    let dir = arguments.out.clone().or(deck.dir.clone());
-    let dir = dir.unwrap_or_else(|| default_dir(&arguments.input.file));
+    let dir = out.map(Path::to_path_buf).or(deck.dir.clone());
+    let dir = dir.unwrap_or_else(|| default_dir(file));
     say(&headline(&deck));
     say(&format!("results in {}", dir.display()));
     let mut terminal = Terminal {
@@ -140,8 +142,8 @@ fn shock_time(deck: &LawDeck) -> Option<f64> {
         .flatten()
 }
 
-pub fn check(arguments: &CheckArguments, mut deck: LawDeck) -> Result<(), Failure> {
-    if !arguments.allow_outside {
+pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure> {
+    if !outside {
         deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
     }
     let grid = *deck.grid();
@@ -166,7 +168,7 @@ pub fn check(arguments: &CheckArguments, mut deck: LawDeck) -> Result<(), Failur
     }
     let per_step = begin.elapsed().as_secs_f64() / f64::from(steps.max(1));
     let all = (deck.duration / step).ceil();
-    if arguments.json {
+    if json {
         let text = json!({
             "kind": "conservation_law", "title": deck.title, "points": grid.points(), "dimension": grid.dimension, "spacing": grid.spacing,
             "horizons": deck.horizons, "bonds_of_a_point": deck.evolution.operator.law().bonds(),

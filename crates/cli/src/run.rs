@@ -45,7 +45,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         });
     }
     if let Some(deck) = law::read(&arguments.input)? {
-        return law::run(arguments, deck);
+        return with_threads(arguments.threads, |_| {
+            let out = arguments.out.as_deref();
+            law::run(&arguments.input.file, deck, out, arguments.allow_outside)
+        });
     }
     let deck = deck::read(&arguments.input)?;
     if !arguments.allow_outside {

@@ -140,18 +140,25 @@ fn an_ordered_alloy_grows_with_its_sublattices() {
     }
 }
 
+/// What was said, in one line.
+fn words(done: &Output) -> String {
+    let text = said(done);
+    let words = text.split_whitespace().filter(|word| *word != "│");
+    words.collect::<Vec<_>>().join(" ")
+}
+
 #[test]
 fn what_has_no_coarse_model_says_so() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("coarse");
     let set = ["--set", "body.cells=[8,8,8]", "--factor", "2"];
     let done = peridyne("upscale", &deck("silicon_carbide.toml"), &set, &out);
-    let text = said(&done).split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = words(&done);
     assert_eq!(done.status.code(), Some(2), "{text}");
     assert!(text.contains("a file with several elements"), "{text}");
     // regions do not repeat
     let done = peridyne("waves", &deck("alloy.toml"), &[], &out);
-    let text = said(&done).split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = words(&done);
     assert_eq!(done.status.code(), Some(2), "{text}");
     assert!(text.contains("do not repeat"), "{text}");
     assert!(!out.exists());

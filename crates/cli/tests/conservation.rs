@@ -40,7 +40,7 @@ fn a_run_writes_frames_history_pictures_and_a_report() {
         "--out",
         out.to_str().unwrap(),
         "--set",
-        "points=128",
+        "points=256",
     ]);
     assert!(
         done.status.success(),
@@ -72,7 +72,7 @@ fn a_run_writes_frames_history_pictures_and_a_report() {
     let report = std::fs::read_to_string(out.join("run.json")).unwrap();
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
     assert_eq!(report["status"], "done");
-    assert_eq!(report["points"], 128);
+    assert_eq!(report["points"], 256);
 }
 
 #[test]

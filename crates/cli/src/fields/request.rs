@@ -125,20 +125,6 @@ impl Request {
         };
         made().map_err(|e| e.to_string())
     }
-
-    /// As it is described.
-    pub fn last_method(&self, table: &Table) -> Option<Method> {
-        match &table.grid {
-            Some((_, cell)) => self.method(cell).ok(),
-            None => Some(Method {
-                partition: self.partition.clone(),
-                pair_force: self.pair_force,
-                by_part: self.parts,
-                boltzmann: self.units.boltzmann(),
-                ..Method::new(self.kernel.clone())
-            }),
-        }
-    }
 }
 
 /// The potential and the units, of flags or of a deck.

@@ -102,8 +102,10 @@ impl RunningFields {
     /// A file cannot be written.
     pub fn finish(self) -> Result<(), WriteError> {
         let of = self.live.source();
-        let mut all = self.each.into_iter();
-        all.try_for_each(|one| one.collected.finish("the run", of, &one.method))
+        for one in self.each {
+            one.collected.finish("the run", of, &one.method)?;
+        }
+        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 //! What comes of fields frame by frame: a file for each if asked for, means over all, and at the end everything else.
 
 use super::describe::{About, Frame, describe};
-use super::{Table, write_arrays, write_image, write_slice, write_table};
+use super::{Table, write_arrays, write_image, write_profiles, write_slice, write_table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
 use crate::write::pvd::Pvd;
@@ -23,6 +23,7 @@ pub struct Collected {
     average: Average,
     last: Option<(Table, Option<f64>)>,
     pvd: Pvd,
+    written: Vec<PathBuf>,
 }
 
 impl Collected {
@@ -37,7 +38,13 @@ impl Collected {
             read: vec![],
             average: Average::default(),
             last: None,
+            written: vec![],
         }
+    }
+
+    /// Files of frames.
+    pub fn written(&self) -> &[PathBuf] {
+        &self.written
     }
 
     pub fn frames(&self) -> usize {
@@ -64,9 +71,15 @@ impl Collected {
             match write_image(&self.dir, &stem, &table, time)? {
                 Some(path) => {
                     let own = format!("{}", path.file_name().unwrap_or_default().display());
+                    let list = self.pvd.path().to_path_buf();
+                    self.written.extend([path, list]);
                     self.pvd.push(shown.unwrap_or(index as f64), &own)?;
                 }
-                None => write_table(&self.dir.join(format!("{stem}.csv")), &table)?,
+                None => {
+                    let path = self.dir.join(format!("{stem}.csv"));
+                    write_table(&path, &table)?;
+                    self.written.push(path);
+                }
             }
         }
         self.read.push(about);
@@ -74,13 +87,19 @@ impl Collected {
         Ok(())
     }
 
-    /// Writes what stands for all frames: of one frame that frame, else means. Nothing where there was none.
+    /// Writes what stands for all frames: of one frame that frame, with the parts of its potential, else means. Nothing where there was
+    /// none. Returns what the frames say of themselves.
     ///
     /// # Errors
     /// The operating system's.
-    pub fn finish(self, source: &str, potential: &str, method: &Method) -> Result<(), WriteError> {
+    pub fn finish(
+        self,
+        source: &str,
+        potential: &str,
+        method: &Method,
+    ) -> Result<Vec<Frame>, WriteError> {
         let Some((last, time)) = self.last else {
-            return Ok(());
+            return Ok(vec![]);
         };
         create_directory(&self.dir)?;
         let frames = self.read.len();
@@ -102,7 +121,8 @@ impl Collected {
             read: self.read,
         };
         let time = time.filter(|_| frames == 1);
-        save(&self.dir, &table, &about, time)
+        save(&self.dir, &table, &about, time)?;
+        Ok(about.read)
     }
 }
 
@@ -112,6 +132,7 @@ fn save(dir: &Path, table: &Table, about: &About, time: Option<f64>) -> Result<(
         Some(_) => {
             write_image(dir, "fields", table, time)?;
             write_slice(dir, table, about.units)?;
+            write_profiles(dir, table, about.units)?;
         }
     }
     write_arrays(&dir.join("fields.npz"), table)?;

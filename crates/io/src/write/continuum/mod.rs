@@ -1,9 +1,10 @@
-//! Continuum fields at points: a table, NumPy arrays, a VTK image, a picture of a slice, and what all of it is.
+//! Continuum fields at points: a table, NumPy arrays, a VTK image, pictures, and what all of it is.
 
 mod arrays;
 mod collected;
 mod describe;
 mod image;
+mod profile;
 mod slice;
 mod table;
 
@@ -11,6 +12,7 @@ pub use arrays::write_arrays;
 pub use collected::{Collected, Origin, examined};
 pub use describe::{About, Frame, describe};
 pub use image::write_image;
+pub use profile::write_profiles;
 pub use slice::write_slice;
 pub use table::write_table;
 
