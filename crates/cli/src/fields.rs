@@ -16,7 +16,6 @@ use peridyne_io::write::folder::Folder;
 use rayon::prelude::*;
 use request::Request;
 use std::fs;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 pub use words::FieldsArguments;
 

@@ -8,7 +8,6 @@ use peridyne_fields::{Cell, FieldsError, Kernel, Method, PairForce, Partition, S
 use peridyne_io::continuum::potential::{ModelError, Words as PotentialWords};
 use peridyne_io::continuum::{Masses, Model, Units, model, of_deck};
 use peridyne_io::read::molecules::molecules;
-use peridyne_io::write::continuum::Table;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -79,7 +79,7 @@ impl Line<'_> {
         Some((values, &own.unit))
     }
 
-    /// A picture of components of quantities; none where they are no numbers.
+    /// A picture of components of quantities; none where all are 0 or no numbers.
     fn draw(
         &self,
         dir: &Path,
@@ -98,7 +98,7 @@ impl Line<'_> {
             let found = self.x.iter().zip(values).map(|(x, v)| (*x, v[component]));
             let (x, y): (Vec<f64>, Vec<f64>) = found.filter(|(_, y)| y.is_finite()).unzip();
             if !x.is_empty() {
-                any = true;
+                any |= y.iter().any(|y| *y != 0.0);
                 plot = plot.y(&title, unit).line(label, &x, &y);
             }
         }
