@@ -24,12 +24,20 @@ pub(super) fn closing(a: &Near, b: &Near) -> f64 {
 }
 
 impl<F: Fan> FanSites<F> {
+    /// Rows of a kind; constants of one kind do not tell kinds apart.
+    fn place(&self, kind: u32) -> usize {
+        match self.0.table().kinds() {
+            1 => 0,
+            _ => kind as usize,
+        }
+    }
+
     fn ends<'a>(&self, kind: usize, near: &'a [Near]) -> Vec<End<'a>> {
         let limit = self.0.cutoff() * self.0.cutoff();
         let all = near.iter().enumerate();
         all.filter(|(_, n)| n.square() < limit)
             .map(|(n, near)| {
-                let other = near.kind as usize;
+                let other = self.place(near.kind);
                 let row = self.0.table().at([kind, other, other]);
                 let xi = Dual::variable(0.5 * near.square());
                 End {
@@ -43,7 +51,7 @@ impl<F: Fan> FanSites<F> {
 
     /// z of two ends, by ξ of both and of what closes the triangle.
     fn share(&self, kind: usize, j: &End, k: &End) -> Slopes<f64, 3> {
-        let kinds = [kind, j.near.kind as usize, k.near.kind as usize];
+        let kinds = [kind, self.place(j.near.kind), self.place(k.near.kind)];
         let closing = Slopes::variable(closing(j.near, k.near), 2);
         let (ij, ik) = (j.arm.along(0), k.arm.along(1));
         self.0
@@ -52,7 +60,7 @@ impl<F: Fan> FanSites<F> {
 
     /// h of an end, by ξ and ζ.
     fn bond(&self, kind: usize, j: &End, zeta: f64) -> Slopes<f64, 2> {
-        let other = j.near.kind as usize;
+        let other = self.place(j.near.kind);
         let row = self.0.table().at([kind, other, other]);
         self.0
             .bond::<f64, _>(&j.arm.along(0), Slopes::variable(zeta, 1), row)
@@ -76,7 +84,7 @@ impl<F: Fan> Sites for FanSites<F> {
     }
 
     fn terms(&self, kind: u32, near: &[Near], visit: &mut dyn FnMut(&Term)) {
-        let kind = kind as usize;
+        let kind = self.place(kind);
         let ends = self.ends(kind, near);
         let mut term = Term::default();
         for (n, j) in ends.iter().enumerate() {
@@ -278,6 +286,17 @@ mod tests {
     fn pulls_and_tangents_are_slopes() {
         check(&weber());
         check(&tersoff());
+    }
+
+    /// Two materials may have the same constants, and masses of their own.
+    #[test]
+    fn isotopes_are_of_one_kind() {
+        let sites = weber();
+        let mut other = near();
+        other.iter_mut().step_by(2).for_each(|n| n.kind = 1);
+        let mut sum = 0.0;
+        sites.terms(1, &other, &mut |t| sum += t.energy);
+        assert_eq!(sum, energy(&sites, &near()));
     }
 
     /// Who writes slopes out means those of the text.
