@@ -204,7 +204,7 @@ fn diamond(found: &mut Findings) -> Result<(), Failure> {
             stress.iter().skip(c).step_by(9).sum::<f64>() / fields.len() as f64
         });
         let pressure = (mean[0] + mean[4] + mean[8]) / 3.0;
-        let off = |c: usize| mean[c] - if c % 4 == 0 { pressure } else { 0.0 };
+        let off = |c: usize| mean[c] - if c.is_multiple_of(4) { pressure } else { 0.0 };
         uneven.push(largest((0..9).map(|c| off(c).abs())) / pressure.abs());
     }
     let uneven = largest(uneven);
