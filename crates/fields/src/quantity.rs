@@ -166,6 +166,28 @@ impl Quantity {
         }
     }
 
+    /// Is it a force per area?
+    pub fn is_stress(self) -> bool {
+        match self {
+            Quantity::StressKinetic
+            | Quantity::StressPotential
+            | Quantity::Stress
+            | Quantity::Pressure
+            | Quantity::Churning => true,
+            Quantity::Density
+            | Quantity::Momentum
+            | Quantity::Velocity
+            | Quantity::Temperature
+            | Quantity::Energy
+            | Quantity::InternalEnergy
+            | Quantity::PotentialEnergy
+            | Quantity::HeatKinetic
+            | Quantity::HeatPotential
+            | Quantity::HeatChurning
+            | Quantity::ChurningSource => false,
+        }
+    }
+
     /// Does it need velocities?
     pub fn moves(self) -> bool {
         match self {

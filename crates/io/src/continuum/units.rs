@@ -105,6 +105,9 @@ impl Units {
         if words[0].is_empty() {
             return "reduced".into();
         }
+        if words[1] == "J" && quantity.is_stress() {
+            return "Pa".into();
+        }
         let part = |word: &str, power: i32| match power {
             1 => word.to_string(),
             n => format!("{word}^{n}"),
@@ -147,6 +150,9 @@ mod tests {
 
     #[test]
     fn units_have_names() {
+        let si = Units::named("si").unwrap();
+        assert_eq!(si.unit(Quantity::Stress), "Pa");
+        assert_eq!(si.unit(Quantity::Energy), "J/m^3");
         let metal = Units::named("metal").unwrap();
         assert_eq!(metal.unit(Quantity::Density), "g/mol/Å^3");
         assert_eq!(metal.unit(Quantity::Stress), "eV/Å^3");
