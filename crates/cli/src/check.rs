@@ -10,7 +10,7 @@ use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, note, say};
 use crate::law;
-use crate::run::{enough_disk, with_threads};
+use crate::run::{enough_disk, pictures, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Simulation};
@@ -128,7 +128,8 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     }
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |threads| {
-        let sim = deck::model(&deck, input)?;
+        let mut sim = deck::model(&deck, input)?;
+        pictures(&deck, sim.as_mut())?;
         let remarks = deck::remarks(&deck, sim.info().time_step);
         if !remarks.is_empty() {
             note(remarks.trim_start());

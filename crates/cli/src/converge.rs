@@ -9,7 +9,7 @@ use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use level::{Level, Reference, measure};
 use peridyne::expression::Expression;
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, Dim};
 use peridyne_theory::convergence::{Kind, Order, Verdict, order};
 use peridyne_theory::refine::refine;
 use std::path::{Path, PathBuf};
@@ -158,18 +158,20 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
     }
     let step = level::common_step(&decks, &arguments.input, arguments.substeps)?;
     say(&format!(
-        "{}: {} levels to the time {:.6e}, all with the step {:.6e}",
+        "{}: {} levels to the time {}, all with the step {}",
         kind.name(),
         arguments.levels,
-        step.time,
-        step.time_step
+        deck.units.show(step.time, Dim::TIME),
+        deck.units.show(step.time_step, Dim::TIME)
     ));
     let mut levels = vec![];
     for finer in &decks {
         let level = Level::run(finer, &arguments.input, &step, 1)?;
         say(&format!(
-            "  spacing {:.6e}, horizon {:.6e}: {} points, {} steps in {:.2} s",
-            level.spacing, level.horizon, level.points, level.steps, level.seconds
+            "  spacing {}, horizon {}: {} points, {} steps in {:.2} s",
+            deck.units.show(level.spacing, Dim::LENGTH),
+            deck.units.show(level.horizon, Dim::LENGTH),
+            level.points, level.steps, level.seconds
         ));
         levels.push(level);
     }

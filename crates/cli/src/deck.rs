@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::spec::Stepper;
-use peridyne_io::deck::Deck;
+use crate::numbers::{memory, whole};
+use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use std::io::Read;
 
 /// Is this file a deck, as opposed to a LAMMPS script?
@@ -131,45 +132,47 @@ pub fn remarks(deck: &Deck, time_step: f64) -> String {
         .collect()
 }
 
-/// What was built, in a few lines.
-pub fn headline(sim: &dyn Simulation) -> String {
+/// What was built, in a few lines, with numbers for people.
+pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
     let i = sim.info();
     let bytes = i.bytes as f64;
     let mut text = format!(
-        "points    {} in {} dimensions, spacing {:.6e}, mass {:.6e}\nbonds     {} directed, {} to {} per point (mean {:.2}), {}\nhorizon   {:.9e}{}\nmemory    {:.1} MB, {:.0} bytes per point\nlanes     {}",
-        i.points,
+        "points    {} in {}-D, spacing {}, mass {}\nbonds     {} directed, {} to {} per point (mean {}), {}\nhorizon   {}{}\nmemory    {}, {:.0} bytes per point\nlanes     {}",
+        whole(i.points),
         i.dimension,
-        i.spacing,
-        i.mass,
-        i.directed_bonds,
+        units.show(i.spacing, Dim::LENGTH),
+        units.show(i.mass, Dim::MASS),
+        whole(i.directed_bonds),
         i.family.0,
         i.family.2,
-        i.family.1,
+        rounded(i.family.1, 4),
         i.family_kind,
-        i.horizon,
+        units.show(i.horizon, Dim::LENGTH),
         match i.stepper {
             Stepper::Statics(_) => String::new(),
             Stepper::Verlet => format!(
-                "\nstep      {:.6e}, stable up to {:.6e}",
-                i.time_step, i.stable_step
+                "\nstep      {}, stable up to {}",
+                units.show(i.time_step, Dim::TIME),
+                units.show(i.stable_step, Dim::TIME)
             ),
             Stepper::Newmark(_) => format!(
-                "\nstep      {:.6e}, implicit (explicit ones are stable up to {:.6e})",
-                i.time_step, i.stable_step
+                "\nstep      {}, implicit (explicit ones are stable up to {})",
+                units.show(i.time_step, Dim::TIME),
+                units.show(i.stable_step, Dim::TIME)
             ),
         },
-        bytes / 1e6,
+        memory(bytes),
         bytes / i.points.max(1) as f64,
         i.simd,
     );
     for s in i.critical_stretch.iter().filter(|s| s.is_finite()) {
-        text += &format!("\nbreaks    beyond a stretch of {s:.6e}");
+        text += &format!("\nbreaks    beyond a stretch of {} %", rounded(100.0 * s, 4));
     }
     for c in &i.micromodulus {
-        text += &format!("\nmicromodulus {c:.6e}");
+        text += &format!("\nmicromodulus {}", units.show(*c, Dim::MICROMODULUS));
     }
     if i.cut > 0 {
-        text += &format!("\npre-cracks cut {} directed bonds", i.cut);
+        text += &format!("\npre-cracks cut {} directed bonds", whole(i.cut));
     }
     for w in &i.warnings {
         text += &format!("\nwarning: {w}");

@@ -5,7 +5,7 @@ use crate::deck;
 use crate::failure::{Failure, note, say};
 use crate::signals;
 use peridyne_io::conservation::{self, Listener, evaluation_name, method_name};
-use peridyne_io::deck::Dim;
+use peridyne_io::deck::{Dim, rounded};
 use peridyne_io::deck::conservation::LawDeck;
 use peridyne_io::drive::default_dir;
 use peridyne_transport::{exact, measure};
@@ -90,8 +90,8 @@ pub fn run(
 fn headline(deck: &LawDeck) -> String {
     let e = &deck.evolution;
     let (law, grid) = (e.operator.law(), deck.grid());
-    let length = |x: f64| deck.units.write(x, Dim::LENGTH);
-    let time = |t: f64| deck.units.write(t, Dim::TIME);
+    let length = |x: f64| deck.units.show(x, Dim::LENGTH);
+    let time = |t: f64| deck.units.show(t, Dim::TIME);
     let mut text = match deck.title.as_str() {
         "" => String::new(),
         title => format!("{title}\n"),
@@ -182,10 +182,17 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
     }
     say(&head);
     say(&format!(
-        "state     u from {low:.6e} to {high:.6e}, mass {mass:.9e}, energy {energy:.9e}, its rate {energy_rate:.6e}\n\
-         spectrum  waves {waves:.6e} at unit speed, decay {decay:.6e}\n\
+        "state     u from {} to {}, mass {}, energy {}, its rate {}\n\
+         spectrum  waves {} at unit speed, decay {}\n\
          steps     about {all:.0} of {}; {:.1} ns per point and step, {:.1} s in all",
-        deck.units.write(step, Dim::TIME),
+        rounded(low, 5),
+        rounded(high, 5),
+        rounded(mass, 5),
+        rounded(energy, 5),
+        rounded(energy_rate, 5),
+        rounded(waves, 5),
+        rounded(decay, 5),
+        deck.units.show(step, Dim::TIME),
         per_step * 1e9 / grid.points() as f64,
         per_step * all,
     ));

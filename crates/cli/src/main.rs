@@ -5,20 +5,24 @@ mod check;
 mod coarsen;
 mod converge;
 mod deck;
+mod doc;
 mod failure;
 mod fields;
 mod law;
 mod laws;
+mod new;
+mod numbers;
 mod progress;
 mod reproduce;
 mod run;
 mod script;
+mod shell;
 mod side_by_side;
 mod signals;
 mod upscale;
 mod waves;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -33,6 +37,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
+    /// Write a commented deck to begin with: a crack, a wave, an impact, statics, atoms, …
+    New(new::NewArguments),
     /// Run a deck (TOML) or a LAMMPS input script.
     Run(run::RunArguments),
     /// Say what a deck would run: points, bonds, moduli this cloud really has, stable step, memory, warnings.
@@ -53,8 +59,14 @@ enum Verb {
     Reproduce(reproduce::ReproduceArguments),
     /// List the laws, lattices and influence functions with their parameters.
     Laws,
+    /// Explain a key, a table, a law or a field of decks.
+    Doc(doc::DocArguments),
     /// Print the JSON schema of decks, for editors.
     Schema(SchemaArguments),
+    /// Print completions for a shell: `peridyne completions bash > ~/.local/share/bash-completion/completions/peridyne`.
+    Completions(shell::CompletionsArguments),
+    /// Print the manual page: `peridyne man | man -l -`.
+    Man,
 }
 
 #[derive(clap::Args)]
@@ -105,6 +117,7 @@ fn main() -> ExitCode {
         return Failure::Run(format!("signals cannot be listened to: {e}")).report();
     }
     let outcome = match arguments.verb {
+        Verb::New(arguments) => new::new(&arguments),
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
         Verb::Upscale(arguments) => upscale::upscale(&arguments),
@@ -115,7 +128,13 @@ fn main() -> ExitCode {
         Verb::Bar(arguments) => bar::bar(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),
+        Verb::Doc(arguments) => doc::doc(&arguments),
         Verb::Schema(arguments) => print_schema(arguments.kind),
+        Verb::Completions(arguments) => {
+            shell::completions(&arguments, Arguments::command());
+            Ok(())
+        }
+        Verb::Man => shell::man(Arguments::command()),
     };
     match outcome.and_then(|()| failure::printed()) {
         Ok(()) => ExitCode::SUCCESS,

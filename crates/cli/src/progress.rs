@@ -4,6 +4,7 @@ use crate::failure::note;
 use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::Ledger;
+use peridyne_io::deck::{Dim, UnitSystem};
 use peridyne_io::drive::Progress;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -16,10 +17,15 @@ pub struct Terminal {
     bonds: u64,
     spoken: Instant,
     broken: u64,
+    /// What time is counted in; `None`: it is a part of the load.
+    units: Option<UnitSystem>,
+    /// Time and energy of the last row of the history.
+    state: String,
 }
 
 impl Terminal {
-    pub fn new(steps: u64, bonds: u64) -> Terminal {
+    /// `units` of the times of steps; `None` in statics, where t is a part of the load.
+    pub fn new(steps: u64, bonds: u64, units: Option<UnitSystem>) -> Terminal {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = "{bar:30.cyan} {pos}/{len} steps  {per_sec}  {eta} left  {msg}";
             let bar = ProgressBar::new(steps);
@@ -34,6 +40,8 @@ impl Terminal {
             bonds,
             spoken: Instant::now(),
             broken: 0,
+            units,
+            state: String::new(),
         }
     }
 
@@ -51,21 +59,39 @@ impl Progress for Terminal {
             bar.set_position(done);
             if done.is_multiple_of(16) {
                 let ns = per_step * 1e9 / self.bonds.max(1) as f64;
-                bar.set_message(format!("{ns:.2} ns per bond, {} bonds broken", self.broken));
+                bar.set_message(format!(
+                    "{}{} bonds broken, {ns:.2} ns per bond",
+                    self.state, self.broken
+                ));
             }
         } else if self.spoken.elapsed() >= INTERVAL {
             self.spoken = Instant::now();
             let left = per_step * (total - done) as f64;
             note(&format!(
-                "step {done} of {total}, {:.1} steps/s, {left:.0} s left, {} bonds broken",
-                1.0 / per_step,
-                self.broken
+                "step {done} of {total}, {}{} bonds broken, {:.1} steps/s, {left:.0} s left",
+                self.state,
+                self.broken,
+                1.0 / per_step
             ));
         }
     }
 
-    fn row(&mut self, _step: u64, _time: f64, _ledger: &Ledger, broken: u64) {
+    fn row(&mut self, _step: u64, time: f64, ledger: &Ledger, broken: u64) {
         self.broken = broken;
+        let Some(units) = self.units else {
+            self.state = format!("{:.0} % of the load, ", 100.0 * time);
+            return;
+        };
+        let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
+        let given = work + ledger.initial.abs();
+        let time = units.show(time, Dim::TIME);
+        self.state = match given > 0.0 {
+            true => {
+                let off = 100.0 * ledger.residual() / given;
+                format!("t = {time}, energy off by {off:+.2} %, ")
+            }
+            false => format!("t = {time}, "),
+        };
     }
 
     fn warning(&mut self, message: &str) {

@@ -17,6 +17,8 @@ use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
+use peridyne_io::write::picture::marks::Marks;
+use peridyne_io::write::picture::shown::{About, component_of};
 use peridyne_io::write::run_json::Status;
 use peridyne_io::write::space::{Amount, free};
 use std::path::{Path, PathBuf};
@@ -85,16 +87,19 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         .or(deck.output.dir.clone())
         .unwrap_or_else(|| default_dir(&arguments.input.file));
     enough_disk(deck, sim.as_ref(), &dir)?;
+    let pictures = pictures(deck, sim.as_mut())?;
     say(&deck.describe());
     let remarks = deck::remarks(deck, sim.info().time_step);
-    say(&(deck::headline(sim.as_ref()) + &remarks));
+    say(&(deck::headline(sim.as_ref(), deck.units) + &remarks));
     let steps = deck.steps(sim.info().time_step);
-    let plan = plan(deck, steps, dir, threads, arguments.allow_outside);
+    let plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     say(&format!(
         "threads   {threads}\nrunning {steps} steps, results in {}",
         plan.dir.display()
     ));
-    let mut progress = Terminal::new(steps, sim.info().directed_bonds);
+    let statics = deck.spec.schedule.statics().is_some();
+    let times = (!statics).then_some(deck.units);
+    let mut progress = Terminal::new(steps, sim.info().directed_bonds, times);
     sim.stop_when(|| signals::received().is_some());
     let result = drive(sim.as_mut(), &plan, &mut progress);
     progress.end();
@@ -116,11 +121,8 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                     None => String::new(),
                 },
             ));
-            if plan.series.picture.is_some() {
-                say(&format!(
-                    "picture: {}",
-                    plan.dir.join("damage.png").display()
-                ));
+            for picture in &report.pictures {
+                say(&format!("picture: {}", plan.dir.join(picture).display()));
             }
             match signals::received() {
                 Some(signal) if report.status == Status::Ended => Err(Failure::Ended(signal)),
@@ -180,19 +182,90 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     }
 }
 
+/// The pictures that a deck asks for.
+///
+/// # Errors
+/// There is no such field, or it has no such component.
+pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOptions>, Failure> {
+    let marks = Marks::of(&deck.spec, sim);
+    let columns = sim.columns();
+    let [length_unit, time_unit, _] = units(deck);
+    let breaks = deck.spec.materials.iter().any(|m| m.fracture.is_some());
+    let still = deck.spec.schedule.statics().is_some();
+    let mut all = vec![];
+    for (n, asked) in deck.output.pictures.iter().enumerate() {
+        let wrong = |key: &str, why: String, help: String| {
+            let error = BuildError::invalid(format!("output.pictures[{n}].{key}"), why).help(help);
+            Failure::Input(deck.explain(&error).into())
+        };
+        // a film is begun before it is known what the run was about
+        let about = match (breaks, still) {
+            (true, _) => About::Fracture,
+            (false, true) => About::Equilibrium,
+            (false, false) => About::Motion,
+        };
+        let field = match (&asked.field, asked.film || asked.component.is_some() || asked.range.is_some()) {
+            (None, true) => Some(about.field().to_string()),
+            (field, _) => field.clone(),
+        };
+        let mut range = asked.range;
+        if let Some(name) = &field {
+            let column = columns.iter().find(|c| c.name == *name);
+            let Some(column) = column else {
+                let names: Vec<&str> = columns.iter().map(|c| &*c.name).collect();
+                let help = format!("this model has {}", names.join(", "));
+                return Err(wrong("field", format!("there is no field `{name}`"), help));
+            };
+            if let Err(why) = component_of(column.shape, asked.component.as_deref()) {
+                let help = format!("leave it out, or see `peridyne doc {name}`");
+                return Err(wrong("component", format!("{name}: {why}"), help));
+            }
+            let factor = deck.units.plain_factor(column.dimension);
+            range = range.map(|r| r.map(|x| x * factor));
+        }
+        all.push(PictureOptions {
+            title: deck.spec.title.clone(),
+            length_unit: length_unit.to_string(),
+            time_unit: time_unit.to_string(),
+            units: deck.units,
+            field,
+            component: asked.component.clone(),
+            scale: asked.scale,
+            range,
+            film: asked.film,
+            still,
+            marks: marks.clone(),
+            ..PictureOptions::default()
+        });
+    }
+    Ok(all)
+}
+
+/// Units of length, time and energy.
+fn units(deck: &Deck) -> [&'static str; 3] {
+    match deck.units {
+        UnitSystem::Si => ["m", "s", "J"],
+        UnitSystem::Metal(_) => ["Å", "ps", "eV"],
+        UnitSystem::Lj | UnitSystem::None => [""; 3],
+    }
+}
+
 /// Columns of a frame.
 fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
     deck.spec.fields.clone().unwrap_or_else(usual)
 }
 
-fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bool) -> Plan {
+fn plan(
+    deck: &Deck,
+    pictures: Vec<PictureOptions>,
+    steps: u64,
+    dir: PathBuf,
+    threads: usize,
+    allow_outside: bool,
+) -> Plan {
     let output = &deck.output;
-    let (length_unit, time_unit, energy_unit) = match deck.units {
-        UnitSystem::Si => ("m", "s", "J"),
-        UnitSystem::Metal(_) => ("Å", "ps", "eV"),
-        UnitSystem::Lj | UnitSystem::None => ("", "", ""),
-    };
+    let [_, time_unit, energy_unit] = units(deck);
     let title = deck.spec.title.clone();
     Plan {
         deck: deck.file().to_string(),
@@ -211,12 +284,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
                 let cell = DumpBox::periodic(deck.corner, deck.spec.periodic);
                 (name.clone(), cell)
             }),
-            picture: output.picture.then(|| PictureOptions {
-                title: title.clone(),
-                length_unit: length_unit.to_string(),
-                time_unit: time_unit.to_string(),
-                ..PictureOptions::default()
-            }),
+            pictures,
         },
         fields: fields(deck),
         continuum: (!deck.fields.is_empty()).then(|| FieldsPlan {

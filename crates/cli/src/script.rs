@@ -10,6 +10,7 @@ use peridyne::run::Simulation;
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::folder::Folder;
 use peridyne_io::write::picture::PictureOptions;
+use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::run_json::{self, EnergyReport, RunReport, Status};
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
@@ -180,12 +181,12 @@ fn finish(
     let (length_unit, time_unit) = model.units().labels();
     let sim = model.simulation();
     let series_options = SeriesOptions {
-        picture: Some(PictureOptions {
+        pictures: vec![PictureOptions {
             title: info_title(name),
             length_unit: length_unit.into(),
             time_unit: time_unit.into(),
             ..PictureOptions::default()
-        }),
+        }],
         ..SeriesOptions::default()
     };
     let mut report = report(
@@ -205,7 +206,7 @@ fn finish(
     outcome.engine = None;
     let mut series = Series::new(dir, series_options)?;
     series.write(&snapshot)?;
-    let picture = series.finish(&snapshot)?;
+    let pictures = series.finish(&snapshot, About::Fracture)?;
     report.peak_memory_bytes = run_json::peak_memory_bytes();
     report.write(&dir.join("run.json"))?;
     say(&format!(
@@ -220,7 +221,7 @@ fn finish(
         report.fragments.unwrap_or(0),
         dir.display(),
     ));
-    if let Some(path) = picture {
+    for path in pictures {
         say(&format!("picture: {}", path.display()));
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, say};
 use peridyne::run::{Options, build};
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, Dim};
 use peridyne_io::deck::upscaled::Rewritten;
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::card::Measured;
@@ -48,10 +48,10 @@ pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
         sim.set_time_step(until / steps as f64);
     }
     say(&format!(
-        "running {name}: {} points, {} bonds, {steps} steps of {:.4e}",
+        "running {name}: {} points, {} bonds, {steps} steps of {}",
         sim.info().points,
         sim.info().directed_bonds,
-        sim.info().time_step
+        deck.units.show(sim.info().time_step, Dim::TIME)
     ));
     sim.start(true);
     let began = Instant::now();

@@ -8,7 +8,7 @@ use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use crate::side_by_side::{compare, run, save};
 use peridyne_io::deck::upscaled::{copied, upscaled};
-use peridyne_io::deck::{Deck, UnitSystem};
+use peridyne_io::deck::{Deck, Dim};
 use peridyne_io::write::card;
 use peridyne_theory::upscale::{self, Keep, card::card};
 use std::path::{Path, PathBuf};
@@ -121,12 +121,7 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
             let coarse = run(&dir.join("coarse.toml"), until)?;
             measured = reference.as_ref().map(|fine| compare(fine, &coarse));
         }
-        let length = match fine.units {
-            UnitSystem::Si => "m",
-            UnitSystem::Metal(_) => "Å",
-            UnitSystem::Lj | UnitSystem::None => "",
-        };
-        card::write(&dir, &card, length, measured.as_ref())
+        card::write(&dir, &card, fine.units, measured.as_ref())
             .map_err(|e| Failure::Run(e.to_string()))?;
         say(&format!(
             "h = {factor} a: {}\n  deck {}, card {}",
@@ -139,7 +134,10 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
                 .wavelengths
                 .iter()
                 .map(|(t, l)| match l {
-                    Some(l) => format!("{} % below {:.4e}", 100.0 * t, l),
+                    Some(l) => {
+                        let length = fine.units.show(*l, Dim::LENGTH);
+                        format!("{} % below {length}", 100.0 * t)
+                    }
                     None => format!("{} % nowhere", 100.0 * t),
                 })
                 .collect();

@@ -7,17 +7,18 @@ use std::time::{Duration, Instant};
 use peridyne::error::{RunError, SolveError};
 use peridyne::observe::{Ledger, Snapshot, Values, temperature_of};
 use peridyne::run::Simulation;
-use peridyne::spec::AnyLinearBody;
+use peridyne::spec::{AnyLinearBody, Stepper};
 use peridyne_fields::FieldsError;
 
 use crate::balance::BalanceWatch;
 use crate::continuum::run::{FieldsPlan, RunningFields};
-use crate::deck::UnitSystem;
+use crate::deck::{Dim, UnitSystem};
 use crate::read::{Atoms, Species};
 use crate::write::data::write_data;
 use crate::write::folder::{Folder, is_inside};
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::linear::write_linear;
+use crate::write::picture::{self, shown::About};
 use crate::write::run_json::{self, EnergyReport, RunReport, Status};
 use crate::write::table::Table;
 use crate::write::trajectory::{Format, Trajectory};
@@ -61,9 +62,17 @@ impl Plan {
     /// What a frame shows.
     fn look(&self, sim: &mut dyn Simulation) -> Snapshot {
         let mut fields: Vec<&str> = self.fields.iter().map(String::as_str).collect();
-        // the picture shows it
-        if self.series.picture.is_some() && !fields.contains(&"damage") {
-            fields.push("damage");
+        for picture in &self.series.pictures {
+            let shown = match &picture.field {
+                Some(field) => vec![field.as_str()],
+                // what a run is about is known in the end
+                None => vec![About::Fracture.field(), About::Motion.field()],
+            };
+            for field in shown {
+                if !fields.contains(&field) {
+                    fields.push(field);
+                }
+            }
         }
         sim.snapshot(&fields, self.series.bonds)
     }
@@ -270,6 +279,7 @@ pub fn drive(
     let mut running = running.transpose()?;
     let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
     sim.start(true);
+    let broken = sim.broken();
     let mut stepping = Duration::ZERO;
     let mut stopped = None;
     let mut ledger = Ledger::default();
@@ -349,7 +359,7 @@ pub fn drive(
         }
         if !last
             && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
-            && (plan.series.points || plan.series.bonds || plan.series.dump.is_some())
+            && series.wants_frames()
         {
             series.write(&plan.look(sim))?;
         }
@@ -359,7 +369,12 @@ pub fn drive(
     }
     let snapshot = plan.look(sim);
     series.write(&snapshot)?;
-    series.finish(&snapshot)?;
+    let about = match (sim.broken() > broken, &sim.info().stepper) {
+        (true, _) => About::Fracture,
+        (false, Stepper::Statics(_)) => About::Equilibrium,
+        (false, Stepper::Verlet | Stepper::Newmark(_)) => About::Motion,
+    };
+    let pictures = series.finish(&snapshot, about)?;
     history.finish()?;
     if let Some(running) = running {
         running.finish()?;
@@ -420,6 +435,9 @@ pub fn drive(
         threads: plan.threads,
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),
+        pictures: { pictures.iter() }
+            .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
+            .collect(),
         warnings,
     };
     report.write(&plan.dir.join("run.json"))?;
@@ -432,6 +450,9 @@ pub fn drive(
         }),
     }
 }
+
+/// Modes that get a picture.
+const PICTURED: usize = 12;
 
 /// `modes.csv`, and the shapes as `points_<mode>.vtu` and `points.pvd` in the folder `modes`, frequencies in place of times.
 fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Result<(), DriveError> {
@@ -458,7 +479,7 @@ fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Resul
         )
         .save(&plan.dir.join("modes.csv"))?;
     let options = SeriesOptions {
-        picture: None,
+        pictures: vec![],
         dump: None,
         bonds: false,
         points: true,
@@ -476,6 +497,13 @@ fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Resul
             column.values = Values::Vectors(mode.shape);
         }
         series.write(&shape)?;
+        if let Some(options) = plan.series.pictures.first().filter(|_| n < PICTURED) {
+            let frequency = plan.units.show(mode.frequency, Dim::FREQUENCY);
+            let title = format!("mode {}, {frequency}", n + 1);
+            let options = options.of_shape(&shape, title);
+            let path = plan.dir.join(format!("modes/mode_{:02}.png", n + 1));
+            picture::write(&path, &shape, &options, About::Equilibrium)?;
+        }
     }
     Ok(())
 }

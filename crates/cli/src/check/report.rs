@@ -1,13 +1,14 @@
 //! The findings as a table for people.
 
-mod numbers;
+mod look;
 mod points;
 mod stiffness;
 mod waves;
 
 use super::Findings;
 use super::advice::advice;
-use numbers::{digits, duration, memory};
+use crate::numbers::{digits, duration, memory};
+use look::look;
 use peridyne_io::deck::describe;
 use points::{families, points};
 use std::fmt::Write;
@@ -39,6 +40,7 @@ pub fn write(found: &Findings) -> String {
         fracture(found),
         cost(found),
         warnings(found),
+        look(found),
     ] {
         if !section.is_empty() {
             out.push('\n');

@@ -11,6 +11,7 @@ mod region;
 mod run;
 mod thermal;
 mod units;
+use super::units::Dim;
 use super::value::{At, Named, Number, Or, Vector, Written};
 pub use condition::{Condition, Contact, Indenter, Initial};
 pub use crack::{BondFactor, FlatShape, Precrack};
@@ -18,7 +19,7 @@ pub use fields::{Centre, Fields};
 pub use law::{Given, Law};
 pub use molecules::Molecules;
 pub use names::*;
-pub use output::Output;
+pub use output::{Output, Picture};
 pub use region::{Mark, Periodic, Set, Shape};
 pub use run::{MethodName, Probe, ReleaseName, Run, Safety, SolverName, Statics};
 use schemars::JsonSchema;
@@ -42,8 +43,10 @@ pub struct Document {
     /// 2-D only; stress when left out.
     pub plane: Option<At<PlaneName>>,
     /// Thickness of a 2-D body; 1 when left out.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub thickness: Option<Number>,
     /// Cross-section of a 1-D body; 1 when left out.
+    #[schemars(extend("dimension" = Dim::AREA.name()))]
     pub area: Option<Number>,
     /// Named numbers for use in any number.
     #[serde(default)]
@@ -76,6 +79,7 @@ pub struct Document {
     pub interfaces: Vec<At<Interface>>,
     /// { m_ratio = 3 } in lattice spacings, or a length.
     /// Not needed by atoms that talk to their current neighbours.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// constant for pmb and inverse for lps when left out.
     pub influence: Option<InfluenceName>,
@@ -94,6 +98,7 @@ pub struct Document {
     /// Factors of the stiffness of bonds (bond-based laws on lattices); all that concern a bond are multiplied.
     #[serde(default)]
     pub bond_factor: Vec<At<BondFactor>>,
+    /// Bonds that never were, or are broken, where they cross a shape.
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,
     /// On when a material can fracture or there are several bodies; false turns it off.
@@ -102,10 +107,13 @@ pub struct Document {
     pub molecules: Option<At<Molecules>>,
     /// Maxwellian velocities.
     pub thermal: Option<Thermal>,
+    /// Displacements and velocities at t = 0.
     #[serde(default)]
     pub initial: Vec<At<Initial>>,
+    /// What is held, moved, pushed or damped during the run.
     #[serde(default)]
     pub condition: Vec<At<Condition>>,
+    /// Rigid spheres, driven or free.
     #[serde(default)]
     pub indenter: Vec<At<Indenter>>,
     /// Measurements over time: columns of history.csv.
@@ -118,6 +126,7 @@ pub struct Document {
     pub run: Option<At<Run>>,
     /// Equilibrium under conditions that grow with t; instead of run.
     pub statics: Option<At<Statics>>,
+    /// Files of the results.
     #[serde(default)]
     pub output: Output,
 }
@@ -133,16 +142,21 @@ pub struct Body {
     /// false: points without bonds, which meet by contact only (powder, a single point); true when left out.
     pub bonded: Option<bool>,
     /// Its own, instead of that of the deck, which counts spacings of each body; of several bodies only.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// Its own, instead of that of the deck; of several bodies only.
     pub influence: Option<At<InfluenceName>>,
     /// Its own, stencil or list, instead of that of the deck; of several bodies only.
     pub family: Option<At<FamilyName>>,
+    /// Lattice that fills the region; instead of a file.
     pub lattice: Option<At<LatticeName>>,
     /// Edge of the lattice cell; with a file, the typical distance of points.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub spacing: Option<Number>,
     /// Position of one lattice site; 0 when left out.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub origin: Option<Vector>,
+    /// Where there are points: sites of the lattice inside it.
     pub region: Option<At<Shape>>,
     /// Whole cells along each axis from the origin on, instead of a region.
     pub cells: Option<At<Vec<At<u32>>>>,
@@ -154,7 +168,9 @@ pub struct Body {
     pub file_step: Option<At<u64>>,
     /// What one unit of the file's coordinates is; the deck's unit of length when left out. Densities of a file are in
     /// the deck's units.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub file_unit: Option<Number>,
+    /// Sites moved at random; the body is a cloud then.
     pub perturb: Option<Perturb>,
 }
 
@@ -162,7 +178,10 @@ pub struct Body {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Perturb {
+    /// Each coordinate moves by at most so much.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub amplitude: Number,
+    /// The same number gives the same points.
     pub seed: u64,
 }
 
@@ -178,9 +197,11 @@ pub struct Interface {
     /// pmb; moduli are those of a full family of the first body at this horizon.
     pub law: At<Law>,
     /// { m_ratio = 3 } in spacings of the first body, or a length; that of the first body when left out.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// constant when left out.
     pub influence: Option<InfluenceName>,
+    /// When its bonds break; never when left out.
     pub fracture: Option<At<Fracture>>,
 }
 
@@ -201,10 +222,14 @@ pub struct Material {
     /// leave. Kinds of atoms in a file are sets of their names, or of the numbers of their types.
     pub set: Option<At<String>>,
     /// Left out, the densities in the LAMMPS data file are taken; given, it takes their place.
+    #[schemars(extend("dimension" = Dim::DENSITY.name()))]
     pub density: Option<Number>,
     /// Mass of a point, instead of the density; of atoms taken from their file or an eam file when left out.
+    #[schemars(extend("dimension" = Dim::MASS.name()))]
     pub mass: Option<Number>,
+    /// What its bonds answer: the name of a law with its constants.
     pub law: At<Law>,
+    /// When its bonds break; never when left out.
     pub fracture: Option<At<Fracture>>,
 }
 
@@ -212,10 +237,14 @@ pub struct Material {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fracture {
+    /// Stretch s00 = (length − reference length) / reference length past which a bond breaks.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub critical_stretch: Option<Number>,
     /// Fracture energy per area.
+    #[schemars(extend("dimension" = Dim::FRACTURE_ENERGY.name()))]
     pub energy: Option<Number>,
     /// Strengthening under compression, s0 = s00 − α s_min; 0 when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub alpha: Option<Number>,
     /// at_once when left out; the same for all materials.
     pub release: Option<At<ReleaseName>>,
@@ -224,5 +253,7 @@ pub struct Fracture {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonRatio {
+    /// Horizon over spacing.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub m_ratio: Number,
 }

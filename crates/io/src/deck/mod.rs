@@ -11,6 +11,7 @@ mod error;
 mod form;
 mod locate;
 mod lower;
+pub mod reference;
 mod schema;
 mod source;
 mod syntax;
@@ -25,7 +26,7 @@ pub use describe::describe;
 pub use error::DeckError;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
-pub use units::{Constants, Dim, UnitSystem};
+pub use units::{Constants, Dim, UnitSystem, example, named, rounded, usual};
 
 use crate::continuum::plan::FieldsSpec;
 use crate::write::trajectory::Format;
@@ -82,14 +83,26 @@ pub struct OutputSpec {
     pub dump: Option<PathBuf>,
     /// Steps between rows of `history.csv`; `None`: chosen by the caller.
     pub history: Option<u64>,
-    /// PNG of the damage at the end.
-    pub picture: bool,
+    /// Pictures of the last state.
+    pub pictures: Vec<PictureSpec>,
     /// Files of all frames of atoms.
     pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state of atoms.
     pub data: Option<PathBuf>,
     /// Keys whose names lead out of the folder they belong in, and the names.
     pub outside: Vec<(&'static str, String)>,
+}
+
+/// A picture that a deck asks for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PictureSpec {
+    /// `None`: what the run is about.
+    pub field: Option<String>,
+    pub component: Option<String>,
+    pub scale: Option<f64>,
+    /// Plain numbers of the deck.
+    pub range: Option<[f64; 2]>,
+    pub film: bool,
 }
 
 impl Deck {

@@ -2,6 +2,7 @@
 
 use super::atomic::{WriteError, write_file};
 use super::plot::Plot;
+use crate::deck::{Dim, UnitSystem};
 use peridyne_theory::upscale::card::{Card, Side};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -73,8 +74,9 @@ fn json(card: &Card, measured: Option<&Measured>) -> Value {
     })
 }
 
-fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
+fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> String {
     let mut t = String::new();
+    let pressure = Dim::PRESSURE;
     let h = card.coarse.spacing / card.fine.spacing;
     let _ = writeln!(
         t,
@@ -88,28 +90,33 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
         let _ = writeln!(t, "- {note}");
     }
     t += "\n| | fine | coarse |\n|---|---:|---:|\n";
-    let mut row = |name: &str, f: f64, c: f64| {
-        let _ = writeln!(t, "| {name} | {f:.6e} | {c:.6e} |");
+    let mut row = |name: &str, f: f64, c: f64, dim: Dim| {
+        let (f, c) = (units.show(f, dim), units.show(c, dim));
+        let _ = writeln!(t, "| {name} | {f} | {c} |");
     };
     row(
-        &format!("spacing ({length})"),
+        "spacing",
         card.fine.spacing,
         card.coarse.spacing,
+        Dim::LENGTH,
     );
     row(
         "bonds of a point",
         card.fine.bonds as f64,
         card.coarse.bonds as f64,
+        Dim::NUMBER,
     );
     row(
         "stable step",
         card.fine.stable_step,
         card.coarse.stable_step,
+        Dim::TIME,
     );
     row(
         "pressure of the reference",
         card.fine.pressure,
         card.coarse.pressure,
+        pressure,
     );
     let n = card.fine.stiffness.len();
     for (i, j) in [(0, 0), (0, 1), (n - 1, n - 1)] {
@@ -118,6 +125,7 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
                 &format!("C{}{}", i + 1, j + 1),
                 card.fine.stiffness[i][j],
                 card.coarse.stiffness[i][j],
+                pressure,
             );
         }
         if n == 1 {
@@ -125,13 +133,14 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
         }
     }
     if let (Some(f), Some(c)) = (card.fine.anisotropy, card.coarse.anisotropy) {
-        row("Zener's ratio", f, c);
+        row("Zener's ratio", f, c, Dim::NUMBER);
     }
     for g in &card.gradients {
         row(
             &format!("gradient coefficient of ∂^{}", g.order),
             g.fine,
             g.coarse,
+            coefficient(g.order),
         );
     }
     let _ = writeln!(
@@ -143,7 +152,7 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
     for d in &card.dispersion {
         for (tolerance, wavelength) in &d.wavelengths {
             let text = wavelength.map_or("none".into(), |l| {
-                format!("{l:.4e} ({:.1} h)", l / card.coarse.spacing)
+                format!("{} ({:.1} h)", units.show(l, Dim::LENGTH), l / card.coarse.spacing)
             });
             let _ = writeln!(t, "| {} | {} % | {text} |", d.direction, 100.0 * tolerance);
         }
@@ -152,12 +161,12 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
     for e in &card.energies {
         let _ = writeln!(
             t,
-            "| {} | {} | {:.6e} | {:.6e} | {:.2e} |",
+            "| {} | {} | {} | {} | {:+.3} % |",
             e.strain,
             e.mode,
-            e.fine,
-            e.coarse,
-            (e.coarse - e.fine) / e.fine
+            units.show(e.fine, pressure),
+            units.show(e.coarse, pressure),
+            100.0 * (e.coarse - e.fine) / e.fine
         );
     }
     if !card.nonlinear.is_empty() {
@@ -166,14 +175,18 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
     for g in &card.nonlinear {
         let _ = writeln!(
             t,
-            "| {} | {} | {} | {:.6e} | {:.6e} |",
-            g.stretch, g.order, g.term, g.fine, g.coarse
+            "| {} | {} | {} | {} | {} |",
+            g.stretch,
+            g.order,
+            g.term,
+            units.show(g.fine, coefficient(g.order)),
+            units.show(g.coarse, coefficient(g.order))
         );
     }
     if let Some(m) = measured {
         let _ = writeln!(
             t,
-            "\nBoth were run: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {:.4e}).",
+            "\nBoth were run: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {}).",
             m.steps[0],
             m.steps[1],
             m.seconds[0],
@@ -181,21 +194,21 @@ fn markdown(card: &Card, length: &str, measured: Option<&Measured>) -> String {
             m.seconds[0] / m.seconds[1],
             m.points,
             100.0 * m.error,
-            m.largest
+            units.show(m.largest, Dim::LENGTH)
         );
     }
     t += "\n![dispersion](dispersion.png)\n\n![energy](energy.png)\n";
     t
 }
 
-/// Writes the card into `dir`; `length` is the unit of lengths.
+/// Writes the card into `dir`; numbers of `card.md` and of pictures are in these units.
 ///
 /// # Errors
 /// The first file that could not be written.
 pub fn write(
     dir: &Path,
     card: &Card,
-    length: &str,
+    units: UnitSystem,
     measured: Option<&Measured>,
 ) -> Result<Vec<PathBuf>, WriteError> {
     let mut files = vec![dir.join("card.json"), dir.join("card.md")];
@@ -203,11 +216,11 @@ pub fn write(
         Ok(serde_json::to_writer_pretty(w, &json(card, measured))?)
     })?;
     write_file(&files[1], |w| {
-        w.write_all(markdown(card, length, measured).as_bytes())
+        w.write_all(markdown(card, units, measured).as_bytes())
     })?;
     let mut plot = Plot::new(format!("Dispersion, h = {} a", card.factor))
-        .x("wave number", &per(length))
-        .y("frequency ω", "");
+        .x("wave number", &units.unit(Dim::INVERSE_LENGTH))
+        .y("frequency ω", &units.unit(Dim::FREQUENCY));
     for d in &card.dispersion {
         let top = |rows: &[Vec<f64>]| -> Vec<f64> {
             rows.iter()
@@ -225,7 +238,7 @@ pub fn write(
     files.extend(plot.save(dir, "dispersion")?);
     let mut plot = Plot::new("Energy density under homogeneous strain")
         .x("strain", "")
-        .y("energy density", "");
+        .y("energy density", &units.unit(Dim::PRESSURE));
     for mode in ["isotropic", "uniaxial", "shear"] {
         let rows = || card.energies.iter().filter(|e| e.mode == mode);
         let strain: Vec<f64> = rows().map(|e| e.strain).collect();
@@ -246,10 +259,9 @@ pub fn write(
     Ok(files)
 }
 
-fn per(length: &str) -> String {
-    if length.is_empty() {
-        String::new()
-    } else {
-        format!("1/{length}")
-    }
+/// What a coefficient of so many derivatives measures: `ρ ü = Σ c_k ∂^k u`.
+fn coefficient(order: usize) -> Dim {
+    let lengths = i8::try_from(order).unwrap_or(i8::MAX).saturating_sub(2);
+    let dim = Dim::PRESSURE.times(Dim::LENGTH, lengths);
+    dim.unwrap_or(Dim::NUMBER)
 }

@@ -9,6 +9,7 @@ pub mod dump;
 pub mod extxyz;
 pub mod fields;
 pub mod folder;
+mod font;
 pub mod history;
 pub mod linear;
 pub mod picture;

@@ -41,6 +41,8 @@ pub struct RunReport {
     /// Instruction set of the hot loop ("avx512", "avx2", "portable").
     pub simd: String,
     pub energy: EnergyReport,
+    /// File names of pictures and films.
+    pub pictures: Vec<String>,
     pub warnings: Vec<String>,
 }
 
@@ -174,6 +176,7 @@ mod tests {
                 initial: 1.0,
                 ..Ledger::default()
             }),
+            pictures: vec!["damage.png".into()],
             warnings: vec!["a \"quoted\" warning".into()],
         }
     }
@@ -202,6 +205,7 @@ mod tests {
             ("threads", json!(2)),
             ("simd", json!("avx512")),
             ("status", json!("done")),
+            ("pictures", json!(["damage.png"])),
             ("warnings", json!(["a \"quoted\" warning"])),
         ] {
             assert_eq!(json[key], value, "{key}");

@@ -6,6 +6,8 @@ use peridyne::observe::Snapshot;
 
 use super::atomic::{WriteError, create_directory, write_file};
 use super::dump::{DumpBox, write_frame};
+use super::picture::film::Film;
+use super::picture::shown::About;
 use super::picture::{self, PictureOptions};
 use super::pvd::Pvd;
 use super::trajectory::Frames;
@@ -20,8 +22,8 @@ pub struct SeriesOptions {
     pub bonds: bool,
     /// A LAMMPS dump of this name in the directory, all frames in it.
     pub dump: Option<(PathBuf, DumpBox)>,
-    /// `damage.png` at the end.
-    pub picture: Option<PictureOptions>,
+    /// Pictures of the last state, named after what they show.
+    pub pictures: Vec<PictureOptions>,
 }
 
 impl Default for SeriesOptions {
@@ -30,7 +32,7 @@ impl Default for SeriesOptions {
             points: true,
             bonds: false,
             dump: None,
-            picture: Some(PictureOptions::default()),
+            pictures: vec![PictureOptions::default()],
         }
     }
 }
@@ -46,6 +48,8 @@ pub struct Series {
     bonds: Pvd,
     /// The dump and the step of its last frame.
     dump: Option<(Frames, Option<u64>)>,
+    /// One for each picture that asks for it.
+    films: Vec<Option<Film>>,
 }
 
 impl Series {
@@ -61,7 +65,11 @@ impl Series {
             Some((name, _)) => Some((Frames::create(&dir.join(name))?, None)),
             None => None,
         };
+        let films = options.pictures.iter().map(|p| p.film.then(Film::new).transpose());
+        let films: std::io::Result<Vec<Option<Film>>> = films.collect();
+        let films = films.map_err(WriteError::at("make a film in", &dir))?;
         Ok(Series {
+            films,
             dir,
             options,
             points,
@@ -72,6 +80,13 @@ impl Series {
 
     pub fn dir(&self) -> &Path {
         &self.dir
+    }
+
+    /// Does it need snapshots of all frames?
+    pub fn wants_frames(&self) -> bool {
+        let options = &self.options;
+        let films = self.films.iter().any(Option::is_some);
+        options.points || options.bonds || options.dump.is_some() || films
     }
 
     /// Writes all files of a snapshot. One of the same step is replaced, but the dump keeps the first.
@@ -92,20 +107,34 @@ impl Series {
             dump.push(|w| write_frame(w, s, cell))?;
             *last = Some(s.step);
         }
+        for (film, picture) in self.films.iter_mut().zip(&self.options.pictures) {
+            if let Some(film) = film {
+                let failed = WriteError::at("make a film in", &self.dir);
+                let component = picture.component.as_deref();
+                film.push(s, picture.field(About::Motion), component).map_err(failed)?;
+            }
+        }
         Ok(())
     }
 
-    /// Draws the last snapshot, if a picture was asked for; returns its path.
-    pub fn finish(self, last: &Snapshot) -> Result<Option<PathBuf>, WriteError> {
+    /// Draws the last snapshot, as pictures were asked for; returns their paths.
+    pub fn finish(self, last: &Snapshot, about: About) -> Result<Vec<PathBuf>, WriteError> {
         if let Some((dump, _)) = self.dump {
             dump.finish()?;
         }
-        let Some(options) = &self.options.picture else {
-            return Ok(None);
-        };
-        let path = self.dir.join("damage.png");
-        picture::write(&path, last, options)?;
-        Ok(Some(path))
+        let mut paths = vec![];
+        for (options, film) in self.options.pictures.iter().zip(self.films) {
+            let path = self.dir.join(format!("{}.png", options.stem(about)));
+            picture::write(&path, last, options, about)?;
+            paths.push(path);
+            if let Some(film) = film {
+                let name = format!("{}_film.png", options.stem(About::Motion));
+                let path = self.dir.join(name);
+                film.finish(&path, options.field(About::Motion), options, options.scale.unwrap_or(1.0))?;
+                paths.push(path);
+            }
+        }
+        Ok(paths)
     }
 }
 
@@ -143,7 +172,7 @@ mod tests {
         };
         series.write(&later).unwrap();
         series.write(&later).unwrap();
-        assert_eq!(series.finish(&later).unwrap(), Some(out.join("damage.png")));
+        assert_eq!(series.finish(&later, About::Fracture).unwrap(), [out.join("damage.png")]);
         let files = [
             "bonds.pvd",
             "bonds_00000007.vtu",

@@ -9,6 +9,7 @@ use crate::particles::Field;
 use crate::printf::{Format, Value};
 use crate::session::Session;
 use crate::variable::tree::Tree;
+use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::picture::{self, PictureOptions};
 
 impl Session<'_> {
@@ -123,7 +124,7 @@ impl Session<'_> {
             ..PictureOptions::default()
         };
         let mut bytes = Vec::new();
-        picture::damage(&snapshot, &options)
+        picture::picture(&snapshot, &options, About::Fracture)
             .and_then(|image| image.write_png(&mut bytes))
             .map_err(|e| Problem::new(format!("the picture cannot be drawn: {e}")))?;
         out.write_bytes(&bytes)

@@ -1,6 +1,6 @@
 //! Points, bonds and families.
 
-use super::numbers::whole;
+use crate::numbers::whole;
 use super::{AXES, row};
 use crate::check::Findings;
 use peridyne_io::deck::Dim;
@@ -16,8 +16,8 @@ pub(super) fn points(found: &Findings) -> String {
         format!(
             "{} {} to {}",
             AXES[a],
-            units.write(found.low[a], Dim::LENGTH),
-            units.write(found.high[a], Dim::LENGTH)
+            units.show(found.low[a], Dim::LENGTH),
+            units.show(found.high[a], Dim::LENGTH)
         )
     };
     let spans: Vec<String> = (0..d).map(span).collect();
@@ -27,8 +27,8 @@ pub(super) fn points(found: &Findings) -> String {
         "volume, mass",
         format!(
             "{}, {}",
-            units.write(info.volume, Dim::VOLUME),
-            units.write(info.mass, Dim::MASS)
+            units.show(info.volume, Dim::VOLUME),
+            units.show(info.mass, Dim::MASS)
         ),
     );
     let atoms = found.spec.potential().is_some();
@@ -37,9 +37,9 @@ pub(super) fn points(found: &Findings) -> String {
         if atoms { "cut-off" } else { "horizon" },
         format!(
             "{} = {:.4} spacings of {}",
-            units.write(info.horizon, Dim::LENGTH),
+            units.show(info.horizon, Dim::LENGTH),
             info.horizon / info.spacing,
-            units.write(info.spacing, Dim::LENGTH)
+            units.show(info.spacing, Dim::LENGTH)
         ),
     );
     row(
@@ -64,7 +64,7 @@ pub(super) fn points(found: &Findings) -> String {
                 [a, b] if b == n => a,
                 _ => return None,
             };
-            let distance = units.write(g.distance, Dim::LENGTH);
+            let distance = units.show(g.distance, Dim::LENGTH);
             Some(format!("{distance} from {}", info.bodies[other].0))
         });
         let gaps: Vec<String> = gaps.collect();

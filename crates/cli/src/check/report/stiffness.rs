@@ -1,6 +1,6 @@
 //! What the body resists with.
 
-use super::numbers::digits;
+use crate::numbers::digits;
 use crate::check::{Findings, Material, directions, mean};
 use peridyne::spec::{LawSpec, Moduli, PmbStiffness};
 use peridyne_io::deck::{Dim, UnitSystem};
@@ -103,7 +103,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
         let _ = writeln!(
             out,
             "  asked: what the micromodulus {} means in a full {}",
-            units.write(
+            units.show(
                 found
                     .sim
                     .info()

@@ -1,6 +1,6 @@
 //! Waves, steps and fracture.
 
-use super::numbers::whole;
+use crate::numbers::whole;
 use super::row;
 use crate::check::Findings;
 use peridyne::spec::{Criterion, Method, Stepper};
@@ -22,14 +22,14 @@ pub(super) fn waves(found: &Findings) -> String {
             String::new()
         };
         let shear = m.shear_wave.map_or(String::new(), |c| {
-            format!(", shear {}", units.write(c, Dim::VELOCITY))
+            format!(", shear {}", units.show(c, Dim::VELOCITY))
         });
         let kind = if m.shear_wave.is_some() {
             "pressure "
         } else {
             ""
         };
-        let speeds = units.write(m.pressure_wave, Dim::VELOCITY);
+        let speeds = units.show(m.pressure_wave, Dim::VELOCITY);
         row(
             &mut out,
             "wave speeds",
@@ -48,7 +48,7 @@ pub(super) fn waves(found: &Findings) -> String {
             "crossing",
             format!(
                 "{prefix}{}{steps} through the longest side",
-                units.write(crossing, Dim::TIME)
+                units.show(crossing, Dim::TIME)
             ),
         );
     }
@@ -80,8 +80,8 @@ pub(super) fn waves(found: &Findings) -> String {
             "time step",
             format!(
                 "{}, {ratio:.3} times the limit {} of explicit steps",
-                units.write(info.time_step, Dim::TIME),
-                units.write(info.stable_step, Dim::TIME)
+                units.show(info.time_step, Dim::TIME),
+                units.show(info.stable_step, Dim::TIME)
             ),
         );
         row(
@@ -90,7 +90,7 @@ pub(super) fn waves(found: &Findings) -> String {
             format!(
                 "{} steps = {}",
                 whole(found.steps),
-                units.write(found.steps as f64 * info.time_step, Dim::TIME)
+                units.show(found.steps as f64 * info.time_step, Dim::TIME)
             ),
         );
         return out;
@@ -101,9 +101,9 @@ pub(super) fn waves(found: &Findings) -> String {
         "time step",
         format!(
             "{}, {:.1} % of the stability limit {}{}",
-            units.write(info.time_step, Dim::TIME),
+            units.show(info.time_step, Dim::TIME),
             100.0 * info.time_step / info.stable_step,
-            units.write(info.stable_step, Dim::TIME),
+            units.show(info.stable_step, Dim::TIME),
             if info.contact_step <= info.stable_step && info.contact_step.is_finite() {
                 ", which contact sets"
             } else {
@@ -117,7 +117,7 @@ pub(super) fn waves(found: &Findings) -> String {
         format!(
             "{} steps = {}",
             whole(found.steps),
-            units.write(found.steps as f64 * info.time_step, Dim::TIME)
+            units.show(found.steps as f64 * info.time_step, Dim::TIME)
         ),
     );
     out
@@ -136,7 +136,7 @@ pub(super) fn fracture(found: &Findings) -> String {
             String::new()
         };
         let energy = energy.map_or("no formula for this law".to_string(), |e| {
-            units.write(e, Dim::FRACTURE_ENERGY)
+            units.show(e, Dim::FRACTURE_ENERGY)
         });
         let given = matches!(
             spec.fracture.map(|f| f.criterion),

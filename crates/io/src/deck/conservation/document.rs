@@ -1,6 +1,7 @@
 //! The deck of a conservation law as written.
 
 use crate::deck::document::{UnitName, Units};
+use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -18,6 +19,7 @@ pub enum KindName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawDocument {
+    /// Says that this is a conservation law: "conservation_law".
     pub kind: KindName,
     /// One line for headers and pictures.
     pub title: Option<String>,
@@ -26,20 +28,25 @@ pub struct LawDocument {
     /// Named numbers for use in any number.
     #[serde(default)]
     pub constants: BTreeMap<String, Number>,
+    /// The line or the rectangle on which u lives.
     pub domain: At<Domain>,
     /// Points along x; cells of a plane are squares.
     pub points: At<usize>,
     /// "periodic", or what u is in the collars beyond the ends: { left = "1", right = "0" } on a line, { around = "0" } in a plane.
     pub boundary: At<Or<BoundaryName, Collars>>,
     /// δ, of both kernels.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<Number>,
     /// u at t = 0, of x (and y).
+    #[schemars(extend("dimension" = "that of u"))]
     pub initial: Number,
     /// Transport; left out, there is diffusion alone.
     pub advection: Option<At<Transport>>,
     /// The regularization ε ∫ (u(y) − u(x)) φ_s dy.
     pub diffusion: Option<At<Spreading>>,
+    /// How long and how.
     pub run: At<LawRun>,
+    /// Files of the results.
     #[serde(default)]
     pub output: LawOutput,
 }
@@ -48,8 +55,11 @@ pub struct LawDocument {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
+    /// Lower and upper end.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub x: At<[Number; 2]>,
     /// Of a plane.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub y: Option<At<[Number; 2]>>,
 }
 
@@ -63,9 +73,13 @@ pub enum BoundaryName {
 #[serde(deny_unknown_fields)]
 pub struct Collars {
     /// Below the lower end of a line, of x and t.
+    #[schemars(extend("dimension" = "that of u"))]
     pub left: Option<Number>,
+    /// Above the upper end, of x and t.
+    #[schemars(extend("dimension" = "that of u"))]
     pub right: Option<Number>,
     /// Around a rectangle, of x, y and t.
+    #[schemars(extend("dimension" = "that of u"))]
     pub around: Option<Number>,
 }
 
@@ -77,8 +91,10 @@ pub struct Transport {
     /// Odd; its first moment is 2.
     pub kernel: At<KernelForm>,
     /// Its own, instead of that of the deck.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<Number>,
     /// Where it carries: components, which may depend on x and y; along x when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub direction: Option<Vector>,
 }
 
@@ -93,8 +109,10 @@ pub enum FluxName {
 #[serde(deny_unknown_fields)]
 pub struct FluxForm {
     /// The speed c of ψ = c u.
+    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
     pub linear: Option<Number>,
     /// ψ = c0 + c1 u + c2 u² + …, up to u⁸.
+    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
     pub polynomial: Option<At<Vec<Number>>>,
     /// ψ as an expression of u, in plain numbers of the deck.
     pub expression: Option<At<String>>,
@@ -104,10 +122,12 @@ pub struct FluxForm {
 #[serde(deny_unknown_fields)]
 pub struct Spreading {
     /// ε
+    #[schemars(extend("dimension" = (Dim::AREA / Dim::TIME).to_string()))]
     pub viscosity: Number,
     /// Even; its second moment is 2.
     pub kernel: At<KernelForm>,
     /// Its own, instead of that of the deck.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<Number>,
 }
 
@@ -157,8 +177,11 @@ pub enum FormName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawRun {
+    /// Until t is this.
+    #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub duration: Number,
     /// A time, or { safety = 0.5 } of what is stable, step by step (when left out).
+    #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub time_step: Option<At<Or<Written, LawSafety>>>,
     /// Run even if the step is above the stability limit.
     #[serde(default)]
@@ -172,6 +195,8 @@ pub struct LawRun {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawSafety {
+    /// Part of what is stable, above 0, at most 1.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub safety: Number,
 }
 

@@ -1,6 +1,7 @@
 //! Cracks, and bonds with factors.
 
 use super::CrackName;
+use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -10,6 +11,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct BondFactor {
     /// Expression of x, y, z; a bond gets the mean of both ends by the rule of `interface`. With crossing: a number.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub value: Number,
     /// Only bonds that cross this shape.
     pub crossing: Option<At<FlatShape>>,
@@ -21,10 +23,13 @@ pub struct BondFactor {
 pub struct FlatShape {
     /// 2-D, or endless along z.
     pub segment: Option<Segment>,
+    /// 3-D.
     pub disk: Option<Disk>,
     /// Three or more corners.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub polygon: Option<At<Vec<Vector>>>,
     /// 1-D.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub point: Option<Number>,
 }
 
@@ -34,10 +39,13 @@ pub struct FlatShape {
 pub struct Precrack {
     /// 2-D, or endless along z.
     pub segment: Option<Segment>,
+    /// 3-D.
     pub disk: Option<Disk>,
     /// Three or more corners.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub polygon: Option<At<Vec<Vector>>>,
     /// 1-D.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub point: Option<Number>,
     /// absent (never there; when left out) or broken (counted as damage).
     pub kind: Option<CrackName>,
@@ -46,14 +54,24 @@ pub struct Precrack {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {
+    /// One end.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub from: Vector,
+    /// The other.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub to: Vector,
 }
 
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disk {
+    /// Its middle.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub center: Vector,
+    /// Direction across it, of any length.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub normal: Vector,
+    /// Radius.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub radius: Number,
 }

@@ -1,6 +1,7 @@
 //! Continuum fields of the running model.
 
 use super::{AxisName, KernelName, PairForceName, PartitionName};
+use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -15,6 +16,7 @@ pub struct Fields {
     /// Localization function.
     pub kernel: At<KernelName>,
     /// S of it: what a particle is spread over.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub width: Number,
     /// Of polynomials, 0 to 7: one derivative less is continuous; 3 when left out.
     pub smoothness: Option<At<u32>>,
@@ -23,8 +25,10 @@ pub struct Fields {
     /// Counts along each axis: the centres of so many equal pieces of the box.
     pub grid: Option<At<Vec<At<usize>>>>,
     /// Two opposite corners of the box; when left out, that of the body at the start, on periodic axes the period.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub corners: Option<At<Vec<Vector>>>,
     /// A list of points.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub points: Option<At<Vec<Vector>>>,
     /// Points evenly on a line, both ends included.
     pub line: Option<At<Line>>,
@@ -53,17 +57,26 @@ pub struct Fields {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
+    /// One end.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub from: Vector,
+    /// The other.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub to: Vector,
+    /// How many points.
     pub count: At<usize>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Flat {
+    /// One corner.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub corner: Vector,
     /// Two edges from it.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub edges: At<Vec<Vector>>,
+    /// How many points along each edge.
     pub counts: At<[usize; 2]>,
 }
 
@@ -71,5 +84,6 @@ pub struct Flat {
 #[serde(deny_unknown_fields)]
 pub struct Centre {
     /// So much of a term to its centre, the rest in equal parts to the others.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub centre: Number,
 }

@@ -160,9 +160,10 @@ impl JsonSchema for Law {
         let number = generator.subschema_for::<Written>();
         let shelf = Shelf::standard();
         let laws = shelf.descriptors().map(|d| {
-            let description = format!("{} [{}]", d.doc, d.source);
+            let description = d.doc.trim();
             if plain(d) {
-                return json!({ "type": "string", "const": d.name, "description": description });
+                let source = &d.source;
+                return json!({ "type": "string", "const": d.name, "description": description, "source": source });
             }
             let key = |k: &Key| {
                 let mut value = match k.value {
@@ -182,6 +183,25 @@ impl JsonSchema for Law {
                     Value::Name | Value::Table | Value::Entries(_) => json!({ "type": "string" }),
                 };
                 value["description"] = json!(k.doc);
+                let (dimension, bounds) = match k.value {
+                    Value::Number(d, b) | Value::List(_, d, b) => (Some(d), b.words()),
+                    Value::Rows(_) | Value::Word(_) | Value::Name => (None, String::new()),
+                    Value::Table | Value::Entries(_) => (None, String::new()),
+                };
+                if let Some(dimension) = dimension {
+                    value["dimension"] = json!(dimension.to_string());
+                    value["bounds"] = json!(bounds);
+                }
+                if let Value::Word(words) = k.value {
+                    value["words"] = json!(words);
+                }
+                match k.need {
+                    Need::Default(x) => value["default"] = json!(x),
+                    Need::Word(word) => value["default"] = json!(word),
+                    Need::OneOf => value["need"] = json!("one of these is given"),
+                    Need::TwoOf => value["need"] = json!("two of these are given"),
+                    Need::Given | Need::Optional | Need::Refused => {}
+                }
                 (k.name.to_string(), value)
             };
             let needed = d.keys.iter().filter(|k| k.need == Need::Given);
@@ -190,6 +210,8 @@ impl JsonSchema for Law {
             json!({
                 "type": "object",
                 "description": description,
+                "source": d.source,
+                "example": d.example,
                 "properties": { &*d.name: {
                     "type": "object",
                     "properties": keys,

@@ -1,6 +1,7 @@
 //! What is written.
 
-use crate::deck::value::At;
+use crate::deck::units::Dim;
+use crate::deck::value::{At, Number};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -27,11 +28,34 @@ pub struct Output {
     pub dump: Option<At<String>>,
     /// Steps between rows of history.csv; a hundredth of the run when left out.
     pub history: Option<At<u64>>,
-    /// PNG of the damage at the end; when left out, true, and false for atoms.
+    /// PNG of the last state, named after the field that it shows: damage if bonds broke, else displacement in statics and velocity in
+    /// motion. When left out true, and false for atoms or where pictures are listed.
     pub picture: Option<bool>,
+    /// Pictures of fields of your choice.
+    #[serde(default)]
+    pub pictures: Vec<At<Picture>>,
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
     /// LAMMPS dump.
     pub trajectory: Option<At<String>>,
     /// Atoms only: LAMMPS data file (`atom_style atomic`, with velocities) of the last state.
     pub data: Option<At<String>>,
+}
+
+/// A PNG of a field at the end, FIELD.png or FIELD_COMPONENT.png, with cracks, indenters, supports and loads.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Picture {
+    /// Name of a field of points (`peridyne laws` lists them); when left out what the run is about, as `picture` says.
+    pub field: Option<At<String>>,
+    /// x, xy, … or magnitude; the magnitude when left out.
+    pub component: Option<At<String>>,
+    /// Displacements are drawn so many times as large; when left out 1, in statics so that they are seen.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub scale: Option<Number>,
+    /// What the ends of the colours mean, in plain numbers of the field; those of its values when left out.
+    #[schemars(extend("dimension" = "that of the field"))]
+    pub range: Option<At<[f64; 2]>>,
+    /// All frames as an animated PNG, too: FIELD_film.png.
+    #[serde(default)]
+    pub film: bool,
 }

@@ -1,6 +1,7 @@
 //! How a body moves or comes to rest, and what is measured of it.
 
 use super::{IntegratorName, MeasureName};
+use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -8,10 +9,13 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
+    /// Number of time steps.
     pub steps: Option<At<u64>>,
     /// Instead of steps.
+    #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub duration: Option<Number>,
     /// A time, or { safety = 0.8 } of the estimated limit (when left out).
+    #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub time_step: Option<At<Or<Written, Safety>>>,
     /// Run even if the step is above the stability limit.
     #[serde(default)]
@@ -19,15 +23,19 @@ pub struct Run {
     /// verlet when left out. newmark is implicit: stable at any step, which must be given, and without fracture and contact.
     pub integrator: Option<At<IntegratorName>>,
     /// newmark: 1/4 when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub beta: Option<Number>,
     /// newmark: 1/2 when left out; more damps what is fast beside the step.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub gamma: Option<Number>,
     /// newmark: auto when left out, factors of small systems, conjugate gradients of large ones.
     pub solver: Option<At<SolverName>>,
     /// newmark: residual force over loads, reactions and inertia; 1e-10 when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub tolerance: Option<Number>,
     /// newmark: iterations of conjugate gradients; 100,000 when left out.
     pub iterations: Option<At<usize>>,
+    /// All cores when left out; results do not depend on it.
     pub threads: Option<At<usize>>,
 }
 
@@ -51,11 +59,13 @@ pub struct Statics {
     /// Increments of load while t goes from 0 to 1; 1 when left out, and 0 looks at modes only.
     pub increments: Option<At<u64>>,
     /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub tolerance: Option<Number>,
     /// Iterations of conjugate gradients or of relaxation; 100,000 when left out.
     pub iterations: Option<At<usize>>,
     /// So many lowest modes of vibration about the last state; modes.csv and modes.pvd.
     pub modes: Option<At<usize>>,
+    /// All cores when left out; results do not depend on it.
     pub threads: Option<At<usize>>,
 }
 
@@ -78,6 +88,8 @@ pub enum SolverName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Safety {
+    /// Part of the estimated limit of stability, above 0, at most 1.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub safety: Number,
 }
 
@@ -85,20 +97,26 @@ pub struct Safety {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
+    /// Its columns of history.csv begin with it.
     pub name: At<String>,
     /// All points when left out.
     pub set: Option<At<String>>,
+    /// What is measured.
     pub measure: At<MeasureName>,
     /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value.
     pub of: Option<At<String>>,
     /// x, xy, … or magnitude; all components when left out.
     pub component: Option<At<String>>,
     /// Fixed point of a moment.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub about: Option<Vector>,
     /// Place in the reference; of value.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub at: Option<Vector>,
     /// Two opposite corners of a rectangle around the tip of a crack, three horizons to every side at least; of contour.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub corners: Option<At<Vec<Vector>>>,
     /// Where the crack grows to; of contour, [1, 0] when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub direction: Option<Vector>,
 }

@@ -1,5 +1,6 @@
 //! Temperatures, as written.
 
+use crate::deck::units::Dim;
 use crate::deck::value::Number;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -9,6 +10,8 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
     /// In kelvin; k_B T, an energy, in reduced or no units. An expression of x, y, z at the start: "300 K + 30 K * cos(2*pi*x/80)".
+    #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
     pub temperature: Number,
+    /// The same number gives the same velocities.
     pub seed: u64,
 }

@@ -34,6 +34,7 @@ impl UnitName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Units {
+    /// Name of the system.
     pub system: UnitName,
     /// Of metal: codata2018 when left out; lammps gives LAMMPS's kinetic energies, temperatures and pressures.
     pub constants: Option<At<Constants>>,

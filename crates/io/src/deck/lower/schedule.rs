@@ -1,9 +1,9 @@
 //! How long to run and what to write.
 
 use super::context::{Context, Result};
-use crate::deck::OutputSpec;
+use crate::deck::{OutputSpec, PictureSpec};
 use crate::deck::document::{
-    Document, IntegratorName, MethodName, Output, Run, Safety, SolverName, Statics,
+    Document, IntegratorName, MethodName, Output, Picture, Run, Safety, SolverName, Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
@@ -292,6 +292,13 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         .filter_map(|(key, name)| Some((key, name?.clone())))
         .filter(|(_, name)| !stays(name.as_ref()))
         .collect();
+    let mut pictures = vec![];
+    if written.picture.unwrap_or(!atoms && written.pictures.is_empty()) {
+        pictures.push(PictureSpec::default());
+    }
+    for picture in &written.pictures {
+        pictures.push(self::picture(context, picture)?);
+    }
     Ok(OutputSpec {
         outside,
         dir: written.dir.clone().map(Into::into),
@@ -305,8 +312,28 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             .filter(|_| !atoms)
             .map(|n| n.value.clone().into()),
         history: positive(&written.history, "history")?,
-        picture: written.picture.unwrap_or(!atoms),
+        pictures,
         trajectories,
         data,
+    })
+}
+
+fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
+    let p = &at.value;
+    let scale = p.scale.as_ref();
+    let scale = scale.map(|s| context.positive(s, Dim::NUMBER, "the scale of displacements"));
+    if let Some(range) = &p.range
+        && !(range.value[0] < range.value[1] && range.value.iter().all(|x| x.is_finite()))
+    {
+        let message = "the range of a picture is [low, high], two numbers of which the first is lower";
+        return Err(context.error(&range.span, message));
+    }
+    let text = |t: &Option<At<String>>| t.as_ref().map(|t| t.value.clone());
+    Ok(PictureSpec {
+        field: text(&p.field),
+        component: text(&p.component),
+        scale: scale.transpose()?,
+        range: p.range.as_ref().map(|r| r.value),
+        film: p.film,
     })
 }

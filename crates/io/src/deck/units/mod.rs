@@ -7,6 +7,7 @@ mod write;
 
 pub use measure::{Dimensions, Kind, factor_help};
 pub use parse::{split, unit};
+pub use write::rounded;
 pub(in crate::deck) use write::short;
 
 use schemars::JsonSchema;
@@ -44,6 +45,16 @@ const EXAMPLES: &[(Dim, &str)] = &[
 /// How one would write a quantity of this dimension, if it is a usual one.
 pub fn example(dim: Dim) -> Option<&'static str> {
     EXAMPLES.iter().find(|n| n.0 == dim).map(|n| n.1)
+}
+
+/// The dimension of this [name](Dim::name), if it is a usual one.
+pub fn named(name: &str) -> Option<Dim> {
+    usual().find(|dim| dim.name() == Some(name))
+}
+
+/// The usual dimensions.
+pub fn usual() -> impl Iterator<Item = Dim> {
+    EXAMPLES.iter().map(|(dim, _)| *dim)
 }
 
 /// How usual a dimension is: its place among those with examples.

@@ -1,38 +1,48 @@
 //! Values as text.
 
-use super::{Dim, UnitSystem};
+use super::{AVOGADRO, Dim, UnitSystem};
 
 impl UnitSystem {
     /// A computed value as text with its unit.
     pub fn write(self, value: f64, dim: Dim) -> String {
+        self.digits(value, dim, 6)
+    }
+
+    /// The same in the four digits that a reader looks at: `167.8 GPa`.
+    pub fn show(self, value: f64, dim: Dim) -> String {
+        self.digits(value, dim, 4)
+    }
+
+    fn digits(self, value: f64, dim: Dim, digits: usize) -> String {
         let si = value * self.computed(dim);
+        // a reader likes 235.6 ns better, who writes a deck 0.1 m
+        let least = if digits < 6 { 0.9995 } else { 0.0999 };
         let (scaled, unit): (f64, &str) = match (self, dim) {
             (UnitSystem::Lj | UnitSystem::None, _) | (_, Dim::NUMBER) => (value, ""),
             (UnitSystem::Metal(_), Dim::LENGTH) => (value, "Å"),
             (UnitSystem::Metal(_), Dim::TIME) => (value, "ps"),
             (UnitSystem::Metal(_), Dim::ENERGY) => (value, "eV"),
             (UnitSystem::Metal(_), Dim::VELOCITY) => (value, "Å/ps"),
+            (UnitSystem::Metal(_), Dim::MASS) => (si * 1e3 * AVOGADRO, "g/mol"),
             (_, Dim::DENSITY) if matches!(self, UnitSystem::Metal(_)) => (si * 1e-3, "g/cm^3"),
-            (_, Dim::LENGTH) => engineering(si, "m"),
-            (_, Dim::TIME) => engineering(si, "s"),
-            (_, Dim::PRESSURE) => engineering(si, "Pa"),
+            (_, Dim::LENGTH) => engineering(si, "m", least),
+            (_, Dim::TIME) => engineering(si, "s", least),
+            (_, Dim::PRESSURE) => engineering(si, "Pa", least),
             (_, Dim::AREA) => (si, "m^2"),
             (_, Dim::VOLUME) => (si, "m^3"),
-            (_, Dim::MASS) => (si, "kg"),
+            (_, Dim::MASS) => engineering(si, "kg", least),
             (_, Dim::VELOCITY) => (si, "m/s"),
             (_, Dim::DENSITY) => (si, "kg/m^3"),
             (_, Dim::FRACTURE_ENERGY) => (si, "J/m^2"),
             (_, Dim::MICROMODULUS) => (si, "N/m^6"),
             (_, Dim::CONTACT_STIFFNESS) => (si, "N/m^7"),
             (_, Dim::INDENTER_STIFFNESS) => (si, "N/m^5"),
-            _ => (si, "SI"),
+            _ => {
+                let unit = self.unit(dim);
+                return format!("{} {unit}", rounded(value, digits)).trim_end().to_string();
+            }
         };
-        let number = short(scaled);
-        if unit.is_empty() {
-            number
-        } else {
-            format!("{number} {unit}")
-        }
+        format!("{} {unit}", rounded(scaled, digits)).trim_end().to_string()
     }
 }
 
@@ -51,6 +61,16 @@ const SI: &[(Dim, &str)] = &[
 ];
 
 impl UnitSystem {
+    /// The unit of a plain number of a deck; empty where numbers carry none.
+    pub fn plain_unit(self, dim: Dim) -> String {
+        match (self, dim) {
+            (UnitSystem::Metal(_), Dim::MASS) => "g/mol".into(),
+            (UnitSystem::Metal(_), Dim::DENSITY) => "g/cm^3".into(),
+            (UnitSystem::Metal(_), Dim::PRESSURE) => "bar".into(),
+            _ => self.unit(dim),
+        }
+    }
+
     /// The unit of a computed number of this dimension; empty where numbers carry none.
     pub fn unit(self, dim: Dim) -> String {
         self.unit_of(dim.0.map(f64::from))
@@ -97,10 +117,17 @@ impl UnitSystem {
 
 /// A number in six digits, without trailing zeros.
 pub(in crate::deck) fn short(value: f64) -> String {
+    rounded(value, 6)
+}
+
+/// A number in so many digits, without trailing zeros.
+pub fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let rounded: f64 = format!("{value:.*e}", digits.max(1) - 1)
+        .parse()
+        .unwrap_or(value);
     if (1e-3..1e6).contains(&rounded.abs()) {
         format!("{rounded}")
     } else {
@@ -108,7 +135,8 @@ pub(in crate::deck) fn short(value: f64) -> String {
     }
 }
 
-fn engineering(si: f64, unit: &'static str) -> (f64, &'static str) {
+/// In the largest unit of which it is so much at least.
+fn engineering(si: f64, unit: &'static str, least: f64) -> (f64, &'static str) {
     let table: &[(f64, &str)] = match unit {
         "m" => &[(1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")],
         "s" => &[
@@ -118,6 +146,7 @@ fn engineering(si: f64, unit: &'static str) -> (f64, &'static str) {
             (1e-9, "ns"),
             (1e-12, "ps"),
         ],
+        "kg" => &[(1.0, "kg"), (1e-3, "g"), (1e-6, "mg"), (1e-9, "µg")],
         _ => &[(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")],
     };
     if si == 0.0 {
@@ -125,7 +154,7 @@ fn engineering(si: f64, unit: &'static str) -> (f64, &'static str) {
     }
     let (scale, name) = *table
         .iter()
-        .find(|(s, _)| si.abs() >= s * 0.0999)
+        .find(|(s, _)| si.abs() >= s * least)
         .unwrap_or(&table[table.len() - 1]);
     (si / scale, name)
 }
@@ -134,6 +163,23 @@ fn engineering(si: f64, unit: &'static str) -> (f64, &'static str) {
 mod tests {
     use super::*;
     use crate::deck::units::Constants;
+
+    #[test]
+    fn numbers_for_readers_have_units_and_four_digits() {
+        let metal = UnitSystem::Metal(Constants::Codata2018);
+        let si = UnitSystem::Si;
+        assert_eq!(si.show(2.356137e-7, Dim::TIME), "235.6 ns");
+        assert_eq!(si.write(2.356137e-7, Dim::TIME), "0.235614 µs");
+        assert_eq!(si.show(1.678123e11, Dim::PRESSURE), "167.8 GPa");
+        assert_eq!(si.show(0.003, Dim::LENGTH), "3 mm");
+        assert_eq!(si.show(0.1, Dim::LENGTH), "100 mm");
+        assert_eq!(si.show(3.6e-4, Dim::MASS), "360 mg");
+        assert_eq!(si.show(-12345.6, Dim::ENERGY), "-12350 J");
+        assert_eq!(si.show(8.790605e18, Dim::MICROMODULUS), "8.791e18 N/m^6");
+        assert_eq!(metal.show(1.04757, Dim::PRESSURE), "167.8 GPa");
+        assert_eq!(metal.show(1.0 / 9648.533, Dim::MASS), "1 g/mol");
+        assert_eq!(UnitSystem::Lj.show(57.23456, Dim::PRESSURE), "57.23");
+    }
 
     #[test]
     fn units_of_columns() {

@@ -3,8 +3,8 @@
 use peridyne::observe::Snapshot;
 use peridyne::space::AXES;
 
-use super::super::fields::positions;
-use super::colormap::color;
+use super::marks;
+use super::shown::Shown;
 use super::image::{Align, Font, GREY, INK, Image};
 use super::view::{Camera, Frame, cross, draw as draw_view};
 use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
@@ -43,7 +43,7 @@ struct Panel {
     cut: Option<Cut>,
 }
 
-pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
+pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) -> Image {
     let bounds = bounds(s);
     let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
     let spacing = guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
@@ -53,10 +53,10 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
     };
     let shown =
         |cut: Option<Cut>| {
-            let points = positions(s).zip(&s.reference).zip(s.damage()).filter(
+            let points = moved(s, scale).zip(&s.reference).zip(&what.values).filter(
                 move |((x, reference), _)| near(x) && cut.is_none_or(|cut| cut.keeps(reference)),
             );
-            points.map(|((x, _), damage)| (x, *damage))
+            points.map(|((x, _), value)| (x, what.part(*value)))
         };
     let panels: Vec<Panel> = cameras(s, &bounds)
         .into_iter()
@@ -75,7 +75,7 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
     let placed = place(&panels, width - 2.0 * MARGIN, TALLEST * width);
     let height = HEAD + placed.height + FOOT;
     let mut image = Image::new(options.width, height.ceil() as usize);
-    head(&mut image, s, options);
+    head(&mut image, s, scale, options);
     for ((panel, corner), caption) in panels.iter().zip(&placed.corners).zip(&placed.captions) {
         let corner = [MARGIN + corner[0], HEAD + corner[1]];
         draw_view(
@@ -85,8 +85,17 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
             &panel.camera,
             &panel.frame,
             spacing,
+            what.map,
             shown(panel.cut),
         );
+        let view = marks::View {
+            corner,
+            scale: placed.scale,
+            camera: &panel.camera,
+            frame: &panel.frame,
+            flat: s.dimension == 2,
+        };
+        marks::draw(&mut image, &view, &options.marks, s.time);
         let middle = corner[0] + 0.5 * panel.frame.size()[0] * placed.scale;
         image.text(
             middle,
@@ -98,7 +107,7 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
         );
     }
     let outside = s.reference.len() - shown(None).count();
-    foot(&mut image, placed.scale, outside, options);
+    foot(&mut image, placed.scale, outside, what, options);
     image
 }
 
@@ -242,7 +251,7 @@ fn place(panels: &[Panel], width: f64, tallest: f64) -> Placement {
 }
 
 /// Scale bar to the left, colour bar to the right, what is missing between them.
-fn foot(image: &mut Image, scale: f64, outside: usize, options: &PictureOptions) {
+fn foot(image: &mut Image, scale: f64, outside: usize, what: &Shown, options: &PictureOptions) {
     let (right, y) = (image.width as f64 - MARGIN, image.height as f64 - 52.0);
     let length = label::round_down(0.16 * image.width as f64 / scale);
     let pixels = length * scale;
@@ -263,31 +272,38 @@ fn foot(image: &mut Image, scale: f64, outside: usize, options: &PictureOptions)
         INK,
     );
 
+    let [low, high] = what.range.map(|v| options.units.show(v, what.dimension));
     let bar = 320.0;
-    let start = right - bar - 30.0;
+    let start = right - bar - Font::Normal.width(&high) - 14.0;
     for i in 0..bar as usize {
-        let tint = color((i as f64 + 0.5) / bar);
+        let tint = what.map.color((i as f64 + 0.5) / bar);
         image.rectangle(start + i as f64, y - 2.0, 1.0, 18.0, tint);
     }
     image.text(
         start - 14.0,
         y - 5.0,
-        "damage  0",
+        &format!("{}  {low}", what.name),
         Font::Normal,
         Align::Right,
         INK,
     );
-    image.text(right, y - 5.0, "1", Font::Normal, Align::Right, INK);
+    image.text(right, y - 5.0, &high, Font::Normal, Align::Right, INK);
     if outside > 0 {
         let noun = if outside == 1 { "point" } else { "points" };
         let text = format!("{} {noun} outside", label::count(outside as u64));
         image.text(
-            0.45 * image.width as f64,
-            y - 3.0,
+            MARGIN + pixels + 14.0,
+            y + 22.0,
             &text,
             Font::Small,
-            Align::Center,
+            Align::Left,
             GREY,
         );
     }
+}
+
+/// Positions with displacements so many times as large.
+fn moved(s: &Snapshot, scale: f64) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
+    let both = s.reference.iter().zip(s.displacement());
+    both.map(move |(x, u)| std::array::from_fn(|a| x[a] + scale * u[a]))
 }

@@ -1,9 +1,9 @@
-//! Pictures of 1-D bodies: displacement and damage along x.
+//! Pictures of 1-D bodies: displacement, and what is shown, along x.
 
 use peridyne::observe::Snapshot;
 
-use super::colormap::color;
 use super::image::{Align, Color, Font, GREY, INK, Image};
+use super::shown::Shown;
 use super::{HEAD, MARGIN, PictureOptions, head, label};
 
 /// Height of one plot, of its name above it, of the room between and below them, and width of the numbers at the left (pixels).
@@ -35,21 +35,21 @@ impl Axes {
     }
 }
 
-pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
-    let mut image = Image::new(
-        options.width,
-        (HEAD + NAME + 2.0 * PLOT + BETWEEN + BELOW) as usize,
-    );
-    head(&mut image, s, options);
+pub fn draw(s: &Snapshot, what: &Shown, options: &PictureOptions) -> Image {
+    // displacements are shown anyhow
+    let plots = if what.name.starts_with("displacement") { 1 } else { 2 };
+    let room = plots as f64 * PLOT + (plots - 1) as f64 * BETWEEN;
+    let mut image = Image::new(options.width, (HEAD + NAME + room + BELOW) as usize);
+    head(&mut image, s, 1.0, options);
     let mut order: Vec<usize> = (0..s.reference.len())
         .filter(|&i| s.reference[i][0].is_finite() && s.displacement()[i][0].is_finite())
         .collect();
     order.sort_by(|&a, &b| s.reference[a][0].total_cmp(&s.reference[b][0]));
     let x: Vec<f64> = order.iter().map(|&i| s.reference[i][0]).collect();
     let u: Vec<f64> = order.iter().map(|&i| s.displacement()[i][0]).collect();
-    let damage: Vec<f64> = order
-        .iter()
-        .map(|&i| s.damage()[i].clamp(0.0, 1.0))
+    let values: Vec<f64> = order.iter().map(|&i| what.values[i]).collect();
+    let tints: Vec<Color> = { values.iter() }
+        .map(|v| what.map.color(what.part(*v)))
         .collect();
 
     let unit = options.length_unit.as_str();
@@ -62,12 +62,20 @@ pub fn draw(s: &Snapshot, options: &PictureOptions) -> Image {
         y,
     };
     let upper = at(HEAD + NAME, range(&u));
-    let lower = at(HEAD + NAME + PLOT + BETWEEN, [-0.04, 1.04]);
+    let lower = match what.name.as_str() {
+        "damage" => at(HEAD + NAME + PLOT + BETWEEN, [-0.04, 1.04]),
+        _ => at(HEAD + NAME + PLOT + BETWEEN, range(&values)),
+    };
     grid(&mut image, &upper, "displacement", unit);
-    grid(&mut image, &lower, "damage", "");
+    if plots == 1 {
+        numbers_below(&mut image, &upper, unit);
+        curve(&mut image, &upper, &x, &u, &tints, s.spacing);
+        return image;
+    }
+    grid(&mut image, &lower, &what.name, &options.units.unit(what.dimension));
     numbers_below(&mut image, &lower, unit);
-    curve(&mut image, &upper, &x, &u, &damage, s.spacing);
-    curve(&mut image, &lower, &x, &damage, &damage, s.spacing);
+    curve(&mut image, &upper, &x, &u, &tints, s.spacing);
+    curve(&mut image, &lower, &x, &values, &tints, s.spacing);
     image
 }
 
@@ -168,9 +176,9 @@ fn numbers_below(image: &mut Image, axes: &Axes, unit: &str) {
     );
 }
 
-/// A curve, interrupted where neighbours are farther apart than points are; points in the colour of their damage
+/// A curve, interrupted where neighbours are farther apart than points are; points in their colours
 /// where there is room for them.
-fn curve(image: &mut Image, axes: &Axes, x: &[f64], y: &[f64], damage: &[f64], spacing: f64) {
+fn curve(image: &mut Image, axes: &Axes, x: &[f64], y: &[f64], tints: &[Color], spacing: f64) {
     for (x, y) in x.windows(2).zip(y.windows(2)) {
         if spacing <= 0.0 || x[1] - x[0] < 3.0 * spacing {
             image.line(axes.place(x[0], y[0]), axes.place(x[1], y[1]), 2.5, CURVE);
@@ -178,9 +186,9 @@ fn curve(image: &mut Image, axes: &Axes, x: &[f64], y: &[f64], damage: &[f64], s
     }
     let room = (axes.right - axes.left) / x.len().max(1) as f64;
     if room >= 5.0 {
-        for ((x, y), damage) in x.iter().zip(y).zip(damage) {
+        for ((x, y), tint) in x.iter().zip(y).zip(tints) {
             let at = axes.place(*x, *y);
-            image.line(at, at, room.min(9.0), color(*damage));
+            image.line(at, at, room.min(9.0), *tint);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The colours of damage.
+//! The colours of numbers.
 
 use super::image::Color;
 
@@ -13,6 +13,38 @@ const INFERNO: [u32; 33] = [
 /// Part of the table that is left out at its dark end, where light and shade would not show.
 const DARKEST: f64 = 0.18;
 
+/// "Cool to warm" (K. Moreland, Diverging color maps for scientific visualization, 2009), for numbers of both signs, at nine equal steps.
+const COOL_WARM: [u32; 9] = [
+    0x3b4cc0, 0x6282ea, 0x8db0fe, 0xb8d0f9, 0xdddddd, 0xf5c4ad, 0xf49a7b, 0xde604d, 0xb40426,
+];
+
+/// Which colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Map {
+    /// From dark to light.
+    Sequential,
+    /// From blue by grey to red.
+    Diverging,
+}
+
+impl Map {
+    /// Numbers of both signs diverge.
+    pub fn for_range([low, high]: [f64; 2]) -> Map {
+        match low < 0.0 && high > 0.0 {
+            true => Map::Diverging,
+            false => Map::Sequential,
+        }
+    }
+
+    /// Colour of a part, 0 to 1.
+    pub fn color(self, part: f64) -> Color {
+        match self {
+            Map::Sequential => color(part),
+            Map::Diverging => between(&COOL_WARM, if part.is_nan() { 0.5 } else { part.clamp(0.0, 1.0) }),
+        }
+    }
+}
+
 /// Colour of a damage; values outside 0…1 are clamped, what is no number counts as 0.
 pub fn color(damage: f64) -> Color {
     let damage = if damage.is_nan() {
@@ -20,15 +52,19 @@ pub fn color(damage: f64) -> Color {
     } else {
         damage.clamp(0.0, 1.0)
     };
-    let part = DARKEST + (1.0 - DARKEST) * damage;
-    let at = part * (INFERNO.len() - 1) as f64;
-    let low = (at as usize).min(INFERNO.len() - 2);
+    between(&INFERNO, DARKEST + (1.0 - DARKEST) * damage)
+}
+
+/// A table between its steps.
+fn between(table: &[u32], part: f64) -> Color {
+    let at = part * (table.len() - 1) as f64;
+    let low = (at as usize).min(table.len() - 2);
     let part = at - low as f64;
     let channel = |rgb: u32, shift: u32| f64::from((rgb >> shift) & 255);
     [16, 8, 0].map(|shift| {
         let (a, b) = (
-            channel(INFERNO[low], shift),
-            channel(INFERNO[low + 1], shift),
+            channel(table[low], shift),
+            channel(table[low + 1], shift),
         );
         (a + (b - a) * part).round() as u8
     })

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+use super::super::font::{self, Weight};
 
 /// Red, green, blue; sRGB.
 pub type Color = [u8; 3];
@@ -20,18 +20,19 @@ pub enum Font {
 }
 
 impl Font {
-    fn raster(self) -> (FontWeight, RasterHeight) {
+    /// Size (pixels) and weight.
+    fn style(self) -> (f64, Weight) {
         match self {
-            Font::Small => (FontWeight::Regular, RasterHeight::Size20),
-            Font::Normal => (FontWeight::Regular, RasterHeight::Size24),
-            Font::Title => (FontWeight::Bold, RasterHeight::Size32),
+            Font::Small => (19.0, Weight::Regular),
+            Font::Normal => (22.0, Weight::Regular),
+            Font::Title => (29.0, Weight::Bold),
         }
     }
 
     /// Width of a text (pixels).
     pub fn width(self, text: &str) -> f64 {
-        let (weight, size) = self.raster();
-        (get_raster_width(weight, size) * text.chars().count()) as f64
+        let (size, weight) = self.style();
+        font::width(text, size, weight)
     }
 }
 
@@ -59,6 +60,17 @@ impl Image {
             height,
             pixels: vec![WHITE; width * height],
         }
+    }
+
+    /// Its pixels on a white sheet of this width and height.
+    pub fn of_size(&self, (width, height): (usize, usize)) -> Vec<Color> {
+        let mut pixels = vec![WHITE; width * height];
+        let across = self.width.min(width);
+        for row in 0..self.height.min(height) {
+            let from = &self.pixels[row * self.width..][..across];
+            pixels[row * width..][..across].copy_from_slice(from);
+        }
+        pixels
     }
 
     /// Lays `color` over a pixel with opacity 0…1; pixels outside are ignored.
@@ -106,31 +118,38 @@ impl Image {
         }
     }
 
-    /// One line of text, `y` its upper edge. Characters that the font lacks show as `?`.
+    /// One line of text, `y` its upper edge.
     pub fn text(&mut self, x: f64, y: f64, text: &str, font: Font, align: Align, color: Color) {
-        let (weight, size) = font.raster();
-        let mut left = match align {
-            Align::Left => x,
-            Align::Center => x - 0.5 * font.width(text),
-            Align::Right => x - font.width(text),
-        }
-        .round() as i64;
-        for c in text.chars() {
-            let c = if "‐‑–—−".contains(c) {
-                '-'
-            } else {
-                c
+        let (size, weight) = font.style();
+        // the base line lies an ascender below the upper edge
+        self.write([x, y + 0.93 * size], text, (size, weight), align, false, color);
+    }
+
+    /// One line of text, `at` on its base line; upright: from below upwards.
+    pub fn write(
+        &mut self,
+        at: [f64; 2],
+        text: &str,
+        (size, weight): (f64, Weight),
+        align: Align,
+        upright: bool,
+        color: Color,
+    ) {
+        let start = match align {
+            Align::Left => 0.0,
+            Align::Center => -0.5 * font::width(text, size, weight),
+            Align::Right => -font::width(text, size, weight),
+        };
+        let [x, y] = at.map(|c| c.round() as i64);
+        let start = start.round() as i64;
+        font::pixels(text, size, weight, |along, down, opacity| {
+            let along = start + along;
+            let (dx, dy) = match upright {
+                true => (down, -along),
+                false => (along, down),
             };
-            let glyph = get_raster(c, weight, size).or_else(|| get_raster('?', weight, size));
-            let Some(glyph) = glyph else { continue };
-            for (j, row) in glyph.rows().enumerate() {
-                for (i, &value) in row.iter().enumerate() {
-                    let opacity = f64::from(value) / 255.0;
-                    self.blend(left + i as i64, y.round() as i64 + j as i64, color, opacity);
-                }
-            }
-            left += glyph.width() as i64;
-        }
+            self.blend(x + dx, y + dy, color, opacity);
+        });
     }
 
     /// Writes the image as PNG (8-bit RGB).
@@ -193,10 +212,13 @@ mod tests {
     #[test]
     fn text_stands_where_it_is_put() {
         let mut image = Image::new(200, 40);
-        image.text(190.0, 5.0, "µ–漢", Font::Normal, Align::Right, [0; 3]);
+        image.text(190.0, 5.0, "µ–Åσ", Font::Normal, Align::Right, [0; 3]);
         let inked = |x: usize| (0..40).any(|y| image.pixels[200 * y + x] != WHITE);
-        let width = Font::Normal.width("µ–漢") as usize;
+        let width = Font::Normal.width("µ–Åσ") as usize;
         assert!((190 - width..190).filter(|&x| inked(x)).count() > width / 2);
-        assert!((0..190 - width).chain(190..200).all(|x| !inked(x)));
+        assert!((0..188 - width).chain(191..200).all(|x| !inked(x)));
+        // the upper edge lies above all letters, and they are no taller than the size
+        let row = |y: usize| (0..200).any(|x| image.pixels[200 * y + x] != WHITE);
+        assert!((0..5).chain(34..40).all(|y| !row(y)));
     }
 }

@@ -1,13 +1,16 @@
-//! A PNG of the damage: a body from above and cut open, a plate, or a chain as curves.
+//! A PNG of a field: a body from above and cut open, a plate, or a chain as curves; and films of them.
 //!
-//! Files: `body` lays out the views of 2-D and 3-D bodies, `view` draws one of them, `chain` plots 1-D; `image` is
-//! what they draw on.
+//! Files: `shown` says which numbers, `body` lays out the views of 2-D and 3-D bodies, `view` draws one of them, `marks` what is drawn
+//! over it, `chain` plots 1-D; `image` is what they draw on; `film` keeps frames.
 
 mod body;
 mod chain;
 pub mod colormap;
+pub mod film;
 pub mod image;
 pub(super) mod label;
+pub mod marks;
+pub mod shown;
 mod view;
 
 use std::path::Path;
@@ -15,8 +18,11 @@ use std::path::Path;
 use peridyne::observe::Snapshot;
 
 use self::image::{Align, Font, GREY, INK, Image};
+use self::marks::Marks;
+use self::shown::{About, Shown};
 use super::atomic::{WriteError, write_file};
-use super::fields::fields;
+use super::fields::{fields, invalid};
+use crate::deck::UnitSystem;
 
 /// Blank border (pixels).
 const MARGIN: f64 = 56.0;
@@ -25,15 +31,30 @@ const HEAD: f64 = 132.0;
 /// Height of scale bar and colour bar (pixels).
 const FOOT: f64 = 96.0;
 
-/// What a picture says beside the damage.
+/// What a picture shows, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
     pub title: String,
     /// Units of length and time; "m" and "s" get SI prefixes, "" is none.
     pub length_unit: String,
     pub time_unit: String,
+    /// In which the numbers of fields are.
+    pub units: UnitSystem,
     /// Width (pixels), 800 to 8192; the height follows from the body.
     pub width: usize,
+    /// `None`: what the run is [about](About).
+    pub field: Option<String>,
+    /// `x`, `xy`, …; magnitudes when left out.
+    pub component: Option<String>,
+    /// Displacements are drawn so many times as large; chosen when left out.
+    pub scale: Option<f64>,
+    /// What the ends of the colours mean, in computed numbers; those of the values when left out.
+    pub range: Option<[f64; 2]>,
+    /// All frames as an animated PNG, too.
+    pub film: bool,
+    /// Without step and time: an equilibrium has none.
+    pub still: bool,
+    pub marks: Marks,
 }
 
 impl Default for PictureOptions {
@@ -42,50 +63,121 @@ impl Default for PictureOptions {
             title: String::new(),
             length_unit: String::new(),
             time_unit: String::new(),
+            units: UnitSystem::None,
             width: 1600,
+            field: None,
+            component: None,
+            scale: None,
+            range: None,
+            film: false,
+            still: false,
+            marks: Marks::default(),
         }
     }
 }
 
-/// Draws the damage of a snapshot; positions that are not finite are left out.
+/// The largest displacement is drawn as this part of the body, where displacements are magnified.
+const SEEN: f64 = 0.05;
+
+impl PictureOptions {
+    /// The field that is shown.
+    pub fn field(&self, about: About) -> &str {
+        self.field.as_deref().unwrap_or(about.field())
+    }
+
+    /// `stress_yy`: the name of its files.
+    pub fn stem(&self, about: About) -> String {
+        match &self.component {
+            None => self.field(about).to_string(),
+            Some(part) => format!("{}_{part}", self.field(about)),
+        }
+    }
+
+    /// For a mode of vibration: shapes have no size of their own.
+    pub fn of_shape(&self, s: &Snapshot, title: String) -> PictureOptions {
+        let seen = PictureOptions {
+            title,
+            field: Some("displacement".into()),
+            component: None,
+            scale: None,
+            range: None,
+            film: false,
+            still: true,
+            marks: Marks::default(),
+            ..self.clone()
+        };
+        let scale = Some(seen.magnification(s));
+        PictureOptions { scale, ..seen }
+    }
+
+    /// By how much displacements are seen well.
+    fn magnification(&self, s: &Snapshot) -> f64 {
+        let finite = |x: &&[f64; 3]| x.iter().all(|c| c.is_finite());
+        let extent = |a: usize| {
+            let all = || s.reference.iter().filter(finite).map(|x| x[a]);
+            all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+        };
+        let long = (0..3).map(extent).fold(0.0, f64::max);
+        let all = s.displacement().iter().filter(finite).flatten();
+        let most = all.fold(0.0, |m: f64, c| m.max(c.abs()));
+        match most > 0.0 && long > 0.0 {
+            true => label::round_down(SEEN * long / most),
+            false => 1.0,
+        }
+    }
+
+    /// How many times as large displacements are drawn.
+    fn scale(&self, s: &Snapshot, about: About) -> f64 {
+        match (self.scale, about.magnified()) {
+            (Some(scale), _) => scale,
+            // what is large enough is drawn as it is
+            (None, true) => self.magnification(s).max(1.0),
+            (None, false) => 1.0,
+        }
+    }
+}
+
+/// Draws a field of a snapshot; positions that are not finite are left out.
 ///
 /// # Errors
-/// `InvalidInput` for arrays of unequal lengths, or without damage.
-pub fn damage(s: &Snapshot, options: &PictureOptions) -> std::io::Result<Image> {
+/// `InvalidInput` for arrays of unequal lengths, or without the field.
+pub fn picture(s: &Snapshot, options: &PictureOptions, about: About) -> std::io::Result<Image> {
     fields(s)?;
-    if s.damage().len() != s.reference.len() {
-        return Err(super::fields::invalid(
-            "the snapshot carries no damage".to_string(),
-        ));
-    }
+    let shown = Shown::of(s, options.field(about), options.component.as_deref())?;
+    let shown = match options.range {
+        Some(range) => shown.between(range),
+        None => shown,
+    };
+    Ok(draw(s, &shown, options.scale(s, about), options))
+}
+
+fn draw(s: &Snapshot, shown: &Shown, scale: f64, options: &PictureOptions) -> Image {
     // narrower than this, title and bars would overlap
     let options = PictureOptions {
         width: options.width.clamp(800, 8192),
         ..options.clone()
     };
-    Ok(if s.dimension == 1 {
-        chain::draw(s, &options)
-    } else {
-        body::draw(s, &options)
-    })
+    match s.dimension {
+        1 => chain::draw(s, shown, &options),
+        _ => body::draw(s, shown, scale, &options),
+    }
 }
 
 /// Draws and writes `path`, all or nothing.
-pub fn write(path: &Path, s: &Snapshot, options: &PictureOptions) -> Result<(), WriteError> {
-    let image = damage(s, options).map_err(WriteError::at("draw", path))?;
+///
+/// # Errors
+/// It cannot be drawn or written.
+pub fn write(path: &Path, s: &Snapshot, options: &PictureOptions, about: About) -> Result<(), WriteError> {
+    let image = picture(s, options, about).map_err(WriteError::at("draw", path))?;
     write_file(path, |w| image.write_png(w))
 }
 
 /// Title, and what and when this is.
-fn head(image: &mut Image, s: &Snapshot, options: &PictureOptions) {
-    let room = ((image.width as f64 - 2.0 * MARGIN) / Font::Title.width("x")) as usize;
+fn head(image: &mut Image, s: &Snapshot, scale: f64, options: &PictureOptions) {
+    let room = image.width as f64 - 2.0 * MARGIN;
     let mut title = options.title.clone();
-    if title.chars().count() > room {
-        title = title
-            .chars()
-            .take(room.saturating_sub(3))
-            .chain("...".chars())
-            .collect();
+    while Font::Title.width(&title) > room {
+        title = title.chars().take(title.chars().count().saturating_sub(2)).chain(['…']).collect();
     }
     let mut y = 40.0;
     if !title.is_empty() {
@@ -94,7 +186,15 @@ fn head(image: &mut Image, s: &Snapshot, options: &PictureOptions) {
     }
     let time = label::quantity(s.time, &options.time_unit);
     let (step, points) = (label::count(s.step), label::count(s.reference.len() as u64));
-    let subtitle = format!("step {step}  ·  t = {time}  ·  {points} points");
+    let when = match options.still {
+        true => String::new(),
+        false => format!("step {step}  ·  t = {time}  ·  "),
+    };
+    let magnified = match scale == 1.0 {
+        true => String::new(),
+        false => format!("  ·  displacements × {}", label::number(scale)),
+    };
+    let subtitle = format!("{when}{points} points{magnified}");
     image.text(MARGIN, y, &subtitle, Font::Small, Align::Left, GREY);
 }
 

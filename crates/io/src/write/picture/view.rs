@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::colormap::color;
+use super::colormap::Map;
 use super::image::{Color, Image};
 
 /// Pixels drawn per final pixel and axis.
@@ -113,7 +113,7 @@ fn lit(channel: f32, light: f32) -> f32 {
     }
 }
 
-/// Depth, damage and light per fine pixel of some rows of a view.
+/// Depth, place among the colours and light per fine pixel of some rows of a view.
 struct Buffer {
     width: usize,
     height: usize,
@@ -121,13 +121,13 @@ struct Buffer {
     first: usize,
     /// Towards the viewer, in edges of a cube; −∞ where there is nothing.
     depth: Vec<f32>,
-    damage: Vec<f32>,
+    part: Vec<f32>,
     light: Vec<f32>,
     /// Edge of a cube in fine pixels.
     edge: f64,
 }
 
-/// Draws points (position, damage) with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
+/// Draws points (position, place among the colours from 0 to 1) with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
 /// length.
 pub fn draw(
     image: &mut Image,
@@ -136,6 +136,7 @@ pub fn draw(
     camera: &Camera,
     frame: &Frame,
     spacing: f64,
+    map: Map,
     points: impl Iterator<Item = ([f64; 3], f64)> + Clone,
 ) {
     let fine = scale * FINE as f64;
@@ -155,25 +156,25 @@ pub fn draw(
             height,
             first,
             depth: vec![f32::NEG_INFINITY; w * height],
-            damage: vec![0.0; w * height],
+            part: vec![0.0; w * height],
             light: vec![0.0; w * height],
             edge,
         };
-        for (x, damage) in points.clone() {
+        for (x, part) in points.clone() {
             let p = camera.project(x);
             let screen = [
                 (p[0] - frame.low[0]) * fine,
                 (frame.high[1] - p[1]) * fine - first as f64,
             ];
             let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
-            buffer.cube(screen, depth as f32, damage as f32, camera);
+            buffer.cube(screen, depth as f32, part as f32, camera);
         }
         let heights = buffer.heights(camera);
         if camera.cosine == 0.0 {
             buffer.light_slopes(&heights);
         }
         buffer.darken_hollows(&heights);
-        buffer.average_onto(image, corner, rows);
+        buffer.average_onto(image, corner, rows, map);
     }
 }
 
@@ -188,7 +189,7 @@ fn hollow_radius(edge: f64) -> usize {
 
 impl Buffer {
     /// A cube seen from `elevation`: its top face above its front face, each a rectangle.
-    fn cube(&mut self, [x, y]: [f64; 2], depth: f32, damage: f32, camera: &Camera) {
+    fn cube(&mut self, [x, y]: [f64; 2], depth: f32, part: f32, camera: &Camera) {
         let (e, s, c) = (self.edge, camera.sine, camera.cosine);
         let whole = |from: f64, to: f64, end: usize| {
             let low = (from - 0.5).ceil().max(0.0) as usize;
@@ -210,7 +211,7 @@ impl Buffer {
                 let at = row * self.width + column;
                 if depth > self.depth[at] {
                     self.depth[at] = depth;
-                    self.damage[at] = damage;
+                    self.part[at] = part;
                     self.light[at] = light;
                 }
             }
@@ -299,8 +300,8 @@ impl Buffer {
     }
 
     /// Average these fine rows of the view down to the image.
-    fn average_onto(&self, image: &mut Image, corner: [f64; 2], rows: Range<usize>) {
-        let table: Vec<Color> = (0..=255).map(|i| color(f64::from(i) / 255.0)).collect();
+    fn average_onto(&self, image: &mut Image, corner: [f64; 2], rows: Range<usize>, map: Map) {
+        let table: Vec<Color> = (0..=255).map(|i| map.color(f64::from(i) / 255.0)).collect();
         for row in rows.start / FINE..rows.end.div_ceil(FINE) {
             for column in 0..self.width.div_ceil(FINE) {
                 let mut sum = [0f32; 3];
@@ -310,7 +311,7 @@ impl Buffer {
                     (x < self.width && y < rows.end).then(|| (y - self.first) * self.width + x)
                 }) {
                     if self.depth[at].is_finite() {
-                        let index = (self.damage[at].clamp(0.0, 1.0) * 255.0).round() as usize;
+                        let index = (self.part[at].clamp(0.0, 1.0) * 255.0).round() as usize;
                         for (s, c) in sum.iter_mut().zip(table[index]) {
                             *s += lit(f32::from(c), self.light[at]);
                         }

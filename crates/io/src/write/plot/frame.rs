@@ -3,7 +3,7 @@
 use super::super::picture::image::{Align, Color, GREY, INK};
 use super::axis::Scale;
 use super::canvas::Drawing;
-use super::font;
+use super::super::font::{self, Weight};
 
 const GRID: Color = [228, 230, 234];
 /// Sizes of text.
@@ -93,7 +93,7 @@ impl Frame {
 pub(super) fn beside(ticks: &[(f64, String)]) -> f64 {
     46.0 + ticks
         .iter()
-        .map(|t| font::width(&t.1, TICK))
+        .map(|t| font::width(&t.1, TICK, Weight::Regular))
         .fold(0.0, f64::max)
 }
 

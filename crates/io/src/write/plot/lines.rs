@@ -7,7 +7,13 @@ use super::super::picture::image::{Align, Color, GREY, INK, WHITE};
 use super::axis::Scale;
 use super::canvas::{Drawing, Outline, Shape};
 use super::frame::{Frame, TICK, axes};
-use super::{WriteError, font, invalid, titled};
+use super::super::font::{self, Weight};
+use super::{WriteError, invalid, titled};
+
+/// Between a legend and what stands beside it.
+const GAP: f64 = 10.0;
+/// A legend may hide one of so many points.
+const HIDDEN: usize = 200;
 
 /// Colours that people with any colour vision tell apart (Okabe and Ito).
 const COLORS: [Color; 7] = [
@@ -212,16 +218,21 @@ impl Plot {
             }
         }
         let scales = [self.scale(0)?, self.scale(1)?];
-        let mut drawing = Drawing::new(self.size[0], self.size[1]);
-        let frame = axes(
-            &mut drawing,
-            &self.title,
-            &self.labels,
-            scales,
-            [10, 8],
-            false,
-            24.0,
-        );
+        let drawn = |beside: f64| {
+            let mut drawing = Drawing::new(self.size[0] + beside, self.size[1]);
+            let right = 24.0 + beside;
+            let labels = &self.labels;
+            let frame = axes(&mut drawing, &self.title, labels, scales, [10, 8], false, right);
+            (drawing, frame)
+        };
+        let (mut drawing, mut frame) = drawn(0.0);
+        let size = self.legend_size();
+        let mut corner = size.and_then(|size| self.legend_corner(&frame, size));
+        // a legend that would hide what is plotted stands beside it
+        if let (Some(size), None) = (size, corner) {
+            (drawing, frame) = drawn(size[0] + GAP);
+            corner = Some([frame.corner[0] + frame.size[0] + GAP, frame.corner[1]]);
+        }
         for (x, name) in &self.named {
             let top = frame.place([*x, scales[1].high]);
             let bottom = frame.place([*x, scales[1].low]);
@@ -234,7 +245,9 @@ impl Plot {
             self.draw_series(&mut drawing, &frame, s, COLORS[k % COLORS.len()]);
         }
         drawing.frame(frame.corner, frame.size, 1.2, INK);
-        self.legend(&mut drawing, &frame);
+        if let (Some(size), Some(corner)) = (size, corner) {
+            self.legend(&mut drawing, corner, size);
+        }
         Ok(drawing)
     }
 
@@ -264,53 +277,61 @@ impl Plot {
         }
     }
 
-    /// In the corner that covers the fewest points.
-    fn legend(&self, drawing: &mut Drawing, frame: &Frame) {
-        let named: Vec<(usize, &Series)> = self
-            .series
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| !s.label.is_empty())
-            .collect();
-        if named.is_empty() {
-            return;
-        }
-        let widest = named
-            .iter()
-            .map(|(_, s)| font::width(&s.label, TICK))
-            .fold(0.0, f64::max);
-        let size = [widest + 56.0, 19.0 * named.len() as f64 + 10.0];
-        let gap = 10.0;
+    /// Series with a name, and their numbers.
+    fn named_series(&self) -> impl Iterator<Item = (usize, &Series)> {
+        let all = self.series.iter().enumerate();
+        all.filter(|(_, s)| !s.label.is_empty())
+    }
+
+    /// Of the box with the names; `None`: there are none.
+    fn legend_size(&self) -> Option<[f64; 2]> {
+        let widths = self
+            .named_series()
+            .map(|(_, s)| font::width(&s.label, TICK, Weight::Regular));
+        let widest = widths.fold(0.0, f64::max);
+        let rows = self.named_series().count();
+        (rows > 0).then_some([widest + 56.0, 19.0 * rows as f64 + 10.0])
+    }
+
+    /// A corner of the frame in which the box covers next to nothing.
+    fn legend_corner(&self, frame: &Frame, size: [f64; 2]) -> Option<[f64; 2]> {
         let [x0, y0] = frame.corner;
-        let right = x0 + frame.size[0] - size[0] - gap;
-        let bottom = y0 + frame.size[1] - size[1] - gap;
+        let right = x0 + frame.size[0] - size[0] - GAP;
+        let bottom = y0 + frame.size[1] - size[1] - GAP;
         let corners = [
-            [right, y0 + gap],
-            [x0 + gap, y0 + gap],
+            [right, y0 + GAP],
+            [x0 + GAP, y0 + GAP],
             [right, bottom],
-            [x0 + gap, bottom],
+            [x0 + GAP, bottom],
         ];
+        let near = |p: &[f64; 2], corner: &[f64; 2]| {
+            (0..2).all(|a| p[a] > corner[a] - 4.0 && p[a] < corner[a] + size[a] + 4.0)
+        };
         let covered = |corner: &[f64; 2]| {
-            let points = self
-                .series
-                .iter()
-                .flat_map(|s| frame.clipped(&s.points))
-                .flatten();
-            let inside = points.filter(|p| {
-                (0..2).all(|a| p[a] > corner[a] - 4.0 && p[a] < corner[a] + size[a] + 4.0)
-            });
-            inside.count()
+            let marks = |s: &Series| {
+                let places = s.points.iter().map(|p| frame.place(*p));
+                s.mark.shape().map_or(0, |_| places.filter(|p| near(p, corner)).count())
+            };
+            let lines = |s: &Series| {
+                let pieces = frame.clipped(&s.points);
+                pieces.iter().flatten().filter(|p| near(p, corner)).count()
+            };
+            self.series.iter().map(|s| marks(s) + lines(s)).sum::<usize>()
         };
-        let Some(corner) = corners.into_iter().min_by_key(covered) else {
-            return;
-        };
+        let best = corners.into_iter().map(|c| (covered(&c), c));
+        let (least, corner) = best.min_by_key(|(n, _)| *n)?;
+        let all: usize = self.series.iter().map(|s| s.points.len()).sum();
+        (least * HIDDEN <= all).then_some(corner)
+    }
+
+    fn legend(&self, drawing: &mut Drawing, corner: [f64; 2], size: [f64; 2]) {
         drawing.shapes.push(Shape::Rectangle {
             corner,
             size,
             fill: WHITE,
         });
         drawing.frame(corner, size, 0.8, [190, 194, 200]);
-        for (row, (k, s)) in named.into_iter().enumerate() {
+        for (row, (k, s)) in self.named_series().enumerate() {
             let y = corner[1] + 5.0 + 19.0 * row as f64 + 9.5;
             let color = COLORS[k % COLORS.len()];
             let place = [corner[0] + 8.0, corner[0] + 40.0];

@@ -8,7 +8,8 @@ use super::super::picture::image::{Align, Color, INK, Image};
 use super::axis::Scale;
 use super::canvas::{Drawing, Shape};
 use super::frame::{Frame, LABEL, TICK, axes, beside};
-use super::{SCALE, WriteError, font, invalid, titled};
+use super::super::font::{self, Weight};
+use super::{SCALE, WriteError, invalid, titled};
 
 /// Where a value is missing.
 const MISSING: Color = [214, 216, 220];
@@ -231,7 +232,7 @@ impl Map {
         let marks = bar.ticks(8);
         let widest = marks
             .iter()
-            .map(|t| font::width(&t.1, TICK))
+            .map(|t| font::width(&t.1, TICK, Weight::Regular))
             .fold(0.0, f64::max);
         let right = widest + 86.0;
         let mut drawing = Drawing::new(760.0, 520.0);

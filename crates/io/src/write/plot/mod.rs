@@ -13,7 +13,6 @@
 
 mod axis;
 mod canvas;
-mod font;
 mod frame;
 mod lines;
 mod map;

@@ -2,7 +2,7 @@
 
 use super::super::picture::image::{Color, Image};
 use super::canvas::{Drawing, Outline, Shape};
-use super::font;
+use super::super::font::Weight;
 
 pub fn draw(drawing: &Drawing, scale: f64) -> Image {
     let pixels = |length: f64| (length * scale).round() as usize;
@@ -49,7 +49,8 @@ pub fn draw(drawing: &Drawing, scale: f64) -> Image {
                 color,
             } => {
                 let at = at.map(|c| c * scale);
-                font::draw(&mut image, at, text, size * scale, *align, *upright, *color);
+                let style = (size * scale, Weight::Regular);
+                image.write(at, text, style, *align, *upright, *color);
             }
             Shape::Pixels {
                 corner,

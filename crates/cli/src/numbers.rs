@@ -1,7 +1,7 @@
 //! Numbers for people.
 
 /// A number in about five digits.
-pub(super) fn digits(value: f64) -> String {
+pub fn digits(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
         "–".into()
@@ -18,7 +18,7 @@ pub(super) fn digits(value: f64) -> String {
 }
 
 /// A count in groups of three.
-pub(super) fn whole(n: u64) -> String {
+pub fn whole(n: u64) -> String {
     let text = n.to_string();
     let mut out = String::new();
     for (i, c) in text.chars().enumerate() {
@@ -30,7 +30,7 @@ pub(super) fn whole(n: u64) -> String {
     out
 }
 
-pub(super) fn memory(bytes: f64) -> String {
+pub fn memory(bytes: f64) -> String {
     match bytes {
         b if b >= 1e9 => format!("{:.2} GB", b / 1e9),
         b if b >= 1e6 => format!("{:.1} MB", b / 1e6),
@@ -38,7 +38,7 @@ pub(super) fn memory(bytes: f64) -> String {
     }
 }
 
-pub(super) fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => format!("{:.0} ms", (1e3 * s).max(1.0)),
         s if s < 60.0 => format!("{s:.1} s"),

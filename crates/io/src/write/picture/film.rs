@@ -1,0 +1,170 @@
+//! A film of the frames of a run, as an animated PNG. Frames wait in a temporary file, small, until the run has ended: then the ends
+//! of the colours are known, and how many frames there are.
+
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use peridyne::columns::Declaration;
+use peridyne::observe::{Column, Snapshot, Values};
+
+use super::super::atomic::{WriteError, write_file};
+use super::shown::{Shown, range};
+use super::{PictureOptions, draw, invalid};
+
+/// Width of a frame (pixels); narrower than a picture, so that a film stays small.
+const WIDTH: usize = 960;
+/// Time of a frame (ms).
+const DELAY: u16 = 80;
+
+/// Frames so far.
+#[derive(Debug)]
+pub struct Film {
+    waiting: BufWriter<File>,
+    /// What is the same in all: the first snapshot with its displacements only.
+    first: Option<Snapshot>,
+    /// Name, dimension and values of what is shown; the values are those of the last frame.
+    shown: Option<Shown>,
+    /// Lowest and highest value so far.
+    ends: [f64; 2],
+    frames: Vec<(u64, f64)>,
+}
+
+impl Film {
+    /// # Errors
+    /// No temporary file.
+    pub fn new() -> io::Result<Film> {
+        Ok(Film {
+            waiting: BufWriter::new(tempfile::tempfile()?),
+            first: None,
+            shown: None,
+            ends: [f64::INFINITY, f64::NEG_INFINITY],
+            frames: vec![],
+        })
+    }
+
+    /// The next frame; one of the step of the last is left out.
+    ///
+    /// # Errors
+    /// The snapshot carries no such field, or the disk is full.
+    pub fn push(&mut self, s: &Snapshot, field: &str, component: Option<&str>) -> io::Result<()> {
+        if self.frames.last().is_some_and(|(step, _)| *step == s.step) {
+            return Ok(());
+        }
+        let shown = Shown::of(s, field, component)?;
+        for value in shown.values.iter().filter(|v| v.is_finite()) {
+            self.ends = [self.ends[0].min(*value), self.ends[1].max(*value)];
+        }
+        for (u, value) in s.displacement().iter().zip(&shown.values) {
+            for number in [u[0], u[1], u[2], *value] {
+                self.waiting.write_all(&(number as f32).to_le_bytes())?;
+            }
+        }
+        if self.first.is_none() {
+            self.first = Some(Snapshot {
+                columns: vec![],
+                bonds: None,
+                ..s.clone()
+            });
+        }
+        self.shown = Some(shown);
+        self.frames.push((s.step, s.time));
+        Ok(())
+    }
+
+    /// Writes the film; `None`: there was no frame.
+    ///
+    /// # Errors
+    /// A file could not be written.
+    pub fn finish(self, path: &Path, field: &str, options: &PictureOptions, scale: f64) -> Result<(), WriteError> {
+        let (Some(first), Some(shown)) = (self.first, self.shown) else {
+            return Ok(());
+        };
+        let failed = WriteError::at("draw", path);
+        let file = self.waiting.into_inner().map_err(|e| e.into_error());
+        let mut file = file.and_then(|mut f| f.seek(SeekFrom::Start(0)).map(|_| f)).map_err(failed)?;
+        let ends = options.range.unwrap_or_else(|| range(field, self.ends[0], self.ends[1]));
+        let options = PictureOptions {
+            width: WIDTH,
+            ..options.clone()
+        };
+        let shown = shown.between(ends);
+        write_file(path, |w| write(w, &mut file, &first, &shown, &self.frames, &options, scale))
+    }
+}
+
+fn write<W: Write>(
+    w: W,
+    file: &mut File,
+    first: &Snapshot,
+    shown: &Shown,
+    frames: &[(u64, f64)],
+    options: &PictureOptions,
+    scale: f64,
+) -> io::Result<()> {
+    let mut waiting = BufReader::new(file);
+    let mut writer = None;
+    let mut size = (0, 0);
+    let mut w = Some(w);
+    for (step, time) in frames {
+        let (snapshot, shown) = next(&mut waiting, first, shown, *step, *time)?;
+        let image = draw(&snapshot, &shown, scale, options);
+        let writer = match &mut writer {
+            Some(writer) => writer,
+            empty => {
+                let Some(w) = w.take() else { break };
+                size = (image.width, image.height);
+                let mut encoder = png::Encoder::new(w, size.0 as u32, size.1 as u32);
+                encoder.set_color(png::ColorType::Rgb);
+                encoder.set_depth(png::BitDepth::Eight);
+                encoder.set_animated(frames.len() as u32, 0).map_err(io::Error::other)?;
+                encoder.set_frame_delay(DELAY, 1000).map_err(io::Error::other)?;
+                empty.insert(encoder.write_header().map_err(io::Error::other)?)
+            }
+        };
+        // debris makes frames of other heights: all have that of the first
+        let pixels = image.of_size(size);
+        writer.write_image_data(pixels.as_flattened()).map_err(io::Error::other)?;
+    }
+    match writer {
+        Some(writer) => writer.finish().map_err(io::Error::other),
+        None => Err(invalid("a film has frames".into())),
+    }
+}
+
+/// The next frame of those that wait.
+fn next(
+    waiting: &mut impl Read,
+    first: &Snapshot,
+    shown: &Shown,
+    step: u64,
+    time: f64,
+) -> io::Result<(Snapshot, Shown)> {
+    let mut numbers = vec![0u8; 16 * first.reference.len()];
+    waiting.read_exact(&mut numbers)?;
+    let number = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    let each: Vec<[f64; 4]> = numbers
+        .chunks_exact(16)
+        .map(|b| std::array::from_fn(|k| number(&b[4 * k..])))
+        .collect();
+    let displacement = Column {
+        declaration: Declaration::of_points(
+            "displacement",
+            peridyne::columns::Shape::Vector,
+            peridyne::columns::Dimension::LENGTH,
+            "",
+        ),
+        values: Values::Vectors(each.iter().map(|e| [e[0], e[1], e[2]]).collect()),
+    };
+    let snapshot = Snapshot {
+        step,
+        time,
+        columns: vec![displacement],
+        ..first.clone()
+    };
+    let shown = Shown {
+        values: each.iter().map(|e| e[3]).collect(),
+        ..shown.clone()
+    };
+    Ok((snapshot, shown))
+}

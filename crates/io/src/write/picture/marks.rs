@@ -1,0 +1,207 @@
+//! What is drawn over a body: cracks, indenters, supports and loads.
+
+use peridyne::expression::Expression;
+use peridyne::run::Simulation;
+use peridyne::space::Point;
+use peridyne::spec::{ConditionKind, CrackShape, IndenterMotion, Spec};
+
+use super::image::{Color, Image};
+use super::view::{Camera, Frame};
+
+const CRACK: Color = [232, 236, 240];
+const EDGE: Color = [34, 38, 46];
+const INDENTER: Color = [90, 98, 110];
+const LOAD: Color = [0, 122, 92];
+const SUPPORT: Color = [46, 84, 158];
+
+/// Arrows or supports along a set.
+const ALONG: usize = 7;
+/// Length of an arrow, and size of a support (pixels).
+const ARROW: f64 = 34.0;
+const SIZE: f64 = 9.0;
+
+/// Things in the reference configuration (lengths).
+#[derive(Debug, Clone, Default)]
+pub struct Marks {
+    /// Corners of pre-cracks.
+    cracks: Vec<Vec<Point>>,
+    /// Centres as functions of t, radii.
+    spheres: Vec<([Expression; 3], f64)>,
+    supports: Vec<Point>,
+    /// Where, and where to; the length says nothing.
+    loads: Vec<(Point, Point)>,
+}
+
+impl PartialEq for Marks {
+    fn eq(&self, other: &Marks) -> bool {
+        let centres = |m: &Marks| -> Vec<([String; 3], f64)> {
+            let text = |(c, r): &([Expression; 3], f64)| (std::array::from_fn(|a| c[a].source().to_string()), *r);
+            m.spheres.iter().map(text).collect()
+        };
+        self.cracks == other.cracks
+            && self.supports == other.supports
+            && self.loads == other.loads
+            && centres(self) == centres(other)
+    }
+}
+
+impl Marks {
+    /// Of what a spec does to a body. Free indenters are left out: where they go is not known beforehand.
+    pub fn of(spec: &Spec, sim: &mut dyn Simulation) -> Marks {
+        let mut marks = Marks::default();
+        for crack in &spec.precracks {
+            marks.cracks.extend(corners(&crack.shape));
+        }
+        for indenter in &spec.indenters {
+            if let IndenterMotion::Kinematic(center) = &indenter.motion {
+                marks.spheres.push((center.clone(), indenter.radius));
+            }
+        }
+        let reference = sim.vectors("reference");
+        for condition in &spec.conditions {
+            let members = sim.members(&condition.set).unwrap_or_default();
+            let points = members.iter().filter_map(|i| reference.get(*i as usize));
+            let places = spread(points.copied().collect(), spec.dimension);
+            for at in places {
+                marks.add(&condition.kind, at);
+            }
+        }
+        marks
+    }
+
+    fn add(&mut self, kind: &ConditionKind, at: Point) {
+        // what grows with t is there at 1 of any unit
+        let towards = |v: &[Option<Expression>; 3]| -> Point {
+            std::array::from_fn(|a| v[a].as_ref().map_or(0.0, |e| e.eval(&at, 1.0)))
+        };
+        match kind {
+            ConditionKind::Displacement(v) | ConditionKind::Velocity(v) => {
+                let pull = towards(v);
+                match pull.iter().all(|c| *c == 0.0) {
+                    true if !self.supports.contains(&at) => self.supports.push(at),
+                    true => {}
+                    false => self.loads.push((at, pull)),
+                }
+            }
+            ConditionKind::BodyForce(v)
+            | ConditionKind::SetForce(v)
+            | ConditionKind::Traction { value: v, .. } => {
+                let pull = towards(v);
+                if pull.iter().any(|c| *c != 0.0) {
+                    self.loads.push((at, pull));
+                }
+            }
+            ConditionKind::Damping(_) | ConditionKind::Own(_) => {}
+        }
+    }
+}
+
+/// Corners of a crack that has some.
+fn corners(shape: &CrackShape) -> Option<Vec<Point>> {
+    match shape {
+        CrackShape::Segment { from, to } => Some(vec![[from[0], from[1], 0.0], [to[0], to[1], 0.0]]),
+        CrackShape::Polygon { corners } => {
+            let mut all = corners.clone();
+            all.extend(corners.first().copied());
+            Some(all)
+        }
+        CrackShape::Disk { .. } | CrackShape::Point { .. } => None,
+    }
+}
+
+/// A few places along the longest side of a set, across it in the middle; none of a set that is a whole body of a solid.
+fn spread(points: Vec<Point>, dimension: usize) -> Vec<Point> {
+    if points.is_empty() || dimension != 2 {
+        return vec![];
+    }
+    let bound = |pick: fn(f64, f64) -> f64, start: f64| -> Point {
+        std::array::from_fn(|a| points.iter().map(|x| x[a]).fold(start, pick))
+    };
+    let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+    let long = if high[0] - low[0] >= high[1] - low[1] { 0 } else { 1 };
+    let middle: Point = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
+    let count = if high[long] > low[long] { ALONG } else { 1 };
+    let place = |n: usize| {
+        let mut at = middle;
+        if count > 1 {
+            let part = (n as f64 + 0.5) / count as f64;
+            at[long] = low[long] + part * (high[long] - low[long]);
+        }
+        at
+    };
+    (0..count).map(place).collect()
+}
+
+/// Where on the image a view lies.
+pub struct View<'a> {
+    pub corner: [f64; 2],
+    /// Pixels per length.
+    pub scale: f64,
+    pub camera: &'a Camera,
+    pub frame: &'a Frame,
+    /// Is it a plate?
+    pub flat: bool,
+}
+
+impl View<'_> {
+    fn place(&self, x: Point) -> [f64; 2] {
+        let p = self.camera.project(x);
+        [
+            self.corner[0] + (p[0] - self.frame.low[0]) * self.scale,
+            self.corner[1] + (self.frame.high[1] - p[1]) * self.scale,
+        ]
+    }
+}
+
+/// Draws over a view what there is at this time.
+pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
+    for (center, radius) in &marks.spheres {
+        let at = view.place(std::array::from_fn(|a| center[a].eval(&[0.0; 3], time)));
+        circle(image, at, radius * view.scale, INDENTER);
+    }
+    if !view.flat {
+        return;
+    }
+    for crack in &marks.cracks {
+        for ends in crack.windows(2) {
+            let (from, to) = (view.place(ends[0]), view.place(ends[1]));
+            image.line(from, to, 4.0, EDGE);
+            image.line(from, to, 2.0, CRACK);
+        }
+    }
+    for at in &marks.supports {
+        let [x, y] = view.place(*at);
+        let (l, r, b) = ([x - SIZE, y + 1.6 * SIZE], [x + SIZE, y + 1.6 * SIZE], [x, y]);
+        for (from, to) in [(b, l), (l, r), (r, b)] {
+            image.line(from, to, 5.0, [255; 3]);
+            image.line(from, to, 3.0, SUPPORT);
+        }
+    }
+    for (at, pull) in &marks.loads {
+        let from = view.place(*at);
+        let toward = view.camera.project(*pull);
+        let length = toward[0].hypot(toward[1]);
+        if length > 0.0 && length.is_finite() {
+            arrow(image, from, [toward[0] / length, -toward[1] / length]);
+        }
+    }
+}
+
+fn arrow(image: &mut Image, from: [f64; 2], d: [f64; 2]) {
+    let tip: [f64; 2] = std::array::from_fn(|a| from[a] + ARROW * d[a]);
+    let barb = |side: f64| [tip[0] - 11.0 * d[0] + side * 6.0 * d[1], tip[1] - 11.0 * d[1] - side * 6.0 * d[0]];
+    for (width, color) in [(6.0, [255; 3]), (3.0, LOAD)] {
+        image.line(from, tip, width, color);
+        image.line(tip, barb(1.0), width, color);
+        image.line(tip, barb(-1.0), width, color);
+    }
+}
+
+fn circle(image: &mut Image, center: [f64; 2], radius: f64, color: Color) {
+    let sides = (radius.abs().ceil() as usize).clamp(24, 720);
+    let at = |n: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * n as f64 / sides as f64).sin_cos();
+        [center[0] + radius * cosine, center[1] + radius * sine]
+    };
+    (0..sides).for_each(|n| image.line(at(n), at(n + 1), 2.5, color));
+}

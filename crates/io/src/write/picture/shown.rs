@@ -1,0 +1,170 @@
+//! Which numbers of a snapshot a picture shows: one for each point, their range, and their colours.
+
+use std::io;
+
+use peridyne::columns::{Dimension, Shape};
+use peridyne::observe::{Column, Snapshot, Values};
+
+use super::super::fields::invalid;
+use super::colormap::Map;
+
+/// What a run was about, where nobody says what to show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum About {
+    /// Bonds broke.
+    Fracture,
+    Equilibrium,
+    /// Points move and nothing breaks.
+    Motion,
+}
+
+impl About {
+    /// The field that shows it.
+    pub fn field(self) -> &'static str {
+        match self {
+            About::Fracture => "damage",
+            About::Equilibrium => "displacement",
+            About::Motion => "velocity",
+        }
+    }
+
+    /// Are displacements magnified, if they are small beside the body?
+    pub fn magnified(self) -> bool {
+        match self {
+            About::Equilibrium => true,
+            About::Fracture | About::Motion => false,
+        }
+    }
+}
+
+/// A number for each point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown {
+    /// As one would read it, `stress yy`.
+    pub name: String,
+    pub dimension: Dimension,
+    pub values: Vec<f64>,
+    /// What the ends of the colours mean.
+    pub range: [f64; 2],
+    pub map: Map,
+}
+
+impl Shown {
+    /// Of a column; the magnitude of vectors where no component is named, of tensors that of the whole (√(A : A)).
+    ///
+    /// # Errors
+    /// `InvalidInput`: there is no such column, or it has no such component.
+    pub fn of(s: &Snapshot, field: &str, component: Option<&str>) -> io::Result<Shown> {
+        let column = s.column(field).filter(|c| c.values.len() == s.reference.len());
+        let column = column.ok_or_else(|| invalid(format!("the snapshot carries no {field}")))?;
+        let values = values(column, component)?;
+        let name = match component {
+            None => field.replace('_', " "),
+            Some(part) => format!("{} {part}", field.replace('_', " ")),
+        };
+        let finite = || values.iter().copied().filter(|v| v.is_finite());
+        let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let range = range(field, low, high);
+        Ok(Shown {
+            name,
+            dimension: column.declaration.dimension,
+            map: Map::for_range(range),
+            values,
+            range,
+        })
+    }
+
+    /// With the ends of the colours given.
+    pub fn between(mut self, range: [f64; 2]) -> Shown {
+        self.range = range;
+        self.map = Map::for_range(range);
+        self
+    }
+
+    /// Where a value lies between the ends, 0 to 1; what is no number lies at the lower one.
+    pub fn part(&self, value: f64) -> f64 {
+        let part = (value - self.range[0]) / (self.range[1] - self.range[0]);
+        match part.is_nan() {
+            true => 0.0,
+            false => part.clamp(0.0, 1.0),
+        }
+    }
+}
+
+/// Ends of the colours: of damage always 0 and 1, of numbers of both signs alike, of others from 0 where that is near.
+pub fn range(field: &str, low: f64, high: f64) -> [f64; 2] {
+    if field == "damage" || low > high {
+        return [0.0, 1.0];
+    }
+    let size = low.abs().max(high.abs());
+    match (low < 0.0 && high > 0.0, low == high) {
+        (true, _) => [-size, size],
+        (false, true) if size == 0.0 => [0.0, 1.0],
+        (false, _) if high > 0.0 && low < 0.5 * high => [0.0, high],
+        (false, _) if high <= 0.0 && high > 0.5 * low => [low, 0.0],
+        (false, true) => [low.min(0.0), high.max(0.0)],
+        (false, false) => [low, high],
+    }
+}
+
+/// Is there such a component?
+pub fn component_of(shape: Shape, component: Option<&str>) -> Result<Option<usize>, String> {
+    let Some(part) = component.filter(|p| *p != "magnitude") else {
+        return Ok(None);
+    };
+    let known = shape.components();
+    match known.iter().position(|k| *k == part) {
+        Some(n) => Ok(Some(n)),
+        None if known.is_empty() => Err(format!("it is one number: there is no component {part}")),
+        None => Err(format!("it has no component {part}, but {} and magnitude", known.join(", "))),
+    }
+}
+
+fn values(column: &Column, component: Option<&str>) -> io::Result<Vec<f64>> {
+    let part = component_of(column.declaration.shape, component)
+        .map_err(|why| invalid(format!("{}: {why}", column.name())))?;
+    let pick = |v: &[f64], weights: &[f64]| match part {
+        Some(n) => v[n],
+        None => v.iter().zip(weights).map(|(x, w)| w * x * x).sum::<f64>().sqrt(),
+    };
+    Ok(match &column.values {
+        Values::Scalars(v) => v.clone(),
+        Values::Integers(v) => v.iter().map(|x| f64::from(*x)).collect(),
+        Values::Counts(v) => v.iter().map(|x| f64::from(*x)).collect(),
+        Values::Vectors(v) => v.iter().map(|x| pick(x, &[1.0; 3])).collect(),
+        // off the diagonal each stands for two
+        Values::Symmetric(v) => v.iter().map(|x| pick(x, &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0])).collect(),
+        Values::Tensors(v) => v.iter().map(|x| pick(x, &[1.0; 9])).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::fields::tests::{small, with};
+    use super::*;
+
+    #[test]
+    fn ends_of_colours() {
+        assert_eq!(range("damage", 0.2, 0.3), [0.0, 1.0]);
+        assert_eq!(range("stress", -1.0, 3.0), [-3.0, 3.0]);
+        assert_eq!(range("velocity", 0.1, 3.0), [0.0, 3.0]);
+        assert_eq!(range("stress", -3.0, -0.1), [-3.0, 0.0]);
+        assert_eq!(range("density", 9.0, 10.0), [9.0, 10.0]);
+        assert_eq!(range("energy", 0.0, 0.0), [0.0, 1.0]);
+        assert_eq!(range("mark", 4.0, 4.0), [0.0, 4.0]);
+        assert_eq!(range("nothing", f64::INFINITY, f64::NEG_INFINITY), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn components_and_magnitudes() {
+        let tensors = Values::Symmetric(vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3]);
+        let s = with(small(), "stress", tensors);
+        let shown = Shown::of(&s, "stress", Some("xz")).unwrap();
+        assert_eq!((shown.values[0], &*shown.name), (5.0, "stress xz"));
+        let whole = Shown::of(&s, "stress", None).unwrap().values[0];
+        assert!((whole * whole - (14.0 + 2.0 * 77.0)).abs() < 1e-12);
+        let wrong = Shown::of(&s, "stress", Some("q")).unwrap_err().to_string();
+        assert!(wrong.contains("no component q, but xx"), "{wrong}");
+        assert!(Shown::of(&s, "strain", None).is_err());
+    }
+}
