@@ -161,6 +161,17 @@ impl Padded {
         m[0] + m[1] * self.stride as isize
     }
 
+    /// Places of all ghosts.
+    pub fn ghosts(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let [n, rows] = self.grid.cells.map(|c| c as isize);
+        let [a, b] = self.margin.map(|m| m as isize);
+        (-b..rows + b).flat_map(move |j| {
+            let inside = (0..rows).contains(&j);
+            let all = (-a..n + a).filter(move |i| !(inside && (0..n).contains(i)));
+            all.map(move |i| self.grid.middle(i, j))
+        })
+    }
+
     /// Puts the values of the grid's points and their ghosts.
     pub fn fill(&self, u: &[f64], boundary: &Boundary, t: f64, out: &mut Vec<f64>) {
         let [n, rows] = self.grid.cells;

@@ -8,6 +8,7 @@
 
 pub mod exact;
 pub mod flux;
+pub mod formula;
 pub mod grid;
 pub mod kernel;
 pub mod law;
@@ -16,10 +17,12 @@ pub mod noll;
 pub mod operator;
 pub mod quadrature;
 pub mod step;
+mod threads;
 pub mod wave;
 pub mod weights;
 
 pub use flux::Flux;
+pub use formula::Formula;
 pub use grid::{Boundary, Grid};
 pub use kernel::{Bump, Kernel, Parity, Profile};
 pub use law::{Direction, Law};
