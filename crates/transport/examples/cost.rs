@@ -17,7 +17,7 @@ use std::time::Instant;
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Points of the line.
-const POINTS: usize = 1 << 15;
+const POINTS: usize = 1 << 13;
 /// Cells along an edge of the plane.
 const EDGE: usize = 256;
 
@@ -28,7 +28,7 @@ fn best(mut work: impl FnMut()) -> f64 {
         begin.elapsed().as_secs_f64()
     };
     let first = once(&mut work).max(1e-7);
-    let rounds = (0.3 / first).clamp(12.0, 2000.0) as usize;
+    let rounds = (0.3 / first).clamp(40.0, 4000.0) as usize;
     (0..rounds).map(|_| once(&mut work)).fold(first, f64::min)
 }
 
@@ -165,7 +165,9 @@ fn horizons(grid: &Grid, u: &[f64], viscosity: f64) -> Outcome<()> {
     let pairs_of_transforms = if viscosity > 0.0 { 3.0 } else { 2.0 };
     let convolutions = pairs_of_transforms;
     let bare = pairs_of_transforms * there_and_back;
-    println!("| spacings | direct, evaluation | step | limit of a step | ratio | Fourier, evaluation | step | limit of a step | ratio |");
+    println!(
+        "| spacings | direct, evaluation | step | limit of a step | ratio | Fourier, evaluation | step | limit of a step | ratio |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
     for m in [3, 4, 8, 16, 32, 64, 256, 1024, 8192] {
         let law = law(grid, Flux::burgers(), m, viscosity)?;
@@ -182,7 +184,10 @@ fn horizons(grid: &Grid, u: &[f64], viscosity: f64) -> Outcome<()> {
             true => {
                 let direct = cost(&law, Evaluation::Direct, u)?;
                 let ratio = direct[1] / limit;
-                format!("{:.2} | {:.1} | {limit:.1} | {ratio:.2}", direct[0], direct[1])
+                format!(
+                    "{:.2} | {:.1} | {limit:.1} | {ratio:.2}",
+                    direct[0], direct[1]
+                )
             }
             false => format!(" | | {limit:.0} | "),
         };
@@ -206,7 +211,9 @@ fn main() -> Outcome<()> {
     let plane = Grid::plane([0.0; 2], [1.0; 2], EDGE)?;
     let v = plane.sample(|x| (std::f64::consts::TAU * (x[0] + 2.0 * x[1])).sin());
     println!("\nBurgers in a plane of {EDGE} × {EDGE}, ns per point and step");
-    println!("| spacings | direct, 1 thread | 2 threads | Fourier, 1 thread | 2 threads | limit on 1 thread | ratio |");
+    println!(
+        "| spacings | direct, 1 thread | 2 threads | Fourier, 1 thread | 2 threads | limit on 1 thread | ratio |"
+    );
     println!("|---|---|---|---|---|---|---|");
     for m in [3, 8, 16] {
         let law = law(&plane, Flux::burgers(), m, 0.0)?;
@@ -232,8 +239,12 @@ fn main() -> Outcome<()> {
         print!(" {step:.0} on {threads},");
     }
 
-    println!("\n\nfluxes by expression on {POINTS} points, 32 spacings, ns per point and evaluation, one thread");
-    println!("| ψ | bond by bond through the interpreter | many at a time | as a polynomial, direct | Fourier |");
+    println!(
+        "\n\nfluxes by expression on {POINTS} points, 32 spacings, ns per point and evaluation, one thread"
+    );
+    println!(
+        "| ψ | bond by bond through the interpreter | many at a time | as a polynomial, direct | Fourier |"
+    );
     println!("|---|---|---|---|---|");
     for text in [
         "x^2/2",

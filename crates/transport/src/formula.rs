@@ -4,7 +4,7 @@
 //! the operations: an expression is a polynomial if it is made of u and numbers by `+ − *`, whole powers, division by numbers and choices that a number decides.
 //! Nothing is concluded from values, so what only looks like a polynomial somewhere is none.
 
-use crate::flux::{HIGHEST, Psi};
+use crate::psi::{HIGHEST, Psi};
 use peridyne::expression::{Expression, ExpressionError, Measure, Misfit, Rule};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -272,13 +272,7 @@ impl Measure for Reader {
         Ok(None)
     }
 
-    fn combine(
-        &self,
-        name: &str,
-        _: Rule,
-        of: &[Part],
-        _: Option<f64>,
-    ) -> Result<Part, Misfit> {
+    fn combine(&self, name: &str, _: Rule, of: &[Part], _: Option<f64>) -> Result<Part, Misfit> {
         let name = name.trim();
         let start = of.first().map_or(0, |p| p.start);
         let operation = Box::new(single(name, of.len())?);
@@ -293,22 +287,27 @@ impl Measure for Reader {
             return Ok(self.part(start, Some(value), Some(vec![value])));
         }
         let known = |n: usize| of[n].polynomial.as_ref();
-        let whole = of.get(1).and_then(|p| p.number).filter(|e| {
-            e.fract() == 0.0 && (0.0..=HIGHEST as f64).contains(e)
-        });
+        let whole = of
+            .get(1)
+            .and_then(|p| p.number)
+            .filter(|e| e.fract() == 0.0 && (0.0..=HIGHEST as f64).contains(e));
         let both = |f: fn(&[f64], &[f64]) -> Vec<f64>| Some(f(known(0)?, known(1)?));
         let polynomial = match (name, of.len()) {
             ("-", 1) => known(0).map(|a| scaled(a, -1.0)),
             ("+", 2) => both(|a, b| sum(a, b, 1.0)),
             ("-", 2) => both(|a, b| sum(a, b, -1.0)),
             ("*", 2) => both(product),
-            ("/", 2) => of[1].number.and_then(|d| Some(known(0)?.iter().map(|c| c / d).collect())),
+            ("/", 2) => of[1]
+                .number
+                .and_then(|d| Some(known(0)?.iter().map(|c| c / d).collect())),
             ("^", 2) => whole.and_then(|power| {
                 let base = known(0)?;
                 Some((0..power as usize).fold(vec![1.0], |p, _| product(&p, base)))
             }),
             ("?" | "if", 3) => {
-                let chosen = of[0].number.and_then(|c| known(if c != 0.0 { 1 } else { 2 }));
+                let chosen = of[0]
+                    .number
+                    .and_then(|c| known(if c != 0.0 { 1 } else { 2 }));
                 chosen.cloned()
             }
             _ => None,

@@ -15,6 +15,7 @@ pub mod law;
 pub mod measure;
 pub mod noll;
 pub mod operator;
+mod psi;
 pub mod quadrature;
 pub mod step;
 mod threads;

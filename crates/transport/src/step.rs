@@ -143,7 +143,7 @@ impl Stepper {
         }
         pieces(&mut self.stage, PIECE, 2, |first, stage| {
             let (sum, u) = (&sum[first..], &u[first..]);
-            for ((s, r), u) in stage.iter_mut().zip(&*sum).zip(u) {
+            for ((s, r), u) in stage.iter_mut().zip(sum).zip(u) {
                 *s = u + dt / 6.0 * r;
             }
         });

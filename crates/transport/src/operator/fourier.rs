@@ -118,11 +118,17 @@ impl Transform {
             return real_row(spectrum, u, &mut self.scratch[1]);
         };
         let room = || vec![C::default(); column.get_inplace_scratch_len()];
-        let of_columns =
-            |scratch: &mut Vec<C>, _: usize, out: &mut [C]| column.process_with_scratch(out, scratch);
+        let of_columns = |scratch: &mut Vec<C>, _: usize, out: &mut [C]| {
+            column.process_with_scratch(out, scratch)
+        };
         pieces_with(spectrum, TOGETHER * rows, WORK, room, of_columns);
         let from = &*spectrum;
-        let room = || (vec![C::default(); TOGETHER * half], inverse.make_scratch_vec());
+        let room = || {
+            (
+                vec![C::default(); TOGETHER * half],
+                inverse.make_scratch_vec(),
+            )
+        };
         let of_rows = |(block, scratch): &mut (Vec<C>, Vec<C>), first: usize, u: &mut [f64]| {
             let first = first / n;
             let count = u.len() / n;

@@ -132,7 +132,10 @@ fn collars_tables_and_long_horizons_are_looked_at() {
     assert!(text.contains("u in the collar is NaN at [-"), "{text}");
     let root = Flux::Function(Arc::new(f64::sqrt));
     let text = told(root, |x| x);
-    assert!(text.contains("the flux is NaN at u = -") && text.contains("collars"), "{text}");
+    assert!(
+        text.contains("the flux is NaN at u = -") && text.contains("collars"),
+        "{text}"
+    );
     let table = Profile::Table(vec![[0.1, 1.0], [0.5, 0.0]]);
     let text = Kernel::new(Parity::Odd, table, 0.5, 1, true, "k").unwrap_err();
     assert!(text.message.contains("begins at z = 0.1"), "{text}");

@@ -80,13 +80,19 @@ fn factors_in_a_plane_are_those_of_closed_forms() {
     }
     // exp(−1/(1 − s²)) has none: against 64 times the panels
     for dimension in [1, 2] {
-        for kernel in [odd(Bump::Smooth, d, dimension), even(Bump::Smooth, d, dimension)] {
+        for kernel in [
+            odd(Bump::Smooth, d, dimension),
+            even(Bump::Smooth, d, dimension),
+        ] {
             let power = if kernel.parity() == Parity::Odd { 1 } else { 2 };
             let (factor, more) = if dimension == 1 { (2.0, 0) } else { (PI, 1) };
-            let fine = Gauss::new(4096).integral(0.0, d, |r| {
-                r.powi(power + more) * kernel.value(r)
-            });
-            assert!((factor * fine - 2.0).abs() < 2e-14, "{:e}", factor * fine - 2.0);
+            let fine =
+                Gauss::new(4096).integral(0.0, d, |r| r.powi(power + more) * kernel.value(r));
+            assert!(
+                (factor * fine - 2.0).abs() < 2e-14,
+                "{:e}",
+                factor * fine - 2.0
+            );
         }
     }
 }
@@ -144,7 +150,10 @@ fn horizons_may_be_longer_than_the_period() {
                 let mut rate = vec![0.0; u.len()];
                 operator(&law, way).rate(&u, 0.0, &mut rate);
                 let off = measure::distance(&rate, &exact);
-                assert!(off <= bound, "{periods} {dimension} {way:?}: {off:e} of {bound:e}");
+                assert!(
+                    off <= bound,
+                    "{periods} {dimension} {way:?}: {off:e} of {bound:e}"
+                );
             }
         }
     }

@@ -179,7 +179,9 @@ fn collars_count_for_the_step() {
     let a = crate::sample::odd(Bump::Cosine, 0.2, 1);
     let grid = Grid::line(0.0, 1.0, 50).unwrap();
     let law = |given: fn(f64) -> f64| {
-        let boundary = Boundary::Collars(Arc::new(move |x, t| if x[0] < 0.0 { given(t) } else { 0.0 }));
+        let boundary = Boundary::Collars(Arc::new(
+            move |x, t| if x[0] < 0.0 { given(t) } else { 0.0 },
+        ));
         let flux = (
             Flux::burgers(),
             peridyne_transport::Direction::Constant([1.0, 0.0]),
@@ -188,20 +190,48 @@ fn collars_count_for_the_step() {
         Law::new(grid, boundary, Some(flux), None).unwrap()
     };
     let step = |given| {
-        let e = evolution(&law(given), Evaluation::Direct, |_| 0.0, Method::Rk4, StepSize::Part(0.5));
+        let e = evolution(
+            &law(given),
+            Evaluation::Direct,
+            |_| 0.0,
+            Method::Rk4,
+            StepSize::Part(0.5),
+        );
         e.next_step(1e5).unwrap()
     };
-    let periodic = line(50, Some(Flux::burgers()), Bump::Cosine, 0.2 * 2.0 * std::f64::consts::PI, 0.0);
+    let periodic = line(
+        50,
+        Some(Flux::burgers()),
+        Bump::Cosine,
+        0.2 * 2.0 * std::f64::consts::PI,
+        0.0,
+    );
     let one = vec![1.0; 50];
     // the same grid and horizon, 2π times as long
-    let limit = stable_step(&operator(&periodic, Evaluation::Direct), Method::Rk4, &one, 0.0)
-        / (2.0 * std::f64::consts::PI);
+    let limit = stable_step(
+        &operator(&periodic, Evaluation::Direct),
+        Method::Rk4,
+        &one,
+        0.0,
+    ) / (2.0 * std::f64::consts::PI);
     // a whole number of steps leads to the end
     let found = step(|_| 1.0);
-    assert!((found / (0.5 * limit) - 1.0).abs() < 1e-5, "{found} {limit}");
+    assert!(
+        (found / (0.5 * limit) - 1.0).abs() < 1e-5,
+        "{found} {limit}"
+    );
     let rising = step(|t| if t > 0.0 { 1.0 } else { 0.0 });
-    assert!((rising / (0.5 * limit) - 1.0).abs() < 1e-5, "{rising} {limit}");
+    assert!(
+        (rising / (0.5 * limit) - 1.0).abs() < 1e-5,
+        "{rising} {limit}"
+    );
     // a given step that is too long for what comes in is refused
-    let e = evolution(&law(|_| 1.0), Evaluation::Direct, |_| 0.0, Method::Rk4, fixed(1.1 * limit));
+    let e = evolution(
+        &law(|_| 1.0),
+        Evaluation::Direct,
+        |_| 0.0,
+        Method::Rk4,
+        fixed(1.1 * limit),
+    );
     assert!(matches!(e.next_step(10.0), Err(RunError::Unstable { .. })));
 }

@@ -12,8 +12,8 @@ use peridyne::execute::memory::afford;
 use peridyne::expression::Expression;
 use peridyne_transport::grid::Values;
 use peridyne_transport::{
-    Boundary, Bump, Direction, Evaluation, Evolution, Flux, Formula, Grid, Kernel, Law, Method, Operator,
-    Parity, Profile, StepSize, measure,
+    Boundary, Bump, Direction, Evaluation, Evolution, Flux, Formula, Grid, Kernel, Law, Method,
+    Operator, Parity, Profile, StepSize, measure,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -121,8 +121,13 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     let frames = count(&context, &output.frames, "frames")?;
     // kept until the end, and copied once for the file
     let bytes = 2.0 * (frames + 2) as f64 * u_bytes;
-    afford("output.frames", "frames of this run", bytes, "write fewer frames")
-        .map_err(explained)?;
+    afford(
+        "output.frames",
+        "frames of this run",
+        bytes,
+        "write fewer frames",
+    )
+    .map_err(explained)?;
     Ok(LawDeck {
         title: String::new(),
         units,
@@ -264,11 +269,7 @@ fn direction(context: &Context, transport: &Transport) -> Result<Direction> {
 }
 
 /// u goes from `low` to `high` at the start.
-fn flux(
-    context: &Context,
-    at: &At<Or<FluxName, FluxForm>>,
-    [low, high]: [f64; 2],
-) -> Result<Flux> {
+fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>, [low, high]: [f64; 2]) -> Result<Flux> {
     let form = match &at.value {
         Or::Bare(FluxName::Burgers) => return Ok(Flux::burgers()),
         Or::Bare(FluxName::EnergyConserving) => return Ok(Flux::energy_conserving()),
