@@ -167,8 +167,11 @@ impl Padded {
         let [a, b] = self.margin.map(|m| m as isize);
         (-b..rows + b).flat_map(move |j| {
             let inside = (0..rows).contains(&j);
-            let all = (-a..n + a).filter(move |i| !(inside && (0..n).contains(i)));
-            all.map(move |i| self.grid.middle(i, j))
+            let count = 2 * a + if inside { 0 } else { n };
+            (0..count).map(move |k| {
+                let i = if inside && k >= a { n + k - a } else { k - a };
+                self.grid.middle(i, j)
+            })
         })
     }
 
@@ -198,5 +201,29 @@ impl Padded {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ghosts are all cells around a grid, each once.
+    #[test]
+    fn ghosts_are_what_is_not_the_grid() {
+        let line = Padded::new(Grid::line(0.0, 1.0, 4).unwrap(), 3);
+        let x: Vec<f64> = line.ghosts().map(|x| x[0]).collect();
+        assert_eq!(x, [-0.625, -0.375, -0.125, 1.125, 1.375, 1.625]);
+        let grid = Grid::plane([0.0; 2], [1.0, 0.5], 4).unwrap();
+        let plane = Padded::new(grid, 2);
+        let inside = |x: &[f64; 3]| (0.0..1.0).contains(&x[0]) && (0.0..0.5).contains(&x[1]);
+        assert!(plane.ghosts().all(|x| !inside(&x)));
+        let mut all: Vec<[u64; 2]> = plane
+            .ghosts()
+            .map(|x| [x[0].to_bits(), x[1].to_bits()])
+            .collect();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), plane.size() - grid.points());
     }
 }
