@@ -66,7 +66,7 @@ fn entropy(x: f64, t: f64) -> f64 {
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let deltas: Vec<f64> = match context.small {
-        true => vec![0.2, 0.1],
+        true => vec![0.1, 0.05],
         false => vec![0.2, 0.1, 0.05, 0.025],
     };
     let mut table = Table::new().column("delta", "", deltas.clone());
@@ -265,7 +265,7 @@ fn past(context: &Context, deltas: &[f64], found: &mut Findings) -> Result<Vec<f
                     energies[0],
                     (energies[0] / half).log2()
                 ),
-                (energies[0] / half).log2() > 4.0,
+                (energies[0] / half).log2() > 3.8,
             );
             kept = errors;
         } else {
