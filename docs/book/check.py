@@ -151,7 +151,7 @@ class Page:
         expected = 2 if note == "fails" else 0
         if done.returncode != expected:
             self.wrong(f"exit code {done.returncode}, not {expected}: {line}\n{done.stdout[-3000:]}")
-        elif note == "fails" and of not in re.sub(r"\s+", " ", done.stdout):
+        elif note == "fails" and of not in squeezed(done.stdout.replace("│", " ")):
             self.wrong(f"`{of}` is not in what is printed: {line}\n{done.stdout[-3000:]}")
 
     def compare(self, body):
