@@ -39,7 +39,7 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, config, files):
     markdown = INCLUDE.sub(lambda m: included(m[1], page), markdown)
     if not (BOOK / "src/reference/index.md").exists():
-        markdown = re.sub(r"\[([^\]]*)\]\((?:\.\./)?reference/[^)]*\)", r"\1", markdown)
+        markdown = re.sub(r"\[(`[^`]*`|[^\]]*)\]\((?:\.\./)?reference/[^)]*\)", r"\1", markdown)
     parts = CODE.split(markdown)
     # text, (code, fence), text, …: the fence is a group of its own
     out = []
@@ -65,7 +65,7 @@ def on_page_content(html, page, config, files):
         return convert(tex, display=display)
 
     # code and its test, where a page names them
-    html = re.sub(r"<p>(<strong>Source\.?</strong>)", r'<p class="where">\1', html)
+    html = re.sub(r"<p>(<strong>(?:Source|Code|Test)</strong>)", r'<p class="where">\1', html)
     return re.sub(r"EQ\d{5}QE", made, html)
 
 
@@ -83,3 +83,13 @@ def included(name, page):
         return f"{match[1]}({'../' * depth}{there})"
 
     return re.sub(r"(!?\[[^\]]*\])\(([^)\s]+)\)", link, text)
+
+
+def on_post_page(output, page, config):
+    """The search of pages that are opened from disk loads a script from a network, but for this."""
+    own = "../" * page.file.dest_uri.count("/") + "assets/iframe-worker.js"
+    return output.replace("https://unpkg.com/iframe-worker/shim", own)
+
+
+def on_post_template(output, template_name, config):
+    return output.replace("https://unpkg.com/iframe-worker/shim", "assets/iframe-worker.js")
