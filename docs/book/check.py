@@ -272,6 +272,15 @@ class Asked:
         return self.schemas[kind]
 
 
+def reference(program):
+    """The deck reference, where the program can write it."""
+    can = subprocess.run([str(program), "doc", "--help"], capture_output=True, text=True)
+    if can.returncode == 0 and "--book" in can.stdout:
+        done = subprocess.run([str(program), "doc", "--book", str(PAGES / "reference")], capture_output=True, text=True)
+        return [] if done.returncode == 0 else [f"the deck reference was not written: {done.stderr}"]
+    return []
+
+
 def build(site):
     begin = time.monotonic()
     words = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-f", str(BOOK / "mkdocs.yml"), "-d", str(site)]
@@ -313,6 +322,7 @@ def main():
                   f"{page.pictures:2} pictures{'  WRONG' if page.errors else ''}", flush=True)
             errors += page.errors
         if not asked.only:
+            errors += reference(asked.program)
             seconds, wrong = build(asked.site or top / "site")
             print(f"{'the site, links and anchors':34} {seconds:20.1f} s")
             errors += wrong

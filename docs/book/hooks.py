@@ -20,11 +20,17 @@ equations: dict[str, str] = {}
 
 def on_config(config):
     # `peridyne doc --book docs/book/src/reference` writes it; without it the other pages stand, and its links are words
-    if not (BOOK / "src/reference/index.md").exists():
-        print("INFO    -  the deck reference is left out: peridyne doc --book docs/book/src/reference writes it")
-        for section in config.nav:
-            if isinstance(section, dict) and "Reference" in section:
-                section["Reference"] = [p for p in section["Reference"] if "reference/index.md" not in p.values()]
+    pages = sorted(p.name for p in (BOOK / "src/reference").glob("*.md") if p.name != "index.md")
+    for section in config.nav:
+        if "Reference" not in section:
+            continue
+        others = [p for p in section["Reference"] if "Deck reference" not in p]
+        if (BOOK / "src/reference/index.md").exists():
+            own = [{"All tables": "reference/index.md"}, *(f"reference/{name}" for name in pages)]
+            section["Reference"] = [{"Deck reference": own}, *others]
+        else:
+            print("INFO    -  the deck reference is left out: peridyne doc --book docs/book/src/reference writes it")
+            section["Reference"] = others
     return config
 
 
