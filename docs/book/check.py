@@ -44,6 +44,7 @@ REFERENCE = re.compile(r"`((?:crates|papers|examples|verify|benches|docs|decks)/
 MOST_PICTURES = 3_000_000
 # what differs from machine to machine and from run to run
 VARIES = [(r"\b[\d.,]+ (n|µ|m)?s\b(?=, without| of stepping|, [\d.]+ ns|, \d+ directed)", "… s"), (r"\bin [\d.,]+ (n|µ|m)?s\b", "in … s"),
+          (r"(?<=[:,] )[\d.]+ s$", "… s"),
           (r"[\d.,]+ ns per (bond|point)", r"… ns per \1"), (r"(speed +).*", r"\1…"), (r"about [\d.,]+ [^ ,]+(?=, without)", "about …"),
           (r"(memory +).*", r"\1…"), (r"\b(avx512|avx2|portable)\b", "…"), (r"(threads +)\d+", r"\1…"), (r"(\bwith )\d+ threads", r"\1… threads"),
           (r"[\d.,]+ times as fast( \(.*\))?", "… times as fast"), (r"([\d.]+|…) steps/s", "… steps/s")]
