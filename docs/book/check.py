@@ -47,7 +47,7 @@ VARIES = [(r"\b[\d.,]+ (n|µ|m)?s\b(?=, without| of stepping|, [\d.]+ ns|, \d+ d
           (r"(?<=[:,] )[\d.]+ s$", "… s"),
           (r"[\d.,]+ ns per (bond|point)", r"… ns per \1"), (r"(speed +).*", r"\1…"), (r"about [\d.,]+ [^ ,]+(?=, without)", "about …"),
           (r"(memory +).*", r"\1…"), (r"\b(avx512|avx2|portable)\b", "…"), (r"(threads +)\d+", r"\1…"), (r"(\bwith )\d+ threads", r"\1… threads"),
-          (r"[\d.,]+ times as fast( \(.*\))?", "… times as fast"), (r"([\d.]+|…) steps/s", "… steps/s")]
+          (r"[\d.,]+ times as fast \(.*\)", "… times as fast (…)"), (r"[\d.,]+ times as fast", "… times as fast"), (r"([\d.]+|…) steps/s", "… steps/s")]
 
 
 class Page:
