@@ -14,6 +14,7 @@ What a page may say before a block:
     <!-- not run: WHY -->        never run
 and after it, where the block made a picture:
     <!-- picture: pictures/NAME.png = out/FOLDER/FILE.png -->
+    <!-- plot: pictures/NAME.png = FILE.png -->      by matplotlib, whose bytes differ from version to version: not compared
 A block ```toml title="NAME.toml" is a deck, one without a title a part of a deck whose keys must be in the schema. A block ```text
 after commands is what they print, in this order; `…` stands for anything. With
     <!-- prints: REGULAR EXPRESSION -->
@@ -78,8 +79,8 @@ class Page:
         for token in TOKEN.finditer(text):
             if token["note"]:
                 note = (token["note"].strip(), token["of"])
-                if note[0] == "picture":
-                    self.picture(note[1])
+                if note[0] in ("picture", "plot"):
+                    self.picture(note[1], note[0] == "picture")
                     note = ("", "")
                 continue
             self.block(token, indented(token["body"]), *note)
@@ -167,11 +168,14 @@ class Page:
                 return self.wrong(f"not printed: {line.strip()}\nbut:\n{self.printed[:6000]}")
             at = found + 1
 
-    def picture(self, of):
+    def picture(self, of, compared):
         committed, made = (part.strip() for part in of.split("="))
         made, committed = self.folder / made, PAGES / committed
         self.pictures += 1
-        if not made.exists():
+        if not compared:
+            if self.asked.renew and made.exists():
+                shutil.copy(made, committed)
+        elif not made.exists():
             if not self.passed_over:
                 self.wrong(f"{made.name} was not made")
         elif self.asked.renew:
