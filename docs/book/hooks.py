@@ -9,8 +9,7 @@ from mkdocs.structure.files import File
 BOOK = Path(__file__).resolve().parent
 ROOT = BOOK.parent.parent
 # what pages link to and show, under the same paths in the site
-SHARED = ["decks/good/*.toml", "decks/good/conservation/*.toml", "decks/in.*", "docs/impact.png", "docs/fields/*.png",
-          "docs/fields/*.toml"]
+SHARED = ["decks/good/*.toml", "decks/good/conservation/*.toml", "decks/in.*", "docs/*.png", "docs/*/*.png"]
 CODE = re.compile(r"(^ *(```+|~~~+).*?^ *\2 *$|`[^`\n]+`)", re.S | re.M)
 MATH = re.compile(r"\$\$(.+?)\$\$|(?<![\w$\\])\$([^\s$](?:[^$\n]*[^\s$])?)\$(?![\w$])", re.S)
 INCLUDE = re.compile(r"^\{\{ *include (\S+) *\}\}$", re.M)
