@@ -207,6 +207,9 @@ fn finish(
     let mut series = Series::new(dir, series_options)?;
     series.write(&snapshot)?;
     let pictures = series.finish(&snapshot, About::Fracture)?;
+    report.pictures = { pictures.iter() }
+        .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
+        .collect();
     report.peak_memory_bytes = run_json::peak_memory_bytes();
     report.write(&dir.join("run.json"))?;
     say(&format!(
@@ -260,6 +263,7 @@ fn report(
         threads,
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),
+        pictures: vec![],
         warnings,
     }
 }

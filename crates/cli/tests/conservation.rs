@@ -149,6 +149,72 @@ fn mistakes_name_the_line_and_leave_nothing() {
     assert!(String::from_utf8_lossy(&told.stderr).contains("has no body"));
 }
 
+/// Runs burgers_viscous with changes; gives its folder.
+fn run_changed(dir: &Path, more: &[&str]) -> PathBuf {
+    let file = deck("good/conservation/burgers_viscous.toml");
+    let mut arguments = vec![
+        "run",
+        file.to_str().unwrap(),
+        "--out",
+        dir.to_str().unwrap(),
+    ];
+    arguments.extend(["--set", "output.pictures=false", "--set", "output.frames=2"]);
+    arguments.extend(["--set", "output.history=2"]);
+    arguments.extend(more);
+    let done = peridyne(&arguments);
+    let told = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{told}");
+    dir.to_path_buf()
+}
+
+/// One, two and three threads write the same bytes.
+#[test]
+fn threads_do_not_show() {
+    let dir = tempfile::tempdir().unwrap();
+    let files = ["1", "2", "3"].map(|threads| {
+        let more = [
+            "--threads",
+            threads,
+            "--set",
+            "points=40000",
+            "--set",
+            "horizon=0.003",
+            "--set",
+            "run.duration=1e-4",
+        ];
+        let out = run_changed(&dir.path().join(threads), &more);
+        ["frames.npz", "history.csv"].map(|f| std::fs::read(out.join(f)).unwrap())
+    });
+    assert!(files[0] == files[1] && files[0] == files[2]);
+}
+
+/// A flux by expression that is a polynomial is one; what is none runs too.
+#[test]
+fn expressions_of_polynomials_are_polynomials() {
+    let dir = tempfile::tempdir().unwrap();
+    let energies = [
+        "advection.flux=\"burgers\"",
+        "advection.flux={ expression = \"u^2/2\" }",
+        // the same for the u that occur, and no polynomial
+        "advection.flux={ expression = \"u > 5 ? u : u^2/2\" }",
+    ]
+    .map(|flux| {
+        let out = dir.path().join(flux.len().to_string());
+        let out = run_changed(&out, &["--set", "points=256", "--set", flux]);
+        let report = std::fs::read_to_string(out.join("run.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let energy = column(&out.join("history.csv"), "energy");
+        (energy, report["evaluation"].to_string())
+    });
+    for (energy, _) in &energies[1..] {
+        for (a, b) in energy.iter().zip(&energies[0].0) {
+            assert!((a - b).abs() < 1e-12 * b, "{energies:?}");
+        }
+    }
+    assert_eq!(energies[0].1, energies[1].1);
+    assert_eq!(energies[2].1, "\"direct\"");
+}
+
 /// SIGINT ends at the next step with the state so far, and the folder is held while the run goes on.
 #[cfg(unix)]
 #[test]

@@ -3,18 +3,14 @@
 //! A polynomial is a symmetric matrix, `F(u, v) = Σ A_pq u^p v^q`, so that `∫ F(u(x), u(y)) φ(y − x) dy = Σ_p u^p Σ_q A_pq (φ * u^q)`:
 //! products with convolutions, though the operator is no convolution itself.
 
+use crate::formula::Formula;
+pub use crate::psi::{HIGHEST, Psi};
 use peridyne::error::BuildError;
 use std::fmt;
 use std::sync::Arc;
 
-/// Highest power of a polynomial flux.
-pub const HIGHEST: usize = 8;
-
 /// How many values of u a flux is tried at.
 const TRIED: usize = 65;
-
-/// `ψ(u)`.
-pub type Psi = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
 /// A two-point flux.
 #[derive(Clone)]
@@ -22,7 +18,7 @@ pub enum Flux {
     /// The matrix A, symmetric.
     Polynomial(Vec<Vec<f64>>),
     /// `ψ((u + v)/2)`
-    Function(Psi),
+    Function(Arc<dyn Psi>),
 }
 
 impl fmt::Debug for Flux {
@@ -69,6 +65,14 @@ impl Flux {
         Flux::Polynomial(a)
     }
 
+    /// `ψ((u + v)/2)` of an expression: as a polynomial where it is one and keeps its digits for u from `low` to `high`.
+    pub fn of_formula(formula: Formula, low: f64, high: f64) -> Flux {
+        match formula.expanded(low, high) {
+            Some(coefficients) => Flux::of_mean(coefficients),
+            None => Flux::Function(Arc::new(formula)),
+        }
+    }
+
     /// `F(u, v)`
     pub fn value(&self, u: f64, v: f64) -> f64 {
         match self {
@@ -76,7 +80,7 @@ impl Flux {
                 let row = |row: &Vec<f64>| row.iter().rev().fold(0.0, |sum, c| sum * v + c);
                 a.iter().rev().fold(0.0, |sum, r| sum * u + row(r))
             }
-            Flux::Function(psi) => psi(0.5 * (u + v)),
+            Flux::Function(psi) => psi.value(0.5 * (u + v)),
         }
     }
 
@@ -103,7 +107,7 @@ impl Flux {
             }
             Flux::Function(psi) => {
                 let d = 6e-6 * u.abs().max(1.0);
-                (psi(u + d) - psi(u - d)) / (2.0 * d)
+                (psi.value(u + d) - psi.value(u - d)) / (2.0 * d)
             }
         }
     }

@@ -161,6 +161,20 @@ impl Padded {
         m[0] + m[1] * self.stride as isize
     }
 
+    /// Places of all ghosts.
+    pub fn ghosts(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let [n, rows] = self.grid.cells.map(|c| c as isize);
+        let [a, b] = self.margin.map(|m| m as isize);
+        (-b..rows + b).flat_map(move |j| {
+            let inside = (0..rows).contains(&j);
+            let count = 2 * a + if inside { 0 } else { n };
+            (0..count).map(move |k| {
+                let i = if inside && k >= a { n + k - a } else { k - a };
+                self.grid.middle(i, j)
+            })
+        })
+    }
+
     /// Puts the values of the grid's points and their ghosts.
     pub fn fill(&self, u: &[f64], boundary: &Boundary, t: f64, out: &mut Vec<f64>) {
         let [n, rows] = self.grid.cells;
@@ -187,5 +201,29 @@ impl Padded {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ghosts are all cells around a grid, each once.
+    #[test]
+    fn ghosts_are_what_is_not_the_grid() {
+        let line = Padded::new(Grid::line(0.0, 1.0, 4).unwrap(), 3);
+        let x: Vec<f64> = line.ghosts().map(|x| x[0]).collect();
+        assert_eq!(x, [-0.625, -0.375, -0.125, 1.125, 1.375, 1.625]);
+        let grid = Grid::plane([0.0; 2], [1.0, 0.5], 4).unwrap();
+        let plane = Padded::new(grid, 2);
+        let inside = |x: &[f64; 3]| (0.0..1.0).contains(&x[0]) && (0.0..0.5).contains(&x[1]);
+        assert!(plane.ghosts().all(|x| !inside(&x)));
+        let mut all: Vec<[u64; 2]> = plane
+            .ghosts()
+            .map(|x| [x[0].to_bits(), x[1].to_bits()])
+            .collect();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), plane.size() - grid.points());
     }
 }

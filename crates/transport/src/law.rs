@@ -41,6 +41,18 @@ pub struct Diffusion {
     pub(crate) stencil: Stencil,
 }
 
+impl Advection {
+    pub fn stencil(&self) -> &Stencil {
+        &self.stencil
+    }
+}
+
+impl Diffusion {
+    pub fn stencil(&self) -> &Stencil {
+        &self.stencil
+    }
+}
+
 /// A conservation law on a grid.
 #[derive(Debug, Clone)]
 pub struct Law {
@@ -110,6 +122,18 @@ impl Law {
             of(self.advection.as_ref().map(|a| &a.stencil)),
             of(self.diffusion.as_ref().map(|d| &d.stencil)),
         ]
+    }
+
+    /// Convolutions of an evaluation: of transport along a constant direction, and of diffusion.
+    pub fn convolutions(&self) -> [usize; 2] {
+        let carried = self.advection.as_ref().map_or(0, |a| match &a.flux {
+            Flux::Polynomial(rows) => {
+                let asks = |row: &&Vec<f64>| row.iter().skip(1).any(|c| *c != 0.0);
+                rows.iter().filter(asks).count()
+            }
+            Flux::Function(_) => 1,
+        });
+        [carried, usize::from(self.diffusion.is_some())]
     }
 
     /// Can sums be made by Fourier transforms?

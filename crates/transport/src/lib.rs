@@ -8,18 +8,22 @@
 
 pub mod exact;
 pub mod flux;
+pub mod formula;
 pub mod grid;
 pub mod kernel;
 pub mod law;
 pub mod measure;
 pub mod noll;
 pub mod operator;
+mod psi;
 pub mod quadrature;
 pub mod step;
+mod threads;
 pub mod wave;
 pub mod weights;
 
 pub use flux::Flux;
+pub use formula::Formula;
 pub use grid::{Boundary, Grid};
 pub use kernel::{Bump, Kernel, Parity, Profile};
 pub use law::{Direction, Law};

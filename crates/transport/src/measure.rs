@@ -26,9 +26,17 @@ fn exact_sum(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Smallest and largest value.
 pub fn extremes(u: &[f64]) -> [f64; 2] {
+    // eight at once: one after the other waits for the last
+    let (mut low, mut high) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
+    for part in u.chunks(8) {
+        for ((low, high), u) in low.iter_mut().zip(&mut high).zip(part) {
+            *low = low.min(*u);
+            *high = high.max(*u);
+        }
+    }
     [
-        u.iter().copied().fold(f64::INFINITY, f64::min),
-        u.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        low.into_iter().fold(f64::INFINITY, f64::min),
+        high.into_iter().fold(f64::NEG_INFINITY, f64::max),
     ]
 }
 

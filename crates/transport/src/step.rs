@@ -2,7 +2,9 @@
 //! takes diffusion implicitly: (2,3,2) of Ascher, Ruuth and Spiteri (1997, section 2.5), of order 2, L-stable in what is implicit.
 
 use crate::flux::Flux;
+use crate::measure;
 use crate::operator::Operator;
+use crate::threads::{PIECE, pieces, pieces_of_two};
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,12 +42,11 @@ pub enum RunError {
     NotSolved { residual: f64, time: f64 },
 }
 
-/// Longest step that is stable for waves of all lengths on the state u, coefficients frozen: `1/(c ρ_a/I + ε ρ_s/R)`, c the largest `|f′|`, ρ the largest
+/// Longest step that is stable for waves of all lengths on the state u and the collars at time t, coefficients frozen: `1/(c ρ_a/I + ε ρ_s/R)`, c the largest `|f′|`, ρ the largest
 /// eigenvalues of both sums, I and R the ends of the stability region on both axes (the straight line between them lies in the region).
-pub fn stable_step(operator: &Operator, method: Method, u: &[f64]) -> f64 {
+pub fn stable_step(operator: &Operator, method: Method, u: &[f64], t: f64) -> f64 {
     let [waves, decay] = operator.spectrum();
-    let low = u.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = u.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = operator.extremes(u, t);
     let flux = operator.law().advection.as_ref().map(|a| &a.flux);
     let speed = flux.map_or(0.0, |f: &Flux| f.fastest(low, high));
     let [imaginary, real] = method.limits();
@@ -112,9 +113,13 @@ impl Stepper {
             (1.0 / 3.0, 2.0 / 3.0, 0.5),
         ] {
             operator.rate(&self.stage, t + time * dt, &mut self.rates[0]);
-            for ((s, r), u) in self.stage.iter_mut().zip(&self.rates[0]).zip(u) {
-                *s = old * u + own * (*s + dt * r);
-            }
+            let rate = &self.rates[0];
+            pieces(&mut self.stage, PIECE, 4, |first, stage| {
+                let (rate, u) = (&rate[first..], &u[first..]);
+                for ((s, r), u) in stage.iter_mut().zip(rate).zip(u) {
+                    *s = old * u + own * (*s + dt * r);
+                }
+            });
         }
     }
 
@@ -128,14 +133,20 @@ impl Stepper {
             (1.0, 0.0, 1.0),
         ] {
             operator.rate(&self.stage, t + time * dt, rate);
-            for n in 0..u.len() {
-                sum[n] += weight * rate[n];
-                self.stage[n] = u[n] + next * dt * rate[n];
+            pieces_of_two(sum, &mut self.stage, 4, |first, sum, stage| {
+                let (rate, u) = (&rate[first..], &u[first..]);
+                for (((sum, s), r), u) in sum.iter_mut().zip(stage).zip(rate).zip(u) {
+                    *sum += weight * r;
+                    *s = u + next * dt * r;
+                }
+            });
+        }
+        pieces(&mut self.stage, PIECE, 2, |first, stage| {
+            let (sum, u) = (&sum[first..], &u[first..]);
+            for ((s, r), u) in stage.iter_mut().zip(sum).zip(u) {
+                *s = u + dt / 6.0 * r;
             }
-        }
-        for n in 0..u.len() {
-            self.stage[n] = u[n] + dt / 6.0 * sum[n];
-        }
+        });
     }
 
     fn imex(
@@ -166,19 +177,28 @@ impl Stepper {
                 .map_err(|residual| RunError::NotSolved { residual, time })
         };
         rates(operator, u, t, e0, None);
-        for n in 0..u.len() {
-            self.stage[n] = u[n] + dt * g * e0[n];
-        }
+        pieces(&mut self.stage, PIECE, 2, |first, stage| {
+            for (k, s) in stage.iter_mut().enumerate() {
+                let n = first + k;
+                *s = u[n] + dt * g * e0[n];
+            }
+        });
         solve(operator, &mut self.stage, t + g * dt)?;
         rates(operator, &self.stage, t + g * dt, e1, Some(i1));
-        for n in 0..u.len() {
-            self.stage[n] = u[n] + dt * (d * e0[n] + (1.0 - d) * e1[n] + (1.0 - g) * i1[n]);
-        }
+        pieces(&mut self.stage, PIECE, 6, |first, stage| {
+            for (k, s) in stage.iter_mut().enumerate() {
+                let n = first + k;
+                *s = u[n] + dt * (d * e0[n] + (1.0 - d) * e1[n] + (1.0 - g) * i1[n]);
+            }
+        });
         solve(operator, &mut self.stage, t + dt)?;
         rates(operator, &self.stage, t + dt, e2, Some(i2));
-        for n in 0..u.len() {
-            self.stage[n] = u[n] + dt * ((1.0 - g) * (e1[n] + i1[n]) + g * (e2[n] + i2[n]));
-        }
+        pieces(&mut self.stage, PIECE, 6, |first, stage| {
+            for (k, s) in stage.iter_mut().enumerate() {
+                let n = first + k;
+                *s = u[n] + dt * ((1.0 - g) * (e1[n] + i1[n]) + g * (e2[n] + i2[n]));
+            }
+        });
         Ok(())
     }
 }
@@ -222,7 +242,20 @@ impl Evolution {
 
     /// Longest stable step of the state as it is.
     pub fn stable_step(&self) -> f64 {
-        stable_step(&self.operator, self.stepper.method, &self.u)
+        self.stable_until(0.0)
+    }
+
+    /// The same, with collars as they will be too: at the middle and the end of a step of that length.
+    fn stable_until(&self, step: f64) -> f64 {
+        let at = |later: f64| {
+            let t = self.time + later;
+            stable_step(&self.operator, self.stepper.method, &self.u, t)
+        };
+        let now = at(0.0);
+        match step > 0.0 && !self.operator.law().periodic() {
+            true => now.min(at(0.5 * step)).min(at(step)),
+            false => now,
+        }
     }
 
     /// The next step on the way to a time: whole ones until there.
@@ -232,12 +265,16 @@ impl Evolution {
     pub fn next_step(&self, end: f64) -> Result<f64, RunError> {
         let left = end - self.time;
         let step = match self.size {
-            StepSize::Part(part) => part * self.stable_step(),
+            StepSize::Part(part) => {
+                // a collar that rises from nothing would leave the whole time for a step
+                let first = left.min(part * self.stable_step());
+                first.min(part * self.stable_until(first))
+            }
             StepSize::Fixed {
                 step,
                 force_unstable,
             } => {
-                let stable = self.stable_step();
+                let stable = self.stable_until(step.min(left));
                 if !force_unstable && step > stable * (1.0 + 1e-9) {
                     return Err(RunError::Unstable {
                         step,
@@ -282,7 +319,7 @@ impl Evolution {
     /// See [`Stepper::step`].
     pub fn energy_slope(&mut self, dt: f64) -> Result<f64, RunError> {
         let cell = self.operator.law().grid.cell();
-        let energy = |u: &[f64]| crate::measure::energy(u, cell);
+        let energy = |u: &[f64]| measure::energy(u, cell);
         let mut trial = self.u.clone();
         let before = energy(&trial);
         self.stepper

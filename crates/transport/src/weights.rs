@@ -3,6 +3,8 @@
 //! `∫ g(z) φ(z) dz ≈ Σ_m w_m g(mh)` with `w_m = h φ(mh) (α + β (m/M)²)`, half at an end that lies on the horizon. Weights of −m and m are
 //! ∓ each other, so the sum over all points telescopes and `Σ u` is kept to round-off; α and β give the moment 2, which the local limit
 //! needs on every grid, and on a line the next moment, which is that of the δ² term, where that leaves the signs of the kernel (else β is 0).
+//! In a plane the moment is a tensor, `Σ w_a m_b h` of an odd and `Σ w m_a m_b h²` of an even kernel. The family is the same after a turn by 90° and in a mirror, and so are its
+//! weights, whence that tensor is a multiple of the unit tensor, and α alone makes it 2: xx, yy and xy are exact.
 
 use crate::grid::Grid;
 use crate::kernel::{Kernel, MOMENT, Parity};
@@ -23,7 +25,7 @@ pub struct Stencil {
 
 impl Stencil {
     /// # Errors
-    /// A horizon of fewer than 3 spacings, and more than a million.
+    /// A horizon of fewer than 3 spacings, and of more than a million (in a plane 500).
     pub fn new(kernel: &Kernel, grid: &Grid, path: &str) -> Result<Stencil, BuildError> {
         let ratio = kernel.horizon() / grid.spacing;
         let coarse = |what: String| {
@@ -38,10 +40,11 @@ impl Stencil {
                 grid.spacing
             ));
         }
-        if ratio > 1e6 {
+        let most = if grid.dimension == 1 { 1e6 } else { 500.0 };
+        if ratio > most {
             return Err(BuildError::too_many(
                 path,
-                format!("the horizon has {ratio:.0} spacings: nothing needs more than a million"),
+                format!("the horizon has {ratio:.0} spacings: it may have {most:.0} at most"),
             ));
         }
         let (steps, raw) = sampled(kernel, grid, ratio);

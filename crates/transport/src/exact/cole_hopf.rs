@@ -14,8 +14,11 @@ pub struct ColeHopf<G> {
     pub viscosity: f64,
 }
 
-/// Points of the trapezoidal rule, which errs less than any power of their distance for what decays like a bell.
-const POINTS: usize = 4001;
+/// Places at which Φ is looked at first: G may bend once between neighbours, not oscillate.
+const LOOKS: usize = 4001;
+
+/// Points of the trapezoidal rule in each well of Φ, which errs less than any power of their distance for what decays like a bell.
+const POINTS: usize = 2001;
 
 impl<G: Fn(f64) -> f64> ColeHopf<G> {
     /// # Errors
@@ -34,21 +37,78 @@ impl<G: Fn(f64) -> f64> ColeHopf<G> {
         }
     }
 
-    /// u at x and t > 0.
+    /// u at x and t > 0, for ε of any size: exponents are taken from the least Φ on, so that the largest weight is 1 and none overflows, and only wells where Φ is within 80ε of
+    /// that are summed, each by points of its own. Two wells of one depth are a shock. Where ε is below the round-off of Φ, u is good to its root, 1e-8.
     pub fn value(&self, x: f64, t: f64) -> f64 {
-        // beyond, Φ is 80ε above its least value at the least
-        let reach = 2.0 * self.fastest * t + (160.0 * self.viscosity * t).sqrt();
-        let step = 2.0 * reach / (POINTS - 1) as f64;
+        // e^{−40}
+        let deep = 80.0 * self.viscosity;
+        // beyond, Φ is above its least value by more than that
+        let reach = 2.0 * self.fastest * t + (2.0 * deep * t).sqrt();
+        let step = 2.0 * reach / (LOOKS - 1) as f64;
         let place = |n: usize| x - reach + step * n as f64;
         let phase = |y: f64| (self.primitive)(y) + (x - y) * (x - y) / (2.0 * t);
-        let phases: Vec<f64> = (0..POINTS).map(|n| phase(place(n))).collect();
-        let least = phases.iter().copied().fold(f64::INFINITY, f64::min);
+        let looked: Vec<f64> = (0..LOOKS).map(|n| phase(place(n))).collect();
+        let bottoms: Vec<(usize, f64, f64)> = (0..LOOKS)
+            .filter(|n| {
+                looked[n.saturating_sub(1)].min(looked[(n + 1).min(LOOKS - 1)]) >= looked[*n]
+            })
+            .map(|n| {
+                let y = bottom(place(n) - step, place(n) + step, phase);
+                match phase(y) < looked[n] {
+                    true => (n, y, phase(y)),
+                    false => (n, place(n), looked[n]),
+                }
+            })
+            .collect();
+        let least = bottoms.iter().map(|b| b.2).fold(f64::INFINITY, f64::min);
+        let inside = |y: f64| phase(y) - least < deep;
+        // from a bottom to where Φ leaves the well, first in steps of the looks, then between two of them
+        let edge = |n: usize, y: f64, way: f64| {
+            let (mut within, mut beyond) = (y, place(n) + way * step);
+            while inside(beyond) && (beyond - x).abs() < reach {
+                (within, beyond) = (beyond, beyond + way * step);
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (within + beyond);
+                match inside(middle) {
+                    true => within = middle,
+                    false => beyond = middle,
+                }
+            }
+            beyond
+        };
+        let mut wells: Vec<[f64; 2]> = vec![];
+        for (n, y, _) in bottoms.iter().filter(|b| b.2 - least < deep) {
+            let [low, high] = [edge(*n, *y, -1.0), edge(*n, *y, 1.0)];
+            match wells.last_mut() {
+                Some(last) if low <= last[1] => last[1] = last[1].max(high),
+                _ => wells.push([low, high]),
+            }
+        }
         let (mut above, mut below) = (0.0, 0.0);
-        for (n, p) in phases.iter().enumerate() {
-            let weight = (-(p - least) / (2.0 * self.viscosity)).exp();
-            above += weight * (x - place(n)) / t;
-            below += weight;
+        for [low, high] in wells {
+            let width = (high - low) / (POINTS - 1) as f64;
+            // of wells narrower than numbers are apart the places are one, and any width does
+            let width = width.max(f64::MIN_POSITIVE);
+            for k in 0..POINTS {
+                let y = low + width * k as f64;
+                let weight = width * (-(phase(y) - least).max(0.0) / (2.0 * self.viscosity)).exp();
+                above += weight * (x - y) / t;
+                below += weight;
+            }
         }
         above / below
     }
+}
+
+/// The place of the least value between `a` and `b`, where there is one.
+fn bottom(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..100 {
+        let (p, q) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+        match f(p) <= f(q) {
+            true => b = q,
+            false => a = p,
+        }
+    }
+    0.5 * (a + b)
 }

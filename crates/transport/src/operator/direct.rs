@@ -1,10 +1,12 @@
 //! Sums over bonds, point by point. Products and sums alone, in one order: the bits are those of any instruction set.
 
-use crate::flux::Flux;
+use crate::flux::Psi;
 use crate::grid::Padded;
 use crate::kernel::Parity;
-use crate::law::Law;
+use crate::law::{Direction, Law};
+use crate::threads::{PIECE, pieces};
 use crate::weights::Stencil;
+use rayon::prelude::*;
 
 /// Points whose sums stay in registers: eight registers of AVX2, four of AVX-512.
 const BLOCK: usize = 32;
@@ -15,9 +17,18 @@ pub fn convolve(stencil: &Stencil, axis: usize, padded: &Padded, v: &[f64], out:
         .filter(|(_, w)| w[axis] != 0.0)
         .map(|(m, w)| (padded.offset(*m), w[axis]))
         .collect();
-    let n = padded.grid.cells[0];
-    for (j, out) in out.chunks_exact_mut(n).enumerate() {
-        row(stencil.parity, &bonds, v, padded.row(j), out);
+    let [n, _] = padded.grid.cells;
+    pieces(out, line(padded), 2 * bonds.len(), |first, out| {
+        let start = padded.row(first / n) + first % n;
+        row(stencil.parity, &bonds, v, start, out);
+    });
+}
+
+/// Points that are summed together by one thread: a piece of a line, a row of a plane.
+fn line(padded: &Padded) -> usize {
+    match padded.grid.cells {
+        [_, 1] => PIECE,
+        [n, _] => n,
     }
 }
 
@@ -95,89 +106,121 @@ fn even<const N: usize>(bonds: &[(isize, f64)], v: &[f64], at: usize, out: &mut 
     out.copy_from_slice(&sum);
 }
 
-/// Each bond with an end in the grid once: `visit(p, q, flux weight, spreading weight)`, p before q in memory, of which either may be a ghost
-/// of a collar. Where the boundary is periodic the first end is a point and the other possibly its image.
-pub(super) fn pairs(
+/// The sum over bonds with an end in the grid, each once, of `of(p, q, is p in the grid, is q, flux weight, spreading weight)`, p before q in memory, of which
+/// either may be a ghost of a collar. Where the boundary is periodic the first end is a point and the other possibly its image.
+/// Bonds of a step make a sum of their own, and these are added in order.
+pub(super) fn sum_of_pairs(
     law: &Law,
     padded: &Padded,
     direction: &[Vec<f64>],
-    mut visit: impl FnMut(usize, usize, bool, bool, f64, f64),
-) {
+    of: impl Fn(usize, usize, bool, bool, f64, f64) -> f64 + Sync,
+) -> f64 {
     let grid = &padded.grid;
     let [n, rows] = grid.cells.map(|c| c as isize);
-    let mut over = |stencil: &Stencil, carries: bool| {
-        for (m, w) in stencil.steps.iter().zip(&stencil.weights) {
-            let offset = padded.offset(*m);
-            // first ends in the grid, and behind it where the second is still inside
-            let collars = !law.periodic();
-            let (from_j, from_i) = match collars {
-                true => (-m[1].max(0), -m[0].max(0)),
-                false => (0, 0),
-            };
-            let to_i = if collars { n + (-m[0]).max(0) } else { n };
-            for j in from_j..rows {
-                for i in from_i..to_i {
-                    let inside = |i: isize, j: isize| (0..n).contains(&i) && (0..rows).contains(&j);
-                    let (first, second) = (inside(i, j), !collars || inside(i + m[0], j + m[1]));
-                    if !(first || second) {
-                        continue;
-                    }
-                    let p = padded.row(0).wrapping_add_signed(padded.offset([i, j]));
-                    let q = p.wrapping_add_signed(offset);
-                    match carries {
-                        true => {
-                            let w = { direction.iter().zip(w) }
-                                .map(|(d, w)| 0.5 * w * (d[p] + d[q]))
-                                .sum();
-                            visit(p, q, first, second, w, 0.0);
-                        }
-                        false => visit(p, q, first, second, 0.0, w[0]),
-                    }
+    let collars = !law.periodic();
+    let of_step = |m: [isize; 2], w: [f64; 2], carries: bool| {
+        let offset = padded.offset(m);
+        // first ends in the grid, and behind it where the second is still inside
+        let (from_j, from_i) = match collars {
+            true => (-m[1].max(0), -m[0].max(0)),
+            false => (0, 0),
+        };
+        let to_i = if collars { n + (-m[0]).max(0) } else { n };
+        let mut sum = 0.0;
+        for j in from_j..rows {
+            for i in from_i..to_i {
+                let inside = |i: isize, j: isize| (0..n).contains(&i) && (0..rows).contains(&j);
+                let (first, second) = (inside(i, j), !collars || inside(i + m[0], j + m[1]));
+                if !(first || second) {
+                    continue;
                 }
+                let p = padded.row(0).wrapping_add_signed(padded.offset([i, j]));
+                let q = p.wrapping_add_signed(offset);
+                sum += match carries {
+                    true => {
+                        let w = { direction.iter().zip(w) }
+                            .map(|(d, w)| 0.5 * w * (d[p] + d[q]))
+                            .sum();
+                        of(p, q, first, second, w, 0.0)
+                    }
+                    false => of(p, q, first, second, 0.0, w[0]),
+                };
             }
         }
+        sum
     };
-    if let Some(advection) = &law.advection {
-        over(&advection.stencil, true);
-    }
-    if let Some(diffusion) = &law.diffusion {
-        over(&diffusion.stencil, false);
-    }
+    let over = |stencil: &Stencil, carries: bool| -> f64 {
+        let steps = stencil.steps.par_iter().zip(&stencil.weights);
+        let sums: Vec<f64> = steps.map(|(m, w)| of_step(*m, *w, carries)).collect();
+        sums.iter().sum()
+    };
+    let carried = law.advection.as_ref().map(|a| over(&a.stencil, true));
+    let spread = law.diffusion.as_ref().map(|d| over(&d.stencil, false));
+    carried.unwrap_or(0.0) + spread.unwrap_or(0.0)
 }
 
-/// Adds the transport of a flux that is no polynomial: `−Σ_m w_m F(u(x), u(x + mh))`.
+/// Adds the transport of a flux that is no polynomial, `−Σ_m w_m F(u(x), u(x + mh))`: F of each pair once, for all pairs of a step together.
 pub(super) fn carry(
     law: &Law,
-    flux: &Flux,
+    psi: &dyn Psi,
     padded: &Padded,
     direction: &[Vec<f64>],
     v: &[f64],
+    pairs: &mut Vec<f64>,
     out: &mut [f64],
 ) {
-    let n = padded.grid.cells[0];
+    /// of an evaluation
+    const WORK: usize = 16;
+    let [n, rows] = padded.grid.cells;
     let Some(advection) = &law.advection else {
         return;
     };
-    for (m, w) in advection
-        .stencil
-        .steps
-        .iter()
-        .zip(&advection.stencil.weights)
-    {
-        let offset = padded.offset(*m);
-        for (j, out) in out.chunks_exact_mut(n).enumerate() {
-            let start = padded.row(j);
-            for (i, out) in out.iter_mut().enumerate() {
-                let p = start + i;
-                let [ahead, behind] = [offset, -offset].map(|o| {
-                    let q = p.wrapping_add_signed(o);
-                    let w: f64 = { direction.iter().zip(w) }
-                        .map(|(d, w)| 0.5 * w * (d[p] + d[q]))
-                        .sum();
-                    w * flux.value(v[p], v[q])
-                });
+    pairs.resize(padded.size(), 0.0);
+    let own = line(padded);
+    let length = if rows == 1 { PIECE } else { padded.stride };
+    let stencil = &advection.stencil;
+    for (m, w) in stencil.steps.iter().zip(&stencil.weights) {
+        // steps go ahead in memory: m[1] ≥ 0, and m[0] > 0 where that is 0
+        let offset = padded.offset(*m).unsigned_abs();
+        let up = m[1].unsigned_abs();
+        let low = padded.margin[0] - m[0].max(0).unsigned_abs();
+        let high = padded.margin[0] + n + (-m[0]).max(0).unsigned_abs();
+        pieces(pairs, length, WORK, |first, piece| {
+            let row = first / padded.stride;
+            if row + up < padded.margin[1] || row >= padded.margin[1] + rows {
+                return;
+            }
+            let begin = (row * padded.stride + low).max(first);
+            let end = (row * padded.stride + high).min(first + piece.len());
+            if begin >= end {
+                return;
+            }
+            let piece = &mut piece[begin - first..end - first];
+            let (here, there) = (&v[begin..end], &v[begin + offset..end + offset]);
+            for ((f, u), v) in piece.iter_mut().zip(here).zip(there) {
+                *f = 0.5 * (u + v);
+            }
+            psi.values(piece);
+            match advection.direction {
+                Direction::Constant(d) => {
+                    let w = w[0] * d[0] + w[1] * d[1];
+                    piece.iter_mut().for_each(|f| *f *= w);
+                }
+                Direction::Field(_) => {
+                    for (k, f) in piece.iter_mut().enumerate() {
+                        let (p, q) = (begin + k, begin + k + offset);
+                        let both = direction.iter().zip(w);
+                        *f *= both.map(|(d, w)| 0.5 * w * (d[p] + d[q])).sum::<f64>();
+                    }
+                }
+            }
+        });
+        pieces(out, own, 4, |first, out| {
+            let p = padded.row(first / n) + first % n;
+            let (ahead, behind) = (&pairs[p..], &pairs[p - offset..]);
+            for ((out, ahead), behind) in out.iter_mut().zip(ahead).zip(behind) {
                 *out -= ahead - behind;
             }
-        }
+        });
     }
 }

@@ -1,6 +1,7 @@
 //! Convolutions on periodic grids by the fast Fourier transform: the cost does not know the horizon.
 
 use crate::kernel::Parity;
+use crate::threads::{PIECE, pieces, pieces_with};
 use crate::weights::Stencil;
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -10,20 +11,25 @@ use std::sync::Arc;
 
 type C = Complex<f64>;
 
-/// Columns that are transformed together, so that whole lines of memory are read.
+/// Lines that are taken together, so that whole lines of memory are read.
 const TOGETHER: usize = 8;
 
-/// Transforms of a grid, real along x and complex along y.
+/// Additions for a number of a transform, about.
+const WORK: usize = 16;
+
+/// Transforms of a grid, real along x and complex along y. Lines of a plane are shared out to threads; a line alone is transformed on one.
+/// A spectrum of a plane stands column by column.
 pub struct Transform {
     cells: [usize; 2],
-    /// Numbers of a row of the spectrum.
+    /// Waves along x.
     half: usize,
     forward: Arc<dyn RealToComplex<f64>>,
     inverse: Arc<dyn ComplexToReal<f64>>,
     columns: Option<[Arc<dyn Fft<f64>>; 2]>,
+    /// Of a plane: spectra of its rows.
+    rows: Vec<C>,
     real: Vec<f64>,
-    scratch: [Vec<C>; 3],
-    gathered: Vec<C>,
+    scratch: [Vec<C>; 2],
 }
 
 impl fmt::Debug for Transform {
@@ -39,6 +45,7 @@ impl Transform {
             planner.plan_fft_forward(cells[0]),
             planner.plan_fft_inverse(cells[0]),
         );
+        let half = cells[0] / 2 + 1;
         let columns = (cells[1] > 1).then(|| {
             let mut planner = FftPlanner::new();
             [
@@ -46,20 +53,12 @@ impl Transform {
                 planner.plan_fft_inverse(cells[1]),
             ]
         });
-        let most = columns
-            .iter()
-            .flatten()
-            .map(|c| c.get_inplace_scratch_len())
-            .max();
+        let of_plane = if cells[1] > 1 { half * cells[1] } else { 0 };
         Transform {
-            half: cells[0] / 2 + 1,
+            half,
             real: vec![0.0; cells[0]],
-            scratch: [
-                forward.make_scratch_vec(),
-                inverse.make_scratch_vec(),
-                vec![C::default(); most.unwrap_or(0)],
-            ],
-            gathered: vec![C::default(); TOGETHER * cells[1]],
+            scratch: [forward.make_scratch_vec(), inverse.make_scratch_vec()],
+            rows: vec![C::default(); of_plane],
             cells,
             forward,
             inverse,
@@ -72,59 +71,76 @@ impl Transform {
     }
 
     pub fn to_spectrum(&mut self, u: &[f64], spectrum: &mut [C]) {
-        let rows = u
-            .chunks_exact(self.cells[0])
-            .zip(spectrum.chunks_exact_mut(self.half));
-        for (u, row) in rows {
+        let ([n, rows], half, forward) = (self.cells, self.half, &self.forward);
+        // lengths are those of the plan
+        let Some([column, _]) = &self.columns else {
             self.real.copy_from_slice(u);
-            // lengths are those of the plan
-            let done = self
-                .forward
-                .process_with_scratch(&mut self.real, row, &mut self.scratch[0]);
+            let done = forward.process_with_scratch(&mut self.real, spectrum, &mut self.scratch[0]);
             debug_assert!(done.is_ok());
-        }
-        self.along_columns(spectrum, 0);
+            return;
+        };
+        let room = || (vec![0.0; n], forward.make_scratch_vec());
+        let of_row = |(real, scratch): &mut (Vec<f64>, Vec<C>), first: usize, out: &mut [C]| {
+            for (k, row) in out.chunks_exact_mut(half).enumerate() {
+                real.copy_from_slice(&u[(first / half + k) * n..][..n]);
+                let done = forward.process_with_scratch(real, row, scratch);
+                debug_assert!(done.is_ok());
+            }
+        };
+        pieces_with(&mut self.rows, TOGETHER * half, WORK, room, of_row);
+        let from = &self.rows;
+        let room = || vec![C::default(); column.get_inplace_scratch_len()];
+        let of_columns = |scratch: &mut Vec<C>, first: usize, out: &mut [C]| {
+            let first = first / rows;
+            for j in 0..rows {
+                for k in 0..out.len() / rows {
+                    out[k * rows + j] = from[j * half + first + k];
+                }
+            }
+            column.process_with_scratch(out, scratch);
+        };
+        pieces_with(spectrum, TOGETHER * rows, WORK, room, of_columns);
     }
 
     /// Without the factor 1/N; `spectrum` is used up.
     pub fn to_values(&mut self, spectrum: &mut [C], u: &mut [f64]) {
-        self.along_columns(spectrum, 1);
-        let rows = u
-            .chunks_exact_mut(self.cells[0])
-            .zip(spectrum.chunks_exact_mut(self.half));
-        for (u, row) in rows {
+        let ([n, rows], half, inverse) = (self.cells, self.half, &self.inverse);
+        let real_row = |row: &mut [C], u: &mut [f64], scratch: &mut [C]| {
             // what a real row cannot have
             row[0].im = 0.0;
-            if self.cells[0].is_multiple_of(2) {
-                row[self.half - 1].im = 0.0;
+            if n.is_multiple_of(2) {
+                row[half - 1].im = 0.0;
             }
-            let done = self
-                .inverse
-                .process_with_scratch(row, u, &mut self.scratch[1]);
+            let done = inverse.process_with_scratch(row, u, scratch);
             debug_assert!(done.is_ok());
-        }
-    }
-
-    fn along_columns(&mut self, spectrum: &mut [C], way: usize) {
-        let Some(plans) = &self.columns else {
-            return;
         };
-        let rows = self.cells[1];
-        for first in (0..self.half).step_by(TOGETHER) {
-            let together = TOGETHER.min(self.half - first);
-            let gathered = &mut self.gathered[..together * rows];
-            for j in 0..rows {
-                for k in 0..together {
-                    gathered[k * rows + j] = spectrum[j * self.half + first + k];
+        let Some([_, column]) = &self.columns else {
+            return real_row(spectrum, u, &mut self.scratch[1]);
+        };
+        let room = || vec![C::default(); column.get_inplace_scratch_len()];
+        let of_columns = |scratch: &mut Vec<C>, _: usize, out: &mut [C]| {
+            column.process_with_scratch(out, scratch)
+        };
+        pieces_with(spectrum, TOGETHER * rows, WORK, room, of_columns);
+        let from = &*spectrum;
+        let room = || {
+            (
+                vec![C::default(); TOGETHER * half],
+                inverse.make_scratch_vec(),
+            )
+        };
+        let of_rows = |(block, scratch): &mut (Vec<C>, Vec<C>), first: usize, u: &mut [f64]| {
+            let first = first / n;
+            let count = u.len() / n;
+            for k in 0..half {
+                for j in 0..count {
+                    block[j * half + k] = from[k * rows + first + j];
                 }
             }
-            plans[way].process_with_scratch(gathered, &mut self.scratch[2]);
-            for j in 0..rows {
-                for k in 0..together {
-                    spectrum[j * self.half + first + k] = gathered[k * rows + j];
-                }
-            }
-        }
+            let lines = block.chunks_exact_mut(half).zip(u.chunks_exact_mut(n));
+            lines.for_each(|(row, u)| real_row(row, u, scratch));
+        };
+        pieces_with(u, TOGETHER * n, WORK, room, of_rows);
     }
 
     /// `Σ_m w_m e^{ik·m}` (of an even kernel `Σ_m w_m (e^{ik·m} − 1)`) of the weights of an axis at all wave vectors of the grid.
@@ -180,9 +196,11 @@ impl Fourier {
 
     pub fn convolve(&mut self, kernel: usize, v: &[f64], out: &mut [f64]) {
         self.transform.to_spectrum(v, &mut self.spectrum);
-        for (a, s) in self.spectrum.iter_mut().zip(&self.symbols[kernel]) {
-            *a *= s;
-        }
+        let symbol = &self.symbols[kernel];
+        pieces(&mut self.spectrum, PIECE, 2, |first, piece| {
+            let each = piece.iter_mut().zip(&symbol[first..]);
+            each.for_each(|(a, s)| *a *= s);
+        });
         self.transform.to_values(&mut self.spectrum, out);
     }
 
@@ -190,9 +208,11 @@ impl Fourier {
     pub fn solve(&mut self, kernel: usize, factor: f64, u: &mut [f64]) {
         let n = u.len() as f64;
         self.transform.to_spectrum(u, &mut self.spectrum);
-        for (a, s) in self.spectrum.iter_mut().zip(&self.symbols[kernel]) {
-            *a /= n * (1.0 - factor * n * s.re);
-        }
+        let symbol = &self.symbols[kernel];
+        pieces(&mut self.spectrum, PIECE, 8, |first, piece| {
+            let each = piece.iter_mut().zip(&symbol[first..]);
+            each.for_each(|(a, s)| *a /= n * (1.0 - factor * n * s.re));
+        });
         self.transform.to_values(&mut self.spectrum, u);
     }
 }

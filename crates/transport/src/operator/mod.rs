@@ -11,6 +11,8 @@ pub use fourier::Transform;
 use crate::flux::Flux;
 use crate::grid::{Boundary, Padded};
 use crate::law::{Direction, Law};
+use crate::measure;
+use crate::threads::{PIECE, pieces};
 use crate::weights::Stencil;
 use fourier::Fourier;
 use peridyne::error::BuildError;
@@ -22,13 +24,15 @@ pub enum Evaluation {
     Fourier,
 }
 
-/// From this many bonds of a point on Fourier transforms are faster (`cargo run --release --example cost`).
+/// From this many bonds of a point on, the mean of all convolutions, Fourier transforms are faster on one thread (`cargo run --release --example cost`).
 pub const FOURIER_FROM: usize = 80;
 
 impl Evaluation {
-    /// The faster one.
+    /// The faster one on one thread, so that results do not depend on threads.
     pub fn choose(law: &Law) -> Evaluation {
-        match law.is_convolution() && law.bonds().into_iter().sum::<usize>() >= FOURIER_FROM {
+        let each = law.bonds().into_iter().zip(law.convolutions());
+        let (bonds, number) = each.fold((0, 0), |sum, (b, n)| (sum.0 + n * b, sum.1 + n));
+        match law.is_convolution() && bonds >= FOURIER_FROM * number {
             true => Evaluation::Fourier,
             false => Evaluation::Direct,
         }
@@ -128,7 +132,46 @@ impl Operator {
             spectrum,
         };
         operator.spreads()?;
+        operator.collars_say()?;
         Ok(operator)
+    }
+
+    /// Is u finite in all of the collars, and can the flux be evaluated there, at t = 0?
+    fn collars_say(&self) -> Result<(), BuildError> {
+        let Boundary::Collars(given) = &self.law.boundary else {
+            return Ok(());
+        };
+        for x in self.padded.ghosts() {
+            let u = given(&x, 0.0);
+            if !u.is_finite() {
+                let place = &x[..self.law.grid.dimension];
+                let what = format!("u in the collar is {u} at {place:?}");
+                return Err(BuildError::invalid("boundary", what));
+            }
+        }
+        match &self.law.advection {
+            Some(a) => {
+                let [low, high] = self.extremes(&[], 0.0);
+                let told = a.flux.evaluable(low, high, "advection.flux");
+                told.map_err(|mut e| {
+                    e.message += " in the collars";
+                    e
+                })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Smallest and largest value that bonds meet at time t: of u, and of collars.
+    pub fn extremes(&self, u: &[f64], t: f64) -> [f64; 2] {
+        let own = measure::extremes(u);
+        match &self.law.boundary {
+            Boundary::Periodic => own,
+            Boundary::Collars(given) => self.padded.ghosts().fold(own, |[low, high], x| {
+                let u = given(&x, t);
+                [low.min(u), high.max(u)]
+            }),
+        }
     }
 
     /// Does diffusion damp all waves?
@@ -178,18 +221,19 @@ impl Operator {
         let Some(advection) = &self.law.advection else {
             return;
         };
-        self.padded.fill(u, &self.law.boundary, t, &mut self.values);
+        let values = match &self.fourier {
+            Some(_) => u,
+            None => {
+                self.padded.fill(u, &self.law.boundary, t, &mut self.values);
+                &self.values
+            }
+        };
         let a = match &advection.flux {
             Flux::Polynomial(a) => a,
-            flux @ Flux::Function(_) => {
-                direct::carry(
-                    &self.law,
-                    flux,
-                    &self.padded,
-                    &self.direction,
-                    &self.values,
-                    out,
-                );
+            Flux::Function(psi) => {
+                let (padded, direction) = (&self.padded, &self.direction);
+                let pairs = &mut self.source;
+                direct::carry(&self.law, &**psi, padded, direction, values, pairs, out);
                 return;
             }
         };
@@ -200,9 +244,11 @@ impl Operator {
                 continue;
             }
             for (number, (stencil, axis)) in of_axes(&self.carrying, &self.law).enumerate() {
-                let polynomial = |v: &f64| row.iter().rev().fold(0.0, |sum, c| sum * v + c);
-                self.source.clear();
-                self.source.extend(self.values.iter().map(polynomial));
+                self.source.resize(values.len(), 0.0);
+                pieces(&mut self.source, PIECE, 4, |first, piece| {
+                    let v = &values[first..][..piece.len()];
+                    evaluate(row, v, piece);
+                });
                 let mut convolve = |source: &[f64], sums: &mut [f64]| match &mut self.fourier {
                     Some(fourier) => fourier.convolve(number, source, sums),
                     None => direct::convolve(stencil, axis, &self.padded, source, sums),
@@ -217,7 +263,10 @@ impl Operator {
                 let padded = &self.padded;
                 let own = |k: usize| d[padded.row(k / n) + k % n];
                 add(out, u, &self.sums, p as i32, Some(&own));
-                self.source.iter_mut().zip(d).for_each(|(s, d)| *s *= d);
+                pieces(&mut self.source, PIECE, 1, |first, piece| {
+                    let each = piece.iter_mut().zip(&d[first..]);
+                    each.for_each(|(s, d)| *s *= d);
+                });
                 convolve(&self.source, &mut self.sums);
                 add(out, u, &self.sums, p as i32, Some(&|_| 1.0));
             }
@@ -229,23 +278,22 @@ impl Operator {
         let Some(diffusion) = &self.law.diffusion else {
             return;
         };
-        self.padded.fill(u, &self.law.boundary, t, &mut self.values);
         match &mut self.fourier {
             Some(fourier) => {
                 let number = of_axes(&self.carrying, &self.law).count();
-                fourier.convolve(number, &self.values, &mut self.sums);
+                fourier.convolve(number, u, &mut self.sums);
             }
-            None => direct::convolve(
-                &diffusion.stencil,
-                0,
-                &self.padded,
-                &self.values,
-                &mut self.sums,
-            ),
+            None => {
+                self.padded.fill(u, &self.law.boundary, t, &mut self.values);
+                let (padded, values) = (&self.padded, &self.values);
+                direct::convolve(&diffusion.stencil, 0, padded, values, &mut self.sums);
+            }
         }
-        for (out, s) in out.iter_mut().zip(&self.sums) {
-            *out += diffusion.viscosity * s;
-        }
+        let sums = &self.sums;
+        pieces(out, PIECE, 2, |first, piece| {
+            let each = piece.iter_mut().zip(&sums[first..]);
+            each.for_each(|(out, s)| *out += diffusion.viscosity * s);
+        });
     }
 
     /// `u_t`
@@ -300,18 +348,18 @@ impl Operator {
         padded.fill(u, &self.law.boundary, t, &mut v);
         let flux = self.law.advection.as_ref().map(|a| &a.flux);
         let viscosity = self.law.diffusion.as_ref().map_or(0.0, |d| d.viscosity);
-        let mut sum = 0.0;
-        direct::pairs(
+        let sum = direct::sum_of_pairs(
             &self.law,
             &padded,
             &direction,
             |p, q, first, second, carried, spread| {
                 let inside = |k: usize, is: bool| if is { v[k] } else { 0.0 };
                 let moved = inside(q, second) - inside(p, first);
-                if let Some(flux) = flux.filter(|_| carried != 0.0) {
-                    sum += carried * flux.value(v[p], v[q]) * moved;
-                }
-                sum -= viscosity * spread * (v[q] - v[p]) * moved;
+                let flow = match flux.filter(|_| carried != 0.0) {
+                    Some(flux) => carried * flux.value(v[p], v[q]) * moved,
+                    None => 0.0,
+                };
+                flow - viscosity * spread * (v[q] - v[p]) * moved
             },
         );
         sum * self.law.grid.cell()
@@ -330,18 +378,48 @@ fn of_axes<'a>(carrying: &'a [Stencil], law: &Law) -> impl Iterator<Item = (&'a 
         .flat_map(move |s| (0..axes).map(move |a| (s, a)))
 }
 
-/// Subtracts `u^p sums`, or half of it times a factor of the point.
-fn add(out: &mut [f64], u: &[f64], sums: &[f64], p: i32, factor: Option<&dyn Fn(usize) -> f64>) {
-    let terms = out.iter_mut().zip(u).zip(sums);
-    match (p, factor) {
-        (0, None) => terms.for_each(|((out, _), s)| *out -= s),
-        (1, None) => terms.for_each(|((out, u), s)| *out -= u * s),
-        (p, None) => terms.for_each(|((out, u), s)| *out -= u.powi(p) * s),
-        (p, Some(factor)) => {
-            let each = terms.enumerate();
-            each.for_each(|(k, ((out, u), s))| *out -= 0.5 * factor(k) * u.powi(p) * s);
+/// `Σ c_q v^q`
+fn evaluate(c: &[f64], v: &[f64], out: &mut [f64]) {
+    // a power alone, as Burgers' are, without what is 0
+    match c {
+        [0.0, c] => v.iter().zip(out).for_each(|(v, out)| *out = c * v),
+        [0.0, 0.0, c] => v.iter().zip(out).for_each(|(v, out)| *out = c * v * v),
+        _ => {
+            let (last, lower) = c.split_last().unwrap_or((&0.0, &[]));
+            out.fill(*last);
+            for c in lower.iter().rev() {
+                v.iter()
+                    .zip(&mut *out)
+                    .for_each(|(v, out)| *out = *out * v + c);
+            }
         }
     }
+}
+
+/// Subtracts `u^p sums`, or half of it times a factor of the point.
+fn add(
+    out: &mut [f64],
+    u: &[f64],
+    sums: &[f64],
+    p: i32,
+    factor: Option<&(dyn Fn(usize) -> f64 + Sync)>,
+) {
+    pieces(out, PIECE, 4, |first, out| {
+        let (u, sums) = (&u[first..], &sums[first..]);
+        let terms = out.iter_mut().zip(u).zip(sums);
+        match (p, factor) {
+            (0, None) => terms.for_each(|((out, _), s)| *out -= s),
+            (1, None) => terms.for_each(|((out, u), s)| *out -= u * s),
+            (2, None) => terms.for_each(|((out, u), s)| *out -= u * u * s),
+            (p, None) => terms.for_each(|((out, u), s)| *out -= u.powi(p) * s),
+            (p, Some(factor)) => {
+                let each = terms.enumerate();
+                each.for_each(|(k, ((out, u), s))| {
+                    *out -= 0.5 * factor(first + k) * u.powi(p) * s;
+                });
+            }
+        }
+    });
 }
 
 /// Conjugate gradients for a symmetric positive operator; `u` is the right side and becomes the solution.

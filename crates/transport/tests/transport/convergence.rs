@@ -1,8 +1,15 @@
 //! To the local laws as the horizon shrinks, and in h and ε.
 
-use crate::sample::{evolution, line};
-use peridyne_transport::exact::{ColeHopf, characteristics, shock_time};
+use crate::sample::{evolution, fixed, line};
+use peridyne_transport::exact::{ColeHopf, characteristics, shock_time, viscous_shock};
 use peridyne_transport::{Bump, Evaluation, Flux, Method, StepSize, measure};
+
+/// Do orders found at halved sizes tend to one, as they do where the next term of the error is `factor` times smaller for half the size? Their distance from it falls by
+/// that factor, here within a quarter, and is below 0.1 at the start.
+fn tends(orders: &[f64], order: f64, factor: f64) -> bool {
+    let off: Vec<f64> = orders.iter().map(|o| (o - order).abs()).collect();
+    off[0] < 0.1 && off.windows(2).all(|w| w[1] < 1.25 * w[0] / factor + 1e-3)
+}
 
 /// Before the shock: second order in δ, for each bump and for both fluxes of Burgers.
 #[test]
@@ -30,7 +37,7 @@ fn second_order_in_the_horizon_before_the_shock() {
             });
             let orders = measure::orders(&deltas, &errors);
             assert!(
-                orders.iter().all(|o| (o - 2.0).abs() < 0.15),
+                tends(&orders, 2.0, 4.0),
                 "{bump:?} {flux:?}: {errors:?} {orders:?}"
             );
         }
@@ -59,10 +66,7 @@ fn second_order_in_the_horizon_with_viscosity() {
         places.iter().map(off).fold(0.0, f64::max)
     });
     let orders = measure::orders(&deltas, &errors);
-    assert!(
-        orders.iter().all(|o| (o - 2.0).abs() < 0.2),
-        "{errors:?} {orders:?}"
-    );
+    assert!(tends(&orders, 2.0, 4.0), "{errors:?} {orders:?}");
 }
 
 /// Cole and Hopf's integral solves the equation: by differences of it.
@@ -80,6 +84,48 @@ fn cole_and_hopf_solve_burgers() {
         rate + u * slope - 0.1 * bend
     );
     assert!((exact.value(x, 1e-4) - x.sin()).abs() < 2e-4);
+}
+
+/// Where e^{−Φ/2ε} under- and overflows: against the viscous shock, which is exact for every ε, and against the characteristics, which a smooth solution leaves by O(ε).
+#[test]
+fn cole_and_hopf_for_tiny_viscosities() {
+    let t = 0.7;
+    for epsilon in [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
+        // from (1 − tanh(x/4ε))/2, with ln cosh z = |z| + ln(1 + e^{−2|z|}) − ln 2
+        let primitive = |y: f64| {
+            let z = (y / (4.0 * epsilon)).abs();
+            0.5 * y - 2.0 * epsilon * (z + (-2.0 * z).exp().ln_1p() - 2f64.ln())
+        };
+        let exact = ColeHopf::new(primitive, 1.0, epsilon).unwrap();
+        for s in [-30.0, -3.0, -1.0, -0.2, 0.0, 0.4, 2.0, 10.0] {
+            let x = 0.5 * t + s * epsilon;
+            let off = (exact.value(x, t) - viscous_shock(1.0, 0.0, epsilon, x - 0.5 * t)).abs();
+            // Φ of size 1 is known to its round-off, of which the weights see the ratio to 2ε
+            assert!(
+                off < 1e-11 + 4.0 * f64::EPSILON / epsilon,
+                "{epsilon:e} {s}: {off:e}"
+            );
+        }
+    }
+    let flux = Flux::burgers();
+    for epsilon in [1e-3, 1e-5, 1e-7, 1e-10, 1e-14, 1e-20, 1e-100, 1e-300] {
+        let exact = ColeHopf::new(|y: f64| -y.cos(), 1.0, epsilon).unwrap();
+        for x in [0.3, 1.0, 2.0, 3.0, 4.5] {
+            let u = exact.value(x, t);
+            let local = characteristics(&flux, f64::sin, 1.0, x, t);
+            // |u_xx| t is below 40 there
+            let bound = 40.0 * epsilon + 2.0 * (f64::EPSILON).sqrt();
+            assert!((u - local).abs() < bound, "{epsilon:e} {x}: {u} {local}");
+        }
+        // past the shock both branches, by the deeper well: outside of [−1, 1] u never is
+        let past = |x: f64| exact.value(x, 2.0);
+        assert!(
+            past(3.0) > 0.9 && past(3.0) <= 1.0 && past(3.3) < -0.9,
+            "{epsilon:e}: {} {}",
+            past(3.0),
+            past(3.3)
+        );
+    }
 }
 
 /// At a fixed horizon that is no whole number of spacings: second order for a kernel that jumps there, third for one whose second derivative does.
@@ -128,7 +174,8 @@ fn first_order_in_the_viscosity_before_the_shock() {
             Evaluation::Fourier,
             f64::sin,
             Method::Rk4,
-            StepSize::Part(0.5),
+            // the same time steps: those of the largest ε
+            fixed(2e-3),
         );
         e.run_to(0.5).unwrap();
         e.u
@@ -137,8 +184,5 @@ fn first_order_in_the_viscosity_before_the_shock() {
     let values = [4e-3, 2e-3, 1e-3];
     let errors = values.map(|e| measure::distance(&run(e), &inviscid));
     let orders = measure::orders(&values, &errors);
-    assert!(
-        orders.iter().all(|o| (o - 1.0).abs() < 0.1),
-        "{errors:?} {orders:?}"
-    );
+    assert!(tends(&orders, 1.0, 2.0), "{errors:?} {orders:?}");
 }

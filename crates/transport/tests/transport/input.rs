@@ -115,3 +115,31 @@ fn laws_say_what_they_need() {
     assert!(told.message.contains("polynomial"), "{told}");
     assert!(Grid::line(1.0, 0.0, 10).is_err() && Grid::plane([0.0; 2], [1.0, 0.55], 10).is_err());
 }
+
+/// All of a collar is looked at, with the flux; tables say what is at 0; horizons of a plane have an end.
+#[test]
+fn collars_tables_and_long_horizons_are_looked_at() {
+    let a = odd(Bump::Cosine, 0.2, 1);
+    let grid = Grid::line(0.0, 1.0, 60).unwrap();
+    let told = |flux: Flux, given: fn(f64) -> f64| {
+        let boundary = Boundary::Collars(Arc::new(move |x, _| given(x[0])));
+        let flux = (flux, Direction::Constant([1.0, 0.0]), &a);
+        let law = Law::new(grid, boundary, Some(flux), None).unwrap();
+        Operator::new(law, Evaluation::Direct).unwrap_err().message
+    };
+    // finite in the domain, not beside it
+    let text = told(Flux::burgers(), f64::sqrt);
+    assert!(text.contains("u in the collar is NaN at [-"), "{text}");
+    let root = Flux::Function(Arc::new(f64::sqrt));
+    let text = told(root, |x| x);
+    assert!(
+        text.contains("the flux is NaN at u = -") && text.contains("collars"),
+        "{text}"
+    );
+    let table = Profile::Table(vec![[0.1, 1.0], [0.5, 0.0]]);
+    let text = Kernel::new(Parity::Odd, table, 0.5, 1, true, "k").unwrap_err();
+    assert!(text.message.contains("begins at z = 0.1"), "{text}");
+    let plane = Grid::plane([0.0; 2], [1.0; 2], 1000).unwrap();
+    let text = Stencil::new(&odd(Bump::Cosine, 0.6, 2), &plane, "k").unwrap_err();
+    assert!(text.message.contains("has 600 spacings"), "{text}");
+}

@@ -2,8 +2,11 @@
 
 mod conservation;
 mod convergence;
+mod expressions;
 mod input;
 mod operators;
+mod plane;
 mod sample;
 mod steps;
+mod threads;
 mod waves;

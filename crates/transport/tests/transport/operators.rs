@@ -3,6 +3,7 @@
 use crate::sample::{BUMPS, even, line, odd, operator};
 use peridyne_transport::noll::Noll;
 use peridyne_transport::quadrature::Gauss;
+use peridyne_transport::weights::Stencil;
 use peridyne_transport::{Boundary, Bump, Direction, Evaluation, Flux, Grid, Law, measure};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -11,6 +12,31 @@ fn rough(n: usize) -> Vec<f64> {
     (0..n)
         .map(|i| ((i * i) as f64 * 0.37).sin() + 0.3)
         .collect()
+}
+
+/// Round-off of a sum over bonds: 16 times that of the largest terms times all weights. Errors of many bonds are not of one sign.
+fn round_off(law: &Law, u: &[f64]) -> f64 {
+    let far = u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+    let reach =
+        |s: &Stencil| -> f64 { s.weights.iter().map(|w| 2.0 * f64::hypot(w[0], w[1])).sum() };
+    let mut size = 0.0;
+    if let Some(a) = &law.advection {
+        let terms: f64 = match &a.flux {
+            Flux::Polynomial(c) => { c.iter().enumerate() }
+                .flat_map(|(p, row)| {
+                    row.iter()
+                        .enumerate()
+                        .map(move |(q, c)| c.abs() * far.powi((p + q) as i32))
+                })
+                .sum(),
+            Flux::Function(_) => f64::NAN,
+        };
+        size += terms * reach(a.stencil());
+    }
+    if let Some(d) = &law.diffusion {
+        size += d.viscosity * 2.0 * far * reach(d.stencil());
+    }
+    16.0 * f64::EPSILON * size
 }
 
 /// Fluxes of each kind.
@@ -35,12 +61,9 @@ fn direct_sums_and_fourier_transforms_are_equal_to_round_off() {
                     operator(&law, e).rate(&u, 0.0, &mut rate);
                     rate
                 });
-                let size = a.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
                 let off = measure::distance(&a, &b);
-                assert!(
-                    off < 1e-13 * size.max(1.0),
-                    "{flux:?} {bump:?}: {off:e} of {size:e}"
-                );
+                let bound = round_off(&law, &u);
+                assert!(off < bound, "{flux:?} {bump:?}: {off:e} of {bound:e}");
             }
         }
     }
@@ -69,14 +92,11 @@ fn in_a_plane_too_with_a_field_of_directions() {
                 operator(&law, e).rate(&u, 0.0, &mut rate);
                 rate
             });
-            let size = a.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-            assert!(
-                measure::distance(&a, &b) < 1e-13 * size,
-                "{:e}",
-                measure::distance(&a, &b) / size
-            );
+            let bound = round_off(&law, &u);
+            let off = measure::distance(&a, &b);
+            assert!(off < bound, "{off:e} of {bound:e}");
             // nothing is made: what leaves a point comes to another
-            assert!(measure::mass(&a, grid.cell()).abs() < 1e-13 * size);
+            assert!(measure::mass(&a, 1.0).abs() < bound * grid.points() as f64);
         }
     }
 }
@@ -146,16 +166,39 @@ fn waves_follow_the_symbol() {
                         / n as f64
                 };
                 let (omega, decay) = (part(f64::sin, &carried), part(f64::cos, &spread));
-                assert!(
-                    part(f64::cos, &carried).abs() < 1e-12 && part(f64::sin, &spread).abs() < 1e-11
-                );
-                off.push((omega - a.symbol(k)).abs() + (decay - s.symbol(k)).abs());
+                let [sum_a, sum_s] = [&a, &s].map(|kernel| {
+                    let stencil = Stencil::new(kernel, &grid, "k").unwrap();
+                    stencil
+                        .weights
+                        .iter()
+                        .map(|w| 4.0 * w[0].abs())
+                        .sum::<f64>()
+                });
+                let round = 16.0 * f64::EPSILON;
+                assert!(part(f64::cos, &carried).abs() < round * sum_a);
+                assert!(part(f64::sin, &spread).abs() < round * sum_s);
+                let found = [(omega - a.symbol(k)).abs(), (decay - s.symbol(k)).abs()];
+                // ∫zφ, ∫z³φ and ∫z²φ, ∫z⁴φ are exact: the first of the series of the sine and of the cosine that are not are
+                // k⁵/120 ∫z⁵φ and k⁶/360 ∫z⁶φ, moments of 2δ⁴ at most, by a trapezoidal rule that errs by (h/δ)²,
+                // of which the two exact moments leave less than half
+                let rest = 0.5 * (delta * grid.spacing).powi(2);
+                let bound = [
+                    2.0 * k.powi(5) / 120.0 * rest,
+                    2.0 * k.powi(6) / 360.0 * rest,
+                ];
+                for p in 0..2 {
+                    assert!(
+                        found[p] < bound[p] + round * [sum_a, sum_s][p],
+                        "{bump:?} {k} {n}: {found:?} {bound:?}"
+                    );
+                }
+                off.push(found[0] + found[1]);
             }
             // smooth kernels beyond any order, those with kinks at second order or better
-            assert!(off[2] < 2e-3 * k * k * k, "{bump:?} {k}: {off:?}");
+            let orders = measure::orders(&[4.0, 2.0, 1.0], &off);
             assert!(
-                off[2] < 1e-9 || off[2] < 0.27 * off[1],
-                "{bump:?} {k}: {off:?}"
+                off[2] < 1e-11 || orders[1] > 1.95,
+                "{bump:?} {k}: {off:?} {orders:?}"
             );
         }
     }
@@ -184,7 +227,7 @@ fn closed_transforms_are_those_of_the_bumps() {
     }
 }
 
-/// (2.0.9a) and (2.0.9b), to 1e-10.
+/// (2.0.9a) and (2.0.9b), to the round-off of the quadrature.
 #[test]
 fn the_divergence_of_nolls_flux_is_the_operator() {
     for flux in fluxes()
@@ -201,7 +244,7 @@ fn the_divergence_of_nolls_flux_is_the_operator() {
             };
             let [flow, integral] = noll.identity(0.2, 1.5);
             assert!(
-                (flow - integral).abs() < 1e-10,
+                (flow - integral).abs() < 1e-13,
                 "{flux:?} {bump:?}: {flow} {integral}"
             );
             assert!(flow.abs() > 1e-3);
@@ -222,4 +265,59 @@ fn nolls_flux_of_a_constant_is_the_local_flux() {
         };
         assert!((noll.flux(0.0) - flux.local(0.7)).abs() < 1e-12);
     }
+}
+
+/// F(u + c, v + c) = F(u, v) + c(u + v)/2 + c²/2 of both fluxes of Burgers, so that the operator on u + c is that on u and c times the linear one, which is not ∂_x: the equation
+/// is not Galilean invariant, and what a moving frame leaves is known.
+#[test]
+fn a_moving_frame_leaves_the_linear_operator() {
+    let (n, c) = (120, 2.7);
+    for flux in [Flux::burgers(), Flux::energy_conserving()] {
+        let rate = |flux: Flux, u: &[f64]| {
+            let law = line(n, Some(flux), Bump::Cosine, 0.8, 0.0);
+            let mut rate = vec![0.0; n];
+            operator(&law, Evaluation::Direct).rate(u, 0.0, &mut rate);
+            (rate, round_off(&law, u))
+        };
+        let u = rough(n);
+        let moved: Vec<f64> = u.iter().map(|u| u + c).collect();
+        let ((own, _), (whole, bound), (linear, _)) = (
+            rate(flux.clone(), &u),
+            rate(flux, &moved),
+            rate(Flux::linear(c), &u),
+        );
+        let sum: Vec<f64> = own.iter().zip(&linear).map(|(a, b)| a + b).collect();
+        let off = measure::distance(&whole, &sum);
+        assert!(off < bound, "{off:e} of {bound:e}");
+        // c ∂_x of a wave is not it: the operator has b̂(kδ) of that
+        let law = line(n, None, Bump::Cosine, 0.8, 1.0);
+        let wave = law.grid.sample(|x| (3.0 * x[0]).sin());
+        let slope =
+            rate(Flux::linear(1.0), &wave).0[0] / -(3.0 * (3.0 * law.grid.place(0)[0]).cos());
+        let b = Bump::Cosine.transform(3.0 * 0.8).unwrap();
+        assert!((slope - b).abs() < 1e-3 && b < 0.8, "{slope} {b}");
+    }
+}
+
+/// Fourier transforms from 80 bonds of a point on, however many convolutions a law has; functions and collars never.
+#[test]
+fn the_faster_evaluation_is_chosen() {
+    let choose = |flux: Flux, spacings: f64, viscosity: f64| {
+        let h = 2.0 * PI / 1000.0;
+        Evaluation::choose(&line(
+            1000,
+            Some(flux),
+            Bump::Cosine,
+            spacings * h,
+            viscosity,
+        ))
+    };
+    for viscosity in [0.0, 1.0] {
+        for flux in fluxes() {
+            assert_eq!(choose(flux.clone(), 39.5, viscosity), Evaluation::Direct);
+            assert_eq!(choose(flux, 40.5, viscosity), Evaluation::Fourier);
+        }
+    }
+    let function = Flux::Function(Arc::new(f64::sin));
+    assert_eq!(choose(function, 100.0, 0.0), Evaluation::Direct);
 }

@@ -47,7 +47,7 @@ fn the_limit_of_the_step_is_where_waves_begin_to_grow() {
         for method in [Method::Ssprk3, Method::Rk4] {
             let law = line(256, flux.clone(), Bump::Polynomial(2), 0.3, viscosity);
             let u: Vec<f64> = (0..256).map(|i| ((i * i) as f64 * 0.37).sin()).collect();
-            let limit = stable_step(&operator(&law, Evaluation::Direct), method, &u);
+            let limit = stable_step(&operator(&law, Evaluation::Direct), method, &u, 0.0);
             for (part, grows) in [(0.999, false), (1.06, true)] {
                 let size = StepSize::Fixed {
                     step: part * limit,
@@ -107,7 +107,7 @@ fn stiff_diffusion_takes_long_steps() {
     let u: Vec<f64> = (0..128)
         .map(|i| 0.1 * ((i * i) as f64 * 0.37).sin())
         .collect();
-    let explicit = stable_step(&operator(&law, Evaluation::Direct), Method::Rk4, &u);
+    let explicit = stable_step(&operator(&law, Evaluation::Direct), Method::Rk4, &u, 0.0);
     let dt = 1000.0 * explicit;
     let [a, b] = [Evaluation::Fourier, Evaluation::Direct].map(|way| {
         let mut e = evolution(&law, way, |_| 0.0, Method::Imex, fixed(dt));
@@ -171,4 +171,67 @@ fn unstable_steps_are_refused_and_bad_states_left_alone() {
     let told = e.step(0.1).unwrap_err();
     assert!(matches!(told, RunError::NotFinite { .. }), "{told}");
     assert_eq!((e.u, e.time, e.steps), (before, 0.0, 0));
+}
+
+/// What comes in through a collar counts for the step, also where u is still 0 everywhere and where the collar is 0 until later.
+#[test]
+fn collars_count_for_the_step() {
+    let a = crate::sample::odd(Bump::Cosine, 0.2, 1);
+    let grid = Grid::line(0.0, 1.0, 50).unwrap();
+    let law = |given: fn(f64) -> f64| {
+        let boundary = Boundary::Collars(Arc::new(
+            move |x, t| if x[0] < 0.0 { given(t) } else { 0.0 },
+        ));
+        let flux = (
+            Flux::burgers(),
+            peridyne_transport::Direction::Constant([1.0, 0.0]),
+            &a,
+        );
+        Law::new(grid, boundary, Some(flux), None).unwrap()
+    };
+    let step = |given| {
+        let e = evolution(
+            &law(given),
+            Evaluation::Direct,
+            |_| 0.0,
+            Method::Rk4,
+            StepSize::Part(0.5),
+        );
+        e.next_step(1e5).unwrap()
+    };
+    let periodic = line(
+        50,
+        Some(Flux::burgers()),
+        Bump::Cosine,
+        0.2 * 2.0 * std::f64::consts::PI,
+        0.0,
+    );
+    let one = vec![1.0; 50];
+    // the same grid and horizon, 2π times as long
+    let limit = stable_step(
+        &operator(&periodic, Evaluation::Direct),
+        Method::Rk4,
+        &one,
+        0.0,
+    ) / (2.0 * std::f64::consts::PI);
+    // a whole number of steps leads to the end
+    let found = step(|_| 1.0);
+    assert!(
+        (found / (0.5 * limit) - 1.0).abs() < 1e-5,
+        "{found} {limit}"
+    );
+    let rising = step(|t| if t > 0.0 { 1.0 } else { 0.0 });
+    assert!(
+        (rising / (0.5 * limit) - 1.0).abs() < 1e-5,
+        "{rising} {limit}"
+    );
+    // a given step that is too long for what comes in is refused
+    let e = evolution(
+        &law(|_| 1.0),
+        Evaluation::Direct,
+        |_| 0.0,
+        Method::Rk4,
+        fixed(1.1 * limit),
+    );
+    assert!(matches!(e.next_step(10.0), Err(RunError::Unstable { .. })));
 }

@@ -114,7 +114,7 @@ pub struct FluxForm {
     /// ψ = c0 + c1 u + c2 u² + …, up to u⁸.
     #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
     pub polynomial: Option<At<Vec<Number>>>,
-    /// ψ as an expression of u, in plain numbers of the deck.
+    /// ψ as an expression of u, in plain numbers of the deck. Polynomials up to u⁸ are found and expanded, the rest is evaluated many values at a time.
     pub expression: Option<At<String>>,
 }
 
@@ -217,7 +217,7 @@ pub enum EvaluationName {
     Auto,
     /// Sums over bonds.
     Direct,
-    /// Fourier transforms: periodic grids, polynomial fluxes.
+    /// Fourier transforms: periodic grids, fluxes that are polynomials (expressions too).
     Fourier,
 }
 

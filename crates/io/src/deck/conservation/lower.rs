@@ -8,11 +8,12 @@ use crate::deck::lower::context::{Context, Result};
 use crate::deck::source::Source;
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Written};
+use peridyne::execute::memory::afford;
 use peridyne::expression::Expression;
 use peridyne_transport::grid::Values;
 use peridyne_transport::{
-    Boundary, Bump, Direction, Evaluation, Evolution, Flux, Grid, Kernel, Law, Method, Operator,
-    Parity, Profile, StepSize, measure,
+    Boundary, Bump, Direction, Evaluation, Evolution, Flux, Formula, Grid, Kernel, Law, Method,
+    Operator, Parity, Profile, StepSize, measure,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -47,7 +48,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     let [low, high] = measure::extremes(&u);
     let both = &document.horizon;
     let advection = document.advection.as_ref().map(|a| {
-        let flux = flux(&context, &a.value.flux)?;
+        let flux = flux(&context, &a.value.flux, [low, high])?;
         flux.evaluable(low, high, "advection.flux")
             .map_err(explained)?;
         let horizon = horizon(
@@ -111,11 +112,22 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
     };
     let duration = context.positive(&run.duration, Dim::TIME, "the duration")?;
     let size = step_size(&context, run)?;
+    let u_bytes = 8.0 * u.len() as f64;
     let evolution = Evolution::new(operator, u, method, size);
     if let (Err(e), Some(at)) = (evolution.next_step(duration), &run.time_step) {
         return Err(context.error_with(&at.span, e.to_string(), "or add force_unstable = true"));
     }
     let output = &document.output;
+    let frames = count(&context, &output.frames, "frames")?;
+    // kept until the end, and copied once for the file
+    let bytes = 2.0 * (frames + 2) as f64 * u_bytes;
+    afford(
+        "output.frames",
+        "frames of this run",
+        bytes,
+        "write fewer frames",
+    )
+    .map_err(explained)?;
     Ok(LawDeck {
         title: String::new(),
         units,
@@ -123,7 +135,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         evolution,
         horizons,
         duration,
-        frames: count(&context, &output.frames, "frames")?,
+        frames,
         rows: count(&context, &output.history, "history")?,
         pictures: true,
         dir: None,
@@ -256,7 +268,8 @@ fn direction(context: &Context, transport: &Transport) -> Result<Direction> {
     })))
 }
 
-fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>) -> Result<Flux> {
+/// u goes from `low` to `high` at the start.
+fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>, [low, high]: [f64; 2]) -> Result<Flux> {
     let form = match &at.value {
         Or::Bare(FluxName::Burgers) => return Ok(Flux::burgers()),
         Or::Bare(FluxName::EnergyConserving) => return Ok(Flux::energy_conserving()),
@@ -289,20 +302,20 @@ fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>) -> Result<Flux> {
     let Some(written) = &form.expression else {
         return Err(context.error(&at.span, "flux needs one of linear, polynomial, expression"));
     };
-    let psi = of_one_variable(context, written, "u", 'x', &[])?;
-    Ok(Flux::Function(Arc::new(move |u| {
-        psi.eval(&[u, 0.0, 0.0], 0.0)
-    })))
+    let (_, text) = of_one_variable(context, written, "u", 'x', &[])?;
+    let formula = Formula::new(&text, &context.plain_constants())
+        .map_err(|e| context.error(&written.span, e.message))?;
+    Ok(Flux::of_formula(formula, low, high))
 }
 
-/// An expression of one variable, which stands in the place of the coordinate `slot`: both have one letter, so that places in the text stay.
+/// An expression of one variable, which stands in the place of the coordinate `slot`: both have one letter, so that places in the text stay. With the text as it is then.
 fn of_one_variable(
     context: &Context,
     written: &At<String>,
     variable: &str,
     slot: char,
     more: &[(&str, f64)],
-) -> Result<Expression> {
+) -> Result<(Expression, String)> {
     let letter = |c: char| c.is_alphanumeric() || c == '_';
     let mut text = String::new();
     let mut rest = written.value.as_str();
@@ -325,7 +338,8 @@ fn of_one_variable(
         rest = after;
     }
     text += rest;
-    context.plain_expression(&text, &written.span, more)
+    let expression = context.plain_expression(&text, &written.span, more)?;
+    Ok((expression, text))
 }
 
 fn bump(context: &Context, name: BumpName, power: &Option<At<u32>>) -> Result<Bump> {
@@ -375,7 +389,7 @@ fn kernel(
             (Parity::Even, Some(FormName::SecondDerivative)) => Profile::Curvature(b),
         }
     } else if let Some(written) = &form.expression {
-        let e = of_one_variable(context, written, "z", 'z', &[("delta", horizon)])?;
+        let (e, _) = of_one_variable(context, written, "z", 'z', &[("delta", horizon)])?;
         Profile::Function(Arc::new(move |z| e.eval(&[0.0, 0.0, z], 0.0)))
     } else {
         let points = form.table.iter().flat_map(|t| &t.value);

@@ -207,10 +207,16 @@ impl<'a> Context<'a> {
         span: &Range<usize>,
         more: &[(&str, f64)],
     ) -> Result<Expression> {
-        let own = self.constants.iter().map(|(n, v)| (n.as_str(), v.0));
+        let own = self.plain_constants();
         let constants: Vec<(&str, f64)> = more.iter().copied().chain(own).collect();
         Expression::parse(text, &constants)
             .map_err(|error| self.expression_error(text, span, error))
+    }
+
+    /// The deck's constants with their values.
+    pub fn plain_constants(&self) -> Vec<(&str, f64)> {
+        let each = self.constants.iter();
+        each.map(|(n, v)| (n.as_str(), v.0)).collect()
     }
 
     fn constant_value(&self, expression: Expression, span: &Range<usize>) -> Result<f64> {
