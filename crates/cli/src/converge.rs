@@ -171,7 +171,9 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
             "  spacing {}, horizon {}: {} points, {} steps in {:.2} s",
             deck.units.show(level.spacing, Dim::LENGTH),
             deck.units.show(level.horizon, Dim::LENGTH),
-            level.points, level.steps, level.seconds
+            level.points,
+            level.steps,
+            level.seconds
         ));
         levels.push(level);
     }

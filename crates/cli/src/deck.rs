@@ -2,10 +2,10 @@
 
 use crate::Input;
 use crate::failure::Failure;
+use crate::numbers::{memory, whole};
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::spec::Stepper;
-use crate::numbers::{memory, whole};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use std::io::Read;
 
@@ -166,7 +166,10 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         i.simd,
     );
     for s in i.critical_stretch.iter().filter(|s| s.is_finite()) {
-        text += &format!("\nbreaks    beyond a stretch of {} %", rounded(100.0 * s, 4));
+        text += &format!(
+            "\nbreaks    beyond a stretch of {} %",
+            rounded(100.0 * s, 4)
+        );
     }
     for c in &i.micromodulus {
         text += &format!("\nmicromodulus {}", units.show(*c, Dim::MICROMODULUS));

@@ -45,7 +45,8 @@ fn measured(dimension: &str) -> String {
     let Some(dim) = named(dimension) else {
         return dimension.to_string();
     };
-    let [si, metal] = [UnitSystem::Si, UnitSystem::Metal(Default::default())].map(|s| s.plain_unit(dim));
+    let [si, metal] =
+        [UnitSystem::Si, UnitSystem::Metal(Default::default())].map(|s| s.plain_unit(dim));
     match (dim == Dim::NUMBER, si == metal) {
         (true, _) => dimension.to_string(),
         (false, true) => format!("{dimension} ({si})"),
@@ -68,7 +69,14 @@ fn explain(top: &str, page: &Page, key: &Key) -> String {
     line("takes", &key.takes);
     line("measures", &measured(&key.dimension));
     line("bounds", &key.bounds);
-    line("left out", if key.must { "must be given" } else { &key.default });
+    line(
+        "left out",
+        if key.must {
+            "must be given"
+        } else {
+            &key.default
+        },
+    );
     line("", &key.need);
     for (word, said) in &key.words {
         line("", format!("\"{word}\"  {said}").trim_end());
@@ -111,7 +119,8 @@ pub fn doc(arguments: &DocArguments) -> Result<(), Failure> {
         return book::write(folder, arguments.decks.as_deref(), &all);
     }
     let Some(asked) = &arguments.key else {
-        let mut text = String::from("peridyne doc KEY explains a key, a table, a law or a field; tables:\n");
+        let mut text =
+            String::from("peridyne doc KEY explains a key, a table, a law or a field; tables:\n");
         for (top, pages) in &all {
             for page in pages {
                 let first = page.doc.split(". ").next().unwrap_or_default();
@@ -143,8 +152,8 @@ fn find(all: &[(&str, Vec<Page>)], asked: &str) -> Vec<String> {
             for key in &page.keys {
                 let path = format!("{}.{}", page.path, key.name);
                 let own = path.trim_start_matches('.');
-                // a key that is a table has its page
-                if pages.iter().any(|p| p.path == own) {
+                // a key that is nothing but a table has its page
+                if key.takes == "a table" && pages.iter().any(|p| p.path == own) {
                     continue;
                 }
                 if own == asked {
@@ -155,10 +164,15 @@ fn find(all: &[(&str, Vec<Page>)], asked: &str) -> Vec<String> {
             }
         }
     }
-    let fields = observables::ALL.iter().filter(|o| o.declaration.name == asked);
+    let fields = observables::ALL
+        .iter()
+        .filter(|o| o.declaration.name == asked);
     ending.extend(fields.map(|o| {
         let d = &o.declaration;
-        format!("{}    a field of points (output.fields), {}\n  {} {}\n", d.name, d.dimension, d.doc, o.equation)
+        format!(
+            "{}    a field of points (output.fields), {}\n  {} {}\n",
+            d.name, d.dimension, d.doc, o.equation
+        )
     }));
     match exact.is_empty() {
         true => ending,
@@ -174,11 +188,15 @@ fn unknown(all: &[(&str, Vec<Page>)], asked: &str) -> String {
     }
     names.extend(observables::ALL.iter().map(|o| &*o.declaration.name));
     let last = asked.rsplit('.').next().unwrap_or(asked);
-    let near = names.iter().map(|n| (strsim::damerau_levenshtein(last, n), n));
+    let near = names
+        .iter()
+        .map(|n| (strsim::damerau_levenshtein(last, n), n));
     match near.min() {
         Some((distance, near)) if distance <= 1 + last.len() / 4 => {
             format!("there is no `{asked}`; did you mean `{near}`?")
         }
-        _ => format!("there is no `{asked}`; `peridyne doc` lists the tables, `peridyne laws` laws and fields"),
+        _ => format!(
+            "there is no `{asked}`; `peridyne doc` lists the tables, `peridyne laws` laws and fields"
+        ),
     }
 }

@@ -204,7 +204,10 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
             (false, true) => About::Equilibrium,
             (false, false) => About::Motion,
         };
-        let field = match (&asked.field, asked.film || asked.component.is_some() || asked.range.is_some()) {
+        let field = match (
+            &asked.field,
+            asked.film || asked.component.is_some() || asked.range.is_some(),
+        ) {
             (None, true) => Some(about.field().to_string()),
             (field, _) => field.clone(),
         };

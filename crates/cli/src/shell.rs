@@ -24,7 +24,9 @@ pub fn man(program: clap::Command) -> Result<(), Failure> {
     let failed = |e: std::io::Error| Failure::Run(e.to_string());
     let mut text = vec![];
     let verbs: Vec<clap::Command> = program.get_subcommands().cloned().collect();
-    clap_mangen::Man::new(program).render(&mut text).map_err(failed)?;
+    clap_mangen::Man::new(program)
+        .render(&mut text)
+        .map_err(failed)?;
     for verb in verbs {
         let title = format!(".SH PERIDYNE {}\n", verb.get_name().to_uppercase());
         text.extend(title.bytes());

@@ -357,10 +357,7 @@ pub fn drive(
                 warnings.push(text);
             }
         }
-        if !last
-            && (n == 0 || plan.every.is_some_and(|e| n % e == 0))
-            && series.wants_frames()
-        {
+        if !last && (n == 0 || plan.every.is_some_and(|e| n % e == 0)) && series.wants_frames() {
             series.write(&plan.look(sim))?;
         }
         if last {

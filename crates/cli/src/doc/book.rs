@@ -16,8 +16,13 @@ const LONGEST: usize = 90;
 /// Where keys of the decks are used: path → deck and value.
 type Examples = BTreeMap<String, (String, String)>;
 
-pub fn write(folder: &Path, decks: Option<&Path>, all: &[(&str, Vec<Page>)]) -> Result<(), Failure> {
-    let failed = |e: std::io::Error| Failure::Run(format!("{} cannot be written: {e}", folder.display()));
+pub fn write(
+    folder: &Path,
+    decks: Option<&Path>,
+    all: &[(&str, Vec<Page>)],
+) -> Result<(), Failure> {
+    let failed =
+        |e: std::io::Error| Failure::Run(format!("{} cannot be written: {e}", folder.display()));
     std::fs::create_dir_all(folder).map_err(failed)?;
     let mut index = String::from(
         "# Deck reference\n\nMade by `peridyne doc --book` from the program's own descriptions of its keys; `peridyne doc KEY` prints one of them, \
@@ -29,9 +34,20 @@ pub fn write(folder: &Path, decks: Option<&Path>, all: &[(&str, Vec<Page>)]) -> 
         let _ = write!(index, "\n## {}\n\n| table | |\n|---|---|\n", title(top));
         for page in pages {
             let file = file(top, page);
-            let first = page.doc.split(". ").next().unwrap_or_default().trim_end_matches('.');
-            let _ = writeln!(index, "| [`{}`]({file}) | {} |", header(top, page), cell(first));
-            std::fs::write(folder.join(&file), text(top, page, pages, &examples)).map_err(failed)?;
+            let first = page
+                .doc
+                .split(". ")
+                .next()
+                .unwrap_or_default()
+                .trim_end_matches('.');
+            let _ = writeln!(
+                index,
+                "| [`{}`]({file}) | {} |",
+                header(top, page),
+                cell(first)
+            );
+            std::fs::write(folder.join(&file), text(top, page, pages, &examples))
+                .map_err(failed)?;
             count += 1;
         }
     }
@@ -39,7 +55,11 @@ pub fn write(folder: &Path, decks: Option<&Path>, all: &[(&str, Vec<Page>)]) -> 
     std::fs::write(folder.join("units.md"), units()).map_err(failed)?;
     std::fs::write(folder.join("fields_of_points.md"), fields()).map_err(failed)?;
     std::fs::write(folder.join("lattices.md"), lattices()).map_err(failed)?;
-    say(&format!("wrote {} pages to {}", count + 2, folder.display()));
+    say(&format!(
+        "wrote {} pages to {}",
+        count + 2,
+        folder.display()
+    ));
     Ok(())
 }
 
@@ -61,7 +81,9 @@ fn file(top: &str, page: &Page) -> String {
 
 /// Text in a table: bars would end it, and angles begin a tag.
 fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace('<', "&lt;").replace('\n', " ")
+    text.replace('|', "\\|")
+        .replace('<', "&lt;")
+        .replace('\n', " ")
 }
 
 fn text(top: &str, page: &Page, pages: &[Page], examples: &Examples) -> String {
@@ -73,7 +95,11 @@ fn text(top: &str, page: &Page, pages: &[Page], examples: &Examples) -> String {
     }
     if !page.example.is_empty() {
         let name = page.path.rsplit('.').next().unwrap_or_default();
-        let _ = write!(text, "```toml\nlaw = {{ {name} = {} }}\n```\n\n", page.example);
+        let _ = write!(
+            text,
+            "```toml\nlaw = {{ {name} = {} }}\n```\n\n",
+            page.example
+        );
     }
     if !page.also.is_empty() {
         let also: Vec<String> = page.also.iter().map(|a| format!("`{a}`")).collect();
@@ -99,7 +125,12 @@ fn row(top: &str, page: &Page, key: &Key, pages: &[Page], examples: &Examples) -
         let _ = write!(what, "<br>`{word}` {}", cell(said));
     }
     if let Some((deck, value)) = examples.get(&place) {
-        let _ = write!(what, "<br>Example: `{} = {}` ({deck})", key.name, cell(value));
+        let _ = write!(
+            what,
+            "<br>Example: `{} = {}` ({deck})",
+            key.name,
+            cell(value)
+        );
     }
     let mut takes = cell(&key.takes);
     for table in &key.tables {
@@ -183,7 +214,8 @@ fn units() -> String {
          Products, quotients and powers: `\"7800 kg/m^3\"`. In `lj` and `none` numbers carry no unit.\n\n| | si | metal | as one would write it |\n|---|---|---|---|\n",
     );
     for dim in usual() {
-        let [si, metal] = [UnitSystem::Si, UnitSystem::Metal(Default::default())].map(|s| s.plain_unit(dim));
+        let [si, metal] =
+            [UnitSystem::Si, UnitSystem::Metal(Default::default())].map(|s| s.plain_unit(dim));
         let example = example(dim).unwrap_or_default();
         let _ = writeln!(text, "| {dim} | {si} | {metal} | {example} |");
     }

@@ -97,7 +97,10 @@ fn cell(found: &Found) -> String {
         .map(|(w, count)| {
             let period = found.deck.units.write(2.0 * PI / w.abs(), Dim::TIME);
             let grows = if *w < 0.0 { ", growing" } else { "" };
-            format!("ω = {}, period {period}{grows} ({count})", found.deck.units.show(*w, Dim::FREQUENCY))
+            format!(
+                "ω = {}, period {period}{grows} ({count})",
+                found.deck.units.show(*w, Dim::FREQUENCY)
+            )
         })
         .collect();
     format!(

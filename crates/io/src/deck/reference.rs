@@ -43,6 +43,9 @@ pub struct Key {
     pub tables: Vec<String>,
 }
 
+/// What a deck begins with; the rest follows by name. What stands in several tables is explained in the first of these.
+const FIRST: [&str; 6] = ["kind", "title", "units", "body", "sets", "material"];
+
 /// Pages of a [schema](super::schema()), the deck's own first.
 pub fn pages(schema: &Json) -> Vec<Page> {
     let mut reader = Reader {
@@ -129,7 +132,17 @@ impl Reader {
         } else {
             let required = table["required"].as_array();
             let must = |name: &str| required.is_some_and(|r| r.iter().any(|k| k == name));
-            for (name, value) in table["properties"].as_object().into_iter().flatten() {
+            let mut keys: Vec<(&String, &Json)> = table["properties"]
+                .as_object()
+                .into_iter()
+                .flatten()
+                .collect();
+            if place.path.is_empty() {
+                let rank =
+                    |name: &str| FIRST.iter().position(|f| *f == name).unwrap_or(FIRST.len());
+                keys.sort_by_key(|(name, _)| rank(name));
+            }
+            for (name, value) in keys {
                 let mut key = self.key(&page.path, name, value);
                 key.must = must(name);
                 page.keys.push(key);
@@ -222,7 +235,9 @@ impl Reader {
         }
         if let Some(words) = value["enum"].as_array() {
             let new = words.iter().filter_map(Json::as_str);
-            let new: Vec<&str> = new.filter(|w| key.words.iter().all(|k| k.0 != *w)).collect();
+            let new: Vec<&str> = new
+                .filter(|w| key.words.iter().all(|k| k.0 != *w))
+                .collect();
             key.words
                 .extend(new.into_iter().map(|w| (w.to_string(), String::new())));
             return takes.push("a word".into());
@@ -267,7 +282,8 @@ impl Reader {
         if let Some((_, path)) = self.known.iter().find(|(n, _)| n == name) {
             let path = path.clone();
             for page in &mut self.pages {
-                if page.path == path && page.path != place.path && !page.also.contains(&place.path) {
+                if page.path == path && page.path != place.path && !page.also.contains(&place.path)
+                {
                     page.also.push(place.path.clone());
                 }
             }
@@ -328,7 +344,8 @@ mod tests {
                     let numbers = ["a number", "a vector", "components"];
                     let number = numbers.iter().any(|n| key.takes.contains(n));
                     // names stand for numbers of any dimension, rows for several
-                    let any = ["constants", "special"].contains(&&*key.name) || key.takes.contains("each a list");
+                    let any = ["constants", "special"].contains(&&*key.name)
+                        || key.takes.contains("each a list");
                     assert!(
                         !number || !key.dimension.is_empty() || any,
                         "{here} takes numbers of what dimension?"
@@ -345,7 +362,10 @@ mod tests {
 
     /// What a key of a deck is on its page.
     fn check(table: &toml::Table, path: &str, pages: &[Page], met: &mut usize) {
-        let Some(page) = pages.iter().find(|p| p.path == path || p.also.iter().any(|a| a == path)) else {
+        let Some(page) = pages
+            .iter()
+            .find(|p| p.path == path || p.also.iter().any(|a| a == path))
+        else {
             panic!("no page for [{path}]");
         };
         for (name, value) in table {
@@ -355,7 +375,9 @@ mod tests {
             let inner = match (&key.tables[..], value) {
                 ([], _) => continue,
                 (_, toml::Value::Table(inner)) => vec![inner],
-                (_, toml::Value::Array(all)) => all.iter().filter_map(toml::Value::as_table).collect(),
+                (_, toml::Value::Array(all)) => {
+                    all.iter().filter_map(toml::Value::as_table).collect()
+                }
                 _ => continue,
             };
             for inner in inner {
@@ -380,7 +402,10 @@ mod tests {
     fn every_key_of_the_good_decks_has_its_page() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good");
         let mut met = 0;
-        for (folder, schema) in [(root.clone(), schema()), (root.join("conservation"), law_schema())] {
+        for (folder, schema) in [
+            (root.clone(), schema()),
+            (root.join("conservation"), law_schema()),
+        ] {
             let pages = pages(&schema);
             for entry in std::fs::read_dir(folder).unwrap() {
                 let path = entry.unwrap().path();

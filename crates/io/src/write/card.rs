@@ -152,7 +152,11 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
     for d in &card.dispersion {
         for (tolerance, wavelength) in &d.wavelengths {
             let text = wavelength.map_or("none".into(), |l| {
-                format!("{} ({:.1} h)", units.show(l, Dim::LENGTH), l / card.coarse.spacing)
+                format!(
+                    "{} ({:.1} h)",
+                    units.show(l, Dim::LENGTH),
+                    l / card.coarse.spacing
+                )
             });
             let _ = writeln!(t, "| {} | {} % | {text} |", d.direction, 100.0 * tolerance);
         }

@@ -65,7 +65,10 @@ impl Series {
             Some((name, _)) => Some((Frames::create(&dir.join(name))?, None)),
             None => None,
         };
-        let films = options.pictures.iter().map(|p| p.film.then(Film::new).transpose());
+        let films = options
+            .pictures
+            .iter()
+            .map(|p| p.film.then(Film::new).transpose());
         let films: std::io::Result<Vec<Option<Film>>> = films.collect();
         let films = films.map_err(WriteError::at("make a film in", &dir))?;
         Ok(Series {
@@ -111,7 +114,8 @@ impl Series {
             if let Some(film) = film {
                 let failed = WriteError::at("make a film in", &self.dir);
                 let component = picture.component.as_deref();
-                film.push(s, picture.field(About::Motion), component).map_err(failed)?;
+                film.push(s, picture.field(About::Motion), component)
+                    .map_err(failed)?;
             }
         }
         Ok(())
@@ -130,7 +134,12 @@ impl Series {
             if let Some(film) = film {
                 let name = format!("{}_film.png", options.stem(About::Motion));
                 let path = self.dir.join(name);
-                film.finish(&path, options.field(About::Motion), options, options.scale.unwrap_or(1.0))?;
+                film.finish(
+                    &path,
+                    options.field(About::Motion),
+                    options,
+                    options.scale.unwrap_or(1.0),
+                )?;
                 paths.push(path);
             }
         }
@@ -172,7 +181,10 @@ mod tests {
         };
         series.write(&later).unwrap();
         series.write(&later).unwrap();
-        assert_eq!(series.finish(&later, About::Fracture).unwrap(), [out.join("damage.png")]);
+        assert_eq!(
+            series.finish(&later, About::Fracture).unwrap(),
+            [out.join("damage.png")]
+        );
         let files = [
             "bonds.pvd",
             "bonds_00000007.vtu",

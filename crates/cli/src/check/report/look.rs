@@ -72,7 +72,9 @@ fn fracture(found: &Findings) -> Option<String> {
     Some(format!(
         "fracture: bonds break at a stretch of {} %, and a crack is two horizons wide, {}",
         rounded(100.0 * stretch, 3),
-        found.units.show(2.0 * found.sim.info().horizon, Dim::LENGTH)
+        found
+            .units
+            .show(2.0 * found.sim.info().horizon, Dim::LENGTH)
     ))
 }
 

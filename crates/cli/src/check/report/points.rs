@@ -1,8 +1,8 @@
 //! Points, bonds and families.
 
-use crate::numbers::whole;
 use super::{AXES, row};
 use crate::check::Findings;
+use crate::numbers::whole;
 use peridyne_io::deck::Dim;
 use peridyne_theory::patch_test::{Class, Place};
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! What the body resists with.
 
-use crate::numbers::digits;
 use crate::check::{Findings, Material, directions, mean};
+use crate::numbers::digits;
 use peridyne::spec::{LawSpec, Moduli, PmbStiffness};
 use peridyne_io::deck::{Dim, UnitSystem};
 use peridyne_theory::patch_test::{Class, PatchTest};

@@ -1,8 +1,8 @@
 //! Waves, steps and fracture.
 
-use crate::numbers::whole;
 use super::row;
 use crate::check::Findings;
+use crate::numbers::whole;
 use peridyne::spec::{Criterion, Method, Stepper};
 use peridyne_io::deck::Dim;
 

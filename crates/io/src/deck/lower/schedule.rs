@@ -1,12 +1,12 @@
 //! How long to run and what to write.
 
 use super::context::{Context, Result};
-use crate::deck::{OutputSpec, PictureSpec};
 use crate::deck::document::{
     Document, IntegratorName, MethodName, Output, Picture, Run, Safety, SolverName, Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
+use crate::deck::{OutputSpec, PictureSpec};
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
 use peridyne::spec::{Method, Newmark, Schedule, Solver, Stepper, TimeStep};
@@ -293,7 +293,10 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         .filter(|(_, name)| !stays(name.as_ref()))
         .collect();
     let mut pictures = vec![];
-    if written.picture.unwrap_or(!atoms && written.pictures.is_empty()) {
+    if written
+        .picture
+        .unwrap_or(!atoms && written.pictures.is_empty())
+    {
         pictures.push(PictureSpec::default());
     }
     for picture in &written.pictures {
@@ -325,7 +328,8 @@ fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
     if let Some(range) = &p.range
         && !(range.value[0] < range.value[1] && range.value.iter().all(|x| x.is_finite()))
     {
-        let message = "the range of a picture is [low, high], two numbers of which the first is lower";
+        let message =
+            "the range of a picture is [low, high], two numbers of which the first is lower";
         return Err(context.error(&range.span, message));
     }
     let text = |t: &Option<At<String>>| t.as_ref().map(|t| t.value.clone());

@@ -39,10 +39,14 @@ impl UnitSystem {
             (_, Dim::INDENTER_STIFFNESS) => (si, "N/m^5"),
             _ => {
                 let unit = self.unit(dim);
-                return format!("{} {unit}", rounded(value, digits)).trim_end().to_string();
+                return format!("{} {unit}", rounded(value, digits))
+                    .trim_end()
+                    .to_string();
             }
         };
-        format!("{} {unit}", rounded(scaled, digits)).trim_end().to_string()
+        format!("{} {unit}", rounded(scaled, digits))
+            .trim_end()
+            .to_string()
     }
 }
 

@@ -3,9 +3,9 @@
 use peridyne::observe::Snapshot;
 use peridyne::space::AXES;
 
+use super::image::{Align, Font, GREY, INK, Image};
 use super::marks;
 use super::shown::Shown;
-use super::image::{Align, Font, GREY, INK, Image};
 use super::view::{Camera, Frame, cross, draw as draw_view};
 use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
 
@@ -13,6 +13,8 @@ use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
 const REACH: f64 = 0.3;
 /// Elevation of the viewer of the section (degrees): low enough to see the cut, high enough to see the top.
 const ELEVATION: f64 = 30.0;
+/// Cubes of magnified bodies are larger by this.
+const MAGNIFIED: f64 = 1.25;
 /// Room between and below the views (pixels).
 const GAP: f64 = 48.0;
 const CAPTION: f64 = 40.0;
@@ -46,18 +48,19 @@ struct Panel {
 pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) -> Image {
     let bounds = bounds(s);
     let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
-    let spacing = guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
+    // where displacements are magnified, strains are, too, and points must not come apart
+    let wide = if scale > 1.0 { MAGNIFIED } else { 1.0 };
+    let spacing = wide * guesses.into_iter().find(|l| *l > 0.0).unwrap_or(1.0);
     let near = |x: &[f64; 3]| {
         let reach = REACH * longest(&bounds) + spacing;
         (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)
     };
-    let shown =
-        |cut: Option<Cut>| {
-            let points = moved(s, scale).zip(&s.reference).zip(&what.values).filter(
-                move |((x, reference), _)| near(x) && cut.is_none_or(|cut| cut.keeps(reference)),
-            );
-            points.map(|((x, _), value)| (x, what.part(*value)))
-        };
+    let shown = |cut: Option<Cut>| {
+        let points = moved(s, scale).zip(&s.reference).zip(&what.values).filter(
+            move |((x, reference), _)| near(x) && cut.is_none_or(|cut| cut.keeps(reference)),
+        );
+        points.map(|((x, _), value)| (x, what.part(*value)))
+    };
     let panels: Vec<Panel> = cameras(s, &bounds)
         .into_iter()
         .filter_map(|(camera, caption, cut)| {

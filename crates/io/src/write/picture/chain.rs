@@ -37,7 +37,11 @@ impl Axes {
 
 pub fn draw(s: &Snapshot, what: &Shown, options: &PictureOptions) -> Image {
     // displacements are shown anyhow
-    let plots = if what.name.starts_with("displacement") { 1 } else { 2 };
+    let plots = if what.name.starts_with("displacement") {
+        1
+    } else {
+        2
+    };
     let room = plots as f64 * PLOT + (plots - 1) as f64 * BETWEEN;
     let mut image = Image::new(options.width, (HEAD + NAME + room + BELOW) as usize);
     head(&mut image, s, 1.0, options);
@@ -72,7 +76,12 @@ pub fn draw(s: &Snapshot, what: &Shown, options: &PictureOptions) -> Image {
         curve(&mut image, &upper, &x, &u, &tints, s.spacing);
         return image;
     }
-    grid(&mut image, &lower, &what.name, &options.units.unit(what.dimension));
+    grid(
+        &mut image,
+        &lower,
+        &what.name,
+        &options.units.unit(what.dimension),
+    );
     numbers_below(&mut image, &lower, unit);
     curve(&mut image, &upper, &x, &u, &tints, s.spacing);
     curve(&mut image, &lower, &x, &values, &tints, s.spacing);

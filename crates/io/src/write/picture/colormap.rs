@@ -40,7 +40,14 @@ impl Map {
     pub fn color(self, part: f64) -> Color {
         match self {
             Map::Sequential => color(part),
-            Map::Diverging => between(&COOL_WARM, if part.is_nan() { 0.5 } else { part.clamp(0.0, 1.0) }),
+            Map::Diverging => between(
+                &COOL_WARM,
+                if part.is_nan() {
+                    0.5
+                } else {
+                    part.clamp(0.0, 1.0)
+                },
+            ),
         }
     }
 }
@@ -62,10 +69,7 @@ fn between(table: &[u32], part: f64) -> Color {
     let part = at - low as f64;
     let channel = |rgb: u32, shift: u32| f64::from((rgb >> shift) & 255);
     [16, 8, 0].map(|shift| {
-        let (a, b) = (
-            channel(table[low], shift),
-            channel(table[low + 1], shift),
-        );
+        let (a, b) = (channel(table[low], shift), channel(table[low + 1], shift));
         (a + (b - a) * part).round() as u8
     })
 }

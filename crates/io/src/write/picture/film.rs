@@ -76,20 +76,32 @@ impl Film {
     ///
     /// # Errors
     /// A file could not be written.
-    pub fn finish(self, path: &Path, field: &str, options: &PictureOptions, scale: f64) -> Result<(), WriteError> {
+    pub fn finish(
+        self,
+        path: &Path,
+        field: &str,
+        options: &PictureOptions,
+        scale: f64,
+    ) -> Result<(), WriteError> {
         let (Some(first), Some(shown)) = (self.first, self.shown) else {
             return Ok(());
         };
         let failed = WriteError::at("draw", path);
         let file = self.waiting.into_inner().map_err(|e| e.into_error());
-        let mut file = file.and_then(|mut f| f.seek(SeekFrom::Start(0)).map(|_| f)).map_err(failed)?;
-        let ends = options.range.unwrap_or_else(|| range(field, self.ends[0], self.ends[1]));
+        let mut file = file
+            .and_then(|mut f| f.seek(SeekFrom::Start(0)).map(|_| f))
+            .map_err(failed)?;
+        let ends = options
+            .range
+            .unwrap_or_else(|| range(field, self.ends[0], self.ends[1]));
         let options = PictureOptions {
             width: WIDTH,
             ..options.clone()
         };
         let shown = shown.between(ends);
-        write_file(path, |w| write(w, &mut file, &first, &shown, &self.frames, &options, scale))
+        write_file(path, |w| {
+            write(w, &mut file, &first, &shown, &self.frames, &options, scale)
+        })
     }
 }
 
@@ -117,14 +129,20 @@ fn write<W: Write>(
                 let mut encoder = png::Encoder::new(w, size.0 as u32, size.1 as u32);
                 encoder.set_color(png::ColorType::Rgb);
                 encoder.set_depth(png::BitDepth::Eight);
-                encoder.set_animated(frames.len() as u32, 0).map_err(io::Error::other)?;
-                encoder.set_frame_delay(DELAY, 1000).map_err(io::Error::other)?;
+                encoder
+                    .set_animated(frames.len() as u32, 0)
+                    .map_err(io::Error::other)?;
+                encoder
+                    .set_frame_delay(DELAY, 1000)
+                    .map_err(io::Error::other)?;
                 empty.insert(encoder.write_header().map_err(io::Error::other)?)
             }
         };
         // debris makes frames of other heights: all have that of the first
         let pixels = image.of_size(size);
-        writer.write_image_data(pixels.as_flattened()).map_err(io::Error::other)?;
+        writer
+            .write_image_data(pixels.as_flattened())
+            .map_err(io::Error::other)?;
     }
     match writer {
         Some(writer) => writer.finish().map_err(io::Error::other),
@@ -142,7 +160,8 @@ fn next(
 ) -> io::Result<(Snapshot, Shown)> {
     let mut numbers = vec![0u8; 16 * first.reference.len()];
     waiting.read_exact(&mut numbers)?;
-    let number = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    let number =
+        |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
     let each: Vec<[f64; 4]> = numbers
         .chunks_exact(16)
         .map(|b| std::array::from_fn(|k| number(&b[4 * k..])))

@@ -122,7 +122,14 @@ impl Image {
     pub fn text(&mut self, x: f64, y: f64, text: &str, font: Font, align: Align, color: Color) {
         let (size, weight) = font.style();
         // the base line lies an ascender below the upper edge
-        self.write([x, y + 0.93 * size], text, (size, weight), align, false, color);
+        self.write(
+            [x, y + 0.93 * size],
+            text,
+            (size, weight),
+            align,
+            false,
+            color,
+        );
     }
 
     /// One line of text, `at` on its base line; upright: from below upwards.

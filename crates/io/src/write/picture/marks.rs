@@ -35,7 +35,9 @@ pub struct Marks {
 impl PartialEq for Marks {
     fn eq(&self, other: &Marks) -> bool {
         let centres = |m: &Marks| -> Vec<([String; 3], f64)> {
-            let text = |(c, r): &([Expression; 3], f64)| (std::array::from_fn(|a| c[a].source().to_string()), *r);
+            let text = |(c, r): &([Expression; 3], f64)| {
+                (std::array::from_fn(|a| c[a].source().to_string()), *r)
+            };
             m.spheres.iter().map(text).collect()
         };
         self.cracks == other.cracks
@@ -99,7 +101,9 @@ impl Marks {
 /// Corners of a crack that has some.
 fn corners(shape: &CrackShape) -> Option<Vec<Point>> {
     match shape {
-        CrackShape::Segment { from, to } => Some(vec![[from[0], from[1], 0.0], [to[0], to[1], 0.0]]),
+        CrackShape::Segment { from, to } => {
+            Some(vec![[from[0], from[1], 0.0], [to[0], to[1], 0.0]])
+        }
         CrackShape::Polygon { corners } => {
             let mut all = corners.clone();
             all.extend(corners.first().copied());
@@ -117,8 +121,15 @@ fn spread(points: Vec<Point>, dimension: usize) -> Vec<Point> {
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> Point {
         std::array::from_fn(|a| points.iter().map(|x| x[a]).fold(start, pick))
     };
-    let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
-    let long = if high[0] - low[0] >= high[1] - low[1] { 0 } else { 1 };
+    let (low, high) = (
+        bound(f64::min, f64::INFINITY),
+        bound(f64::max, f64::NEG_INFINITY),
+    );
+    let long = if high[0] - low[0] >= high[1] - low[1] {
+        0
+    } else {
+        1
+    };
     let middle: Point = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
     let count = if high[long] > low[long] { ALONG } else { 1 };
     let place = |n: usize| {
@@ -171,7 +182,11 @@ pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
     }
     for at in &marks.supports {
         let [x, y] = view.place(*at);
-        let (l, r, b) = ([x - SIZE, y + 1.6 * SIZE], [x + SIZE, y + 1.6 * SIZE], [x, y]);
+        let (l, r, b) = (
+            [x - SIZE, y + 1.6 * SIZE],
+            [x + SIZE, y + 1.6 * SIZE],
+            [x, y],
+        );
         for (from, to) in [(b, l), (l, r), (r, b)] {
             image.line(from, to, 5.0, [255; 3]);
             image.line(from, to, 3.0, SUPPORT);
@@ -189,7 +204,12 @@ pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
 
 fn arrow(image: &mut Image, from: [f64; 2], d: [f64; 2]) {
     let tip: [f64; 2] = std::array::from_fn(|a| from[a] + ARROW * d[a]);
-    let barb = |side: f64| [tip[0] - 11.0 * d[0] + side * 6.0 * d[1], tip[1] - 11.0 * d[1] - side * 6.0 * d[0]];
+    let barb = |side: f64| {
+        [
+            tip[0] - 11.0 * d[0] + side * 6.0 * d[1],
+            tip[1] - 11.0 * d[1] - side * 6.0 * d[0],
+        ]
+    };
     for (width, color) in [(6.0, [255; 3]), (3.0, LOAD)] {
         image.line(from, tip, width, color);
         image.line(tip, barb(1.0), width, color);

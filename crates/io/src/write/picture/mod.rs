@@ -167,7 +167,12 @@ fn draw(s: &Snapshot, shown: &Shown, scale: f64, options: &PictureOptions) -> Im
 ///
 /// # Errors
 /// It cannot be drawn or written.
-pub fn write(path: &Path, s: &Snapshot, options: &PictureOptions, about: About) -> Result<(), WriteError> {
+pub fn write(
+    path: &Path,
+    s: &Snapshot,
+    options: &PictureOptions,
+    about: About,
+) -> Result<(), WriteError> {
     let image = picture(s, options, about).map_err(WriteError::at("draw", path))?;
     write_file(path, |w| image.write_png(w))
 }
@@ -177,7 +182,11 @@ fn head(image: &mut Image, s: &Snapshot, scale: f64, options: &PictureOptions) {
     let room = image.width as f64 - 2.0 * MARGIN;
     let mut title = options.title.clone();
     while Font::Title.width(&title) > room {
-        title = title.chars().take(title.chars().count().saturating_sub(2)).chain(['…']).collect();
+        title = title
+            .chars()
+            .take(title.chars().count().saturating_sub(2))
+            .chain(['…'])
+            .collect();
     }
     let mut y = 40.0;
     if !title.is_empty() {

@@ -55,15 +55,21 @@ impl Shown {
     /// # Errors
     /// `InvalidInput`: there is no such column, or it has no such component.
     pub fn of(s: &Snapshot, field: &str, component: Option<&str>) -> io::Result<Shown> {
-        let column = s.column(field).filter(|c| c.values.len() == s.reference.len());
+        let column = s
+            .column(field)
+            .filter(|c| c.values.len() == s.reference.len());
         let column = column.ok_or_else(|| invalid(format!("the snapshot carries no {field}")))?;
-        let values = values(column, component)?;
+        // on a line a vector is a number with a sign
+        let along = (s.dimension == 1 && column.declaration.shape == Shape::Vector).then_some("x");
+        let values = values(column, component.or(along))?;
         let name = match component {
             None => field.replace('_', " "),
             Some(part) => format!("{} {part}", field.replace('_', " ")),
         };
         let finite = || values.iter().copied().filter(|v| v.is_finite());
-        let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        });
         let range = range(field, low, high);
         Ok(Shown {
             name,
@@ -116,7 +122,10 @@ pub fn component_of(shape: Shape, component: Option<&str>) -> Result<Option<usiz
     match known.iter().position(|k| *k == part) {
         Some(n) => Ok(Some(n)),
         None if known.is_empty() => Err(format!("it is one number: there is no component {part}")),
-        None => Err(format!("it has no component {part}, but {} and magnitude", known.join(", "))),
+        None => Err(format!(
+            "it has no component {part}, but {} and magnitude",
+            known.join(", ")
+        )),
     }
 }
 
@@ -125,7 +134,12 @@ fn values(column: &Column, component: Option<&str>) -> io::Result<Vec<f64>> {
         .map_err(|why| invalid(format!("{}: {why}", column.name())))?;
     let pick = |v: &[f64], weights: &[f64]| match part {
         Some(n) => v[n],
-        None => v.iter().zip(weights).map(|(x, w)| w * x * x).sum::<f64>().sqrt(),
+        None => v
+            .iter()
+            .zip(weights)
+            .map(|(x, w)| w * x * x)
+            .sum::<f64>()
+            .sqrt(),
     };
     Ok(match &column.values {
         Values::Scalars(v) => v.clone(),
@@ -133,7 +147,10 @@ fn values(column: &Column, component: Option<&str>) -> io::Result<Vec<f64>> {
         Values::Counts(v) => v.iter().map(|x| f64::from(*x)).collect(),
         Values::Vectors(v) => v.iter().map(|x| pick(x, &[1.0; 3])).collect(),
         // off the diagonal each stands for two
-        Values::Symmetric(v) => v.iter().map(|x| pick(x, &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0])).collect(),
+        Values::Symmetric(v) => v
+            .iter()
+            .map(|x| pick(x, &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
+            .collect(),
         Values::Tensors(v) => v.iter().map(|x| pick(x, &[1.0; 9])).collect(),
     })
 }
@@ -152,7 +169,10 @@ mod tests {
         assert_eq!(range("density", 9.0, 10.0), [9.0, 10.0]);
         assert_eq!(range("energy", 0.0, 0.0), [0.0, 1.0]);
         assert_eq!(range("mark", 4.0, 4.0), [0.0, 4.0]);
-        assert_eq!(range("nothing", f64::INFINITY, f64::NEG_INFINITY), [0.0, 1.0]);
+        assert_eq!(
+            range("nothing", f64::INFINITY, f64::NEG_INFINITY),
+            [0.0, 1.0]
+        );
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! The rectangle of the data with its axes.
 
+use super::super::font::{self, Weight};
 use super::super::picture::image::{Align, Color, GREY, INK};
 use super::axis::Scale;
 use super::canvas::Drawing;
-use super::super::font::{self, Weight};
 
 const GRID: Color = [228, 230, 234];
 /// Sizes of text.

@@ -3,11 +3,11 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::super::font::{self, Weight};
 use super::super::picture::image::{Align, Color, GREY, INK, WHITE};
 use super::axis::Scale;
 use super::canvas::{Drawing, Outline, Shape};
 use super::frame::{Frame, TICK, axes};
-use super::super::font::{self, Weight};
 use super::{WriteError, invalid, titled};
 
 /// Between a legend and what stands beside it.
@@ -222,7 +222,15 @@ impl Plot {
             let mut drawing = Drawing::new(self.size[0] + beside, self.size[1]);
             let right = 24.0 + beside;
             let labels = &self.labels;
-            let frame = axes(&mut drawing, &self.title, labels, scales, [10, 8], false, right);
+            let frame = axes(
+                &mut drawing,
+                &self.title,
+                labels,
+                scales,
+                [10, 8],
+                false,
+                right,
+            );
             (drawing, frame)
         };
         let (mut drawing, mut frame) = drawn(0.0);
@@ -310,13 +318,18 @@ impl Plot {
         let covered = |corner: &[f64; 2]| {
             let marks = |s: &Series| {
                 let places = s.points.iter().map(|p| frame.place(*p));
-                s.mark.shape().map_or(0, |_| places.filter(|p| near(p, corner)).count())
+                s.mark
+                    .shape()
+                    .map_or(0, |_| places.filter(|p| near(p, corner)).count())
             };
             let lines = |s: &Series| {
                 let pieces = frame.clipped(&s.points);
                 pieces.iter().flatten().filter(|p| near(p, corner)).count()
             };
-            self.series.iter().map(|s| marks(s) + lines(s)).sum::<usize>()
+            self.series
+                .iter()
+                .map(|s| marks(s) + lines(s))
+                .sum::<usize>()
         };
         let best = corners.into_iter().map(|c| (covered(&c), c));
         let (least, corner) = best.min_by_key(|(n, _)| *n)?;

@@ -3,12 +3,12 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::super::font::{self, Weight};
 use super::super::picture::colormap;
 use super::super::picture::image::{Align, Color, INK, Image};
 use super::axis::Scale;
 use super::canvas::{Drawing, Shape};
 use super::frame::{Frame, LABEL, TICK, axes, beside};
-use super::super::font::{self, Weight};
 use super::{SCALE, WriteError, invalid, titled};
 
 /// Where a value is missing.

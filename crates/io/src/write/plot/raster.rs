@@ -1,8 +1,8 @@
 //! A drawing as pixels.
 
+use super::super::font::Weight;
 use super::super::picture::image::{Color, Image};
 use super::canvas::{Drawing, Outline, Shape};
-use super::super::font::Weight;
 
 pub fn draw(drawing: &Drawing, scale: f64) -> Image {
     let pixels = |length: f64| (length * scale).round() as usize;
