@@ -246,7 +246,7 @@ impl Gather<'_> {
                     }
                 }
                 let patch = Patch::of(bins, [low, high]);
-                let found = (!patch.index.is_empty())
+                let found = (!patch.is_empty())
                     .then(|| accumulate::bonds(kernel, &patch, &bonds, 1, Form::Whole));
                 (patch.index, found)
             })

@@ -5,7 +5,7 @@
 //! number of threads. Velocities are counted from the drift of the whole frame, so that a fast body loses no digits of its heat.
 
 use crate::FieldsError;
-use crate::accumulate::{self, BOND, Form, Particles};
+use crate::accumulate::{self, BOND, Form, ParticleSums, Particles};
 use crate::bonds::Block;
 use crate::collect::Spare;
 use crate::fields::{Fields, Layout, Sums, Totals};
@@ -118,7 +118,7 @@ pub fn evaluate(
                 let reach = std::array::from_fn(|a| wide / frame.cell.height(a));
                 let patch = Patch::of(&bins, widened(bounds, reach));
                 // far from all points: nothing of it is seen
-                if patch.index.is_empty() || centres.is_empty() {
+                if patch.is_empty() || centres.is_empty() {
                     return Ok((Block::default(), None, centres.is_empty()));
                 }
                 let spare = spares.lock().ok().and_then(|mut all| all.pop());
@@ -179,15 +179,6 @@ fn widened(bounds: [[f64; 3]; 2], by: [f64; 3]) -> [[f64; 3]; 2] {
     ]
 }
 
-pub(crate) fn add(sums: &mut [f64], index: &[u32], part: &[f64], stride: usize) {
-    for (p, part) in index.iter().zip(part.chunks_exact(stride.max(1))) {
-        let own = &mut sums[*p as usize * stride..][..stride];
-        for (sum, value) in own.iter_mut().zip(part) {
-            *sum += value;
-        }
-    }
-}
-
 /// Particles and how they move, velocities from the drift.
 pub(crate) struct Moving<'a> {
     pub frame: &'a Frame,
@@ -215,8 +206,8 @@ impl Moving<'_> {
                 .map(|b| {
                     let (members, bounds) = blocks.members(neighbours, b);
                     let patch = Patch::of(bins, bounds);
-                    if patch.index.is_empty() {
-                        return (vec![], vec![]);
+                    if patch.is_empty() {
+                        return (vec![], ParticleSums::default());
                     }
                     let mut columns = Columns::default();
                     for i in members {
@@ -235,7 +226,7 @@ impl Moving<'_> {
                 })
                 .collect();
             for (index, part) in some {
-                add(&mut sums, &index, &part, layout.stride());
+                part.add_to(&mut sums, &index);
             }
         }
         sums
