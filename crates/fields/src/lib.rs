@@ -50,7 +50,7 @@ pub use fields::{Fields, Quantity};
 pub use frame::{Cell, Frame};
 pub use kernel::{Kernel, Shape};
 pub use partition::{PairForce, Partition};
-pub use sums::{Method, evaluate};
+pub use sums::{Method, Progress, evaluate};
 pub use targets::Targets;
 
 /// Why fields cannot be had.

@@ -116,7 +116,7 @@ pub fn evaluate(
         layout: &layout,
     };
     let sums = Sums {
-        particles: moving.sums(&neighbours, &bins, &method.kernel, &own),
+        particles: moving.sums(&neighbours, &bins, &own, method),
         bonds: sums,
     };
     let mut fields = Fields::finish(

@@ -35,7 +35,22 @@ pub struct Method {
     pub rates: bool,
     /// k_B (energy / temperature); 1 in reduced units.
     pub boltzmann: f64,
+    /// Is told how much of a frame is done.
+    pub progress: Option<Progress>,
 }
+
+/// Called with the part of a frame's work that is done, about: above 0, 1 at the end, on the thread that asked for the fields.
+#[derive(Clone)]
+pub struct Progress(pub Arc<dyn Fn(f64) + Send + Sync>);
+
+impl std::fmt::Debug for Progress {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Progress")
+    }
+}
+
+/// The part of bonds in a frame's work, about; the rest is that of particles.
+const OF_BONDS: f64 = 0.9;
 
 impl Method {
     pub fn new(kernel: Kernel) -> Method {
@@ -47,6 +62,7 @@ impl Method {
             molecules: None,
             rates: false,
             boltzmann: 1.0,
+            progress: None,
         }
     }
 }
@@ -147,6 +163,8 @@ pub fn evaluate(
             own.take(&block, parts);
             totals.take(&block, seen);
         }
+        let done = (first + batch).min(blocks.count) as f64 / blocks.count as f64;
+        tell(method, OF_BONDS * done);
     }
     totals.energy = own.energy.iter().sum();
     let moving = Moving {
@@ -157,7 +175,7 @@ pub fn evaluate(
     };
     let sums = Sums {
         bonds,
-        particles: moving.sums(&neighbours, &bins, &method.kernel, &own),
+        particles: moving.sums(&neighbours, &bins, &own, method),
     };
     Ok(Fields::finish(
         targets.positions(&frame.cell),
@@ -169,6 +187,12 @@ pub fn evaluate(
         totals,
         own.force,
     ))
+}
+
+fn tell(method: &Method, part: f64) {
+    if let Some(Progress(tell)) = &method.progress {
+        tell(part);
+    }
 }
 
 fn widened(bounds: [[f64; 3]; 2], by: [f64; 3]) -> [[f64; 3]; 2] {
@@ -193,8 +217,8 @@ impl Moving<'_> {
         &self,
         neighbours: &Neighbours,
         bins: &Bins,
-        kernel: &Kernel,
         own: &Own,
+        method: &Method,
     ) -> Vec<f64> {
         let layout = self.layout;
         let blocks = Blocks::new(neighbours, self.frame.len());
@@ -221,13 +245,15 @@ impl Moving<'_> {
                         slopes: (layout.slopes() > 0).then_some(&columns.slope[..]),
                         slope_width: layout.slopes(),
                     };
-                    let sums = accumulate::particles(kernel, &patch, &of);
+                    let sums = accumulate::particles(&method.kernel, &patch, &of);
                     (patch.index, sums)
                 })
                 .collect();
             for (index, part) in some {
                 part.add_to(&mut sums, &index);
             }
+            let done = (first + batch).min(blocks.count) as f64 / blocks.count as f64;
+            tell(method, OF_BONDS + (1.0 - OF_BONDS) * done);
         }
         sums
     }
