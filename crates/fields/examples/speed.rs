@@ -223,8 +223,7 @@ fn main() {
                     (Shape::Polynomial(7), 8.0),
                     (Shape::CubicSpline, 8.0),
                     (Shape::QuarticSpline, 8.0),
-                    (Shape::Gaussian, 2.0),
-                    (Shape::Gaussian, 4.0),
+                    (Shape::Gaussian, 1.0),
                 ] {
                     row(&frame, shape, 32, width, false);
                 }

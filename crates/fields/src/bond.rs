@@ -36,7 +36,15 @@ fn at_points(kernel: &Kernel, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
         let count = EIGHT.min(out.len() - first);
         let mut x = [Lanes::ZERO; 3];
         for a in 0..3 {
-            x[a].0[..count].copy_from_slice(&d[a][first..][..count]);
+            let from = &d[a][first..];
+            match from.first_chunk::<EIGHT>() {
+                Some(eight) => x[a] = Lanes(*eight),
+                None => {
+                    for k in 0..count {
+                        x[a][k] = from[k];
+                    }
+                }
+            }
         }
         let view = View::new(&x, [0.0; 3], segments.over());
         let mut beta = [Lanes::ZERO];
