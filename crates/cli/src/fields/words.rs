@@ -153,11 +153,33 @@ impl OneOrMore {
     }
 }
 
+/// A list of so many: lists that are longer are not cut.
+fn exactly<'de, D, T, const N: usize>(reader: D) -> Result<[T; N], D::Error>
+where
+    D: serde::Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    let all = Vec::<T>::deserialize(reader)?;
+    let count = all.len();
+    all.try_into()
+        .map_err(|_| serde::de::Error::custom(format!("expected a list of {N}, not of {count}")))
+}
+
+fn three<'de, D, T>(reader: D) -> Result<Option<[T; 3]>, D::Error>
+where
+    D: serde::Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    exactly(reader).map(Some)
+}
+
 /// Points on a line.
 #[derive(Deserialize, JsonSchema, Clone)]
 #[serde(deny_unknown_fields)]
 struct LineKeys {
+    #[serde(deserialize_with = "exactly")]
     from: [f64; 3],
+    #[serde(deserialize_with = "exactly")]
     to: [f64; 3],
     points: usize,
 }
@@ -166,8 +188,11 @@ struct LineKeys {
 #[derive(Deserialize, JsonSchema, Clone)]
 #[serde(deny_unknown_fields)]
 struct PlaneKeys {
+    #[serde(deserialize_with = "exactly")]
     corner: [f64; 3],
+    #[serde(deserialize_with = "exactly")]
     edges: [[f64; 3]; 2],
+    #[serde(deserialize_with = "exactly")]
     points: [usize; 2],
 }
 
@@ -188,6 +213,7 @@ struct Keys {
     element: OneOrMore,
     model: Option<PathBuf>,
     molecules: Option<PathBuf>,
+    #[serde(deserialize_with = "three")]
     special: Option<[f64; 3]>,
     mass: BTreeMap<String, f64>,
     units: Option<String>,
@@ -195,6 +221,7 @@ struct Keys {
     width: Option<f64>,
     smoothness: Option<u32>,
     average: Option<String>,
+    #[serde(deserialize_with = "three")]
     grid: Option<[usize; 3]>,
     points: Option<PathBuf>,
     line: Option<LineKeys>,
