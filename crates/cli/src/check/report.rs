@@ -1,5 +1,6 @@
 //! The findings as a table for people.
 
+mod continuum;
 mod numbers;
 mod points;
 mod stiffness;
@@ -37,6 +38,7 @@ pub fn write(found: &Findings) -> String {
         stiffness(found),
         waves(found),
         fracture(found),
+        continuum::fields(found),
         cost(found),
         warnings(found),
     ] {
