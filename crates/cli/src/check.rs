@@ -2,6 +2,7 @@
 
 mod advice;
 mod atoms;
+mod continuum;
 mod directions;
 mod json;
 mod report;
@@ -16,6 +17,7 @@ use peridyne::law::micromodulus::Moments;
 use peridyne::run::{Families, Simulation};
 use peridyne::space::Point;
 use peridyne::spec::{Criterion, Moduli, Spec};
+use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
 use peridyne_lammps::Units;
@@ -62,6 +64,8 @@ struct Findings<'a> {
     steps: u64,
     trial: Trial,
     threads: usize,
+    /// Continuum fields that the deck asks for.
+    fields: Vec<continuum::Found>,
 }
 
 /// One material beside what the deck asked for.
@@ -91,6 +95,7 @@ struct Subject {
     script: bool,
     sim: Box<dyn Simulation>,
     steps: u64,
+    fields: Option<FieldsPlan>,
 }
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
@@ -113,9 +118,9 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 script: true,
                 sim: prepared.simulation,
                 steps: setup.steps,
+                fields: None,
             };
-            report(arguments, subject, threads);
-            Ok(())
+            report(arguments, subject, threads)
         });
     }
     if let Some(deck) = law::read(input)? {
@@ -139,28 +144,34 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         enough_disk(&deck, sim.as_ref(), &dir)?;
         let subject = Subject {
             steps: deck.steps(sim.info().time_step),
+            fields: crate::run::continuum(&deck),
             units: deck.units,
             spec: deck.spec,
             script: false,
             sim,
         };
-        report(arguments, subject, threads);
-        Ok(())
+        report(arguments, subject, threads)
     })
 }
 
-fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) {
+fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) -> Result<(), Failure> {
     let sim = subject.sim.as_mut();
+    let fields = match &subject.fields {
+        Some(plan) => continuum::find(sim, plan, subject.steps)?,
+        None => vec![],
+    };
     let patch = patience(sim).then(|| patch_test(sim));
     let families = sim.families();
     let trial = trial(sim);
     let reference = subject.sim.vectors("reference");
-    let found = find(&subject, &reference, patch, families, trial, threads);
+    let mut found = find(&subject, &reference, patch, families, trial, threads);
+    found.fields = fields;
     say(&if arguments.json {
         json::write(&found)
     } else {
         report::write(&found)
     });
+    Ok(())
 }
 
 fn patience(sim: &dyn Simulation) -> bool {
@@ -201,6 +212,7 @@ fn find<'a>(
         patch,
         trial,
         threads,
+        fields: vec![],
     }
 }
 

@@ -6,7 +6,7 @@ mod words;
 use crate::failure::{Failure, note, say};
 use crate::run::with_threads;
 use peridyne_fields::residuals::{self, Residuals};
-use peridyne_fields::{Fields, Frame, Method, Targets, evaluate};
+use peridyne_fields::{Fields, Frame, Method, Progress, Targets, evaluate};
 use peridyne_io::continuum::frame;
 use peridyne_io::read::Atoms;
 use peridyne_io::read::frames::Frames;
@@ -16,8 +16,9 @@ use peridyne_io::write::folder::Folder;
 use rayon::prelude::*;
 use request::Request;
 use std::fs;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-pub use words::FieldsArguments;
+pub use words::{FieldsArguments, schema};
 
 /// Between lines of progress.
 const INTERVAL: Duration = Duration::from_secs(5);
@@ -126,7 +127,7 @@ fn frames(request: &Request, count: usize, made: &mut Made) -> Result<(), Failur
         index: 0,
         atoms: None,
     };
-    let (begun, mut spoken) = (Instant::now(), Instant::now());
+    let clock = Arc::new(Clock::new(count));
     let mut some = vec![];
     loop {
         let read = chosen.next(request)?;
@@ -138,9 +139,11 @@ fn frames(request: &Request, count: usize, made: &mut Made) -> Result<(), Failur
         if some.len() < wide && !end {
             continue;
         }
+        // of several at once none stands for all
+        let within = (wide == 1).then_some(&clock);
         let all: Vec<Result<Computed, Failure>> = std::mem::take(&mut some)
             .into_par_iter()
-            .map(|(index, atoms)| computed(request, index, atoms))
+            .map(|(index, atoms)| computed(request, index, atoms, within))
             .collect();
         for one in all {
             let one = one?;
@@ -154,13 +157,83 @@ fn frames(request: &Request, count: usize, made: &mut Made) -> Result<(), Failur
         if end {
             return Ok(());
         }
-        let n = made.collected.frames();
-        if spoken.elapsed() >= INTERVAL && n < count {
-            spoken = Instant::now();
-            let left = begun.elapsed().as_secs_f64() / n as f64 * (count - n) as f64;
-            note(&format!("frame {n} of {count}, {left:.0} s left"));
+        clock.finished(made.collected.frames());
+    }
+}
+
+/// Tells how far the work is, and how long it will last.
+struct Clock {
+    begun: Instant,
+    frames: usize,
+    told: Mutex<Told>,
+}
+
+struct Told {
+    /// Frames that are done, and when the last of them was.
+    done: usize,
+    since: Instant,
+    spoken: Instant,
+}
+
+impl Clock {
+    fn new(frames: usize) -> Clock {
+        let begun = Instant::now();
+        Clock {
+            begun,
+            frames,
+            told: Mutex::new(Told {
+                done: 0,
+                since: begun,
+                spoken: begun,
+            }),
         }
     }
+
+    fn finished(&self, done: usize) {
+        let Ok(mut told) = self.told.lock() else {
+            return;
+        };
+        (told.done, told.since) = (done, Instant::now());
+        if told.spoken.elapsed() >= INTERVAL && done < self.frames {
+            told.spoken = Instant::now();
+            let each = self.begun.elapsed().as_secs_f64() / done.max(1) as f64;
+            let left = each * (self.frames - done) as f64;
+            note(&format!(
+                "frame {done} of {}, {left:.0} s left",
+                self.frames
+            ));
+        }
+    }
+
+    /// A part of a frame is done.
+    fn within(&self, part: f64) {
+        let Ok(mut told) = self.told.lock() else {
+            return;
+        };
+        if told.spoken.elapsed() < INTERVAL || !(part > 0.0 && part < 1.0) {
+            return;
+        }
+        told.spoken = Instant::now();
+        let left = remaining(
+            told.since.elapsed().as_secs_f64(),
+            (told.since - self.begun).as_secs_f64(),
+            part,
+            [told.done, self.frames],
+        );
+        note(&format!(
+            "frame {} of {}, {:.0} % of it, {left:.0} s left",
+            told.done + 1,
+            self.frames,
+            100.0 * part
+        ));
+    }
+}
+
+/// Seconds that are left, where a part of a frame took `now` and the frames before it `before`.
+fn remaining(now: f64, before: f64, part: f64, [done, frames]: [usize; 2]) -> f64 {
+    let this = now / part;
+    let each = (before + this) / (done + 1) as f64;
+    this - now + each * (frames - done - 1) as f64
 }
 
 /// Frames of the file that are taken, one after the other.
@@ -209,13 +282,24 @@ struct Computed {
     about: continuum::Frame,
 }
 
-fn computed(request: &Request, index: usize, atoms: Atoms) -> Result<Computed, Failure> {
+fn computed(
+    request: &Request,
+    index: usize,
+    atoms: Atoms,
+    clock: Option<&Arc<Clock>>,
+) -> Result<Computed, Failure> {
     let wrong = |message: String| wrong(request, index, message);
     let state = frame(&atoms, request.units, &request.masses, &request.model).map_err(wrong)?;
     let method = request
         .whole_method(&state.cell, state.len())
         .map_err(wrong)?;
-    let found = evaluate(&state, &*request.model.sites, &request.targets, &method)
+    let told = Method {
+        progress: clock
+            .cloned()
+            .map(|c| Progress(Arc::new(move |part| c.within(part)))),
+        ..method.clone()
+    };
+    let found = evaluate(&state, &*request.model.sites, &request.targets, &told)
         .map_err(|e| wrong(e.to_string()))?;
     let grid = match &request.targets {
         Targets::Grid(n) => Some((*n, state.cell.clone())),
@@ -303,4 +387,19 @@ fn summary(request: &Request, read: &[continuum::Frame]) {
 
 fn part(x: f64, of: f64) -> f64 {
     if of > 0.0 { x / of } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::remaining;
+
+    #[test]
+    fn what_is_left_is_of_this_frame_and_those_to_come() {
+        // a quarter of the first of one took 2 s
+        assert_eq!(remaining(2.0, 0.0, 0.25, [0, 1]), 6.0);
+        // and two more to come, of 8 s each
+        assert_eq!(remaining(2.0, 0.0, 0.25, [0, 3]), 22.0);
+        // after one that took 4 s
+        assert_eq!(remaining(2.0, 4.0, 0.25, [1, 3]), 12.0);
+    }
 }

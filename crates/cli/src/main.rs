@@ -81,6 +81,8 @@ struct SchemaArguments {
 #[value(rename_all = "snake_case")]
 enum DeckKind {
     ConservationLaw,
+    /// A file of `peridyne fields`: it has no key `kind`.
+    Fields,
 }
 
 /// What `run` and `check` both take.
@@ -161,6 +163,7 @@ fn print_schema(kind: Option<DeckKind>) -> Result<(), Failure> {
     let schema = match kind {
         None => peridyne_io::deck::schema(),
         Some(DeckKind::ConservationLaw) => peridyne_io::deck::law_schema(),
+        Some(DeckKind::Fields) => fields::schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(|e| Failure::Run(e.to_string()))?;
     failure::say(&text);

@@ -157,6 +157,20 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
         ("output.every", "frames"),
         ("output.history", "rows of history.csv"),
     ];
+    let fields: f64 = deck.fields.iter().map(|f| f.bytes(steps)).sum();
+    if fields > free {
+        let error = BuildError::too_large(
+            "fields",
+            (fields, Some(free)),
+            format!(
+                "{steps} steps would write up to {} of continuum fields; the disk has {} left",
+                size(fields),
+                size(free)
+            ),
+        )
+        .help("fewer points (`grid`), no file for each frame (`each = false`), a larger `every`; or --out on another disk".to_string());
+        return Err(Failure::Input(deck.explain(&error).into()));
+    }
     match amount
         .bytes()
         .into_iter()
@@ -290,12 +304,7 @@ fn plan(
             pictures,
         },
         fields: fields(deck),
-        continuum: (!deck.fields.is_empty()).then(|| FieldsPlan {
-            asked: deck.fields.clone(),
-            spec: deck.spec.clone(),
-            corner: deck.corner,
-            units: Units::Deck(deck.units),
-        }),
+        continuum: continuum(deck),
         units: deck.units,
         time_unit: time_unit.to_string(),
         energy_unit: energy_unit.to_string(),
@@ -322,4 +331,14 @@ fn plan(
         title,
         threads,
     }
+}
+
+/// The fields that a deck asks for.
+pub fn continuum(deck: &Deck) -> Option<FieldsPlan> {
+    (!deck.fields.is_empty()).then(|| FieldsPlan {
+        asked: deck.fields.clone(),
+        spec: deck.spec.clone(),
+        corner: deck.corner,
+        units: Units::Deck(deck.units),
+    })
 }

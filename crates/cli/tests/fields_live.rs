@@ -126,6 +126,52 @@ fn fields_of_running_atoms_are_those_of_their_frames() {
     );
 }
 
+/// Molecules, a mixture with mixing rules, alloys with a gas beside them, Tersoff's carbide: as their frames, read with the same deck.
+#[test]
+fn fields_of_all_kinds_of_atoms_are_those_of_their_frames() {
+    let decks = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good");
+    let dir = TempDir::new().unwrap();
+    let at = dir.path();
+    std::fs::write(at.join("points.txt"), POINTS).unwrap();
+    for file in ["hexane.data", "alloy.eam.alloy", "SiC.tersoff"] {
+        std::fs::copy(decks.join(file), at.join(file)).unwrap();
+    }
+    for (name, width) in [
+        ("hexane", "4"),
+        ("mixture", "1.5"),
+        ("alloy", "4"),
+        ("silicon_carbide", "3"),
+    ] {
+        let deck = std::fs::read_to_string(decks.join(format!("{name}.toml"))).unwrap();
+        let replaced = deck.lines().map(|line| match line.split(" = ").next() {
+            Some("output") => {
+                "output = { every = 10, vtu = false, trajectory = \"frames.extxyz\" }".into()
+            }
+            Some("run") => line
+                .replace("steps = 100", "steps = 20")
+                .replace("steps = 50", "steps = 20"),
+            _ => line.to_string(),
+        });
+        let deck = format!(
+            "{}\n[[fields]]\nname = \"{name}\"\nkernel = \"polynomial\"\nwidth = {width}\npoints = [{}]\nevery = 10\npartition = \"equal\"\n",
+            replaced.collect::<Vec<_>>().join("\n"),
+            inline()
+        );
+        run(at, &deck);
+        let flags = format!(
+            "fields --frames out/frames.extxyz --model deck.toml --kernel polynomial --width {width} --points points.txt --partition equal --out {name}"
+        );
+        let words: Vec<&str> = flags.split_whitespace().collect();
+        let (code, _, error) = peridyne(at, &words);
+        assert_eq!(code, Some(0), "{name}: {error}");
+        let [live, files] = [
+            format!("out/{name}/points.csv"),
+            format!("{name}/points.csv"),
+        ];
+        same(&at.join(live), &at.join(files), 1e-11);
+    }
+}
+
 /// A plate with a crack, pulled: an image for each frame, their collection, the picture, and why there is no temperature.
 #[test]
 fn fields_of_a_body_are_written_as_those_of_atoms() {

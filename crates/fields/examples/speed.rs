@@ -1,8 +1,9 @@
 //! What the fields of embedded atoms cost: a block of CELLS³ cells of copper (4 atoms each) with thermal displacements and velocities, one
 //! thread.
 //!
-//! `speed [CELLS] [GRID] [WIDTH]`: one grid (GRID³ points) and width (Å); `speed table [CELLS]`: several of both. Beside each stands a loop over
-//! all bonds for each point, measured on eight points and scaled to all, and what β alone costs on points that wait side by side.
+//! `speed [CELLS] [GRID] [WIDTH]`: one grid (GRID³ points) and width (Å); `speed table [CELLS]`: several of both. `speed shapes [CELLS]`: other functions.
+//! Beside each stands a loop over all bonds for each point, measured on eight points and scaled to all, and what β alone costs on points that
+//! wait side by side. `speed alone …` leaves these away.
 
 use peridyne::law::number::Number;
 use peridyne::law::potential::Potential;
@@ -136,7 +137,6 @@ fn limit(kernel: &Kernel) -> f64 {
             peridyne_fields::bond::bonds(
                 std::hint::black_box(kernel),
                 d,
-                [0.0; 3],
                 [1.5, -1.2, 0.9],
                 std::hint::black_box(&mut out),
             );
@@ -145,11 +145,19 @@ fn limit(kernel: &Kernel) -> f64 {
     1e9 * time / (rounds * n) as f64
 }
 
-fn row(frame: &Frame, grid: usize, width: f64) {
+fn row(frame: &Frame, shape: Shape, grid: usize, width: f64, beside: bool) {
     let sites = OfSites(Copper);
-    let method = Method::new(Kernel::new(Shape::Polynomial(3), width).unwrap());
+    let method = Method::new(Kernel::new(shape, width).unwrap());
     let targets = Targets::Grid([grid; 3]);
     let (own, time) = seconds(|| -> Fields { evaluate(frame, &sites, &targets, &method).unwrap() });
+    let per_atom = 1e6 * time / frame.len() as f64;
+    if !beside {
+        println!(
+            "| {grid}³ | {width} | {time:.2} | {per_atom:.1} | {} |",
+            shape.name()
+        );
+        return;
+    }
     let points = targets.positions(&frame.cell);
     let some: Vec<usize> = (0..8).map(|k| k * (points.len() - 1) / 7).collect();
     let at: Vec<[f64; 3]> = some.iter().map(|p| points[*p]).collect();
@@ -170,8 +178,7 @@ fn row(frame: &Frame, grid: usize, width: f64) {
     let density = points.len() as f64 / frame.cell.volume();
     let near = density * (count * round * width * 4.0 / 3.0 + round * length / 2.0);
     println!(
-        "| {grid}³ | {width} | {time:.2} | {:.1} | {:.1} | {:.1} | {:.1} | {:.0} | {off:.0e} |",
-        1e6 * time / frame.len() as f64,
+        "| {grid}³ | {width} | {time:.2} | {per_atom:.1} | {:.1} | {:.1} | {:.1} | {:.0} | {off:.0e} |",
         near / count,
         1e9 * time / near,
         limit(&method.kernel),
@@ -181,14 +188,17 @@ fn row(frame: &Frame, grid: usize, width: f64) {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let table = words.first().is_some_and(|w| w == "table");
+    let mode = words.first().filter(|w| w.parse::<f64>().is_err());
     let mut numbers = words
         .iter()
-        .skip(usize::from(table))
+        .skip(usize::from(mode.is_some()))
         .map(|a| a.parse::<f64>().unwrap());
-    let cells = numbers.next().unwrap_or(if table { 32.0 } else { 63.0 }) as usize;
+    let mode = mode.map_or("", |w| w);
+    let whole = matches!(mode, "" | "alone");
+    let cells = numbers.next().unwrap_or(if whole { 63.0 } else { 24.0 }) as usize;
     let grid = numbers.next().unwrap_or(64.0) as usize;
     let width = numbers.next().unwrap_or(8.0);
+    let polynomial = Shape::Polynomial(3);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
@@ -198,15 +208,27 @@ fn main() {
         println!("{} atoms, one thread", frame.len());
         println!("| grid | width (Å) | s | µs per atom | points per bond | ns per bond and point | of β alone | naive, times as long | difference |");
         println!("|---|---|---|---|---|---|---|---|---|");
-        match table {
-            true => {
+        match mode {
+            "table" => {
                 for grid in [16, 32, 64] {
                     for width in [4.0, 8.0, 12.0] {
-                        row(&frame, grid, width);
+                        row(&frame, polynomial, grid, width, true);
                     }
                 }
             }
-            false => row(&frame, grid, width),
+            "shapes" => {
+                for (shape, width) in [
+                    (Shape::Polynomial(0), 8.0),
+                    (polynomial, 8.0),
+                    (Shape::Polynomial(7), 8.0),
+                    (Shape::CubicSpline, 8.0),
+                    (Shape::QuarticSpline, 8.0),
+                    (Shape::Gaussian, 1.0),
+                ] {
+                    row(&frame, shape, 32, width, false);
+                }
+            }
+            _ => row(&frame, polynomial, grid, width, mode != "alone"),
         }
     });
 }

@@ -1,12 +1,12 @@
 //! From bonds and particles to sums at points.
 //!
-//! Points near an atom are packed side by side, in registers of eight. Each of its bonds finds β at them and adds to sums that belong to
-//! these registers; when the atom is done they are added to the points. Fused products and sums, in one order: the bits are those of any
-//! instruction set.
+//! The bonds about a place are put side by side once. Each brick of points near it finds which of them reach it, β of these at its eight
+//! points, and adds them to sums of its own. Fused products and sums, in one order: the bits are those of any instruction set.
 
 use crate::bonds::{Bonds, WIDTH};
-use crate::kernel::Kernel;
-use crate::patch::{EIGHT, Patch, Runs};
+use crate::kernel::{Kernel, dot};
+use crate::patch::{EIGHT, Lanes, NONE, Patch, Seen};
+use crate::segments::{Segments, View};
 use crate::wide::widest;
 
 /// Numbers that a bond adds at a point, for each part: `−x⊗f`, `x (D·v)`, `x⊗E`, times β.
@@ -54,251 +54,144 @@ impl Form {
     }
 }
 
-/// Sums over bonds at the points of a patch.
+/// Sums over bonds at the points of a patch: of each brick, for each part and number, eight points.
 #[derive(Debug)]
 pub(crate) struct BondSums {
     form: Form,
-    values: Vec<f64>,
+    values: Vec<Lanes>,
 }
 
 impl BondSums {
     /// Adds them to all sums, `BOND` numbers for each part of a point.
     pub fn add_to(&self, sums: &mut [f64], index: &[u32], parts: usize) {
         let width = self.form.width();
-        for (p, own) in index.iter().zip(self.values.chunks_exact(parts * width)) {
-            let sums = &mut sums[*p as usize * parts * BOND..][..parts * BOND];
-            for (sums, own) in sums.chunks_exact_mut(BOND).zip(own.chunks_exact(width)) {
-                let own = self.form.whole(own);
-                sums.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
+        let mut one = vec![0.0; width];
+        for (points, own) in
+            { index.chunks_exact(EIGHT) }.zip(self.values.chunks_exact(parts * width))
+        {
+            for (k, p) in points.iter().enumerate().filter(|(_, p)| **p != NONE) {
+                let sums = &mut sums[*p as usize * parts * BOND..][..parts * BOND];
+                for (sums, own) in sums.chunks_exact_mut(BOND).zip(own.chunks_exact(width)) {
+                    for (one, own) in one.iter_mut().zip(own) {
+                        *one = own[k];
+                    }
+                    let own = self.form.whole(&one);
+                    sums.iter_mut().zip(own).for_each(|(sum, x)| *sum += x);
+                }
             }
         }
     }
-}
-
-/// Points near a place, with the vectors to them, in whole registers.
-#[derive(Default)]
-struct Candidates {
-    /// Of the points, and of the registers.
-    count: usize,
-    eights: usize,
-    place: Vec<u32>,
-    d: [Vec<f64>; 3],
-    /// Lowest and highest z of each register.
-    ends: Vec<[f64; 2]>,
-    value: Vec<f64>,
-    runs: Runs,
 }
 
 // what is compiled for an instruction set has no closures: these would be compiled for none
-impl Candidates {
-    #[inline(always)]
-    fn find(&mut self, patch: &Patch, x: [f64; 3], reach: f64) {
-        patch.near(x, reach, &mut self.runs);
-        let most = self.runs.points() + 2 * EIGHT;
-        if self.place.len() < most {
-            self.place.resize(2 * most, 0);
-            self.value.resize(2 * most, 0.0);
-            for column in &mut self.d {
-                column.resize(2 * most, 0.0);
+widest!(pub(crate) bonds, (kernel: &Kernel, patch: &Patch, bonds: &Bonds, parts: usize, form: Form) -> BondSums, all_bonds);
+widest!(pub(crate) particles, (kernel: &Kernel, patch: &Patch, of: &Particles) -> ParticleSums, all_particles);
+
+/// What a bond multiplies with β: of its vector and its numbers.
+#[inline(always)]
+fn numbers(form: Form, d: [f64; 3], v: &[f64], factor: f64, out: &mut Vec<f64>) {
+    let d = [factor * d[0], factor * d[1], factor * d[2]];
+    match form {
+        Form::Still | Form::Moving => {
+            for [a, b] in OF_SIX {
+                out.push(-d[a] * v[b]);
             }
         }
-        let x = patch.project(x);
-        let mut count = 0;
-        for run in &self.runs.all {
-            let shift = patch.project(run.shift);
-            let length = (run.to - run.from) as usize;
-            // whole registers; what is too much is written over by the next
-            let mut first = 0;
-            while first < length {
-                let (n, p) = (count + first, run.from as usize + first);
-                for a in 0..3 {
-                    let off = shift[a] - x[a];
-                    let to = &mut self.d[a][n..n + EIGHT];
-                    let from = &patch.x[a][p..p + EIGHT];
-                    for k in 0..EIGHT {
-                        to[k] = from[k] + off;
-                    }
-                }
-                let place = &mut self.place[n..n + EIGHT];
-                for k in 0..EIGHT {
-                    place[k] = (p + k) as u32;
-                }
-                first += EIGHT;
-            }
-            count += length;
-        }
-        self.count = count;
-        self.eights = count.div_ceil(EIGHT);
-        // the last register ends with what is near nothing
-        for n in count..self.eights * EIGHT {
-            self.place[n] = 0;
-            for column in &mut self.d {
-                column[n] = 4.0 * reach;
+        Form::Whole => {
+            for m in 0..9 {
+                out.push(-d[m / 3] * v[m % 3]);
             }
         }
     }
-
-    #[inline(always)]
-    fn measure(&mut self) {
-        self.ends.clear();
-        for z in self.d[2][..self.eights * EIGHT].as_chunks::<EIGHT>().0 {
-            let (mut low, mut high) = (z[0], z[0]);
-            for z in z {
-                low = if *z < low { *z } else { low };
-                high = if *z > high { *z } else { high };
-            }
-            self.ends.push([low, high]);
+    if form != Form::Still {
+        for m in 0..3 {
+            out.push(d[m] * v[6]);
         }
     }
-
-    /// Registers from and to before, beyond which all points are below or above.
-    #[inline(always)]
-    fn between(&self, low: f64, high: f64) -> [usize; 2] {
-        let (mut from, mut to) = (0, self.eights);
-        while from < to && !(self.ends[from][0] < high && self.ends[from][1] > low) {
-            from += 1;
+    if form == Form::Whole {
+        for m in 0..9 {
+            out.push(d[m / 3] * v[3 + m % 3]);
         }
-        while to > from && !(self.ends[to - 1][0] < high && self.ends[to - 1][1] > low) {
-            to -= 1;
-        }
-        [from, to]
-    }
-
-    /// The vectors of some registers, and room for a value of each.
-    #[inline(always)]
-    fn columns(&mut self, [from, to]: [usize; 2]) -> ([&[f64]; 3], &mut [f64]) {
-        let (from, to) = (from * EIGHT, to * EIGHT);
-        let [x, y, z] = &self.d;
-        (
-            [&x[from..to], &y[from..to], &z[from..to]],
-            &mut self.value[from..to],
-        )
     }
 }
-
-widest!(pub(crate) bonds, (kernel: &Kernel, patch: &Patch, bonds: &Bonds, parts: usize, form: Form) -> BondSums, all_bonds);
-widest!(pub(crate) particles, (kernel: &Kernel, patch: &Patch, of: &Particles) -> Vec<f64>, all_particles);
 
 /// Sums over bonds at the points of a patch.
 #[inline(always)]
 fn all_bonds(kernel: &Kernel, patch: &Patch, bonds: &Bonds, parts: usize, form: Form) -> BondSums {
-    let mut values = vec![0.0; patch.index.len() * parts * form.width()];
-    if !patch.index.is_empty() {
-        match form {
-            Form::Still => of_form::<Still, 6>(kernel, patch, bonds, parts, &mut values),
-            Form::Moving => of_form::<Moving, 9>(kernel, patch, bonds, parts, &mut values),
-            Form::Whole => of_form::<Whole, BOND>(kernel, patch, bonds, parts, &mut values),
+    let width = parts * form.width();
+    let mut values = vec![Lanes::ZERO; patch.bricks.len() * width];
+    let mut segments = Segments::default();
+    let mut terms = vec![];
+    let mut seen: Vec<Seen> = vec![];
+    let mut list = vec![];
+    let mut beta = vec![];
+    let mut first = 0;
+    while first < bonds.len() {
+        let some = bonds.about_one_place(first);
+        let origin = patch.project(bonds.origin(first));
+        let reach = kernel.radius() + bonds.span(some.clone());
+        patch.near(bonds.origin(first), reach, &mut seen);
+        first = some.end;
+        if seen.is_empty() {
+            continue;
+        }
+        segments.begin(kernel);
+        terms.clear();
+        for n in some {
+            let (end, bond) = (patch.project(bonds.end[n]), bonds.bond[n]);
+            let from = [end[0] - origin[0], end[1] - origin[1], end[2] - origin[2]];
+            segments.add(kernel, from, patch.project(bond));
+            let factor = segments.factor[segments.len() - 1];
+            for part in 0..parts {
+                let v = &bonds.value[(n * parts + part) * WIDTH..][..WIDTH];
+                numbers(form, bond, v, factor, &mut terms);
+            }
+        }
+        for Seen { brick, shift } in &seen {
+            let [centre, half] = patch.middle(*brick);
+            let mut from = [0.0; 3];
+            let mut middle = [0.0; 3];
+            for a in 0..3 {
+                from[a] = origin[a] - shift[a];
+                middle[a] = centre[a] - from[a];
+            }
+            segments.near(middle, half, &mut list);
+            if list.is_empty() {
+                continue;
+            }
+            let view = View::new(&patch.bricks[*brick as usize], from, segments.over());
+            if beta.len() < list.len() {
+                beta.resize(2 * list.len(), Lanes::ZERO);
+            }
+            let beta = &mut beta[..list.len()];
+            segments.beta(kernel, &view, &list, beta);
+            let own = &mut values[*brick as usize * width..][..width];
+            match form {
+                Form::Still => add::<6>(own, &terms, &list, beta),
+                Form::Moving => add::<9>(own, &terms, &list, beta),
+                Form::Whole => add::<7>(own, &terms, &list, beta),
+            }
         }
     }
     BondSums { form, values }
 }
 
-/// What is multiplied with β.
-trait Numbers<const W: usize> {
-    /// Of a vector and the numbers of a bond.
-    fn of(d: [f64; 3], v: &[f64]) -> [f64; W];
-}
-
-struct Still;
-struct Moving;
-struct Whole;
-
-impl Numbers<6> for Still {
-    #[inline(always)]
-    fn of(d: [f64; 3], v: &[f64]) -> [f64; 6] {
-        OF_SIX.map(|[a, b]| -d[a] * v[b])
-    }
-}
-
-impl Numbers<9> for Moving {
-    #[inline(always)]
-    fn of(d: [f64; 3], v: &[f64]) -> [f64; 9] {
-        let [a, b, c, e, f, g] = Still::of(d, v);
-        [a, b, c, e, f, g, d[0] * v[6], d[1] * v[6], d[2] * v[6]]
-    }
-}
-
-impl Numbers<BOND> for Whole {
-    #[inline(always)]
-    fn of(d: [f64; 3], v: &[f64]) -> [f64; BOND] {
-        let mut term = [0.0; BOND];
-        for m in 0..9 {
-            term[m] = -d[m / 3] * v[m % 3];
-            term[12 + m] = d[m / 3] * v[3 + m % 3];
-        }
-        for m in 0..3 {
-            term[9 + m] = d[m] * v[6];
-        }
-        term
-    }
-}
-
+/// All bonds for some numbers at a time, which then stay in registers.
 #[inline(always)]
-fn of_form<T: Numbers<W>, const W: usize>(
-    kernel: &Kernel,
-    patch: &Patch,
-    bonds: &Bonds,
-    parts: usize,
-    sums: &mut [f64],
-) {
-    let sums = sums.as_chunks_mut::<W>().0;
-    let mut near = Candidates::default();
-    // of each register and part
-    let mut own = vec![];
-    let mut first = 0;
-    while first < bonds.len() {
-        let some = bonds.about_one_place(first);
-        let origin = bonds.origin(first);
-        near.find(patch, origin, kernel.radius() + bonds.span(some.clone()));
-        near.measure();
-        own.clear();
-        own.resize(near.eights * parts, [[0.0; EIGHT]; W]);
-        first = some.end;
-        if near.count == 0 {
-            continue;
-        }
-        for n in some {
-            let (end, bond) = (bonds.end[n], bonds.bond[n]);
-            let mut off = [0.0; 3];
-            for a in 0..3 {
-                off[a] = origin[a] - end[a];
-            }
-            let off = patch.project(off);
-            let z = patch.project(bond)[2];
-            let (low, high) = if z < 0.0 { (z, 0.0) } else { (0.0, z) };
-            let radius = kernel.radius();
-            let [from, to] = near.between(low - off[2] - radius, high - off[2] + radius);
-            let (d, out) = near.columns([from, to]);
-            kernel.along(d, off, bond, out);
-            for part in 0..parts {
-                let term = T::of(bond, &bonds.value[(n * parts + part) * WIDTH..][..WIDTH]);
-                let beta = near.value[from * EIGHT..to * EIGHT].as_chunks::<EIGHT>().0;
-                let own = &mut own[part * near.eights..][from..to];
-                for (own, beta) in own.iter_mut().zip(beta) {
-                    add(own, &term, beta);
+fn add<const W: usize>(own: &mut [Lanes], terms: &[f64], list: &[u32], beta: &[Lanes]) {
+    let (own, terms) = (own.as_chunks_mut::<W>().0, terms.as_chunks::<W>().0);
+    let pieces = own.len();
+    for (c, own) in own.iter_mut().enumerate() {
+        let mut sums = *own;
+        for (n, beta) in list.iter().zip(beta) {
+            let term = &terms[*n as usize * pieces + c];
+            for c in 0..W {
+                for k in 0..EIGHT {
+                    sums[c][k] = term[c].mul_add(beta[k], sums[c][k]);
                 }
             }
         }
-        for (part, own) in own.chunks_exact(near.eights).enumerate() {
-            for n in 0..near.count {
-                let sums = &mut sums[near.place[n] as usize * parts + part];
-                let own = &own[n / EIGHT];
-                for c in 0..W {
-                    sums[c] += own[c][n % EIGHT];
-                }
-            }
-        }
-    }
-}
-
-#[inline(always)]
-fn add<const W: usize>(own: &mut [[f64; EIGHT]; W], term: &[f64; W], beta: &[f64; EIGHT]) {
-    for c in 0..W {
-        let mut all = own[c];
-        for k in 0..EIGHT {
-            all[k] = term[c].mul_add(beta[k], all[k]);
-        }
-        own[c] = all;
+        *own = sums;
     }
 }
 
@@ -312,41 +205,144 @@ pub(crate) struct Particles<'a> {
     pub slope_width: usize,
 }
 
-/// Sums over particles at the points of a patch: `width` numbers, then three for each of `slope_width`.
-#[inline(always)]
-fn all_particles(kernel: &Kernel, patch: &Patch, of: &Particles) -> Vec<f64> {
-    let slopes = of.slopes.map_or(0, |_| 3 * of.slope_width);
-    let stride = of.width + slopes;
-    let mut sums = vec![0.0; patch.index.len() * stride];
-    if patch.index.is_empty() {
-        return sums;
+/// Sums over particles at the points of a patch, of each brick those of eight points: `width` numbers and what fills up the last six of
+/// them, then three for each of `slope_width`.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct ParticleSums {
+    width: usize,
+    slopes: usize,
+    values: Vec<Lanes>,
+}
+
+/// Numbers that are summed at once.
+const SIX: usize = 6;
+/// Particles that look for bricks together.
+const GROUP: usize = 16;
+
+impl ParticleSums {
+    fn stride(&self) -> usize {
+        self.width.next_multiple_of(SIX) + self.slopes
     }
-    let mut near = Candidates::default();
-    for (n, x) in of.position.iter().enumerate() {
-        near.find(patch, *x, kernel.radius());
-        if let Some(all) = of.slopes {
-            let own = &all[n * of.slope_width..][..of.slope_width];
-            for k in 0..near.count {
-                let gradient = kernel.gradient([near.d[0][k], near.d[1][k], near.d[2][k]]);
-                let rest = &mut sums[near.place[k] as usize * stride + of.width..][..slopes];
-                for (rest, value) in rest.chunks_exact_mut(3).zip(own) {
-                    for a in 0..3 {
-                        rest[a] = gradient[a].mul_add(*value, rest[a]);
-                    }
+
+    /// Adds them to all sums.
+    pub fn add_to(&self, sums: &mut [f64], index: &[u32]) {
+        let (stride, width) = (self.stride().max(1), self.width + self.slopes);
+        for (points, own) in { index.chunks_exact(EIGHT) }.zip(self.values.chunks_exact(stride)) {
+            for (k, p) in points.iter().enumerate().filter(|(_, p)| **p != NONE) {
+                let sums = &mut sums[*p as usize * width..][..width];
+                let (times_phi, slopes) = sums.split_at_mut(self.width);
+                for (sum, own) in times_phi.iter_mut().zip(own) {
+                    *sum += own[k];
+                }
+                for (sum, own) in slopes.iter_mut().zip(&own[stride - self.slopes..]) {
+                    *sum += own[k];
                 }
             }
         }
-        let (d, out) = near.columns([0, near.eights]);
-        kernel.values(d, out);
-        let own = &of.value[n * of.width..][..of.width];
-        for (place, phi) in near.place[..near.count].iter().zip(&near.value) {
-            let sums = &mut sums[*place as usize * stride..][..of.width];
-            for (sum, value) in sums.iter_mut().zip(own) {
-                *sum = value.mul_add(*phi, *sum);
+    }
+}
+
+/// Sums over particles at the points of a patch.
+#[inline(always)]
+fn all_particles(kernel: &Kernel, patch: &Patch, of: &Particles) -> ParticleSums {
+    let mut out = ParticleSums {
+        width: of.width,
+        slopes: match of.slopes {
+            Some(_) => 3 * of.slope_width,
+            None => 0,
+        },
+        values: vec![],
+    };
+    let stride = out.stride();
+    let padded = stride - out.slopes;
+    out.values = vec![Lanes::ZERO; patch.bricks.len() * stride];
+    let radius = kernel.radius();
+    let mut seen = vec![];
+    let mut list: Vec<u32> = vec![];
+    let mut phi = vec![Lanes::ZERO; GROUP];
+    let mut terms = vec![];
+    let mut first = 0;
+    while first < of.position.len() {
+        let some = &of.position[first..(first + GROUP).min(of.position.len())];
+        let (middle, span) = about(some);
+        patch.near(middle, radius + span, &mut seen);
+        terms.clear();
+        for n in first..first + some.len() {
+            terms.extend_from_slice(&of.value[n * of.width..][..of.width]);
+            terms.resize((n + 1 - first) * padded, 0.0);
+        }
+        for Seen { brick, shift } in &seen {
+            let points = &patch.bricks[*brick as usize];
+            let [centre, half] = patch.middle(*brick);
+            let wide = dot(half, half).sqrt() + radius * (1.0 + 1e-9);
+            list.clear();
+            for (n, x) in some.iter().enumerate() {
+                let x = patch.project(*x);
+                let mut d = [0.0; 3];
+                for a in 0..3 {
+                    d[a] = centre[a] + shift[a] - x[a];
+                }
+                if dot(d, d) > wide * wide {
+                    continue;
+                }
+                let mut d = [Lanes::ZERO; 3];
+                for a in 0..3 {
+                    let from = x[a] - shift[a];
+                    for k in 0..EIGHT {
+                        d[a][k] = points[a][k] - from;
+                    }
+                }
+                kernel.values(&d, &mut phi[list.len()]);
+                list.push(n as u32);
+                let Some(all) = of.slopes else {
+                    continue;
+                };
+                let rest = &mut out.values[*brick as usize * stride + padded..][..out.slopes];
+                let own = &all[(first + n) * of.slope_width..][..of.slope_width];
+                slopes(kernel, &d, own, rest);
+            }
+            let own = &mut out.values[*brick as usize * stride..][..padded];
+            add::<SIX>(own, &terms, &list, &phi[..list.len()]);
+        }
+        first += GROUP;
+    }
+    out
+}
+
+/// Numbers times ∇φ at eight points.
+#[inline(always)]
+fn slopes(kernel: &Kernel, d: &[Lanes; 3], own: &[f64], rest: &mut [Lanes]) {
+    let mut gradient = [Lanes::ZERO; 3];
+    for k in 0..EIGHT {
+        let one = kernel.gradient([d[0][k], d[1][k], d[2][k]]);
+        for a in 0..3 {
+            gradient[a][k] = one[a];
+        }
+    }
+    for (rest, value) in rest.as_chunks_mut::<3>().0.iter_mut().zip(own) {
+        for a in 0..3 {
+            for k in 0..EIGHT {
+                rest[a][k] = value.mul_add(gradient[a][k], rest[a][k]);
             }
         }
     }
-    sums
+}
+
+/// A ball about some places: its centre and radius.
+fn about(some: &[[f64; 3]]) -> ([f64; 3], f64) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for x in some {
+        for a in 0..3 {
+            (low[a], high[a]) = (low[a].min(x[a]), high[a].max(x[a]));
+        }
+    }
+    let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
+    let mut square = 0.0f64;
+    for x in some {
+        let d = std::array::from_fn(|a| x[a] - middle[a]);
+        square = square.max(dot(d, d));
+    }
+    (middle, square.sqrt())
 }
 
 #[cfg(test)]
@@ -400,7 +396,7 @@ mod tests {
                 for form in [Form::Still, Form::Moving, Form::Whole] {
                     let [wide, single] =
                         [bonds, all_bonds].map(|run| run(&kernel, &patch, &of, 1, form).values);
-                    assert!(wide.iter().any(|x| *x != 0.0), "{shape:?}");
+                    assert!(wide.iter().any(|x| *x != Lanes::ZERO), "{shape:?}");
                     assert!(wide == single, "{shape:?} {form:?}");
                 }
                 let particles_of = Particles {

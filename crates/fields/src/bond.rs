@@ -12,113 +12,155 @@
 //! Fourier space `β̂ = φ̂ (e^{ik·x_j} − e^{ik·x_k}) / (i k·x_jk)` (4.0.90), which a test shows; a φ much wider than the bond leaves
 //! `β = φ`, in the limit 1/V, the virial's.
 
+use crate::gauss;
 use crate::kernel::{GAUSSIAN_END, Kernel, Shape, dot};
-use crate::polynomial::polynomial;
+use crate::patch::{EIGHT, Lanes};
+use crate::polynomial;
+use crate::segments::{Segment, Segments, View};
+use crate::spline;
 use crate::wide::widest;
 
 widest!(
-    /// β (1 / volume) at several points: columns x, y, z of the vectors to them from a place that lies `off` from the end k, all 0 along
-    /// axes that are averaged over; `bond` is from k to the end j.
-    pub bonds, (kernel: &Kernel, d: [&[f64]; 3], off: [f64; 3], bond: [f64; 3], out: &mut [f64]) -> (), Kernel::along
+    /// β (1 / volume) of a bond at several points: columns x, y, z of the vectors to them from the end k, all 0 along axes that are
+    /// averaged over; `bond` is from k to the end j. All are as long as `out`.
+    pub bonds, (kernel: &Kernel, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) -> (), at_points
 );
+
+#[inline(always)]
+fn at_points(kernel: &Kernel, d: [&[f64]; 3], bond: [f64; 3], out: &mut [f64]) {
+    let mut segments = Segments::default();
+    segments.begin(kernel);
+    segments.add(kernel, [0.0; 3], kernel.project(bond));
+    let mut first = 0;
+    while first < out.len() {
+        let count = EIGHT.min(out.len() - first);
+        let mut x = [Lanes::ZERO; 3];
+        for a in 0..3 {
+            let from = &d[a][first..];
+            match from.first_chunk::<EIGHT>() {
+                Some(eight) => x[a] = Lanes(*eight),
+                None => {
+                    for k in 0..count {
+                        x[a][k] = from[k];
+                    }
+                }
+            }
+        }
+        let view = View::new(&x, [0.0; 3], segments.over());
+        let mut beta = [Lanes::ZERO];
+        segments.beta(kernel, &view, &[0], &mut beta);
+        for k in 0..count {
+            out[first + k] = segments.factor[0] * beta[0][k];
+        }
+        first += EIGHT;
+    }
+}
 
 impl Kernel {
     /// β (1 / volume) at a point: from the end k to the point, and from k to the end j.
     pub fn bond(&self, d: [f64; 3], bond: [f64; 3]) -> f64 {
-        let mut out = [0.0];
-        let d = self.project(d);
-        self.along([&d[..1], &d[1..2], &d[2..]], [0.0; 3], bond, &mut out);
-        out[0]
-    }
-
-    /// As [`bonds`], for whatever instructions the caller has.
-    #[inline(always)]
-    pub(crate) fn along(&self, d: [&[f64]; 3], off: [f64; 3], bond: [f64; 3], out: &mut [f64]) {
-        let bond = self.project(bond);
-        let length = dot(bond, bond);
-        // a bond along averaged axes is a point
-        let point = length < 1e-24 * self.radius() * self.radius();
-        match self.shape() {
-            Shape::Polynomial(n) if !point => polynomial(self, n, d, off, bond, out),
-            _ => {
-                for (n, out) in out.iter_mut().enumerate() {
-                    let d = [d[0][n] + off[0], d[1][n] + off[1], d[2][n] + off[2]];
-                    *out = match point {
-                        true => self.value(d),
-                        false => self.part(d, bond),
-                    };
-                }
-            }
+        let (d, bond) = (self.project(d), self.project(bond));
+        let over = 1.0 / self.radius();
+        let of = Segment::new([0.0; 3], bond, over);
+        let scalars = Scalars(self);
+        if scalars.wanted(of.length) {
+            return scalars.at_point(d, bond, over);
         }
-    }
-
-    /// β of shapes other than polynomials.
-    fn part(&self, d: [f64; 3], bond: [f64; 3]) -> f64 {
-        let segment = || Segment::new(d, bond);
-        match self.shape() {
-            Shape::CubicSpline => self.norm * self.spline_part(&segment(), 3),
-            Shape::QuarticSpline => self.norm * self.spline_part(&segment(), 4),
-            Shape::Gaussian => self.norm * self.gaussian_part(&segment()),
-            Shape::Cell => self.cell_part(d, bond),
-            Shape::Polynomial(_) => f64::NAN,
-        }
+        let foot = of.seen(d.map(|c| c * over));
+        let found = match self.shape() {
+            Shape::Polynomial(n) => polynomial::at_point(n, foot, of.length),
+            Shape::CubicSpline => spline::at_point::<3>(self, foot, of.length),
+            Shape::QuarticSpline => spline::at_point::<4>(self, foot, of.length),
+            Shape::Gaussian | Shape::Cell => gauss::at_point(foot, of.length),
+        };
+        found * self.norm / of.length
     }
 
     /// φ at several points, from columns of the vectors to them.
     #[inline(always)]
-    pub(crate) fn values(&self, d: [&[f64]; 3], out: &mut [f64]) {
-        let [x, y, z] = d.map(|d| &d[..out.len()]);
+    pub(crate) fn values(&self, d: &[Lanes; 3], out: &mut Lanes) {
+        let [x, y, z] = d;
         let over = 1.0 / (self.radius() * self.radius());
         match self.shape() {
             Shape::Polynomial(power) => {
-                for (n, out) in out.iter_mut().enumerate() {
+                for n in 0..EIGHT {
                     let q = x[n].mul_add(x[n], y[n].mul_add(y[n], z[n] * z[n]));
                     let rest = (-q).mul_add(over, 1.0);
                     let mut value = self.norm;
                     for _ in 0..power {
                         value *= rest;
                     }
-                    *out = if rest > 0.0 { value } else { 0.0 };
+                    out[n] = if rest > 0.0 { value } else { 0.0 };
                 }
             }
             Shape::CubicSpline | Shape::QuarticSpline | Shape::Gaussian | Shape::Cell => {
-                for (n, out) in out.iter_mut().enumerate() {
-                    *out = self.value([x[n], y[n], z[n]]);
+                for n in 0..EIGHT {
+                    out[n] = self.value([x[n], y[n], z[n]]);
                 }
             }
         }
     }
+}
 
-    /// `Σ c ∫ (R − r)^n dλ` over truncated powers.
-    fn spline_part(&self, s: &Segment, n: usize) -> f64 {
-        const BINOMIAL: [[f64; 5]; 2] = [[1.0, 3.0, 3.0, 1.0, 0.0], [1.0, 4.0, 6.0, 4.0, 1.0]];
-        let mut sum = 0.0;
-        for power in &self.powers {
-            let Some([low, high]) = s.inside(power.radius) else {
-                continue;
-            };
-            let (low, high) = (s.powers(low), s.powers(high));
-            let mut part = 0.0;
-            for m in 0..=n {
-                let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
-                let rest = power.radius.powi((n - m) as i32);
-                part += sign * BINOMIAL[n - 3][m] * rest * (high[m] - low[m]);
-            }
-            sum += power.factor * part / s.length;
-        }
-        sum
+/// What is done point by point: bonds that are points, cells, and Gaussians that are narrow beside their bonds.
+pub(crate) struct Scalars<'a>(pub &'a Kernel);
+
+impl Scalars<'_> {
+    /// Of a bond of this length (units of the radius)?
+    #[inline(always)]
+    pub fn wanted(&self, length: f64) -> bool {
+        let shape = self.0.shape();
+        length < POINT
+            || shape == Shape::Cell
+            || (shape == Shape::Gaussian && length > gauss::LONGEST)
     }
 
-    fn gaussian_part(&self, s: &Segment) -> f64 {
+    /// β at the points of a view, with its unit of length; from the place to k, and from k to j.
+    #[inline(never)]
+    pub fn beta(&self, view: &View, over: f64, [from, bond]: [[f64; 3]; 2], out: &mut Lanes) {
+        for (k, out) in out.0.iter_mut().enumerate() {
+            let d = std::array::from_fn(|a| view.d[a][k] / over - from[a]);
+            *out = self.at_point(d, bond, over);
+        }
+    }
+
+    fn at_point(&self, d: [f64; 3], bond: [f64; 3], over: f64) -> f64 {
+        let kernel = self.0;
+        if dot(bond, bond) < POINT * POINT / (over * over) {
+            kernel.value(d)
+        } else if kernel.shape() == Shape::Cell {
+            kernel.cell_part(d, bond)
+        } else {
+            kernel.norm * kernel.gaussian_part(d, bond)
+        }
+    }
+}
+
+/// A bond that is shorter is a point: one along averaged axes (units of the radius of φ).
+pub(crate) const POINT: f64 = 1e-12;
+
+impl Kernel {
+    fn gaussian_part(&self, d: [f64; 3], bond: [f64; 3]) -> f64 {
         let width = self.width();
-        let Some([low, high]) = s.inside(GAUSSIAN_END * width) else {
+        let length = dot(bond, bond);
+        let foot = dot(d, bond) / length;
+        let across: [f64; 3] = std::array::from_fn(|a| d[a] - foot * bond[a]);
+        let square = dot(across, across);
+        let rest = GAUSSIAN_END * GAUSSIAN_END * width * width - square;
+        if rest <= 0.0 {
             return 0.0;
-        };
+        }
+        let half = (rest / length).sqrt();
+        let (low, high) = ((foot - half).max(0.0), (foot + half).min(1.0));
+        if low >= high {
+            return 0.0;
+        }
+        let length = length.sqrt();
         let unit = std::f64::consts::SQRT_2 * width;
-        let [low, high] = [low, high].map(|l| s.length * (l - s.foot) / unit);
-        let across = (-0.5 * s.square / (width * width)).exp();
+        let [low, high] = [low, high].map(|l| length * (l - foot) / unit);
+        let across = (-0.5 * square / (width * width)).exp();
         let part = 0.5 * std::f64::consts::PI.sqrt() * erf_between(low, high);
-        across * part * unit / s.length
+        across * part * unit / length
     }
 
     fn cell_part(&self, d: [f64; 3], bond: [f64; 3]) -> f64 {
@@ -137,55 +179,6 @@ impl Kernel {
             high = high.min(ends[0].max(ends[1]));
         }
         self.norm * (high - low).max(0.0)
-    }
-}
-
-/// A bond as seen from a point.
-struct Segment {
-    /// ℓ, p², λ₀.
-    length: f64,
-    square: f64,
-    foot: f64,
-}
-
-impl Segment {
-    fn new(d: [f64; 3], bond: [f64; 3]) -> Segment {
-        let length = dot(bond, bond);
-        let foot = dot(d, bond) / length;
-        let across: [f64; 3] = std::array::from_fn(|a| d[a] - foot * bond[a]);
-        Segment {
-            length: length.sqrt(),
-            square: dot(across, across),
-            foot,
-        }
-    }
-
-    /// The λ between which the bond is nearer than this.
-    fn inside(&self, radius: f64) -> Option<[f64; 2]> {
-        let rest = radius * radius - self.square;
-        if rest <= 0.0 {
-            return None;
-        }
-        let half = rest.sqrt() / self.length;
-        let (low, high) = ((self.foot - half).max(0.0), (self.foot + half).min(1.0));
-        (low < high).then_some([low, high])
-    }
-
-    /// `∫ r^m dt` for m = 0 to 4, from the foot.
-    fn powers(&self, lambda: f64) -> [f64; 5] {
-        let t = self.length * (lambda - self.foot);
-        let p = self.square;
-        let r = (p + t * t).sqrt();
-        // p² asinh(t/p) is 0 at p = 0
-        let log = match p > 1e-30 * t * t {
-            true => (t / p.sqrt()).asinh(),
-            false => 0.0,
-        };
-        let one = 0.5 * (t * r + p * log);
-        let two = (t * r * r + 2.0 * p * t) / 3.0;
-        let three = (t * r * r * r + 3.0 * p * one) / 4.0;
-        let four = (t * r * r * r * r + 4.0 * p * two) / 5.0;
-        [t, one, two, three, four]
     }
 }
 

@@ -28,6 +28,7 @@ mod bonds;
 mod collect;
 pub mod fields;
 pub mod frame;
+mod gauss;
 pub mod kernel;
 pub mod molecules;
 pub mod neighbours;
@@ -38,7 +39,9 @@ mod polynomial;
 mod quantity;
 pub mod residuals;
 mod room;
+mod segments;
 pub mod specimen;
+mod spline;
 pub mod sums;
 pub mod targets;
 mod wide;
@@ -47,7 +50,7 @@ pub use fields::{Fields, Quantity};
 pub use frame::{Cell, Frame};
 pub use kernel::{Kernel, Shape};
 pub use partition::{PairForce, Partition};
-pub use sums::{Method, evaluate};
+pub use sums::{Method, Progress, evaluate};
 pub use targets::Targets;
 
 /// Why fields cannot be had.

@@ -116,7 +116,7 @@ pub fn evaluate(
         layout: &layout,
     };
     let sums = Sums {
-        particles: moving.sums(&neighbours, &bins, &method.kernel, &own),
+        particles: moving.sums(&neighbours, &bins, &own, method),
         bonds: sums,
     };
     let mut fields = Fields::finish(
@@ -246,7 +246,7 @@ impl Gather<'_> {
                     }
                 }
                 let patch = Patch::of(bins, [low, high]);
-                let found = (!patch.index.is_empty())
+                let found = (!patch.is_empty())
                     .then(|| accumulate::bonds(kernel, &patch, &bonds, 1, Form::Whole));
                 (patch.index, found)
             })

@@ -5,7 +5,7 @@
 //! number of threads. Velocities are counted from the drift of the whole frame, so that a fast body loses no digits of its heat.
 
 use crate::FieldsError;
-use crate::accumulate::{self, BOND, Form, Particles};
+use crate::accumulate::{self, BOND, Form, ParticleSums, Particles};
 use crate::bonds::Block;
 use crate::collect::Spare;
 use crate::fields::{Fields, Layout, Sums, Totals};
@@ -35,7 +35,22 @@ pub struct Method {
     pub rates: bool,
     /// k_B (energy / temperature); 1 in reduced units.
     pub boltzmann: f64,
+    /// Is told how much of a frame is done.
+    pub progress: Option<Progress>,
 }
+
+/// Called with the part of a frame's work that is done, about: above 0, 1 at the end, on the thread that asked for the fields.
+#[derive(Clone)]
+pub struct Progress(pub Arc<dyn Fn(f64) + Send + Sync>);
+
+impl std::fmt::Debug for Progress {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Progress")
+    }
+}
+
+/// The part of bonds in a frame's work, about; the rest is that of particles.
+const OF_BONDS: f64 = 0.9;
 
 impl Method {
     pub fn new(kernel: Kernel) -> Method {
@@ -47,6 +62,7 @@ impl Method {
             molecules: None,
             rates: false,
             boltzmann: 1.0,
+            progress: None,
         }
     }
 }
@@ -118,7 +134,7 @@ pub fn evaluate(
                 let reach = std::array::from_fn(|a| wide / frame.cell.height(a));
                 let patch = Patch::of(&bins, widened(bounds, reach));
                 // far from all points: nothing of it is seen
-                if patch.index.is_empty() || centres.is_empty() {
+                if patch.is_empty() || centres.is_empty() {
                     return Ok((Block::default(), None, centres.is_empty()));
                 }
                 let spare = spares.lock().ok().and_then(|mut all| all.pop());
@@ -147,6 +163,8 @@ pub fn evaluate(
             own.take(&block, parts);
             totals.take(&block, seen);
         }
+        let done = (first + batch).min(blocks.count) as f64 / blocks.count as f64;
+        tell(method, OF_BONDS * done);
     }
     totals.energy = own.energy.iter().sum();
     let moving = Moving {
@@ -157,7 +175,7 @@ pub fn evaluate(
     };
     let sums = Sums {
         bonds,
-        particles: moving.sums(&neighbours, &bins, &method.kernel, &own),
+        particles: moving.sums(&neighbours, &bins, &own, method),
     };
     Ok(Fields::finish(
         targets.positions(&frame.cell),
@@ -171,21 +189,18 @@ pub fn evaluate(
     ))
 }
 
+fn tell(method: &Method, part: f64) {
+    if let Some(Progress(tell)) = &method.progress {
+        tell(part);
+    }
+}
+
 fn widened(bounds: [[f64; 3]; 2], by: [f64; 3]) -> [[f64; 3]; 2] {
     let [low, high] = bounds;
     [
         std::array::from_fn(|a| low[a] - by[a]),
         std::array::from_fn(|a| high[a] + by[a]),
     ]
-}
-
-pub(crate) fn add(sums: &mut [f64], index: &[u32], part: &[f64], stride: usize) {
-    for (p, part) in index.iter().zip(part.chunks_exact(stride.max(1))) {
-        let own = &mut sums[*p as usize * stride..][..stride];
-        for (sum, value) in own.iter_mut().zip(part) {
-            *sum += value;
-        }
-    }
 }
 
 /// Particles and how they move, velocities from the drift.
@@ -202,8 +217,8 @@ impl Moving<'_> {
         &self,
         neighbours: &Neighbours,
         bins: &Bins,
-        kernel: &Kernel,
         own: &Own,
+        method: &Method,
     ) -> Vec<f64> {
         let layout = self.layout;
         let blocks = Blocks::new(neighbours, self.frame.len());
@@ -215,8 +230,8 @@ impl Moving<'_> {
                 .map(|b| {
                     let (members, bounds) = blocks.members(neighbours, b);
                     let patch = Patch::of(bins, bounds);
-                    if patch.index.is_empty() {
-                        return (vec![], vec![]);
+                    if patch.is_empty() {
+                        return (vec![], ParticleSums::default());
                     }
                     let mut columns = Columns::default();
                     for i in members {
@@ -230,13 +245,15 @@ impl Moving<'_> {
                         slopes: (layout.slopes() > 0).then_some(&columns.slope[..]),
                         slope_width: layout.slopes(),
                     };
-                    let sums = accumulate::particles(kernel, &patch, &of);
+                    let sums = accumulate::particles(&method.kernel, &patch, &of);
                     (patch.index, sums)
                 })
                 .collect();
             for (index, part) in some {
-                add(&mut sums, &index, &part, layout.stride());
+                part.add_to(&mut sums, &index);
             }
+            let done = (first + batch).min(blocks.count) as f64 / blocks.count as f64;
+            tell(method, OF_BONDS + (1.0 - OF_BONDS) * done);
         }
         sums
     }

@@ -2,7 +2,7 @@
 
 use crate::FieldsError;
 use crate::frame::Cell;
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, dot};
 
 /// Where fields are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,8 +82,8 @@ pub(crate) struct Bins<'a> {
     pub order: Vec<u32>,
     /// In the cell along axes that repeat.
     pub wrapped: Vec<[f64; 3]>,
-    /// Distance along x of the points in a row of bins, where rows lie along x, a point in each bin.
-    pub step: Option<f64>,
+    /// Distance of the points along each edge of the cell, where they are a grid: a point in each bin.
+    pub spacing: Option<[f64; 3]>,
 }
 
 const MOST: usize = 200_000_000;
@@ -144,14 +144,12 @@ impl<'a> Bins<'a> {
         };
         let extent = std::array::from_fn(|a| high[a] - low[a]);
         let total = bins.iter().map(|b| *b as usize).product::<usize>();
-        let along = cell.edges[0];
-        let step = match targets {
-            Targets::Grid(n)
-                if along[1] == 0.0 && along[2] == 0.0 && along[0] > 0.0 && counts[0] =>
-            {
-                Some(along[0] / n[0] as f64)
-            }
-            Targets::Grid(_) | Targets::Points(_) => None,
+        let spacing = match targets {
+            Targets::Grid(n) => Some(std::array::from_fn(|a| match counts[a] {
+                true => dot(cell.edges[a], cell.edges[a]).sqrt() / n[a] as f64,
+                false => 0.0,
+            })),
+            Targets::Points(_) => None,
         };
         let mut all = Bins {
             cell,
@@ -165,7 +163,7 @@ impl<'a> Bins<'a> {
             start: vec![0; total + 1],
             order: vec![0; positions.len()],
             wrapped,
-            step,
+            spacing,
         };
         let place: Vec<usize> = all.wrapped.iter().map(|x| all.place(*x)).collect();
         for p in &place {

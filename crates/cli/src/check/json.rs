@@ -1,6 +1,7 @@
 //! The findings as JSON.
 
 use super::advice::advice;
+use super::continuum::{Found, Seen};
 use super::{Findings, directions, mean};
 use peridyne::spec::Stepper;
 use peridyne_theory::patch_test::Class;
@@ -46,6 +47,7 @@ pub fn write(found: &Findings) -> String {
         "near_horizon": info.near_horizon,
         "cut_by_precracks": info.cut,
         "materials": materials.collect::<Vec<_>>(),
+        "fields": found.fields.iter().map(fields).collect::<Vec<_>>(),
         "steps": found.steps,
         "time_step": found.spec.schedule.statics().is_none().then_some(info.time_step),
         "integrator": match info.stepper {
@@ -67,6 +69,32 @@ pub fn write(found: &Findings) -> String {
         "warnings": advice(found).iter().map(|a| json!({"what": a.what, "fix": a.fix})).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&report).unwrap_or_default()
+}
+
+fn fields(one: &Found) -> Value {
+    let (mut quantities, mut seconds, mut why) = (vec![], None, None);
+    match &one.seen {
+        Some(Seen::Made {
+            made, seconds: s, ..
+        }) => {
+            quantities = made.iter().map(|q| q.symbol()).collect();
+            seconds = Some(s);
+        }
+        Some(Seen::Nothing(message)) => why = Some(message),
+        None => {}
+    }
+    json!({
+        "name": one.asked.name,
+        "kernel": one.asked.shape.name(),
+        "formula": one.asked.shape.formula(),
+        "width": one.asked.width,
+        "points": one.asked.place.points(),
+        "frames": one.frames,
+        "quantities": quantities,
+        "why_not": why,
+        "seconds_per_frame": seconds,
+        "bytes": one.bytes,
+    })
 }
 
 fn class(found: &Findings, c: &Class) -> Value {

@@ -1,5 +1,6 @@
 //! The findings as a table for people.
 
+mod continuum;
 mod look;
 mod points;
 mod stiffness;
@@ -38,6 +39,7 @@ pub fn write(found: &Findings) -> String {
         stiffness(found),
         waves(found),
         fracture(found),
+        continuum::fields(found),
         cost(found),
         warnings(found),
         look(found),

@@ -1,6 +1,7 @@
 //! What a user says: flags, or a file with the same keys.
 
 use crate::failure::Failure;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -109,7 +110,7 @@ pub struct FieldsArguments {
 }
 
 /// A number or a word of a file.
-#[derive(Deserialize, Clone)]
+#[derive(Deserialize, JsonSchema, Clone)]
 #[serde(untagged)]
 enum Scalar {
     Number(f64),
@@ -130,7 +131,7 @@ impl Scalar {
 }
 
 /// A word, or a list of them.
-#[derive(Deserialize, Clone)]
+#[derive(Deserialize, JsonSchema, Clone)]
 #[serde(untagged)]
 enum OneOrMore {
     One(String),
@@ -152,21 +153,46 @@ impl OneOrMore {
     }
 }
 
+/// A list of so many: lists that are longer are not cut.
+fn exactly<'de, D, T, const N: usize>(reader: D) -> Result<[T; N], D::Error>
+where
+    D: serde::Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    let all = Vec::<T>::deserialize(reader)?;
+    let count = all.len();
+    all.try_into()
+        .map_err(|_| serde::de::Error::custom(format!("expected a list of {N}, not of {count}")))
+}
+
+fn three<'de, D, T>(reader: D) -> Result<Option<[T; 3]>, D::Error>
+where
+    D: serde::Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    exactly(reader).map(Some)
+}
+
 /// Points on a line.
-#[derive(Deserialize, Clone)]
+#[derive(Deserialize, JsonSchema, Clone)]
 #[serde(deny_unknown_fields)]
 struct LineKeys {
+    #[serde(deserialize_with = "exactly")]
     from: [f64; 3],
+    #[serde(deserialize_with = "exactly")]
     to: [f64; 3],
     points: usize,
 }
 
 /// Points on a parallelogram.
-#[derive(Deserialize, Clone)]
+#[derive(Deserialize, JsonSchema, Clone)]
 #[serde(deny_unknown_fields)]
 struct PlaneKeys {
+    #[serde(deserialize_with = "exactly")]
     corner: [f64; 3],
+    #[serde(deserialize_with = "exactly")]
     edges: [[f64; 3]; 2],
+    #[serde(deserialize_with = "exactly")]
     points: [usize; 2],
 }
 
@@ -176,8 +202,8 @@ fn listed(x: &[f64]) -> String {
     all.join(",")
 }
 
-/// The keys of a file.
-#[derive(Deserialize, Default)]
+/// A file of `peridyne fields`: its flags as keys, without their dashes; paths are relative to it.
+#[derive(Deserialize, JsonSchema, Default)]
 #[serde(deny_unknown_fields, default)]
 struct Keys {
     frames: Option<PathBuf>,
@@ -187,6 +213,7 @@ struct Keys {
     element: OneOrMore,
     model: Option<PathBuf>,
     molecules: Option<PathBuf>,
+    #[serde(deserialize_with = "three")]
     special: Option<[f64; 3]>,
     mass: BTreeMap<String, f64>,
     units: Option<String>,
@@ -194,6 +221,7 @@ struct Keys {
     width: Option<f64>,
     smoothness: Option<u32>,
     average: Option<String>,
+    #[serde(deserialize_with = "three")]
     grid: Option<[usize; 3]>,
     points: Option<PathBuf>,
     line: Option<LineKeys>,
@@ -208,6 +236,11 @@ struct Keys {
     residuals: Option<usize>,
     out: Option<PathBuf>,
     threads: Option<usize>,
+}
+
+/// JSON schema (2020-12) of a file: its form.
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(Keys).to_value()
 }
 
 /// All that was said, flags before keys of a file.
@@ -361,4 +394,79 @@ fn read(path: &Path) -> Result<Keys, Failure> {
         let place = line.map_or(String::new(), |l| format!(":{l}"));
         Failure::input(format!("{name}{place}: {}", e.message()))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    const GOOD: &str = r#"
+frames = "run.lammpstrj.gz"
+potential = "lj"
+with = { epsilon = 0.25, cutoff = 8.5, end = "smooth", shift = true }
+file = ["a.eam", "b.eam"]
+element = "Ni,Al"
+special = [0.5, 0.5, 0.5]
+mass = { Cu = 63.5 }
+units = "metal"
+kernel = "gaussian"
+width = 2.5
+smoothness = 3
+average = "yz"
+grid = [20, 1, 1]
+line = { from = [0.5, 0.5, 0.5], to = [1.5, 1.5, 1.5], points = 7 }
+plane = { corner = [0.5, 0.5, 0.5], edges = [[1.5, 0.5, 0.5], [0.5, 1.5, 0.5]], points = [3, 4] }
+pressure = true
+skip = 1
+every = 2
+out = "out/x"
+"#;
+
+    /// What the reader takes of form passes, and nothing else does.
+    #[test]
+    fn files_pass_and_faults_of_form_do_not() {
+        let validator = jsonschema::validator_for(&schema()).unwrap();
+        let good: Value = toml::from_str(GOOD).unwrap();
+        let error = validator.iter_errors(&good).next().map(|e| e.to_string());
+        assert_eq!(error, None);
+        let table = good.as_object().unwrap();
+        let (mut refused, mut taken) = (0, 0);
+        let mut see = |fault: &Value| {
+            let text = toml::to_string(fault).unwrap();
+            let read = toml::from_str::<Keys>(&text).is_ok();
+            assert_eq!(read, validator.is_valid(fault), "{fault}");
+            refused += usize::from(!read);
+            taken += usize::from(read);
+        };
+        let faults = [
+            json!(true),
+            json!(-1),
+            json!(1.5),
+            json!("zzz"),
+            json!(["zzz"]),
+            json!([0.5, 0.5]),
+            json!([1, 2, 3, 4]),
+            json!({ "zzz": 1 }),
+            json!([[true]]),
+        ];
+        for key in table.keys().map(String::as_str).chain(["zzz"]) {
+            for fault in &faults {
+                let mut other = table.clone();
+                other.insert(key.into(), fault.clone());
+                see(&Value::Object(other));
+            }
+            let mut less = table.clone();
+            less.remove(key);
+            see(&Value::Object(less));
+        }
+        for (table_of, key) in [("line", "from"), ("line", "points"), ("plane", "edges")] {
+            let mut other = good.clone();
+            other[table_of].as_object_mut().unwrap().remove(key);
+            see(&other);
+            other[table_of]["zzz"] = json!(1);
+            see(&other);
+        }
+        assert!(refused > 100 && taken > 20, "{refused} {taken}");
+    }
 }

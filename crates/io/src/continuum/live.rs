@@ -119,7 +119,17 @@ impl Live {
             if a >= self.dimension {
                 (low[a], high[a]) = (-0.5 * beyond, 0.5 * beyond);
             } else if let Some(period) = self.periodic[a] {
-                (low[a], high[a]) = (self.corner[a], self.corner[a] + period);
+                let whole = [self.corner[a], self.corner[a] + period];
+                let off = |x: f64, y: f64| (x - y).abs() > 1e-6 * period;
+                if asked.is_some() && (off(low[a], whole[0]) || off(high[a], whole[1])) {
+                    return Err(FieldsError(format!(
+                        "corners: {} is periodic, and a grid divides the whole period, from {} to {}: give these, or leave corners out, or ask for points or a plane",
+                        ["x", "y", "z"][a],
+                        whole[0],
+                        whole[1]
+                    )));
+                }
+                [low[a], high[a]] = whole;
             } else if !(high[a] > low[a]) {
                 high[a] = low[a] + self.spacing.max(f64::MIN_POSITIVE);
             }

@@ -1,6 +1,6 @@
 //! What fields a deck asks for.
 
-use peridyne_fields::{PairForce, Partition, Shape};
+use peridyne_fields::{PairForce, Partition, Quantity, Shape};
 
 /// Fields of the running model.
 #[derive(Debug, Clone)]
@@ -45,4 +45,71 @@ pub struct Choice {
     pub pair_force: PairForce,
     /// Keep parts of the potential apart.
     pub parts: bool,
+}
+
+impl Place {
+    /// Number of points.
+    pub fn points(&self) -> u64 {
+        match self {
+            Place::Grid { counts, .. } => counts.iter().map(|n| *n as u64).product(),
+            Place::Points(points) => points.len() as u64,
+        }
+    }
+}
+
+impl FieldsSpec {
+    /// Frames that are taken in a run of so many steps.
+    pub fn frames(&self, steps: u64) -> u64 {
+        let met = self.every.map_or(0, |every| steps / every.max(1) + 1);
+        met.saturating_sub(self.skip).max(1)
+    }
+
+    /// What is written at most, without packing: a text and an array of every number of the means, of their errors, and of each frame if
+    /// these are wanted (bytes).
+    pub fn bytes(&self, steps: u64) -> f64 {
+        let numbers: usize = Quantity::ALL.iter().map(|q| q.components()).sum();
+        let frames = if self.each { self.frames(steps) } else { 0 };
+        // 8 in an array, about 24 as text
+        32.0 * numbers as f64 * self.place.points() as f64 * (2 + frames) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_and_bytes_are_those_of_the_steps() {
+        let asked = FieldsSpec {
+            name: "fields".into(),
+            shape: Shape::Gaussian,
+            width: 1.0,
+            averaged: [false; 3],
+            place: Place::Grid {
+                counts: [4, 5, 1],
+                corners: None,
+            },
+            choice: None,
+            every: Some(10),
+            skip: 3,
+            each: false,
+            pressure: false,
+            residuals: 0,
+        };
+        assert_eq!(asked.place.points(), 20);
+        // steps 0, 10, …, 100, less three
+        assert_eq!(asked.frames(100), 8);
+        // a run that ends before has its end
+        assert_eq!(asked.frames(5), 1);
+        let each = FieldsSpec {
+            each: true,
+            ..asked.clone()
+        };
+        assert_eq!(each.bytes(100) / asked.bytes(100), 5.0);
+        let last = FieldsSpec {
+            every: None,
+            ..asked
+        };
+        assert_eq!(last.frames(100), 1);
+    }
 }

@@ -7,8 +7,9 @@ use crate::write::atomic::WriteError;
 use crate::write::continuum::{Collected, Origin, examined};
 use peridyne::run::Simulation;
 use peridyne::spec::Spec;
-use peridyne_fields::{Cell, FieldsError, Frame, Method, Targets};
+use peridyne_fields::{Cell, FieldsError, Frame, Method, Quantity, Targets};
 use std::path::Path;
+use std::time::Instant;
 
 /// What a deck asks for, and of which model.
 #[derive(Debug, Clone)]
@@ -18,6 +19,58 @@ pub struct FieldsPlan {
     /// Lower corner of the periods.
     pub corner: [f64; 3],
     pub units: Units,
+}
+
+/// What a deck's fields will be, from a frame of the start.
+#[derive(Debug, Clone)]
+pub struct Foreseen {
+    /// Distance of the points of a grid along each axis that has more than one (length).
+    pub grid: Vec<f64>,
+    /// Of the fields, and why there are no others.
+    pub made: Vec<Quantity>,
+    pub missing: Vec<(Quantity, &'static str)>,
+    /// What a frame took (seconds).
+    pub seconds: f64,
+}
+
+/// Makes each field once, of the model as it is now.
+///
+/// # Errors
+/// What is asked for makes no sense with this model.
+pub fn foresee(
+    sim: &mut dyn Simulation,
+    plan: &FieldsPlan,
+) -> Result<Vec<Result<Foreseen, FieldsError>>, FieldsError> {
+    let live = Live::new(sim, &plan.spec, plan.corner)?;
+    let mut all = vec![];
+    for asked in &plan.asked {
+        let cell = live.cell(&asked.place)?;
+        let (targets, method) = live.method(asked, &cell)?;
+        let grid = match &asked.place {
+            Place::Grid { counts, .. } => { (0..3).filter(|a| counts[*a] > 1) }
+                .map(|a| cell.height(a) / counts[a] as f64)
+                .collect(),
+            Place::Points(_) => vec![],
+        };
+        let begun = Instant::now();
+        let frame = live.frame(sim, &cell);
+        all.push(live.fields(sim, &frame, &targets, &method).map(|fields| {
+            let (made, missing): (Vec<_>, Vec<_>) = Quantity::ALL
+                .into_iter()
+                .filter(|q| asked.pressure || *q != Quantity::Pressure)
+                .partition(|q| fields.get(*q).is_some());
+            Foreseen {
+                grid,
+                made,
+                missing: missing
+                    .into_iter()
+                    .map(|q| (q, fields.why_not(q)))
+                    .collect(),
+                seconds: begun.elapsed().as_secs_f64(),
+            }
+        }));
+    }
+    Ok(all)
 }
 
 /// Fields that are being made.

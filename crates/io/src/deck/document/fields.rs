@@ -24,7 +24,8 @@ pub struct Fields {
     pub average: Option<At<Vec<At<AxisName>>>>,
     /// Counts along each axis: the centres of so many equal pieces of the box.
     pub grid: Option<At<Vec<At<usize>>>>,
-    /// Two opposite corners of the box; when left out, that of the body at the start, on periodic axes the period.
+    /// Two opposite corners of the box; when left out, that of the body at the start, on periodic axes the period (and
+    /// nothing else there).
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub corners: Option<At<Vec<Vector>>>,
     /// A list of points.
