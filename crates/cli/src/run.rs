@@ -5,6 +5,7 @@ use crate::deck;
 use crate::failure::{Failure, note, say};
 use crate::law;
 use crate::progress::Terminal;
+use crate::report;
 use crate::script;
 use crate::signals;
 use peridyne::error::{BuildError, size};
@@ -47,7 +48,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if let Some(deck) = law::read(&arguments.input)? {
         return with_threads(arguments.threads, |_| {
             let out = arguments.out.as_deref();
-            law::run(&arguments.input.file, deck, out, arguments.allow_outside)
+            law::run(&arguments.input, deck, out, arguments.allow_outside)
         });
     }
     let deck = deck::read(&arguments.input)?;
@@ -89,7 +90,8 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let remarks = deck::remarks(deck, sim.info().time_step);
     say(&(deck::headline(sim.as_ref()) + &remarks));
     let steps = deck.steps(sim.info().time_step);
-    let plan = plan(deck, steps, dir, threads, arguments.allow_outside);
+    let mut plan = plan(deck, steps, dir, threads, arguments.allow_outside);
+    plan.command = deck::command(&arguments.input);
     say(&format!(
         "threads   {threads}\nrunning {steps} steps, results in {}",
         plan.dir.display()
@@ -99,19 +101,19 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let result = drive(sim.as_mut(), &plan, &mut progress);
     progress.end();
     match result {
-        Ok(report) => {
+        Ok(done) => {
             say(&format!(
                 "{}: {} steps in {:.2} s{}{}",
-                report.outcome(),
-                report.steps,
-                report.seconds_stepping,
-                report.ns_per_bond_step.map_or(String::new(), |ns| format!(
+                done.outcome(),
+                done.steps,
+                done.seconds_stepping,
+                done.ns_per_bond_step.map_or(String::new(), |ns| format!(
                     ", {ns:.2} ns per bond and step"
                 )),
-                match report.fragments {
+                match done.fragments {
                     Some(fragments) => format!(
                         ", {} directed bonds broken, {fragments} fragments",
-                        report.broken_directed_bonds
+                        done.broken_directed_bonds
                     ),
                     None => String::new(),
                 },
@@ -122,8 +124,11 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
                     plan.dir.join("damage.png").display()
                 ));
             }
+            if plan.report {
+                say(&report::line(&plan.dir));
+            }
             match signals::received() {
-                Some(signal) if report.status == Status::Ended => Err(Failure::Ended(signal)),
+                Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
                 _ => Ok(()),
             }
         }
@@ -198,6 +203,10 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
         deck: deck.file().to_string(),
         deck_text: deck.text().to_string(),
         dir,
+        command: String::new(),
+        understood: deck.describe(),
+        sources: deck.sources(),
+        report: output.report,
         allow_outside,
         steps,
         every: output.every,

@@ -260,6 +260,7 @@ fn report(
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),
         warnings,
+        setting: None,
     }
 }
 

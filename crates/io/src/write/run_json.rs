@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use peridyne::observe::Ledger;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 
 use super::atomic::{WriteError, write_file};
@@ -42,6 +42,49 @@ pub struct RunReport {
     pub simd: String,
     pub energy: EnergyReport,
     pub warnings: Vec<String>,
+    /// What reports tell besides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub setting: Option<Setting>,
+}
+
+/// How a run was asked for, and what its files hold: with them, all that a report tells.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Setting {
+    /// What makes the same run again.
+    pub command: String,
+    pub deck_text: String,
+    /// What was understood, in lines of a word and its text.
+    pub understood: String,
+    /// Where the laws come from.
+    pub sources: Vec<String>,
+    pub dimension: usize,
+    /// Typical distance of points (length); 0 where it is not known.
+    pub spacing: f64,
+    /// Are steps increments of load?
+    pub statics: bool,
+    pub atoms: bool,
+    pub units: UnitNames,
+    pub fields: Vec<FieldNote>,
+    /// Names in the folder, of series their collection.
+    pub files: Vec<String>,
+}
+
+/// Names of the units of what a report shows beside fields.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct UnitNames {
+    pub length: String,
+    pub time: String,
+    pub energy: String,
+}
+
+/// Unit of a field, and what it is.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct FieldNote {
+    pub name: String,
+    pub unit: String,
+    pub says: String,
 }
 
 /// How a run ended; `"done"`, `"ended"` (early, because someone asked for it) or `"stopped: why"`.
@@ -175,6 +218,7 @@ mod tests {
                 ..Ledger::default()
             }),
             warnings: vec!["a \"quoted\" warning".into()],
+            setting: None,
         }
     }
 

@@ -126,6 +126,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         frames: count(&context, &output.frames, "frames")?,
         rows: count(&context, &output.history, "history")?,
         pictures: true,
+        report: true,
         dir: None,
         source: source.clone(),
     })

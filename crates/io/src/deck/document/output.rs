@@ -29,6 +29,8 @@ pub struct Output {
     pub history: Option<At<u64>>,
     /// PNG of the damage at the end; when left out, true, and false for atoms.
     pub picture: Option<bool>,
+    /// report.html at the end, the run in one file for browsers; true when left out.
+    pub report: Option<bool>,
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
     /// LAMMPS dump.
     pub trajectory: Option<At<String>>,

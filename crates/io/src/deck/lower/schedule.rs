@@ -306,6 +306,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             .map(|n| n.value.clone().into()),
         history: positive(&written.history, "history")?,
         picture: written.picture.unwrap_or(!atoms),
+        report: written.report.unwrap_or(true),
         trajectories,
         data,
     })
