@@ -10,27 +10,43 @@ async function unpack(number) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Codes of one component: differences from point to point, folded so that small ones of either sign are small. */
-function codes(bytes, start, points, wide, out) {
+/** Codes of one component: differences from point to point, or from those before, folded so that small ones of either sign are small. */
+function codes(bytes, start, points, wide, before, out) {
   const mask = wide ? 0xffff : 0xff;
   let code = 0;
   for (let i = 0; i < points; i++) {
     const z = wide ? bytes[start + i] | (bytes[start + points + i] << 8) : bytes[start + i];
+    if (before) code = before[i];
     code = (code + ((z >>> 1) ^ -(z & 1))) & mask;
     out[i] = code;
   }
 }
 
-/** Numbers of a block, component after component: `low + code (high - low) / (2^bits - 2)`; the last code is no number. */
-async function numbers(block, points) {
-  const bytes = await unpack(block.at);
-  const wide = block.bits > 8;
+/** Codes of frame `k` of a field, component after component; of a frame that follows from the one before added to its codes. */
+function codesOf(blocks, k, points) {
+  const block = blocks[k];
+  block.codes ??= (async () => {
+    const before = block.after ? await codesOf(blocks, k - 1, points) : null;
+    const bytes = await unpack(block.at);
+    const wide = block.bits > 8;
+    return block.low.map((_, c) => {
+      const out = new Uint16Array(points);
+      codes(bytes, c * points * (wide ? 2 : 1), points, wide, before?.[c], out);
+      return out;
+    });
+  })();
+  return block.codes;
+}
+
+/** Numbers of frame `k`, component after component: `low + code (high - low) / (2^bits - 2)`; the last code is no number. */
+async function numbers(blocks, k, points) {
+  const block = blocks[k];
   const none = 2 ** block.bits - 1;
-  const buffer = new Uint16Array(points);
-  return block.low.map((low, c) => {
-    codes(bytes, c * points * (wide ? 2 : 1), points, wide, buffer);
+  const all = await codesOf(blocks, k, points);
+  return all.map((of, c) => {
+    const low = block.low[c];
     const quantum = (block.high[c] - low) / (none - 1);
-    return Float32Array.from(buffer, code => (code === none ? NaN : low + code * quantum));
+    return Float32Array.from(of, code => (code === none ? NaN : low + code * quantum));
   });
 }
 
@@ -52,13 +68,13 @@ class Scene {
 
   /** Reference positions. */
   async places() {
-    this.at ??= await numbers(this.reference, this.points);
+    this.at ??= await numbers([this.reference], 0, this.points);
     return this.at;
   }
 
   /** Displacements of a frame; not a number where a point is far outside. */
   displacement(frame) {
-    return this.keep(`u${frame}`, () => numbers(this.moved[frame], this.points));
+    return this.keep(`moved ${frame}`, () => numbers(this.moved, frame, this.points));
   }
 
   /** What can be looked at: fields, and displacements. */
@@ -70,7 +86,7 @@ class Scene {
   async values(field, component, frame) {
     const all = field.name === "displacement"
       ? await this.displacement(frame)
-      : await this.keep(`${field.name}${frame}`, () => numbers(field.blocks[frame], this.points));
+      : await this.keep(`${field.name} ${frame}`, () => numbers(field.blocks, frame, this.points));
     return component >= 0 ? all[component] : size(all, field.kind);
   }
 

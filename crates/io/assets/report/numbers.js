@@ -29,7 +29,7 @@ function scaled(size, unit) {
   const first = /^(Pa|Hz|m|s|J|N|W)(?![\^\w])(.*)$/.exec(unit);
   if (!first || !(size > 0) || !Number.isFinite(size)) return { factor: 1, unit: unitText(unit) };
   const least = unit.startsWith("m/s") ? 1e4 : 1;
-  let pick = PREFIXES.find(([f]) => size >= f * 0.9995) ?? PREFIXES.at(-1);
+  let pick = PREFIXES.find(([f]) => size >= f * 0.9995) ?? [1, ""];
   if (pick[0] > 1 && size < least) pick = [1, ""];
   // seconds have no kilo, metres no mega
   if ((first[1] === "s" && pick[0] > 1) || (first[1] === "m" && pick[0] > 1e3)) pick = [1, ""];
@@ -68,7 +68,8 @@ function round125(value) {
 }
 
 const words = name => name.replaceAll("_", " ");
-const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
+// single letters are symbols
+const capital = text => (/^.(\W|$)/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
 
 const SVG = document.querySelector("svg").namespaceURI;
 

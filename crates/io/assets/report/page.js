@@ -75,7 +75,7 @@ function history() {
   const energies = columns.filter(c => meta.history.energies.includes(c.name) && c.values.some(v => v));
   const figure = (title, lines, y) => {
     const home = make("div");
-    const card = make("figure", { class: "card" }, make("figcaption", {}, title), home);
+    const card = make("figure", { class: "card" }, make("figcaption", {}, capital(title)), home);
     id("plots").append(card);
     const plot = new Plot(home, title);
     plot.show({ x: time, lines, y, timed: true });
@@ -121,7 +121,7 @@ function history() {
   };
   for (const s of [xs, ys, zs]) s.addEventListener("change", draw);
   const named = (meta.history.presets ?? []).map(p => [p.title, column(p.x), column(p.y)]).filter(([, x, y]) => x && y);
-  id("presets").append(...named.map(([title, x, y]) => make("button", { type: "button", onclick: () => pick(x, y) }, title)));
+  id("presets").append(...named.map(([title, x, y]) => make("button", { type: "button", onclick: () => pick(x, y) }, capital(title))));
   const residual = column("energy residual");
   const [first] = named;
   if (first) pick(first[1], first[2]);
@@ -177,7 +177,7 @@ function copier(text, what) {
 function texts() {
   if (meta.deck) id("deck").querySelector(".card").append(copier(meta.deck, "the deck"));
   const again = id("againText");
-  if (meta.command) again.append(make("pre", { tabindex: 0, "aria-label": "Command" }, make("code", {}, meta.command)), copier(meta.command, "the command"));
+  if (meta.command) again.append(make("div", { role: "region", "aria-label": "Command", tabindex: 0 }, make("pre", {}, make("code", {}, meta.command))), copier(meta.command, "the command"));
   if (run.deck_hash) again.append(make("p", { class: "quiet hash" }, `The deck is ${run.deck}, ${run.deck_hash.replace(":", " ")}. The same deck and version give the same numbers to the last bit, on any number of threads.`));
   id("cite").textContent = meta.cite;
   if (meta.sources?.length) id("sources").append(make("p", {}, "What this run rests on:"), make("ul", {}, ...meta.sources.map(s => make("li", {}, s))));

@@ -26,6 +26,8 @@ class Plot {
     this.finite = data.x.values.map((x, i) => (x === null ? -1 : i)).filter(i => i >= 0);
     this.at = Math.min(this.at ?? data.x.values.length - 1, data.x.values.length - 1);
     if (data.at !== undefined) this.at = data.at;
+    // the slider goes along the axis
+    this.slider.hidden = data.x.values.length < 2;
     this.slider.max = Math.max(0, data.x.values.length - 1);
     this.draw();
   }
@@ -52,7 +54,7 @@ class Plot {
   draw() {
     const { x, box } = this.data;
     const width = Math.max(240, this.home.clientWidth);
-    const height = Math.round(Math.min(340, Math.max(210, 0.5 * width)));
+    const height = Math.round(Math.min(340, Math.max(230, 0.42 * width)));
     const [x0, x1] = this.bounds([x]);
     let [y0, y1] = this.bounds(this.lines, box);
     const room = 0.05 * (y1 - y0);
@@ -68,6 +70,7 @@ class Plot {
     this.px = v => left + ((v - x0) / (x1 - x0)) * w;
     this.py = v => top + h - ((v - y0) / (y1 - y0)) * h;
     this.inner = { left, top, w, h };
+    this.slider.style.cssText = `width:${w + 13}px;margin-left:${left - 6.5}px`;
     const svg = this.picture;
     svg.replaceChildren();
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);

@@ -4,8 +4,8 @@
 const LIGHT = normal([-0.35, 0.55, 0.75]);
 const AMBIENT = 0.45;
 // how much what lies behind its surroundings is darkened, per spacing, and at most
-const HOLLOW = 0.16;
-const DARKEST = 0.45;
+const HOLLOW = 0.35;
+const DARKEST = 0.4;
 
 function normal(v) {
   const l = Math.hypot(...v);
@@ -97,12 +97,14 @@ class Loops {
       }
     }
     const reach = Math.max(1, Math.round(view.spread * px));
-    const around = [[-1, 0], [1, 0], [0, -1], [0, 1], [-0.7, -0.7], [0.7, -0.7], [-0.7, 0.7], [0.7, 0.7]];
+    const around = [[1, 0], [0, 1], [0.7, 0.7], [0.7, -0.7]];
     const steps = around.map(([x, y]) => Math.round(x * reach) + w * Math.round(y * reach));
     for (let at = 0; at < w * h; at++) {
       if (from[at] < 0) continue;
       let hollow = 0;
-      for (const step of steps) hollow += Math.min(6, Math.max(0, ((depth[at + step] ?? -Infinity) - depth[at]) / view.spread));
+      // of opposite sides the mean: slopes are no hollows
+      const off = step => Math.min(4, Math.max(-4, ((depth[at + step] ?? -Infinity) - depth[at]) / view.spread));
+      for (const step of steps) hollow += Math.max(0, 0.5 * (off(step) + off(-step)));
       const shade = light[at] * Math.max(DARKEST, 1 - (HOLLOW * hollow) / 4);
       const value = scene.value[from[at]];
       const k = 4 * Math.round(255 * Math.min(1, Math.max(0, (value - view.low) / (view.high - view.low))));
@@ -180,20 +182,23 @@ uniform sampler2D picture, depths;
 uniform int fine;
 uniform float deep, spread, spreadPixels, hollowness, darkest;
 out vec4 colour;
-float depth(ivec2 at) { return (1.0 - 2.0 * texelFetch(depths, at, 0).r) * deep; }
+ivec2 size;
+float depth(ivec2 at) { return (1.0 - 2.0 * texelFetch(depths, clamp(at, ivec2(0), size - 1), 0).r) * deep; }
 void main() {
-  ivec2 size = textureSize(picture, 0), from = ivec2(gl_FragCoord.xy) * fine;
+  size = textureSize(picture, 0);
+  ivec2 from = ivec2(gl_FragCoord.xy) * fine;
   vec4 sum = vec4(0);
   for (int k = 0; k < fine * fine; k++) {
     ivec2 at = from + ivec2(k % fine, k / fine);
     vec4 c = texelFetch(picture, at, 0);
     if (c.a == 0.0) continue;
     float d = depth(at), hollow = 0.0;
-    for (int a = 0; a < 8; a++) {
+    // of opposite sides the mean: slopes are no hollows
+    for (int a = 0; a < 4; a++) {
       float angle = 0.7853981634 * float(a);
-      ivec2 beside = at + ivec2(round(max(1.0, spreadPixels) * vec2(cos(angle), sin(angle))));
-      beside = clamp(beside, ivec2(0), size - 1);
-      hollow += clamp((depth(beside) - d) / spread, 0.0, 6.0);
+      ivec2 beside = ivec2(round(max(1.0, spreadPixels) * vec2(cos(angle), sin(angle))));
+      vec2 off = clamp(vec2(depth(at + beside) - d, depth(at - beside) - d) / spread, -4.0, 4.0);
+      hollow += max(0.0, 0.5 * (off.x + off.y));
     }
     sum += vec4(c.rgb * max(darkest, 1.0 - hollowness * hollow / 4.0), 1.0);
   }

@@ -26,8 +26,8 @@ class Viewer {
     const last = scene.frames.length - 1;
     id("frame").max = last;
     id("timeline").hidden = last === 0;
-    this.home();
     this.stretches();
+    this.home();
     id("balls").value = scene.atoms ? "balls" : "cubes";
     if (this.line) {
       this.curve ??= new Plot(id("curve"), "Profile");
@@ -45,6 +45,14 @@ class Viewer {
     this.middle = this.low.map((l, a) => 0.5 * (l + this.high[a]));
     this.extents = this.low.map((l, a) => this.high[a] - l + 2 * half * (a < this.scene.dimension));
     this.size = Math.max(...this.extents);
+    // most of what the last frame shows is in the picture, too; what flies away is not
+    const last = await this.scene.displacement(this.scene.frames.length - 1);
+    const every = Math.ceil(this.scene.points / 4000);
+    this.reach = at.map((c, a) => {
+      const some = [];
+      for (let i = 0; i < c.length; i += every) if (Number.isFinite(last[a][i])) some.push([c[i], last[a][i]]);
+      return some;
+    });
   }
 
   // ---- what is shown
@@ -212,7 +220,20 @@ class Viewer {
     }
     this.shift = [0, 0];
     this.zoom = 1;
+    this.frameAll();
     this.paint();
+  }
+
+  /** The box that the picture shows: the body, and most of its points where they end. */
+  frameAll() {
+    const half = 0.5 * this.scene.spacing;
+    const box = this.reach.map((some, a) => {
+      const end = some.map(([x, u]) => x + this.stretch * u).sort((p, q) => p - q);
+      const at = part => end[Math.round(part * (end.length - 1))] ?? this.low[a];
+      return [Math.min(this.low[a], at(0.02)), Math.max(this.high[a], at(0.98))];
+    });
+    this.middle = box.map(([l, h]) => 0.5 * (l + h));
+    this.shownBox = box.map(([l, h], a) => h - l + 2 * half * (a < this.scene.dimension));
   }
 
   get eye() {
@@ -234,7 +255,7 @@ class Viewer {
       this.right = rotate(this.right, upright, -sign * about);
       this.up = rotate(this.up, upright, -sign * about);
     }
-    if (over) this.up = rotate(this.up, this.right, over);
+    if (over) this.up = rotate(this.up, this.right, -over);
     this.right = normal(this.right);
     this.up = normal(cross(cross(this.right, this.up), this.right));
   }
@@ -252,8 +273,8 @@ class Viewer {
   /** Pixels of the canvas for a unit of length. */
   get pixels() {
     const { width: w, height: h } = this.canvas;
-    const reach = axis => [0, 1, 2].reduce((sum, a) => sum + Math.abs(axis[a]) * this.extents[a], 0);
-    return 0.86 * this.zoom * Math.min(w / reach(this.right), h / reach(this.up));
+    const reach = axis => [0, 1, 2].reduce((sum, a) => sum + Math.abs(axis[a]) * this.shownBox[a], 0);
+    return 0.9 * this.zoom * Math.min(w / reach(this.right), h / reach(this.up));
   }
 
   paint() {
@@ -271,10 +292,10 @@ class Viewer {
     const [low, high] = this.range;
     const integer = this.field.kind === "integer";
     const axis = this.cut.axis;
-    const most = 1.2 * Math.hypot(...this.extents) * (1 + this.zoom) + this.stretch * scene.range({ name: "displacement" }, -1, 0, scene.frames.length - 1)[1];
+    const most = 1.2 * Math.hypot(...this.extents, ...this.shownBox) + this.stretch * scene.range({ name: "displacement" }, -1, 0, scene.frames.length - 1)[1];
     this.view = {
       right: this.right, up: this.up, eye: this.eye, middle: this.middle, shift: this.shift, pixels: this.pixels,
-      stretch: this.stretch, half: 0.5 * scene.spacing * (scene.atoms ? 0.95 : 1.0), balls: id("balls").value === "balls",
+      stretch: this.stretch, half: 0.5 * scene.spacing * (scene.atoms ? 0.95 : 1.04), balls: id("balls").value === "balls",
       low, high: integer ? low + 255 : high, colours: integer ? kinds() : table(id("map").value),
       deep: most, spread: 1.6 * scene.spacing, fine: this.ratio > 1.4 ? 1 : 2,
       cut: axis < 0 ? null : {
@@ -417,8 +438,8 @@ class Viewer {
     id("play").addEventListener("click", () => (this.playing ? this.stop() : this.play()));
     id("balls").addEventListener("change", () => this.paint());
     id("stretch").addEventListener("input", () => this.paint());
-    id("auto").addEventListener("click", () => { id("stretch").value = this.auto; this.paint(); });
-    id("true").addEventListener("click", () => { id("stretch").value = 1; this.paint(); });
+    id("auto").addEventListener("click", () => { id("stretch").value = this.auto; this.frameAll(); this.paint(); });
+    id("true").addEventListener("click", () => { id("stretch").value = 1; this.frameAll(); this.paint(); });
     id("cutAxis").addEventListener("change", () => {
       this.cut.axis = Number(id("cutAxis").value);
       id("cutBox").hidden = this.cut.axis < 0;

@@ -50,7 +50,7 @@ pub fn facts(run: &Value, setting: &Setting, history: &[Column]) -> Vec<Value> {
         fact("Time step", time_step.into(), &units.time, String::new());
     }
     if let (Some(broken), Some(bonds)) = (some("broken_directed_bonds"), bonds) {
-        let part = format!("{:.3} % of all", 100.0 * broken / bonds);
+        let part = format!("{} % of all", digits(100.0 * broken / bonds));
         fact("Broken bonds", broken.into(), "#", part);
     }
     if let Some(fragments) = some("fragments") {
@@ -77,7 +77,7 @@ pub fn facts(run: &Value, setting: &Setting, history: &[Column]) -> Vec<Value> {
         (_, None, None) | (None, Some(_), None) => String::new(),
     };
     fact(
-        "Time computing",
+        "Computing time",
         number("seconds_stepping").into(),
         "s",
         more,

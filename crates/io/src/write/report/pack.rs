@@ -1,6 +1,8 @@
 //! As much of a scene as fits into a report: bits, frames and points are given up in this order, and said.
 
+use std::borrow::Cow;
 use std::io;
+use std::iter;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,7 +13,7 @@ use super::scene::Scene;
 use super::short;
 
 /// What one block costs besides its bytes in base 64: its tag, and its line of numbers.
-const TAG: usize = 180;
+const TAG: usize = 220;
 
 /// How much is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,14 +29,14 @@ struct Rung {
 
 /// From all there is down.
 fn rungs(frames: usize) -> impl Iterator<Item = Rung> {
-    let fine = [(FINE, FINE), (FINE, 8), (13, 8), (12, 7), (12, 6)];
+    let fine = [(FINE, FINE), (FINE, 8), (14, 8), (13, 7), (12, 6)];
     let of = |(moved, values), frames, stride| Rung {
         moved,
         values,
         frames,
         stride,
     };
-    let few = (2..).map(move |k| frames.div_ceil(k));
+    let few = (3..).map(move |k| (2 * frames).div_ceil(k));
     let few = few.take_while(|f| *f >= 5);
     let least = frames.min(5);
     fine.into_iter()
@@ -55,14 +57,20 @@ pub struct Packed {
 /// None in practice: it is written to memory.
 pub fn pack(scene: &Scene, room: usize, first: usize, told: Value) -> io::Result<Packed> {
     let all = scene.frames.len();
+    let own = Rows::own(scene);
+    let mut shared = None;
     let mut last = None;
     for rung in rungs(all) {
+        let rows = match rung.moved {
+            FINE => &own,
+            _ => shared.get_or_insert_with(|| Rows::shared(scene)),
+        };
         let keep = kept(scene.points, rung.stride);
-        if estimate(scene, rung, &keep)? > room {
+        if estimate(scene, rows, rung, &keep)? > room {
             last = Some(rung);
             continue;
         }
-        let packed = packed(scene, rung, &keep, first, &told)?;
+        let packed = packed(scene, rows, rung, &keep, first, &told)?;
         if cost(&packed.blocks) <= room {
             return Ok(packed);
         }
@@ -70,16 +78,83 @@ pub fn pack(scene: &Scene, room: usize, first: usize, told: Value) -> io::Result
     }
     // the least there is
     let rung = last.unwrap_or(Rung {
-        moved: 12,
-        values: 6,
-        frames: all.min(2),
+        moved: FINE,
+        values: FINE,
+        frames: all,
         stride: 1,
     });
-    packed(scene, rung, &kept(scene.points, rung.stride), first, &told)
+    packed(
+        scene,
+        &own,
+        rung,
+        &kept(scene.points, rung.stride),
+        first,
+        &told,
+    )
+}
+
+/// The codes of all frames: displacements, then the fields; and do they share their bounds?
+struct Rows<'a>(Vec<(Cow<'a, [Codes]>, bool)>);
+
+impl<'a> Rows<'a> {
+    fn own(scene: &'a Scene) -> Rows<'a> {
+        let all = iter::once(&scene.moved).chain(scene.fields.iter().map(|f| &f.frames));
+        Rows(all.map(|r| (Cow::Borrowed(&**r), false)).collect())
+    }
+
+    fn shared(scene: &'a Scene) -> Rows<'a> {
+        let Rows(all) = Rows::own(scene);
+        let each = all.into_iter().enumerate();
+        let each = each.map(|(n, row)| match Codes::shared(&row.0, n == 0) {
+            Some(shared) => (Cow::Owned(shared), true),
+            None => row,
+        });
+        Rows(each.collect())
+    }
+
+    /// What a frame after another (`None`: the first) costs to pack.
+    fn jobs(&self, rung: Rung, at: usize, before: Option<usize>) -> impl Iterator<Item = Job<'_>> {
+        let each = self.0.iter().enumerate();
+        each.map(move |(n, (frames, shared))| Job {
+            codes: &frames[at],
+            bits: if n == 0 { rung.moved } else { rung.values },
+            before: before.filter(|_| *shared).map(|b| &frames[b]),
+        })
+    }
+}
+
+/// A block to be packed.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    codes: &'a Codes,
+    bits: u8,
+    before: Option<&'a Codes>,
+}
+
+impl<'a> Job<'a> {
+    fn places(scene: &'a Scene) -> Job<'a> {
+        Job {
+            codes: &scene.reference,
+            bits: FINE,
+            before: None,
+        }
+    }
+
+    fn pack(self, keep: &[u32], points: usize) -> io::Result<(Vec<u8>, bool)> {
+        if keep.len() == points {
+            return self.codes.pack(self.bits, self.before);
+        }
+        let before = self.before.map(|b| b.thinned(keep));
+        self.codes.thinned(keep).pack(self.bits, before.as_ref())
+    }
 }
 
 fn cost(blocks: &[Vec<u8>]) -> usize {
-    blocks.iter().map(|b| b.len().div_ceil(3) * 4 + TAG).sum()
+    blocks.iter().map(|b| cost_of(b)).sum()
+}
+
+fn cost_of(block: &[u8]) -> usize {
+    block.len().div_ceil(3) * 4 + TAG
 }
 
 /// Every one of `stride` points, here and there: every second along a line would leave stripes.
@@ -99,42 +174,32 @@ fn frames(all: usize, kept: usize) -> Vec<usize> {
 }
 
 /// What it would cost, by the middle and the last frame.
-fn estimate(scene: &Scene, rung: Rung, keep: &[u32]) -> io::Result<usize> {
-    let count = scene.frames.len();
-    let looked = [count / 2, count - 1];
-    let mut jobs = vec![];
-    for f in looked {
-        jobs.push((&scene.moved[f], rung.moved));
-        jobs.extend(
-            scene
-                .fields
-                .iter()
-                .map(|field| (&field.frames[f], rung.values)),
-        );
-    }
-    let two = cost(&all(&jobs, keep, scene.points)?);
-    let place = cost(&all(&[(&scene.reference, FINE)], keep, scene.points)?);
-    Ok(place + two / 2 * rung.frames)
+fn estimate(scene: &Scene, rows: &Rows, rung: Rung, keep: &[u32]) -> io::Result<usize> {
+    let shown = frames(scene.frames.len(), rung.frames);
+    let of = |k: usize| rows.jobs(rung, shown[k], k.checked_sub(1).map(|b| shown[b]));
+    let looked = [shown.len() / 2, shown.len() - 1];
+    let jobs: Vec<Job> = looked.into_iter().flat_map(of).collect();
+    let sum = |jobs: &[Job]| -> io::Result<usize> {
+        let packed = all(jobs, keep, scene.points)?;
+        Ok(packed.iter().map(|(b, _)| cost_of(b)).sum())
+    };
+    Ok(sum(&[Job::places(scene)])? + sum(&jobs)? / 2 * shown.len())
 }
 
 /// Packs everything, on several threads.
-fn all(jobs: &[(&Codes, u8)], keep: &[u32], points: usize) -> io::Result<Vec<Vec<u8>>> {
+fn all(jobs: &[Job], keep: &[u32], points: usize) -> io::Result<Vec<(Vec<u8>, bool)>> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
     let done = Mutex::new(vec![]);
     let work = || {
         loop {
             let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some((codes, bits)) = jobs.get(at) else {
+            let Some(job) = jobs.get(at) else {
                 return;
             };
-            let bytes = if keep.len() == points {
-                codes.pack(*bits)
-            } else {
-                codes.thinned(keep).pack(*bits)
-            };
+            let packed = job.pack(keep, points);
             let mut done = done.lock().unwrap_or_else(|e| e.into_inner());
-            done.push((at, bytes));
+            done.push((at, packed));
         }
     };
     std::thread::scope(|s| {
@@ -145,29 +210,39 @@ fn all(jobs: &[(&Codes, u8)], keep: &[u32], points: usize) -> io::Result<Vec<Vec
     });
     let mut done = done.into_inner().unwrap_or_else(|e| e.into_inner());
     done.sort_by_key(|(at, _)| *at);
-    done.into_iter().map(|(_, bytes)| bytes).collect()
+    done.into_iter().map(|(_, packed)| packed).collect()
 }
 
 fn packed(
     scene: &Scene,
+    rows: &Rows,
     rung: Rung,
     keep: &[u32],
     first: usize,
     told: &Value,
 ) -> io::Result<Packed> {
     let shown = frames(scene.frames.len(), rung.frames);
-    let mut jobs = vec![(&scene.reference, FINE)];
-    jobs.extend(shown.iter().map(|f| (&scene.moved[*f], rung.moved)));
-    for field in &scene.fields {
-        jobs.extend(shown.iter().map(|f| (&field.frames[*f], rung.values)));
+    let mut jobs = vec![Job::places(scene)];
+    // field after field
+    for n in 0..rows.0.len() {
+        let of = |k: usize| {
+            rows.jobs(rung, shown[k], k.checked_sub(1).map(|b| shown[b]))
+                .nth(n)
+        };
+        jobs.extend((0..shown.len()).filter_map(of));
     }
-    let blocks = all(&jobs, keep, scene.points)?;
-    let mut lines = jobs.iter().enumerate().map(|(k, (codes, bits))| {
+    let done = all(&jobs, keep, scene.points)?;
+    let line = |(k, (job, (_, after))): (usize, (&Job, &(Vec<u8>, bool)))| {
+        let codes = job.codes;
+        let seen: Vec<[Value; 2]> = codes.seen.iter().map(|s| s.map(short)).collect();
         json!({
-            "at": first + k, "bits": codes.bits_of(*bits), "low": codes.low, "high": codes.high,
-            "seen": codes.seen.iter().map(|s| s.map(short)).collect::<Vec<_>>(), "size": short(codes.size),
+            "at": first + k, "bits": codes.bits_of(job.bits), "after": after, "low": codes.low, "high": codes.high, "seen": seen,
+            "size": short(codes.size),
         })
-    });
+    };
+    let lines: Vec<Value> = jobs.iter().zip(&done).enumerate().map(line).collect();
+    let mut lines = lines.into_iter();
+    let blocks: Vec<Vec<u8>> = done.into_iter().map(|(bytes, _)| bytes).collect();
     let mut take = |n: usize| lines.by_ref().take(n).collect::<Vec<Value>>();
     let reference = take(1).pop();
     let moved = take(shown.len());

@@ -1,7 +1,7 @@
 //! Numbers of points as codes of few bits, and codes as packed bytes that a browser unpacks.
 //!
 //! A number is `low + code (high − low)/(2^bits − 2)`; the last code, `2^bits − 1`, is no number. Packed are the differences of codes
-//! from point to point, folded (0, −1, 1, −2, … become 0, 1, 2, 3, …), of wide codes first all low bytes, then all high ones.
+//! from point to point, or from the frame before (then the bounds of both are the same), folded (0, −1, 1, −2, … become 0, 1, 2, 3, …), of wide codes first all low bytes, then all high ones.
 
 use std::io::{self, Write};
 
@@ -103,19 +103,78 @@ impl Codes {
         }
     }
 
-    /// Packed with `bits` for a number, as zlib.
+    /// All frames between the bounds of all, so that codes of one follow from those of the one before; `None` where that would
+    /// lose too much: bounds that differ a lot.
+    pub fn shared(frames: &[Codes], always: bool) -> Option<Vec<Codes>> {
+        let first = frames.first().filter(|f| !f.whole)?;
+        let components = first.low.len();
+        let mut bounds = vec![[f64::INFINITY, f64::NEG_INFINITY]; components];
+        for seen in frames.iter().flat_map(|f| f.seen.iter().enumerate()) {
+            let (c, [low, high]) = seen;
+            bounds[c] = [bounds[c][0].min(*low), bounds[c][1].max(*high)];
+        }
+        let span = |all: &[[f64; 2]]| all.iter().map(|s| s[1] - s[0]).fold(0.0, f64::max);
+        let wide = |f: &&Codes| span(&f.seen) > 0.4 * span(&bounds);
+        if !always && 2 * frames.iter().filter(wide).count() < frames.len() {
+            return None;
+        }
+        Some(frames.iter().map(|f| f.between(&bounds)).collect())
+    }
+
+    /// The same numbers between other bounds.
+    fn between(&self, bounds: &[[f64; 2]]) -> Codes {
+        let top = f64::from(steps(FINE));
+        let none = u16::MAX;
+        let each = self.codes.iter().zip(&self.low).zip(&self.high);
+        let codes = each.zip(bounds).map(|(((of, low), high), [from, to])| {
+            let quantum = (high - low) / top;
+            let scale = if to > from { top / (to - from) } else { 0.0 };
+            let code = |code: &u16| match *code == none {
+                true => none,
+                false => {
+                    let v = low + f64::from(*code) * quantum;
+                    ((v - from) * scale).round().clamp(0.0, top) as u16
+                }
+            };
+            of.iter().map(code).collect()
+        });
+        Codes {
+            codes: codes.collect(),
+            low: bounds.iter().map(|b| b[0]).collect(),
+            high: bounds.iter().map(|b| b[1]).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Packed with `bits` for a number, as zlib: from point to point, or from the frame before, whichever is shorter; and is it
+    /// the latter?
     ///
     /// # Errors
     /// None in practice: it is written to memory.
-    pub fn pack(&self, bits: u8) -> io::Result<Vec<u8>> {
+    pub fn pack(&self, bits: u8, before: Option<&Codes>) -> io::Result<(Vec<u8>, bool)> {
         let bits = self.bits_of(bits);
+        let own = self.folded(bits, None)?;
+        let Some(before) = before else {
+            return Ok((own, false));
+        };
+        let after = self.folded(bits, Some(before))?;
+        Ok(match after.len() < own.len() {
+            true => (after, true),
+            false => (own, false),
+        })
+    }
+
+    fn folded(&self, bits: u8, before: Option<&Codes>) -> io::Result<Vec<u8>> {
         let mut packer = ZlibEncoder::new(vec![], Compression::new(6));
         let (mut lows, mut highs) = (vec![], vec![]);
-        for codes in &self.codes {
+        for (c, codes) in self.codes.iter().enumerate() {
             (lows.clear(), highs.clear());
             let mut last = 0u16;
-            for code in codes {
+            for (i, code) in codes.iter().enumerate() {
                 let code = coarser(*code, self.bits, bits);
+                if let Some(before) = before {
+                    last = coarser(before.codes[c][i], before.bits, bits);
+                }
                 let folded = if bits > 8 {
                     let d = code.wrapping_sub(last) as i16;
                     ((d << 1) ^ (d >> 15)) as u16
@@ -196,7 +255,7 @@ pub mod tests {
 
     fn back(codes: &Codes, bits: u8) -> Vec<f64> {
         let n = codes.codes[0].len();
-        let bytes = codes.pack(bits).unwrap();
+        let (bytes, _) = codes.pack(bits, None).unwrap();
         unpacked(&bytes, n, codes.bits_of(bits), &codes.low, &codes.high)
     }
 
@@ -210,6 +269,28 @@ pub mod tests {
                 // half a quantum of each rounding
                 prop_assert!((a - b).abs() <= 0.6 * quanta[i % 3] + 1e-12 + 0.01 * quanta[i % 3], "{a} {b} {quanta:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_frame_that_hardly_differs_follows_from_the_one_before() {
+        let noise = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 8);
+        let first: Vec<f64> = (0..3000).map(noise).collect();
+        let mut second = first.clone();
+        (second[7], second[8]) = (0.0, f64::NAN);
+        let frames = [&first, &second].map(|v| Codes::of(v, 1, false));
+        let shared = Codes::shared(&frames, false).unwrap();
+        let (own, _) = shared[1].pack(12, None).unwrap();
+        let (short, after) = shared[1].pack(12, Some(&shared[0])).unwrap();
+        assert!(after && short.len() * 20 < own.len(), "{}", short.len());
+        assert_eq!(shared[0].low, shared[1].low);
+        // bounds that differ a lot are not shared, unless they must be
+        let small: Vec<f64> = first.iter().map(|v| 1e-3 * v).collect();
+        let frames = [&small, &small, &first].map(|v| Codes::of(v, 1, false));
+        assert!(Codes::shared(&frames, false).is_none());
+        let shared = Codes::shared(&frames, true).unwrap();
+        for (a, b) in small.iter().zip(back(&shared[0], 13)) {
+            assert!((a - b).abs() < 0.6 * shared[0].quantum(13)[0]);
         }
     }
 

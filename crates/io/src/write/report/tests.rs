@@ -158,9 +158,8 @@ fn a_report_needs_no_network_and_nothing_leaves_its_place() {
     assert!(html.contains("<title>a &lt;/script&gt; b</title>"));
     let opened = html.matches("<script").count();
     assert_eq!(opened, html.matches("</script>").count());
-    // one for each block, the numbers, and the program
-    let blocks = html.matches("id=\"b").count() - html.matches("id=\"b").filter(|_| false).count();
-    assert!(opened > 2 && blocks > 2);
+    // the numbers, the program, and one for each block
+    assert!(opened > 6, "{opened}");
 }
 
 #[test]
