@@ -9,8 +9,10 @@ use crate::report;
 use crate::script;
 use crate::signals;
 use peridyne::error::{BuildError, size};
+use peridyne::expression::Expression;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
+use peridyne::spec::IndenterMotion;
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
@@ -18,7 +20,7 @@ use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
-use peridyne_io::write::run_json::Status;
+use peridyne_io::write::run_json::{MovingBall, Status};
 use peridyne_io::write::space::{Amount, free};
 use std::path::{Path, PathBuf};
 
@@ -92,6 +94,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    plan.indenters = indenters(deck, steps as f64 * sim.info().time_step);
     say(&format!(
         "threads   {threads}\nrunning {steps} steps, results in {}",
         plan.dir.display()
@@ -185,6 +188,25 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     }
 }
 
+/// Where indenters are that are moved, until `end`.
+fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
+    const PARTS: u32 = 100;
+    let moved = deck.spec.indenters.iter().filter_map(|i| match &i.motion {
+        IndenterMotion::Kinematic(center) => Some((i.radius, center)),
+        IndenterMotion::Free { .. } => None,
+    });
+    let ball = |(radius, center): (f64, &[Expression; 3])| {
+        let at = |k: u32| {
+            let t = end * f64::from(k) / f64::from(PARTS);
+            let [x, y, z] = [0, 1, 2].map(|a: usize| center[a].eval(&[0.0; 3], t));
+            [t, x, y, z]
+        };
+        let path = (0..=PARTS).map(at).collect();
+        MovingBall { radius, path }
+    };
+    moved.map(ball).collect()
+}
+
 /// Columns of a frame.
 fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
@@ -206,6 +228,7 @@ fn plan(deck: &Deck, steps: u64, dir: PathBuf, threads: usize, allow_outside: bo
         command: String::new(),
         understood: deck.describe(),
         sources: deck.sources(),
+        indenters: vec![],
         report: output.report,
         allow_outside,
         steps,

@@ -23,7 +23,7 @@ use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::linear::write_linear;
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{
-    self, EnergyReport, FieldNote, RunReport, Setting, Status, UnitNames,
+    self, EnergyReport, FieldNote, MovingBall, RunReport, Setting, Status, UnitNames,
 };
 use crate::write::table::Table;
 use crate::write::trajectory::Trajectory;
@@ -41,6 +41,8 @@ pub struct Plan {
     pub command: String,
     pub understood: String,
     pub sources: Vec<String>,
+    /// Indenters that are moved, for the report.
+    pub indenters: Vec<MovingBall>,
     /// Write `report.html` at the end.
     pub report: bool,
     /// May files that the deck names lie outside `dir`?
@@ -116,6 +118,7 @@ impl Plan {
                 energy: self.energy_unit.clone(),
             },
             fields: fields.collect(),
+            indenters: self.indenters.clone(),
             files,
         }
     }

@@ -96,6 +96,18 @@ class Loops {
         if (d + dz > depth[at]) [depth[at], from[at], light[at]] = [d + dz, i, shade];
       }
     }
+    for (const { center, radius } of view.spheres) {
+      const p = center.map((c, a) => c - view.middle[a]);
+      const [cx, cy] = [w / 2 + (dot(p, view.right) - view.shift[0]) * px, h / 2 - (dot(p, view.up) - view.shift[1]) * px];
+      const ball = { balls: true, half: radius };
+      for (let y = Math.max(0, Math.ceil(cy - radius * px)); y < Math.min(h, cy + radius * px); y++) {
+        for (let x = Math.max(0, Math.ceil(cx - radius * px)); x < Math.min(w, cx + radius * px); x++) {
+          const met = meets(ball, (x - cx) / px, (cy - y) / px);
+          const at = y * w + x;
+          if (met && dot(p, view.eye) + met[0] > depth[at]) [depth[at], from[at], light[at]] = [dot(p, view.eye) + met[0], n, met[1]];
+        }
+      }
+    }
     const reach = Math.max(1, Math.round(view.spread * px));
     const around = [[1, 0], [0, 1], [0.7, 0.7], [0.7, -0.7]];
     const steps = around.map(([x, y]) => Math.round(x * reach) + w * Math.round(y * reach));
@@ -106,9 +118,9 @@ class Loops {
       const off = step => Math.min(4, Math.max(-4, ((depth[at + step] ?? -Infinity) - depth[at]) / view.spread));
       for (const step of steps) hollow += Math.max(0, 0.5 * (off(step) + off(-step)));
       const shade = light[at] * Math.max(DARKEST, 1 - (HOLLOW * hollow) / 4);
-      const value = scene.value[from[at]];
+      const value = from[at] < n ? scene.value[from[at]] : NaN;
       const k = 4 * Math.round(255 * Math.min(1, Math.max(0, (value - view.low) / (view.high - view.low))));
-      for (let c = 0; c < 3; c++) image.data[4 * at + c] = Number.isNaN(value) ? 128 : view.colours[k + c] * shade;
+      for (let c = 0; c < 3; c++) image.data[4 * at + c] = (Number.isNaN(value) ? 128 : view.colours[k + c]) * shade;
       image.data[4 * at + 3] = 255;
     }
     this.context.putImageData(image, 0, 0);
@@ -212,6 +224,7 @@ class Graphics {
     if (!gl) throw new Error("no WebGL2");
     this.gl = gl;
     this.name = "webgl2";
+    this.largest = gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE)[1];
     this.cubes = this.program(POINTS, SURFACE);
     this.finish = this.program(WHOLE, FINISH);
     this.buffers = [0, 1, 2].map(() => gl.createBuffer());
@@ -320,6 +333,20 @@ class Graphics {
     gl.uniform1i(at.colours, 0);
     gl.bindVertexArray(this.array);
     gl.drawArrays(gl.POINTS, 0, this.count);
+    // indenters: a point each, without a value
+    gl.bindVertexArray(this.empty);
+    gl.uniform3f(at.cutAxis, 0, 0, 0);
+    gl.uniform1f(at.cutAt, 1);
+    gl.uniform1i(at.balls, 1);
+    for (const { center, radius } of view.spheres) {
+      if (2 * radius * view.pixels * fine > this.largest) continue;
+      gl.uniform1f(at.halfEdge, radius);
+      gl.uniform2f(at.reach, radius, radius);
+      gl.vertexAttrib3fv(0, center);
+      gl.vertexAttrib3f(1, 0, 0, 0);
+      gl.vertexAttrib1f(2, NaN);
+      gl.drawArrays(gl.POINTS, 0, 1);
+    }
 
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);

@@ -28,6 +28,7 @@ class Viewer {
     id("timeline").hidden = last === 0;
     this.stretches();
     this.home();
+    id("spheresBox").hidden = this.line || !scene.balls.length;
     id("balls").value = scene.atoms ? "balls" : "cubes";
     if (this.line) {
       this.curve ??= new Plot(id("curve"), "Profile");
@@ -70,6 +71,7 @@ class Viewer {
   }
 
   components() {
+    this.fresh = true;
     const { field, scene } = this;
     const last = scene.frames.length - 1;
     const used = field.components.map((name, c) => ({ name, c, range: scene.range(field, c, 0, last) })).filter(o => o.range[0] !== o.range[1]);
@@ -96,9 +98,22 @@ class Viewer {
     id("mapBox").hidden = this.line || this.field.kind === "integer";
   }
 
+  /** Bounds that leave a hundredth of the points of this frame out at each end. */
+  get most() {
+    const { value } = this.shown;
+    if (this.mostOf !== value) {
+      const every = Math.ceil(value.length / 20000);
+      const some = value.filter((v, i) => i % every === 0 && Number.isFinite(v)).sort();
+      this.mostOf = value;
+      this.mostIs = [some[Math.floor(0.01 * some.length)] ?? 0, some[Math.ceil(0.99 * some.length) - 1] ?? 0];
+    }
+    return this.mostIs;
+  }
+
   get range() {
     const [from, to] = id("range").value === "frame" && this.field.kind !== "integer" ? [this.frame, this.frame] : [0, this.scene.frames.length - 1];
     let [low, high] = this.scene.range(this.field, this.component, from, to);
+    if (id("range").value === "most" && this.field.kind !== "integer") [low, high] = this.most;
     if (id("map").value === "diverging" && this.field.kind !== "integer") {
       const most = Math.max(Math.abs(low), Math.abs(high));
       [low, high] = [-most, most];
@@ -132,9 +147,16 @@ class Viewer {
     // somebody was faster
     if (turn !== this.turns) return;
     this.shown = { reference, moved, value };
+    if (this.fresh) {
+      this.fresh = false;
+      // a few points that fly away must not leave one colour to all others
+      const [low, high] = scene.range(field, component, 0, scene.frames.length - 1);
+      const long = this.most[1] - this.most[0] < 0.35 * (high - low) && this.most[1] > this.most[0];
+      id("range").value = long && !this.line ? "most" : "all";
+    }
     const f = scene.frames[frame];
     const [name, text] = scene.axis === "time" || scene.axis === "t" ? ["t", quantity(f.value, scene.unit)] : [scene.axis, quantity(f.value, scene.unit)];
-    const label = scene.statics ? `increment ${f.step}` : scene.kind === "modes" ? `mode ${f.step}, ${text}` : `${name} = ${text}`;
+    const label = scene.kind === "modes" ? `mode ${f.step}, ${text}` : scene.statics ? `increment ${f.step}` : `${name} = ${text}`;
     id("frame").value = frame;
     id("frame").setAttribute("aria-valuetext", `${label}, frame ${frame + 1} of ${scene.frames.length}`);
     id("when").textContent = label;
@@ -160,7 +182,7 @@ class Viewer {
     this.curve.show({
       x: { name: "x", unit: this.scene.length, values: take(reference[0]) },
       lines: [{ name: field.name + part, unit: field.unit, values: take(value) }],
-      box: id("range").value === "frame" ? undefined : this.scene.range(field, this.component, 0, this.scene.frames.length - 1),
+      box: id("range").value !== "all" ? undefined : this.scene.range(field, this.component, 0, this.scene.frames.length - 1),
       timed: true,
       plain: true,
     });
@@ -304,8 +326,20 @@ class Viewer {
         side: this.cut.other ? -1 : 1,
       },
     };
+    this.view.spheres = id("spheres").checked ? this.spheres() : [];
     this.draw.draw(this.view);
     this.marks();
+  }
+
+  /** Indenters at the time of the frame. */
+  spheres() {
+    const t = this.scene.frames[this.frame].value;
+    return this.scene.balls.map(({ radius, path }) => {
+      const k = Math.max(1, path.findIndex(p => p[0] >= t));
+      const [a, b] = [path[k - 1], path[k] ?? path.at(-1)];
+      const part = b[0] > a[0] ? Math.min(1, (t - a[0]) / (b[0] - a[0])) : 0;
+      return { radius, center: [1, 2, 3].map(c => a[c] + part * (b[c] - a[c])) };
+    });
   }
 
   /** Scale bar, axes, note of the deformation. */
@@ -432,11 +466,11 @@ class Viewer {
     stage.addEventListener("dblclick", () => this.home());
 
     id("field").addEventListener("change", () => { this.components(); this.show(); });
-    id("component").addEventListener("change", () => { this.colours(); this.show(); });
+    id("component").addEventListener("change", () => { this.fresh = true; this.colours(); this.show(); });
     for (const name of ["map", "range"]) id(name).addEventListener("change", () => { this.bar(); this.line ? this.profile() : this.paint(); });
     id("frame").addEventListener("input", () => { this.stop(); this.go(id("frame").valueAsNumber); });
     id("play").addEventListener("click", () => (this.playing ? this.stop() : this.play()));
-    id("balls").addEventListener("change", () => this.paint());
+    for (const name of ["balls", "spheres"]) id(name).addEventListener("change", () => this.paint());
     id("stretch").addEventListener("input", () => this.paint());
     id("auto").addEventListener("click", () => { id("stretch").value = this.auto; this.frameAll(); this.paint(); });
     id("true").addEventListener("click", () => { id("stretch").value = 1; this.frameAll(); this.paint(); });

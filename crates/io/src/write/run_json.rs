@@ -66,6 +66,7 @@ pub struct Setting {
     pub atoms: bool,
     pub units: UnitNames,
     pub fields: Vec<FieldNote>,
+    pub indenters: Vec<MovingBall>,
     /// Names in the folder, of series their collection.
     pub files: Vec<String>,
 }
@@ -77,6 +78,13 @@ pub struct UnitNames {
     pub length: String,
     pub time: String,
     pub energy: String,
+}
+
+/// An indenter that is moved: radius, and time and centre here and there, linear between.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct MovingBall {
+    pub radius: f64,
+    pub path: Vec<[f64; 4]>,
 }
 
 /// Unit of a field, and what it is.

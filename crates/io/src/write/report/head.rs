@@ -94,7 +94,8 @@ fn digits(value: f64) -> String {
 /// What stands behind how the run ended.
 pub fn subtitle(run: &Value) -> String {
     let text = |key: &str| run[key].as_str().unwrap_or("");
-    format!("{} by peridyne {}", text("deck"), text("version"))
+    let deck = text("deck").rsplit(['/', '\\']).next().unwrap_or("");
+    format!("{deck} by peridyne {}", text("version"))
 }
 
 pub fn cite(run: &Value) -> String {

@@ -209,6 +209,7 @@ impl Report {
             let told = json!({
                 "label": label, "title": title, "first": head::first(scene, &self.run, &self.setting),
                 "statics": self.setting.statics, "length": self.setting.units.length,
+                "balls": if scene.kind == "run" { &self.setting.indenters[..] } else { &[] },
                 "axis": match scene.kind { "modes" => "frequency", _ => "time" },
                 "unit": match (scene.kind, &*self.setting.units.time) {
                     ("modes", "s") => "Hz".to_string(),
