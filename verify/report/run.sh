@@ -14,6 +14,9 @@ if [[ -z $browser ]] && command -v apt-get > /dev/null; then
     apt-get install -y --no-install-recommends chromium > "$out/apt.log" 2>&1 || { tail -3 "$out/apt.log"; exit 1; }
     browser=$(command -v chromium)
 fi
+if ! command -v npm > /dev/null && command -v apt-get > /dev/null; then
+    apt-get install -y --no-install-recommends nodejs npm >> "$out/apt.log" 2>&1 || { tail -3 "$out/apt.log"; exit 1; }
+fi
 [[ -n $browser ]] || { echo "no Chromium: install it, or name it in CHROMIUM"; exit 1; }
 cp "$here/package.json" "$here/package-lock.json" "$here/check.mjs" "$here/expected.json" "$out"
 (cd "$out" && npm ci --silent --no-audit --no-fund)
@@ -24,7 +27,7 @@ run() { # NAME DECK [--set …]: quietly
     "$program" run "$decks/$deck" --out "$out/$name" "$@" > "$out/$name.log" 2>&1 || { cat "$out/$name.log"; exit 1; }
 }
 # 3-D with fracture, of fewer points than the original; 2-D; statics with probes; 1-D; modes; atoms; conservation laws
-run impact impact.toml --set body.spacing="1 mm" --set run.steps=600 --set run.time_step="200 ns"
+run impact impact.toml --set body.spacing="1 mm" --set run.steps=1200
 run kalthoff kalthoff.toml --set body.spacing="2 mm"
 run load_displacement load_displacement.toml
 run bar_wave bar_wave.toml --set output.every=8

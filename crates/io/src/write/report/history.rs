@@ -11,15 +11,18 @@ use crate::read::ReadError;
 /// Rows of a report.
 const ROWS: usize = 2000;
 /// Columns that plots of probes leave out.
-const OWN: [&str; 7] = [
+const OWN: [&str; 8] = [
     "step",
     "time",
+    LOAD,
     "broken_directed_bonds",
     "iterations",
     "solver_residual",
     "temperature",
     "pressure",
 ];
+/// What the time of statics is called.
+pub const LOAD: &str = "part of the load";
 const ENERGIES: [&str; 7] = [
     "kinetic energy",
     "strain energy",
@@ -97,7 +100,7 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
     let every = rows.div_ceil(ROWS).max(1);
     let kept = |r: &usize| r.is_multiple_of(every) || r + 1 == rows;
     let named = |name: &str| columns.iter().find(|c| c.name == name);
-    let over = ["time", "t", "step"]
+    let over = ["time", LOAD, "t", "step"]
         .into_iter()
         .find(|n| named(n).is_some());
     let varies = |c: &&Column| c.values.iter().any(|v| *v != c.values[0]);

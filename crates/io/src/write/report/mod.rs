@@ -129,10 +129,17 @@ impl Report {
                 scene.notes.push(text);
             }
         }
-        let history = match has("history.csv") {
+        let mut history = match has("history.csv") {
             true => history::read(&dir.join("history.csv"))?,
             false => vec![],
         };
+        // an equilibrium is not at a time
+        if setting.statics
+            && let Some(time) = history.iter_mut().find(|c| c.name == "time")
+        {
+            time.name = history::LOAD.into();
+            time.unit = String::new();
+        }
         let mut pictures = vec![];
         let mut room = PICTURES;
         let drawn = scenes.is_empty() || run["kind"] == "conservation_law";

@@ -168,7 +168,8 @@ impl Codes {
         let mut packer = ZlibEncoder::new(vec![], Compression::new(6));
         let (mut lows, mut highs) = (vec![], vec![]);
         for (c, codes) in self.codes.iter().enumerate() {
-            (lows.clear(), highs.clear());
+            lows.clear();
+            highs.clear();
             let mut last = 0u16;
             for (i, code) in codes.iter().enumerate() {
                 let code = coarser(*code, self.bits, bits);
