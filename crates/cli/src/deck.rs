@@ -96,6 +96,19 @@ pub fn read(input: &Input) -> Result<Deck, Failure> {
     Deck::parse(&text, &name, &input.set).map_err(|e| Failure::Input(e.into()))
 }
 
+/// What makes the same run again: the command with what it overrides.
+pub fn command(input: &Input) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:+,".contains(c);
+    let word = |text: &str| match !text.is_empty() && text.chars().all(plain) {
+        true => text.to_string(),
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    };
+    let sets = input.set.iter();
+    let sets = sets.map(|(key, value)| format!(" --set {}", word(&format!("{key}={value}"))));
+    let file = word(&input.file.to_string_lossy());
+    format!("peridyne run {file}{}", sets.collect::<String>())
+}
+
 pub fn simd(input: &Input) -> Result<Option<Simd>, Failure> {
     let Some(name) = &input.simd else {
         return Ok(None);

@@ -3,8 +3,9 @@
 use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, note, say};
+use crate::report;
 use crate::signals;
-use peridyne_io::conservation::{self, Listener, evaluation_name, method_name};
+use peridyne_io::conservation::{self, Listener, Told, evaluation_name, method_name};
 use peridyne_io::deck::conservation::LawDeck;
 use peridyne_io::deck::{Dim, rounded};
 use peridyne_io::drive::default_dir;
@@ -54,7 +55,7 @@ impl Listener for Terminal {
 
 /// Runs the law of a deck; results go to `out`, else to where the deck says, which `outside` lets be anywhere.
 pub fn run(
-    file: &Path,
+    input: &Input,
     mut deck: LawDeck,
     out: Option<&Path>,
     outside: bool,
@@ -63,25 +64,32 @@ pub fn run(
         deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
     }
     let dir = out.map(Path::to_path_buf).or(deck.dir.clone());
-    let dir = dir.unwrap_or_else(|| default_dir(file));
-    say(&headline(&deck));
+    let dir = dir.unwrap_or_else(|| default_dir(&input.file));
+    let told = Told {
+        command: deck::command(input),
+        understood: headline(&deck),
+    };
+    say(&told.understood);
     say(&format!("results in {}", dir.display()));
     let mut terminal = Terminal {
         spoken: Instant::now(),
     };
-    let report = conservation::run(&mut deck, &dir, &mut terminal)
+    let done = conservation::run(&mut deck, &dir, told, &mut terminal)
         .map_err(|e| Failure::Run(e.to_string()))?;
     say(&format!(
         "{}: {} steps in {:.2} s{}",
-        report.outcome(),
-        report.steps,
-        report.seconds_stepping,
-        report.ns_per_point_step.map_or(String::new(), |ns| format!(
+        done.outcome(),
+        done.steps,
+        done.seconds_stepping,
+        done.ns_per_point_step.map_or(String::new(), |ns| format!(
             ", {ns:.1} ns per point and step"
         )),
     ));
+    if deck.report {
+        say(&report::line(&dir));
+    }
     match signals::received() {
-        Some(signal) if report.ended_by.is_some() => Err(Failure::Ended(signal)),
+        Some(signal) if done.ended_by.is_some() => Err(Failure::Ended(signal)),
         _ => Ok(()),
     }
 }

@@ -13,6 +13,7 @@ mod laws;
 mod new;
 mod numbers;
 mod progress;
+mod report;
 mod reproduce;
 mod run;
 mod script;
@@ -55,6 +56,8 @@ enum Verb {
     Fields(Box<fields::FieldsArguments>),
     /// A peristatic bar pulled at its ends: stiffness, homogenization factors, elongation as a fraction and its limit.
     Bar(bar::BarArguments),
+    /// Make report.html of a folder of results: the run in one file for browsers, without network.
+    Report(report::ReportArguments),
     /// Run the experiments of the papers and compare with what was published.
     Reproduce(reproduce::ReproduceArguments),
     /// List the laws, lattices and influence functions with their parameters.
@@ -128,6 +131,7 @@ fn main() -> ExitCode {
         Verb::Converge(arguments) => converge::converge(&arguments),
         Verb::Fields(arguments) => fields::fields(&arguments),
         Verb::Bar(arguments) => bar::bar(&arguments),
+        Verb::Report(arguments) => report::report(&arguments),
         Verb::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Verb::Laws => laws::print(),
         Verb::Doc(arguments) => doc::doc(&arguments),

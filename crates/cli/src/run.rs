@@ -5,11 +5,14 @@ use crate::deck;
 use crate::failure::{Failure, note, say};
 use crate::law;
 use crate::progress::Terminal;
+use crate::report;
 use crate::script;
 use crate::signals;
 use peridyne::error::{BuildError, size};
+use peridyne::expression::Expression;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
+use peridyne::spec::IndenterMotion;
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
@@ -19,7 +22,7 @@ use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
-use peridyne_io::write::run_json::Status;
+use peridyne_io::write::run_json::{MovingBall, Status};
 use peridyne_io::write::space::{Amount, free};
 use std::path::{Path, PathBuf};
 
@@ -49,7 +52,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if let Some(deck) = law::read(&arguments.input)? {
         return with_threads(arguments.threads, |_| {
             let out = arguments.out.as_deref();
-            law::run(&arguments.input.file, deck, out, arguments.allow_outside)
+            law::run(&arguments.input, deck, out, arguments.allow_outside)
         });
     }
     let deck = deck::read(&arguments.input)?;
@@ -92,7 +95,9 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let remarks = deck::remarks(deck, sim.info().time_step);
     say(&(deck::headline(sim.as_ref(), deck.units) + &remarks));
     let steps = deck.steps(sim.info().time_step);
-    let plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
+    let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
+    plan.command = deck::command(&arguments.input);
+    plan.indenters = indenters(deck, steps as f64 * sim.info().time_step);
     say(&format!(
         "threads   {threads}\nrunning {steps} steps, results in {}",
         plan.dir.display()
@@ -104,28 +109,31 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let result = drive(sim.as_mut(), &plan, &mut progress);
     progress.end();
     match result {
-        Ok(report) => {
+        Ok(done) => {
             say(&format!(
                 "{}: {} steps in {:.2} s{}{}",
-                report.outcome(),
-                report.steps,
-                report.seconds_stepping,
-                report.ns_per_bond_step.map_or(String::new(), |ns| format!(
+                done.outcome(),
+                done.steps,
+                done.seconds_stepping,
+                done.ns_per_bond_step.map_or(String::new(), |ns| format!(
                     ", {ns:.2} ns per bond and step"
                 )),
-                match report.fragments {
+                match done.fragments {
                     Some(fragments) => format!(
                         ", {} directed bonds broken, {fragments} fragments",
-                        report.broken_directed_bonds
+                        done.broken_directed_bonds
                     ),
                     None => String::new(),
                 },
             ));
-            for picture in &report.pictures {
+            for picture in &done.pictures {
                 say(&format!("picture: {}", plan.dir.join(picture).display()));
             }
+            if plan.report {
+                say(&report::line(&plan.dir));
+            }
             match signals::received() {
-                Some(signal) if report.status == Status::Ended => Err(Failure::Ended(signal)),
+                Some(signal) if done.status == Status::Ended => Err(Failure::Ended(signal)),
                 _ => Ok(()),
             }
         }
@@ -267,6 +275,25 @@ fn units(deck: &Deck) -> [&'static str; 3] {
     }
 }
 
+/// Where indenters are that are moved, until `end`.
+fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
+    const PARTS: u32 = 100;
+    let moved = deck.spec.indenters.iter().filter_map(|i| match &i.motion {
+        IndenterMotion::Kinematic(center) => Some((i.radius, center)),
+        IndenterMotion::Free { .. } => None,
+    });
+    let ball = |(radius, center): (f64, &[Expression; 3])| {
+        let at = |k: u32| {
+            let t = end * f64::from(k) / f64::from(PARTS);
+            let [x, y, z] = [0, 1, 2].map(|a: usize| center[a].eval(&[0.0; 3], t));
+            [t, x, y, z]
+        };
+        let path = (0..=PARTS).map(at).collect();
+        MovingBall { radius, path }
+    };
+    moved.map(ball).collect()
+}
+
 /// Columns of a frame.
 fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
@@ -288,6 +315,11 @@ fn plan(
         deck: deck.file().to_string(),
         deck_text: deck.text().to_string(),
         dir,
+        command: String::new(),
+        understood: deck.describe(),
+        sources: deck.sources(),
+        indenters: vec![],
+        report: output.report,
         allow_outside,
         steps,
         every: output.every,

@@ -265,6 +265,7 @@ fn report(
         energy: EnergyReport::from(&ledger),
         pictures: vec![],
         warnings,
+        setting: None,
     }
 }
 

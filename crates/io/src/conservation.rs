@@ -1,11 +1,13 @@
 //! Runs a conservation law: frames and history at their times, pictures and a report at the end.
 
+use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
 use crate::write::WriteError;
 use crate::write::conservation::{Frames, Report, write_pictures};
 use crate::write::folder::Folder;
 use crate::write::history::{Column, History};
-use crate::write::run_json::{Status, deck_hash, peak_memory_bytes};
+use crate::write::report::{self, ReportError};
+use crate::write::run_json::{FieldNote, Setting, Status, UnitNames, deck_hash, peak_memory_bytes};
 use peridyne_transport::{Evaluation, Method, RunError, measure};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -15,6 +17,8 @@ use std::time::{Duration, Instant};
 pub enum LawError {
     #[error(transparent)]
     Write(#[from] WriteError),
+    #[error("report.html: {0}")]
+    Report(#[from] ReportError),
     #[error("{error}\nthe last good state, t = {time:.6e} after {steps} steps, is in {}", dir.display())]
     Run {
         error: RunError,
@@ -52,16 +56,16 @@ pub fn evaluation_name(evaluation: Evaluation) -> &'static str {
 fn columns(deck: &LawDeck) -> Vec<Column> {
     let unit = |dim| deck.units.unit(dim);
     let u = deck.dimension;
-    let length = |power: i8| crate::deck::Dim([power, 0, 0, 0]);
+    let length = |power: i8| Dim([power, 0, 0, 0]);
     let space = deck.grid().dimension as i8;
     let of = |square: i8, more: i8, time: i8| {
-        let value = (0..square).try_fold(crate::deck::Dim([0, 0, time, 0]), |d, _| d.times(u, 1));
+        let value = (0..square).try_fold(Dim([0, 0, time, 0]), |d, _| d.times(u, 1));
         value
             .and_then(|d| d.times(length(more), 1))
             .map_or(String::new(), unit)
     };
     [
-        ("t", unit(crate::deck::Dim::TIME)),
+        ("t", unit(Dim::TIME)),
         ("mass", of(1, space, 0)),
         ("energy", of(2, space, 0)),
         ("energy_rate", of(2, space, -1)),
@@ -115,6 +119,45 @@ fn advance(
     Ok(None)
 }
 
+/// What makes the same run again, and what was understood: for the report.
+#[derive(Debug, Clone, Default)]
+pub struct Told {
+    pub command: String,
+    pub understood: String,
+}
+
+fn setting(deck: &LawDeck, told: Told) -> Setting {
+    let (grid, units) = (deck.grid(), deck.units);
+    let mut files = vec!["history.csv", "frames.npz"];
+    if deck.pictures {
+        files.push("profiles.png");
+        files.push(if grid.dimension > 1 {
+            "last.png"
+        } else {
+            "space_time.png"
+        });
+    }
+    Setting {
+        command: told.command,
+        deck_text: deck.text().to_string(),
+        understood: told.understood,
+        dimension: grid.dimension,
+        spacing: grid.spacing,
+        units: UnitNames {
+            length: units.unit(Dim::LENGTH),
+            time: units.unit(Dim::TIME),
+            energy: String::new(),
+        },
+        fields: vec![FieldNote {
+            name: "u".into(),
+            unit: units.unit(deck.dimension),
+            says: "The solution.".into(),
+        }],
+        files: files.into_iter().map(String::from).collect(),
+        ..Setting::default()
+    }
+}
+
 /// Runs and writes: `frames.npz`, `history.csv`, pictures and `run.json` in `dir`. A run that fails or is ended leaves its last good state as a last frame.
 ///
 /// # Errors
@@ -122,6 +165,7 @@ fn advance(
 pub fn run(
     deck: &mut LawDeck,
     dir: &Path,
+    told: Told,
     listener: &mut dyn Listener,
 ) -> Result<Report, LawError> {
     let _held = Folder::claim(dir)?;
@@ -187,8 +231,12 @@ pub fn run(
         seconds_stepping: seconds,
         ns_per_point_step: (visits > 0.0).then(|| seconds * 1e9 / visits),
         peak_memory_bytes: peak_memory_bytes(),
+        setting: setting(deck, told),
     };
     report.write(&dir.join("run.json"))?;
+    if deck.report {
+        report::write(dir)?;
+    }
     match stopped {
         None => Ok(report),
         Some(error) => Err(LawError::Run {

@@ -1,11 +1,15 @@
 //! Drives a simulation through its steps: observers at their intervals, files as they come, a report at the end.
 
+mod atoms;
+
+pub use atoms::AtomsPlan;
+
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peridyne::error::{RunError, SolveError};
-use peridyne::observe::{Ledger, Snapshot, Values, temperature_of};
+use peridyne::observe::{Ledger, Snapshot, Values};
 use peridyne::run::Simulation;
 use peridyne::spec::{AnyLinearBody, Stepper};
 use peridyne_fields::FieldsError;
@@ -13,15 +17,17 @@ use peridyne_fields::FieldsError;
 use crate::balance::BalanceWatch;
 use crate::continuum::run::{FieldsPlan, RunningFields};
 use crate::deck::{Dim, UnitSystem};
-use crate::read::{Atoms, Species};
 use crate::write::data::write_data;
 use crate::write::folder::{Folder, is_inside};
 use crate::write::history::{Column, History, ledger_columns, ledger_values};
 use crate::write::linear::write_linear;
 use crate::write::picture::{self, shown::About};
-use crate::write::run_json::{self, EnergyReport, RunReport, Status};
+use crate::write::report::{self, ReportError};
+use crate::write::run_json::{
+    self, EnergyReport, FieldNote, MovingBall, RunReport, Setting, Status, UnitNames,
+};
 use crate::write::table::Table;
-use crate::write::trajectory::{Format, Trajectory};
+use crate::write::trajectory::Trajectory;
 use crate::write::{Series, SeriesOptions, WriteError};
 
 /// What to do and what to write.
@@ -32,6 +38,14 @@ pub struct Plan {
     pub deck: String,
     pub deck_text: String,
     pub dir: PathBuf,
+    /// What makes the same run again, what was understood, and where the laws come from: for the report.
+    pub command: String,
+    pub understood: String,
+    pub sources: Vec<String>,
+    /// Indenters that are moved, for the report.
+    pub indenters: Vec<MovingBall>,
+    /// Write `report.html` at the end.
+    pub report: bool,
     /// May files that the deck names lie outside `dir`?
     pub allow_outside: bool,
     pub steps: u64,
@@ -77,6 +91,47 @@ impl Plan {
         sim.snapshot(&fields, self.series.bonds)
     }
 
+    /// What reports tell of this run.
+    fn setting(&self, sim: &mut dyn Simulation, last: &Snapshot, pictures: &[String]) -> Setting {
+        let series = &self.series;
+        let mut files = vec!["history.csv".to_string()];
+        let mut file = |there: bool, name: &str| files.extend(there.then(|| name.to_string()));
+        file(series.points, "points.pvd");
+        file(series.bonds, "bonds.pvd");
+        pictures.iter().for_each(|name| file(true, name));
+        let modes = self.modes > 0 && self.dir.join("modes.csv").is_file();
+        file(modes, "modes.csv");
+        file(modes, "modes/points.pvd");
+        file(self.linear_body, "linear_body.npz");
+        let dump = series.dump.iter().map(|(name, _)| name);
+        let atoms = self.atoms.iter();
+        let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
+        files.extend(dump.chain(named).map(|n| n.display().to_string()));
+        let fields = last.columns.iter().map(|c| FieldNote {
+            name: c.name().to_string(),
+            unit: self.units.unit(c.declaration.dimension),
+            says: c.declaration.doc.to_string(),
+        });
+        Setting {
+            command: self.command.clone(),
+            deck_text: self.deck_text.clone(),
+            understood: self.understood.clone(),
+            sources: self.sources.clone(),
+            dimension: sim.info().dimension,
+            spacing: sim.info().spacing,
+            statics: matches!(sim.info().stepper, Stepper::Statics(_)),
+            atoms: self.atoms.is_some(),
+            units: UnitNames {
+                length: self.units.unit(Dim::LENGTH),
+                time: self.time_unit.clone(),
+                energy: self.energy_unit.clone(),
+            },
+            fields: fields.collect(),
+            indenters: self.indenters.clone(),
+            files,
+        }
+    }
+
     /// Do the files that the deck names lie inside the folder, links included, or may they be anywhere?
     fn stays_inside(&self) -> Result<(), WriteError> {
         let named = self.atoms.iter().flat_map(|a| {
@@ -92,116 +147,6 @@ impl Plan {
         }
         Ok(())
     }
-}
-
-/// Temperature, pressure, trajectory and last state of atoms.
-#[derive(Debug, Clone)]
-pub struct AtomsPlan {
-    /// k_B (energy / temperature).
-    pub boltzmann: f64,
-    pub temperature_unit: String,
-    /// How many of it a computed pressure of 1 is.
-    pub pressure_scale: f64,
-    pub pressure_unit: String,
-    pub trajectories: Vec<(PathBuf, Format)>,
-    /// LAMMPS data file of the last state.
-    pub data: Option<PathBuf>,
-    /// Of each material: name of its atoms, and mass density (mass / length³).
-    pub species: Vec<(String, f64)>,
-    /// How much computed velocity one of ASE is.
-    pub ase_velocity: f64,
-    /// How many units of mass of a data file a computed mass of 1 is.
-    pub mass_scale: f64,
-    /// Lower corner of the periods.
-    pub corner: [f64; 3],
-    /// Periods, where there are any (length).
-    pub periodic: [Option<f64>; 3],
-}
-
-impl AtomsPlan {
-    /// Temperature and pressure: `(2 E_kin + Σ r·f) / (D V)`.
-    fn thermo(&self, sim: &mut dyn Simulation, kinetic: f64) -> [f64; 2] {
-        let (d, n, mut volume) = {
-            let info = sim.info();
-            (info.dimension, info.points, info.volume)
-        };
-        let periods: Vec<f64> = self.periodic[..d].iter().filter_map(|p| *p).collect();
-        if periods.len() == d {
-            volume = periods.iter().product::<f64>() * sim.info().section;
-        }
-        let virial: f64 = sim.virial()[..d].iter().sum();
-        [
-            temperature_of(kinetic, d, n, self.boltzmann),
-            (2.0 * kinetic + virial) / (d as f64 * volume) * self.pressure_scale,
-        ]
-    }
-
-    fn frame(&self, sim: &mut dyn Simulation) -> Atoms {
-        let n = sim.info().points as usize;
-        let position = sim.vectors("position");
-        let volume = sim.scalars("volume");
-        let mass = |density: f64| {
-            let volume = volume.first();
-            volume.map(|v| rounded(density * v * self.mass_scale))
-        };
-        let species = { self.species.iter() }.map(|(name, density)| Species {
-            name: name.clone(),
-            mass: mass(*density),
-        });
-        let kind = match sim.column("material").map(|c| c.values) {
-            Some(Values::Counts(of)) if self.species.len() > 1 => of,
-            _ => vec![0; n],
-        };
-        let force = sim.vectors("force_density");
-        let force = force.iter().zip(&volume).map(|(f, v)| f.map(|f| f * v));
-        let [mut low, mut high] = Atoms::bounds(&position);
-        for a in 0..3 {
-            if let Some(p) = self.periodic[a] {
-                (low[a], high[a]) = (self.corner[a], self.corner[a] + p);
-            }
-        }
-        Atoms {
-            bonded: false,
-            species: species.collect(),
-            kind,
-            velocity: Some(sim.velocities()),
-            force: Some(force.collect()),
-            energy: Some(
-                sim.scalars("energy_density")
-                    .iter()
-                    .zip(&volume)
-                    .map(|(e, v)| e * v)
-                    .collect(),
-            ),
-            position,
-            low,
-            high,
-            periodic: self.periodic.map(|p| p.is_some()),
-            edges: None,
-            step: Some(sim.step_number()),
-            time: Some(sim.time()),
-            from_momenta: false,
-        }
-    }
-
-    /// The state as a data file holds it: in its box, with masses. A box without length along an axis gets length 1,
-    /// as 2-D boxes of LAMMPS have.
-    fn last(&self, sim: &mut dyn Simulation) -> Atoms {
-        let mut atoms = self.frame(sim);
-        atoms.wrap();
-        for a in 0..3 {
-            if atoms.low[a] == atoms.high[a] {
-                atoms.low[a] -= 0.5;
-                atoms.high[a] += 0.5;
-            }
-        }
-        atoms
-    }
-}
-
-/// 14 digits of a number: what it was before products and quotients of units.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.13e}").parse().unwrap_or(value)
 }
 
 /// Listens to a run.
@@ -232,6 +177,8 @@ pub enum DriveError {
     },
     #[error("[[fields]]: {0}")]
     Fields(#[from] FieldsError),
+    #[error("report.html: {0}")]
+    Report(#[from] ReportError),
     #[error("the modes were not found: {error}\nthe last state is in {}", dir.display())]
     Modes { error: SolveError, dir: PathBuf },
 }
@@ -372,6 +319,8 @@ pub fn drive(
         (false, Stepper::Verlet | Stepper::Newmark(_)) => About::Motion,
     };
     let pictures = series.finish(&snapshot, about)?;
+    let pictures = pictures.iter().filter_map(|p| p.file_name());
+    let pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
     history.finish()?;
     if let Some(running) = running {
         running.finish()?;
@@ -432,12 +381,14 @@ pub fn drive(
         threads: plan.threads,
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),
-        pictures: { pictures.iter() }
-            .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
-            .collect(),
         warnings,
+        setting: Some(plan.setting(sim, &snapshot, &pictures)),
+        pictures,
     };
     report.write(&plan.dir.join("run.json"))?;
+    if plan.report {
+        report::write(&plan.dir)?;
+    }
     match stopped {
         None => Ok(report),
         Some(error) => Err(DriveError::Run {

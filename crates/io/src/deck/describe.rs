@@ -235,6 +235,24 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     lines.join("\n")
 }
 
+/// Names of the laws of a spec and where they come from, each once.
+pub fn sources(spec: &Spec) -> Vec<String> {
+    let shelf = Shelf::standard();
+    let own = spec.materials.iter().map(|m| m.law.clone());
+    let pairs = { spec.potentials.iter() }.map(|a| LawSpec::Atoms(a.potential.clone()));
+    let mut all = vec![];
+    for law in own.chain(pairs) {
+        if let Some((descriptor, _)) = shelf.written(&law) {
+            let name = descriptor.name.replace('_', "-");
+            let line = format!("{name}: {}", descriptor.source);
+            if !descriptor.source.is_empty() && !all.contains(&line) {
+                all.push(line);
+            }
+        }
+    }
+    all
+}
+
 fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -> String {
     let place = |x: &[f64]| {
         let each = x

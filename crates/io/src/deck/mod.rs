@@ -22,7 +22,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
-pub use describe::describe;
+pub use describe::{describe, sources};
 pub use error::DeckError;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
@@ -85,6 +85,8 @@ pub struct OutputSpec {
     pub history: Option<u64>,
     /// Pictures of the last state.
     pub pictures: Vec<PictureSpec>,
+    /// `report.html` at the end.
+    pub report: bool,
     /// Files of all frames of atoms.
     pub trajectories: Vec<(PathBuf, Format)>,
     /// LAMMPS data file of the last state of atoms.
@@ -250,6 +252,11 @@ impl Deck {
     /// What was understood, in a few lines with units.
     pub fn describe(&self) -> String {
         describe(&self.spec, self.units)
+    }
+
+    /// Where the laws of its materials come from, each once.
+    pub fn sources(&self) -> Vec<String> {
+        sources(&self.spec)
     }
 
     /// The text of the deck.

@@ -22,6 +22,7 @@ mod mesh;
 pub mod molecules;
 mod stream;
 mod text;
+pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
@@ -72,6 +73,17 @@ pub struct ReadError {
     /// 1-based; `None` when no line is to blame.
     pub line: Option<usize>,
     pub message: String,
+}
+
+impl ReadError {
+    /// Of the file as a whole.
+    pub(crate) fn file(path: &Path, message: String) -> ReadError {
+        ReadError {
+            file: path.display().to_string(),
+            line: None,
+            message,
+        }
+    }
 }
 
 const EXTENSIONS: [&str; 12] = [

@@ -2,7 +2,7 @@
 
 use super::atomic::{WriteError, write_file};
 use super::plot::{ColorMap, Map, Plot};
-use super::run_json::Status;
+use super::run_json::{Setting, Status};
 use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
 use ndarray::{ArrayD, IxDyn};
@@ -147,6 +147,8 @@ pub struct Report {
     pub seconds_stepping: f64,
     pub ns_per_point_step: Option<f64>,
     pub peak_memory_bytes: Option<u64>,
+    /// What reports tell besides.
+    pub setting: Setting,
 }
 
 impl Report {

@@ -15,6 +15,7 @@ pub mod linear;
 pub mod picture;
 pub mod plot;
 pub mod pvd;
+pub mod report;
 pub mod run_json;
 pub mod series;
 pub mod setfl;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use peridyne::observe::Ledger;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 
 use super::atomic::{WriteError, write_file};
@@ -44,6 +44,57 @@ pub struct RunReport {
     /// File names of pictures and films.
     pub pictures: Vec<String>,
     pub warnings: Vec<String>,
+    /// What reports tell besides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub setting: Option<Setting>,
+}
+
+/// How a run was asked for, and what its files hold: with them, all that a report tells.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Setting {
+    /// What makes the same run again.
+    pub command: String,
+    pub deck_text: String,
+    /// What was understood, in lines of a word and its text.
+    pub understood: String,
+    /// Where the laws come from.
+    pub sources: Vec<String>,
+    pub dimension: usize,
+    /// Typical distance of points (length); 0 where it is not known.
+    pub spacing: f64,
+    /// Are steps increments of load?
+    pub statics: bool,
+    pub atoms: bool,
+    pub units: UnitNames,
+    pub fields: Vec<FieldNote>,
+    pub indenters: Vec<MovingBall>,
+    /// Names in the folder, of series their collection.
+    pub files: Vec<String>,
+}
+
+/// Names of the units of what a report shows beside fields.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct UnitNames {
+    pub length: String,
+    pub time: String,
+    pub energy: String,
+}
+
+/// An indenter that is moved: radius, and time and centre here and there, linear between.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct MovingBall {
+    pub radius: f64,
+    pub path: Vec<[f64; 4]>,
+}
+
+/// Unit of a field, and what it is.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct FieldNote {
+    pub name: String,
+    pub unit: String,
+    pub says: String,
 }
 
 /// How a run ended; `"done"`, `"ended"` (early, because someone asked for it) or `"stopped: why"`.
@@ -178,6 +229,7 @@ mod tests {
             }),
             pictures: vec!["damage.png".into()],
             warnings: vec!["a \"quoted\" warning".into()],
+            setting: None,
         }
     }
 

@@ -1,9 +1,9 @@
 //! Continuum fields.
 
-use crate::numbers::{duration, memory, whole};
 use super::row;
 use crate::check::Findings;
 use crate::check::continuum::{Found, Seen};
+use crate::numbers::{duration, memory, whole};
 use peridyne_io::continuum::plan::Place;
 use peridyne_io::deck::Dim;
 use std::fmt::Write;

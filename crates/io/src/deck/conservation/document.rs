@@ -232,4 +232,6 @@ pub struct LawOutput {
     pub history: Option<At<u64>>,
     /// space_time.png (in a plane: last.png) and profiles.png; true when left out.
     pub pictures: Option<bool>,
+    /// report.html at the end, the run in one file for browsers; true when left out.
+    pub report: Option<bool>,
 }

@@ -138,6 +138,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         frames,
         rows: count(&context, &output.history, "history")?,
         pictures: true,
+        report: true,
         dir: None,
         source: source.clone(),
     })

@@ -37,6 +37,8 @@ pub struct LawDeck {
     /// Rows of the history after the first.
     pub rows: u64,
     pub pictures: bool,
+    /// `report.html` at the end.
+    pub report: bool,
     /// Folder; `None`: chosen by the caller.
     pub dir: Option<PathBuf>,
     source: Source,
@@ -73,6 +75,7 @@ impl LawDeck {
             dir: document.output.dir.as_ref().map(|dir| folder.join(dir)),
             title: document.title.unwrap_or_default(),
             pictures: document.output.pictures.unwrap_or(true),
+            report: document.output.report.unwrap_or(true),
             source,
             ..lowered
         })

@@ -34,6 +34,8 @@ pub struct Output {
     /// Pictures of fields of your choice.
     #[serde(default)]
     pub pictures: Vec<At<Picture>>,
+    /// report.html at the end, the run in one file for browsers; true when left out.
+    pub report: Option<bool>,
     /// Atoms only: one file with all frames, positions, velocities, forces and energies; .extxyz, or .lammpstrj for a
     /// LAMMPS dump.
     pub trajectory: Option<At<String>>,

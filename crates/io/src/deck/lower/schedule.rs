@@ -316,6 +316,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
             .map(|n| n.value.clone().into()),
         history: positive(&written.history, "history")?,
         pictures,
+        report: written.report.unwrap_or(true),
         trajectories,
         data,
     })

@@ -1,0 +1,31 @@
+//! `peridyne report`.
+
+use crate::failure::{Failure, say};
+use peridyne_io::write::folder::Folder;
+use peridyne_io::write::report::{self, NAME, ReportError};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub struct ReportArguments {
+    /// Folder of the results of a run (it has a run.json).
+    pub dir: PathBuf,
+}
+
+pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
+    let dir = &arguments.dir;
+    if !dir.join("run.json").is_file() {
+        return Err(Failure::input(ReportError::NoRun(dir.clone()).to_string()));
+    }
+    let failed = |e: String| Failure::Run(e);
+    let _held = Folder::claim(dir).map_err(|e| failed(e.to_string()))?;
+    let made = report::write(dir).map_err(|e| failed(e.to_string()))?;
+    say(&line(dir));
+    say(&format!("size      {:.2} MB", made.bytes as f64 / 1e6));
+    made.notes.iter().for_each(|n| say(&format!("note: {n}")));
+    Ok(())
+}
+
+/// Where the report of a folder is.
+pub fn line(dir: &Path) -> String {
+    format!("report: {}", dir.join(NAME).display())
+}

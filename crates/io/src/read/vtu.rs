@@ -1,0 +1,229 @@
+//! Frames of points as [`write::vtu`](crate::write::vtu) writes them: raw appended data, little-endian, 64-bit lengths. No reader of
+//! VTU files in general.
+
+use std::fs;
+use std::path::Path;
+
+use super::ReadError;
+
+/// A frame: the bytes of its file, and where the arrays stand in them.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    pub step: u64,
+    pub time: f64,
+    pub points: usize,
+    pub arrays: Vec<Array>,
+    bytes: Vec<u8>,
+}
+
+/// An array over the points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    pub name: String,
+    pub components: usize,
+    /// What the components of a tensor are called; none of others.
+    pub names: Vec<String>,
+    pub kind: Number,
+    /// First byte of the numbers.
+    start: usize,
+}
+
+/// How numbers stand in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Number {
+    Float64,
+    Int64,
+    Int32,
+    UInt32,
+}
+
+impl Number {
+    fn named(name: &str) -> Option<Number> {
+        match name {
+            "Float64" => Some(Number::Float64),
+            "Int64" => Some(Number::Int64),
+            "Int32" => Some(Number::Int32),
+            "UInt32" => Some(Number::UInt32),
+            _ => None,
+        }
+    }
+
+    fn bytes(self) -> usize {
+        match self {
+            Number::Float64 | Number::Int64 => 8,
+            Number::Int32 | Number::UInt32 => 4,
+        }
+    }
+
+    /// Counts things.
+    pub fn is_whole(self) -> bool {
+        self != Number::Float64
+    }
+}
+
+impl Frame {
+    /// # Errors
+    /// The operating system's, or what is missing in the file.
+    pub fn read(path: &Path) -> Result<Frame, ReadError> {
+        let bytes = fs::read(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+        Frame::of(bytes).map_err(|what| ReadError::file(path, what))
+    }
+
+    fn of(bytes: Vec<u8>) -> Result<Frame, String> {
+        const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+        let at = bytes.windows(MARK.len()).position(|w| w == MARK);
+        let start = at.ok_or("no raw appended data: not a frame of peridyne")? + MARK.len();
+        let head = std::str::from_utf8(&bytes[..start]).map_err(|e| e.to_string())?;
+        let points = head
+            .split_once("<Piece ")
+            .and_then(|(_, piece)| attribute(piece, "NumberOfPoints"))
+            .and_then(|n| n.parse().ok())
+            .ok_or("no number of points")?;
+        let mut frame = Frame {
+            step: 0,
+            time: 0.0,
+            points,
+            arrays: vec![],
+            bytes: vec![],
+        };
+        for tag in head.split("<DataArray ").skip(1) {
+            let name = attribute(tag, "Name").ok_or("an array without a name")?;
+            let text = || Some(tag.split_once('>')?.1.split_once('<')?.0.trim());
+            match name {
+                "TimeValue" => frame.time = text().and_then(|t| t.parse().ok()).unwrap_or(0.0),
+                "step" => frame.step = text().and_then(|t| t.parse().ok()).unwrap_or(0),
+                // cells are the points themselves
+                "connectivity" | "offsets" | "types" => {}
+                name => {
+                    let array = array(name, tag, &bytes, start, points)?;
+                    frame.arrays.push(array);
+                }
+            }
+        }
+        frame.bytes = bytes;
+        Ok(frame)
+    }
+
+    pub fn array(&self, name: &str) -> Option<&Array> {
+        self.arrays.iter().find(|a| a.name == name)
+    }
+
+    /// All numbers of an array, point after point.
+    pub fn numbers(&self, array: &Array) -> impl Iterator<Item = f64> {
+        let size = array.kind.bytes();
+        let all = &self.bytes[array.start..][..size * self.points * array.components];
+        let kind = array.kind;
+        all.chunks_exact(size).map(move |b| match kind {
+            Number::Float64 => f64::from_le_bytes(fixed(b)),
+            Number::Int64 => i64::from_le_bytes(fixed(b)) as f64,
+            Number::Int32 => i32::from_le_bytes(fixed(b)).into(),
+            Number::UInt32 => u32::from_le_bytes(fixed(b)).into(),
+        })
+    }
+}
+
+fn fixed<const N: usize>(bytes: &[u8]) -> [u8; N] {
+    std::array::from_fn(|i| bytes[i])
+}
+
+/// The value of an attribute of the tag that `text` begins in.
+fn attribute<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    let tag = &text[..text.find('>')?];
+    let (_, rest) = tag.split_once(&format!("{key}=\""))?;
+    Some(rest.split_once('"')?.0)
+}
+
+fn array(
+    name: &str,
+    tag: &str,
+    bytes: &[u8],
+    start: usize,
+    points: usize,
+) -> Result<Array, String> {
+    let wrong = |what: &str| format!("{name}: {what}");
+    let number = |key| attribute(tag, key).and_then(|n| n.parse::<usize>().ok());
+    let kind = attribute(tag, "type").and_then(Number::named);
+    let kind = kind.ok_or_else(|| wrong("numbers of an unknown type"))?;
+    let components = number("NumberOfComponents").ok_or_else(|| wrong("no components"))?;
+    let offset = number("offset").ok_or_else(|| wrong("no offset"))?;
+    let begin = start + offset;
+    let expected = kind.bytes() * points * components;
+    let length = bytes.get(begin..begin + 8);
+    let length = length.map(|b| u64::from_le_bytes(fixed(b)));
+    if length != Some(expected as u64) || bytes.len() < begin + 8 + expected {
+        return Err(wrong("cut short"));
+    }
+    let names = (0..components).map_while(|c| attribute(tag, &format!("ComponentName{c}")));
+    Ok(Array {
+        name: name.to_string(),
+        components,
+        names: names.map(String::from).collect(),
+        kind,
+        start: begin + 8,
+    })
+}
+
+/// Times and files that a collection (`.pvd`) lists.
+///
+/// # Errors
+/// It cannot be read.
+pub fn collection(path: &Path) -> Result<Vec<(f64, String)>, ReadError> {
+    let text = fs::read_to_string(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+    let entries = text.split("<DataSet ").skip(1).map(|tag| {
+        let time = attribute(tag, "timestep")?.parse().ok()?;
+        let file = attribute(tag, "file")?;
+        let file = file.replace("&lt;", "<").replace("&quot;", "\"");
+        Some((time, file.replace("&amp;", "&")))
+    });
+    let all: Option<Vec<_>> = entries.collect();
+    all.ok_or_else(|| ReadError::file(path, "an entry without time or file".into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::fields::tests::{put, small};
+    use crate::write::vtu::write_points;
+    use peridyne::observe::Values;
+
+    fn written() -> Vec<u8> {
+        let mut s = small();
+        let rows = vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3];
+        put(&mut s, "stress", Values::Symmetric(rows));
+        let mut file = vec![];
+        write_points(&mut file, &s).unwrap();
+        file
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let frame = Frame::of(written()).unwrap();
+        assert_eq!((frame.step, frame.time, frame.points), (7, 1.5e-7, 3));
+        let all = |name: &str| -> Vec<f64> { frame.numbers(frame.array(name).unwrap()).collect() };
+        let s = small();
+        assert_eq!(all("displacement"), s.displacement().concat());
+        assert_eq!(all("damage"), s.damage());
+        assert_eq!(all("mark"), [-1.0, 0.0, 4.0]);
+        assert_eq!(all("fragment"), [0.0, 0.0, 1.0]);
+        assert_eq!(all("id"), [1.0, 2.0, 3.0]);
+        assert_eq!(all("stress")[..6], [1.0, 2.0, 3.0, 4.0, 6.0, 5.0]);
+        let stress = frame.array("stress").unwrap();
+        assert_eq!(stress.names, ["xx", "yy", "zz", "xy", "yz", "xz"]);
+        assert!(frame.array("mark").unwrap().kind.is_whole());
+        assert!(frame.array("connectivity").is_none());
+    }
+
+    #[test]
+    fn what_is_cut_short_is_told() {
+        let file = written();
+        let short = file[..file.len() - 60].to_vec();
+        assert!(Frame::of(short).is_ok(), "cells are not read");
+        for length in [0, 100, 2500] {
+            let text = Frame::of(file[..length].to_vec()).unwrap_err();
+            assert!(
+                text.contains("cut short") || text.contains("not a frame"),
+                "{text}"
+            );
+        }
+    }
+}

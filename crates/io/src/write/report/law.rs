@@ -1,0 +1,49 @@
+//! Frames of a conservation law as a scene.
+
+use std::fs::File;
+use std::path::Path;
+
+use ndarray::{ArrayD, OwnedRepr};
+use ndarray_npy::NpzReader;
+
+use super::scene::{Look, Maker, Scene, Values};
+use crate::read::ReadError;
+use crate::write::run_json::Setting;
+
+/// `frames.npz`: `x` (of a plane `x[point, 2]`), `t`, `u[frame, point]`.
+///
+/// # Errors
+/// It cannot be read, or has other arrays.
+pub fn read(path: &Path, setting: &Setting) -> Result<Option<Scene>, ReadError> {
+    let wrong = |e: String| ReadError::file(path, e);
+    let file = File::open(path).map_err(|e| wrong(e.to_string()))?;
+    let mut file = NpzReader::new(file).map_err(|e| wrong(e.to_string()))?;
+    let mut array = |name: &str| -> Result<ArrayD<f64>, ReadError> {
+        let read = file.by_name::<OwnedRepr<f64>, _>(name);
+        read.map_err(|e| wrong(format!("{name}: {e}")))
+    };
+    let [x, t, u] = [array("x")?, array("t")?, array("u")?];
+    let width = if x.ndim() == 2 { x.shape()[1] } else { 1 };
+    let x: Vec<f64> = x.iter().copied().collect();
+    let place = x
+        .chunks_exact(width)
+        .flat_map(|row| std::array::from_fn::<f64, 3, _>(|a| row.get(a).copied().unwrap_or(0.0)));
+    let place: Vec<f64> = place.collect();
+    let points = place.len() / 3;
+    let u: Vec<f64> = u.iter().copied().collect();
+    if points == 0 || u.len() != points * t.len() {
+        return Err(wrong("u is not one number for each point and time".into()));
+    }
+    let mut maker = Maker::new("law", setting);
+    for (n, (time, u)) in t.iter().zip(u.chunks_exact(points)).enumerate() {
+        let look = Look {
+            step: n as u64,
+            value: *time,
+            position: place.clone(),
+            displacement: Some(vec![0.0; place.len()]),
+            arrays: vec![Values::new("u", "scalar", u.to_vec())],
+        };
+        maker.push(look, setting);
+    }
+    Ok(maker.made())
+}
