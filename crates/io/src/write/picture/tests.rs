@@ -31,7 +31,7 @@ fn damaged(s: Snapshot, at: impl Fn(&[f64; 3]) -> bool) -> Snapshot {
 }
 
 fn draw(s: &Snapshot) -> Image {
-    damage(s, &PictureOptions::default()).unwrap()
+    picture(s, &PictureOptions::default(), About::Fracture).unwrap()
 }
 
 fn number_of(image: &Image, color: Color) -> usize {
@@ -185,7 +185,7 @@ fn a_chain_is_two_curves() {
 #[test]
 fn damage_must_be_there() {
     let s = with(block([3, 3, 1], 2), "damage", Values::Scalars(vec![]));
-    let text = damage(&s, &PictureOptions::default())
+    let text = picture(&s, &PictureOptions::default(), About::Fracture)
         .unwrap_err()
         .to_string();
     assert!(text.contains("no damage"), "{text}");
@@ -201,12 +201,12 @@ fn the_file_is_a_png_of_the_picture() {
         width: 900,
         ..PictureOptions::default()
     };
-    write(&path, &s, &options).unwrap();
+    write(&path, &s, &options, About::Fracture).unwrap();
     let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
-    assert_eq!(bytes, damage(&s, &options).unwrap().pixels.as_flattened());
+    assert_eq!(bytes, picture(&s, &options, About::Fracture).unwrap().pixels.as_flattened());
 }
 
 #[test]
