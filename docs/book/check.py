@@ -281,7 +281,7 @@ def reference(program):
     """The deck reference, where the program can write it."""
     can = subprocess.run([str(program), "doc", "--help"], capture_output=True, text=True)
     if can.returncode == 0 and "--book" in can.stdout:
-        done = subprocess.run([str(program), "doc", "--book", str(PAGES / "reference")], capture_output=True, text=True)
+        done = subprocess.run([str(program), "doc", "--book", str(PAGES / "reference"), "--decks", str(ROOT / "decks/good")], capture_output=True, text=True)
         return [] if done.returncode == 0 else [f"the deck reference was not written: {done.stderr}"]
     return []
 

@@ -201,7 +201,7 @@ fn ten_lines_make_all_results() {
     }
     let history = std::fs::read_to_string(dir.path().join("history.csv")).unwrap();
     assert!(history.lines().count() > 20, "{history}");
-    let picture = std::fs::read(dir.path().join("damage.png")).unwrap();
+    let picture = std::fs::read(dir.path().join("velocity.png")).unwrap();
     assert_eq!(&picture[..4], b"\x89PNG");
 }
 

@@ -8,6 +8,13 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
+/// Is there a picture? What it shows depends on what the run was about when it ended.
+fn drawn(out: &Path) -> bool {
+    let files = std::fs::read_dir(out).unwrap();
+    let mut names = files.map(|f| f.unwrap().file_name());
+    names.any(|n| n.to_string_lossy().ends_with(".png"))
+}
+
 /// A small block that goes on as long as it is let.
 const BLOCK: &str = r#"horizon = { m_ratio = 3 }
 [body]
@@ -152,7 +159,7 @@ fn a_run_with_a_full_output_computes_everything_and_says_so() {
         );
         assert_eq!(report(&case.out)["status"], "done");
         assert_eq!(report(&case.out)["steps"], 20);
-        assert!(case.out.join("damage.png").exists());
+        assert!(drawn(&case.out));
     }
 }
 
@@ -165,7 +172,7 @@ fn a_run_whose_reader_leaves_computes_everything() {
         let output = case.command(&[]).stdout(writer).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
         assert_eq!(report(&case.out)["steps"], 20);
-        assert!(case.out.join("damage.png").exists());
+        assert!(drawn(&case.out));
     }
 }
 
@@ -221,7 +228,7 @@ fn a_signal_ends_a_run_with_its_last_state_written() {
             assert!(steps > 0, "{file}");
             let last = format!("points_{steps:08}.vtu");
             assert!(case.out.join(&last).exists(), "{file}: {last}");
-            assert!(case.out.join("damage.png").exists());
+            assert!(drawn(&case.out));
             if file.ends_with("toml") {
                 let history = std::fs::read_to_string(case.out.join("history.csv")).unwrap();
                 let row = history.lines().last().unwrap();
@@ -371,5 +378,5 @@ iterations = 1000000000
     let report = report(&case.out);
     assert_eq!(report["status"], "ended");
     assert_eq!(report["steps"], 0);
-    assert!(case.out.join("damage.png").exists());
+    assert!(drawn(&case.out));
 }

@@ -6,7 +6,8 @@
 use crate::bonds::{Bonds, WIDTH};
 use crate::kernel::{Kernel, dot};
 use crate::patch::{EIGHT, Lanes, NONE, Patch, Seen};
-use crate::segments::{Segments, View};
+use crate::segment::View;
+use crate::segments::Segments;
 use crate::wide::widest;
 
 /// Numbers that a bond adds at a point, for each part: `−x⊗f`, `x (D·v)`, `x⊗E`, times β.

@@ -5,7 +5,7 @@
 
 use crate::kernel::GAUSSIAN_END;
 use crate::patch::{EIGHT, Lanes};
-use crate::segments::{Segment, View};
+use crate::segment::{Segment, View};
 use peridyne::execute::lane::elementary::exp;
 
 /// Terms of a series at most: of bonds of two widths.

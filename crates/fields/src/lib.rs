@@ -39,6 +39,8 @@ mod polynomial;
 mod quantity;
 pub mod residuals;
 mod room;
+mod scalars;
+mod segment;
 mod segments;
 pub mod specimen;
 mod spline;

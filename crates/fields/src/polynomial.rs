@@ -1,7 +1,7 @@
 //! β of polynomials in closed form, eight points at a time: what is inside is integrated from the foot to both of its ends.
 
 use crate::patch::{EIGHT, Lanes};
-use crate::segments::{Segment, View};
+use crate::segment::{Segment, View};
 
 #[inline(always)]
 pub(crate) fn polynomial(n: u32, all: &[Segment], view: &View, list: &[u32], out: &mut [Lanes]) {

@@ -3,7 +3,7 @@
 
 use crate::kernel::{Kernel, Power};
 use crate::patch::{EIGHT, Lanes};
-use crate::segments::{Segment, View};
+use crate::segment::{Segment, View};
 use peridyne::execute::lane::elementary::ln;
 
 /// Splines of degree N.

@@ -206,7 +206,13 @@ fn the_file_is_a_png_of_the_picture() {
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
-    assert_eq!(bytes, picture(&s, &options, About::Fracture).unwrap().pixels.as_flattened());
+    assert_eq!(
+        bytes,
+        picture(&s, &options, About::Fracture)
+            .unwrap()
+            .pixels
+            .as_flattened()
+    );
 }
 
 #[test]
