@@ -216,9 +216,11 @@ for (const hash of ["", "#loops"]) {
   const key = page.locator("#plots .key").first();
   await key.click();
   must((await key.getAttribute("aria-pressed")) === "false", "a line cannot be hidden");
-  const svg = await page.locator("#plots svg.plot").first().boundingBox();
-  await page.mouse.move(svg.x + svg.width / 2, svg.y + svg.height / 2);
-  must((await page.textContent("#plots .legend .value")).length > 1, "the pointer reads nothing off");
+  const plot = page.locator("#plots svg.plot").first();
+  await plot.scrollIntoViewIfNeeded();
+  await plot.hover();
+  const read = page.waitForFunction(() => document.querySelector("#plots .legend .value").textContent.length > 1, null, { timeout: 10_000 });
+  must(await read.then(() => true, () => false), "the pointer reads nothing off");
   const curve = await open("bar_wave");
   const before = await curve.getAttribute("#curve path.line", "d");
   await curve.focus("#frame");

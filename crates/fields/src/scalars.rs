@@ -27,7 +27,8 @@ impl Scalars<'_> {
         }
     }
 
-    fn at_point(&self, d: [f64; 3], bond: [f64; 3], over: f64) -> f64 {
+    /// At one point.
+    pub fn at_point(&self, d: [f64; 3], bond: [f64; 3], over: f64) -> f64 {
         let kernel = self.0;
         if dot(bond, bond) < POINT * POINT / (over * over) {
             kernel.value(d)

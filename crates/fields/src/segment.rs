@@ -13,8 +13,8 @@ pub(crate) struct Segment {
     pub along: [f64; 3],
     pub length: f64,
     /// e, e·u and |e|².
-    begin: [f64; 3],
-    start: f64,
+    pub begin: [f64; 3],
+    pub start: f64,
     square: f64,
 }
 
