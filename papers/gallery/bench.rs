@@ -22,8 +22,7 @@ impl Bench {
             .iter()
             .map(|(k, v)| (k.to_string(), v.to_string()))
             .collect();
-        let deck =
-            Deck::parse(text, "deck.toml", &set).map_err(|e| Failure::new(e.to_string()))?;
+        let deck = Deck::parse(text, "deck.toml", &set).map_err(|e| Failure::new(e.to_string()))?;
         let mut sim = build(&deck.spec, Options::default())
             .map_err(|e| Failure::new(deck.explain(&e).to_string()))?;
         sim.start(true);
@@ -61,9 +60,14 @@ impl Bench {
         Ok((0..values.len()).map(|i| values.at(i, component)).collect())
     }
 
-    /// What the program draws at the end of a run: `damage.png`.
-    pub fn damage(&mut self, context: &Context, found: &mut Findings) -> Result<(), Failure> {
-        let path: PathBuf = context.out.join("damage.png");
+    /// What the program draws at the end of a run.
+    pub fn damage(
+        &mut self,
+        context: &Context,
+        name: &str,
+        found: &mut Findings,
+    ) -> Result<(), Failure> {
+        let path: PathBuf = context.out.join(format!("{name}.png"));
         let options = PictureOptions {
             title: self.deck.spec.title.clone(),
             length_unit: "m".into(),

@@ -6,9 +6,9 @@ mod bench;
 mod bar_interface;
 #[path = "bar-wave/mod.rs"]
 mod bar_wave;
+mod branching;
 #[path = "brazilian-disk/mod.rs"]
 mod brazilian_disk;
-mod branching;
 mod cantilever;
 #[path = "compact-tension/mod.rs"]
 mod compact_tension;

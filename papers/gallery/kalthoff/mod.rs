@@ -59,7 +59,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     }
     let damage = bench.values("damage", 0)?;
     let both = [angle(&x, &damage, 1.0)?, angle(&x, &damage, -1.0)?];
-    bench.damage(context, &mut found)?;
+    bench.damage(context, "damage", &mut found)?;
     found.number("angle", 0.5 * (both[0] + both[1]));
     found.number("symmetric", (both[0] - both[1]).abs());
     let c_r = rayleigh(190e9, 0.3, 8000.0);

@@ -20,8 +20,7 @@ const V: f64 = 40.0;
 
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
-    let h = if context.small { "0.2 mm" } else { "0.1 mm" };
-    let mut bench = Bench::finished(DECK, &[("constants.h", h)])?;
+    let mut bench = Bench::finished(DECK, &[])?;
     let x: Vec<f64> = bench.places().iter().map(|x| x[0]).collect();
     let v = bench.values("velocity", 0)?;
     let damage = bench.values("damage", 0)?;
@@ -52,7 +51,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     found.number("rest", mean(&|x| x < place) / V);
     // a strong bar holds
     let strong = ("material.fracture.critical_stretch", "0.0045");
-    let whole = Bench::finished(DECK, &[("constants.h", h), strong])?;
+    let whole = Bench::finished(DECK, &[strong])?;
     let broken = whole.sim.broken();
     found.holds("holds", format!("{broken} bonds broken"), broken == 0);
     Ok(found)
