@@ -38,7 +38,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     };
     let mut plot = Plot::new("A pulse splits in two that run along a steel bar")
         .x("x", "m")
-        .y("displacement", "µm");
+        .y("displacement", "µm")
+        // room for the legend above
+        .y_range(-0.1, 0.75);
     let mut off = vec![];
     let mut speed = f64::NAN;
     for (k, h) in spacings.iter().enumerate() {

@@ -20,9 +20,10 @@ const FITTED: [f64; 2] = [0.03, 0.08];
 /// Width over which a tip's speed is taken (s).
 const WINDOW: f64 = 1e-5;
 
-/// Degrees between the notch and a crack that goes up (`side` 1) or down (−1).
-fn angle(x: &[[f64; 2]], damage: &[f64], side: f64) -> Result<f64, Failure> {
-    let heights: Vec<f64> = (0..50).map(|k| FITTED[0] + 1e-3 * f64::from(k)).collect();
+/// Degrees between the notch and a crack that goes up (`side` 1) or down (−1), over a range of heights.
+fn angle(x: &[[f64; 2]], damage: &[f64], side: f64, [low, high]: [f64; 2]) -> Result<f64, Failure> {
+    let count = (1e3 * (high - low)).round() as u32;
+    let heights: Vec<f64> = (0..count).map(|k| low + 1e-3 * f64::from(k)).collect();
     let at = heights.iter().map(|height| {
         let near = |k: &usize| damage[*k] > CRACKED && (side * x[*k][1] - height).abs() < 1e-3;
         let first = (0..x.len()).filter(near).map(|k| x[k][0]);
@@ -30,10 +31,7 @@ fn angle(x: &[[f64; 2]], damage: &[f64], side: f64) -> Result<f64, Failure> {
     });
     let at: Vec<f64> = at.collect();
     if at.iter().any(|x| x.is_infinite()) {
-        return Err(Failure::new(format!(
-            "the crack does not reach {} m",
-            FITTED[1]
-        )));
+        return Err(Failure::new(format!("the crack does not reach {high} m")));
     }
     Ok(90.0 - slope(&heights, &at).atan().to_degrees())
 }
@@ -58,9 +56,15 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         }
     }
     let damage = bench.values("damage", 0)?;
-    let both = [angle(&x, &damage, 1.0)?, angle(&x, &damage, -1.0)?];
+    let both = [
+        angle(&x, &damage, 1.0, FITTED)?,
+        angle(&x, &damage, -1.0, FITTED)?,
+    ];
     bench.damage(context, "damage", &mut found)?;
     found.number("angle", 0.5 * (both[0] + both[1]));
+    let part = |low: f64| angle(&x, &damage, 1.0, [low, low + 0.02]);
+    found.measured("angle over the first 20 mm of these", part(FITTED[0])?, "°");
+    found.measured("over the last 20 mm", part(FITTED[1] - 0.02)?, "°");
     found.number("symmetric", (both[0] - both[1]).abs());
     let c_r = rayleigh(190e9, 0.3, 8000.0);
     let lean = (0.5 * (both[0] + both[1])).to_radians().sin();
