@@ -11,6 +11,7 @@ pub mod experiment;
 pub mod checkpoint;
 pub mod claim;
 mod eriksson2020;
+mod gallery;
 mod measure;
 mod page;
 pub mod profile;
@@ -32,6 +33,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         eriksson2020::all(),
         silling2010::all(),
         sandia2010::all(),
+        gallery::all(),
     ]
     .concat()
 }
