@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::Deck;
 use peridyne_io::write::picture::{self, PictureOptions};
+use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::plot::{ColorMap, Map};
 
 use crate::{Context, Failure, Findings};
@@ -73,9 +74,10 @@ impl Bench {
             length_unit: "m".into(),
             time_unit: "s".into(),
             width: 800,
+            ..PictureOptions::default()
         };
         let shown = self.sim.snapshot(&["damage"], false);
-        picture::write(&path, &shown, &options)?;
+        picture::write(&path, &shown, &options, About::Fracture)?;
         found.file(path);
         Ok(())
     }

@@ -157,7 +157,7 @@ fn values(column: &Column, component: Option<&str>) -> io::Result<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::fields::tests::{small, with};
+    use super::super::super::fields::tests::{of_columns, small};
     use super::*;
 
     #[test]
@@ -178,7 +178,9 @@ mod tests {
     #[test]
     fn components_and_magnitudes() {
         let tensors = Values::Symmetric(vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3]);
-        let s = with(small(), "stress", tensors);
+        let still = Values::Vectors(vec![[0.0; 3]; 3]);
+        let columns = vec![("displacement", still), ("stress", tensors)];
+        let s = of_columns(small().reference, columns);
         let shown = Shown::of(&s, "stress", Some("xz")).unwrap();
         assert_eq!((shown.values[0], &*shown.name), (5.0, "stress xz"));
         let whole = Shown::of(&s, "stress", None).unwrap().values[0];
