@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use peridyne::run::{Options, Simulation, build};
 use peridyne_io::deck::Deck;
-use peridyne_io::write::picture::{self, PictureOptions};
 use peridyne_io::write::picture::shown::About;
+use peridyne_io::write::picture::{self, PictureOptions};
 use peridyne_io::write::plot::{ColorMap, Map};
 
 use crate::{Context, Failure, Findings};

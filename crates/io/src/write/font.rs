@@ -33,10 +33,10 @@ pub fn width(text: &str, size: f64, weight: Weight) -> f64 {
 /// Gives every inked pixel of a line of text with its coverage, 0 to 1: along the text from its beginning, and below its base line.
 pub fn pixels(text: &str, size: f64, weight: Weight, mut put: impl FnMut(i64, i64, f64)) {
     let Some(font) = font(weight) else { return };
-    let mut pen = 0.0;
+    let mut pen = 0.0f64;
     for c in text.chars() {
         let (m, coverage) = font.rasterize(c, size as f32);
-        let left = (pen as f64).round() as i64 + i64::from(m.xmin);
+        let left = pen.round() as i64 + i64::from(m.xmin);
         // rows are from the top
         let top = -(m.height as i64) - i64::from(m.ymin);
         for (k, value) in coverage.iter().enumerate().filter(|(_, v)| **v > 0) {

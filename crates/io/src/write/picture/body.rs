@@ -83,8 +83,7 @@ pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) ->
         let corner = [MARGIN + corner[0], HEAD + corner[1]];
         draw_view(
             &mut image,
-            corner,
-            placed.scale,
+            (corner, placed.scale),
             &panel.camera,
             &panel.frame,
             spacing,

@@ -131,8 +131,7 @@ struct Buffer {
 /// length.
 pub fn draw(
     image: &mut Image,
-    corner: [f64; 2],
-    scale: f64,
+    (corner, scale): ([f64; 2], f64),
     camera: &Camera,
     frame: &Frame,
     spacing: f64,
