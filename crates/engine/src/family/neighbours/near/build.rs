@@ -93,7 +93,9 @@ impl<const D: usize> NearList<D> {
         }
         let gap = self.first_ghost() - own;
         let atom = |n: usize| if n < own { n } else { n + gap };
-        let mut sorted = cells.sort(own + self.ghosts.len(), |n| self.position[atom(n)]);
+        let at = |n: usize| self.position[atom(n)];
+        let kind = |n: usize| self.kind.get(atom(n)).map_or(0, |k| usize::from(*k));
+        let mut sorted = cells.sort(own + self.ghosts.len(), self.kinds(), kind, at);
         for_each_piece(&mut sorted.item, |_, piece| {
             piece.iter_mut().for_each(|n| *n = atom(*n as usize) as u32);
         });
@@ -116,7 +118,6 @@ impl<const D: usize> NearList<D> {
             kind: &self.kind,
             reaches: &self.reaches,
             skin: self.skin,
-            square: self.reach * self.reach,
             blocks: Shared(blocks.as_mut_ptr()),
         };
         run_blocks(simd, &kernel, blocks.len());
@@ -129,12 +130,15 @@ impl<const D: usize> NearList<D> {
     /// Put own atoms in order of kinds, and those of a kind in order of cells.
     fn arrange(&mut self, cells: &Cells<D>, base: &[[f64; 4]], body: &Body<D>, u: &Field<D>) {
         let slots = &body.slots;
-        let mut order = cells
-            .sort(base.len(), |n| position(&base[n], u, slots[n]))
-            .item;
-        if self.kinds() > 1 {
-            let kind_of = |n: u32| body.material_of(slots[n as usize] as usize) as u8;
-            (order, self.kind) = in_tiles_of_a_kind(&order, self.kinds(), kind_of);
+        let kinds = self.kinds();
+        let kind = |n: usize| match kinds {
+            1 => 0,
+            _ => body.material_of(slots[n] as usize),
+        };
+        let at = |n: usize| position(&base[n], u, slots[n]);
+        let mut order = cells.sort(base.len(), kinds, kind, at).item;
+        if kinds > 1 {
+            (order, self.kind) = in_tiles_of_a_kind(&order, kinds, |n| kind(n as usize) as u8);
         }
         let nowhere = NOWHERE * self.reach;
         self.base.resize(order.len(), [0.0; 4]);
@@ -162,21 +166,19 @@ impl<const D: usize> NearList<D> {
     }
 }
 
-/// Atoms in order of their kinds, each kind beginning a tile, with [`NOBODY`] in between; and the kinds.
+/// Atoms, which are in order of their kinds, with each kind beginning a tile and [`NOBODY`] in between; and the kinds.
 fn in_tiles_of_a_kind(
     order: &[u32],
     kinds: usize,
     kind_of: impl Fn(u32) -> u8,
 ) -> (Vec<u32>, Vec<u8>) {
     let (mut atoms, mut kind) = (Vec::with_capacity(order.len() + kinds * TILE), vec![]);
-    for k in 0..kinds as u8 {
-        let whole = atoms.len().next_multiple_of(TILE);
-        let of_kind = || order.iter().copied().filter(|n| kind_of(*n) == k);
-        if of_kind().next().is_some() {
-            atoms.resize(whole, NOBODY);
-            atoms.extend(of_kind());
-        }
+    for of_kind in order.chunk_by(|a, b| kind_of(*a) == kind_of(*b)) {
+        let k = kind.last().copied().unwrap_or(0);
+        atoms.resize(atoms.len().next_multiple_of(TILE), NOBODY);
         kind.resize(atoms.len(), k);
+        atoms.extend(of_kind);
+        kind.resize(atoms.len(), kind_of(of_kind[0]));
     }
     (atoms, kind)
 }
@@ -223,15 +225,20 @@ struct Find<'a, const D: usize> {
     kind: &'a [u8],
     reaches: &'a Reaches,
     skin: f64,
-    square: f64,
     blocks: Shared<Block>,
 }
 
 impl<const D: usize> Find<'_, D> {
-    /// The atoms within reach of atom `i`, itself left out.
+    /// The atoms of a kind within reach of atom `i`, itself left out.
     #[inline(always)]
-    fn row<L: Lane>(&self, i: usize, row: &mut Vec<u32>) {
-        row.clear();
+    fn row<L: Lane>(&self, i: usize, kind: usize, row: &mut Vec<u32>) {
+        let own = self.kind.get(i).copied().unwrap_or(0);
+        let reach = self.reaches.between(own, kind as u8);
+        if reach == 0.0 {
+            return;
+        }
+        let square = L::splat((reach + self.skin) * (reach + self.skin));
+        let start = self.sorted.starts(kind, self.reaches.kinds);
         let x = &self.position[i];
         let mut center = [L::splat(0.0); D];
         for a in 0..D {
@@ -239,7 +246,7 @@ impl<const D: usize> Find<'_, D> {
         }
         let (low, high) = self.cells.around(x);
         for n in 0..Cells::rows(&low, &high) {
-            let (first, last) = self.cells.run(n, &low, &high, &self.sorted.start);
+            let (first, last) = self.cells.run(n, &low, &high, start);
             row.reserve(last - first);
             let mut k = first;
             while k < last {
@@ -249,7 +256,7 @@ impl<const D: usize> Find<'_, D> {
                     let d = unsafe { L::load(self.at[a].as_ptr().add(k)) } - center[a];
                     q = d.fma(d, q);
                 }
-                let mut near = L::bits(q.lt(L::splat(self.square)));
+                let mut near = L::bits(q.lt(square));
                 if last - k < TILE {
                     near &= (1 << (last - k)) - 1;
                 }
@@ -263,30 +270,6 @@ impl<const D: usize> Find<'_, D> {
                 k += TILE;
             }
         }
-        if self.reaches.kinds > 1 {
-            self.by_kind(i, row);
-        }
-    }
-
-    /// Of a row those that the kinds reach, in order of their kinds.
-    fn by_kind(&self, i: usize, row: &mut Vec<u32>) {
-        row.retain(|&j| {
-            let j = j as usize;
-            let reach = self.reaches.between(self.kind[i], self.kind[j]);
-            let (x, y) = (&self.position[i], &self.position[j]);
-            let q: f64 = (0..D).map(|a| (y[a] - x[a]).powi(2)).sum();
-            reach > 0.0 && q < (reach + self.skin).powi(2)
-        });
-        row.sort_by_key(|j| self.kind[*j as usize]);
-    }
-
-    /// Where the part of a row that begins at `from` and is of a kind ends.
-    #[inline(always)]
-    fn end_of(&self, kind: usize, row: &[u32], from: usize) -> usize {
-        if self.reaches.kinds == 1 {
-            return row.len();
-        }
-        from + row[from..].partition_point(|j| usize::from(self.kind[*j as usize]) <= kind)
     }
 }
 
@@ -302,30 +285,23 @@ impl<const D: usize> Kernel for Find<'_, D> {
         let mut rows: [Vec<u32>; TILE] = Default::default();
         let own = self.order.len();
         for t in b * BLOCK..((b + 1) * BLOCK).min(own.div_ceil(TILE)) {
-            for l in 0..TILE {
-                let i = t * TILE + l;
-                rows[l].clear();
-                if i < own && self.order[i] != NOBODY {
-                    self.row::<L>(i, &mut rows[l]);
-                }
-            }
-            let mut from = [0; TILE];
             for kind in 0..self.reaches.kinds {
-                let (mut to, mut longest) = ([0; TILE], 0);
-                for (l, row) in rows.iter().enumerate() {
-                    to[l] = self.end_of(kind, row, from[l]);
-                    longest = longest.max(to[l] - from[l]);
+                for (l, row) in rows.iter_mut().enumerate() {
+                    row.clear();
+                    let i = t * TILE + l;
+                    if i < own && self.order[i] != NOBODY {
+                        self.row::<L>(i, kind, row);
+                    }
                 }
                 let first = block.lines.len();
+                let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
                 block.lines.resize(first + longest, [nowhere; TILE]);
                 for (l, row) in rows.iter().enumerate() {
-                    let part = &row[from[l]..to[l]];
-                    for (line, j) in block.lines[first..].iter_mut().zip(part) {
+                    for (line, j) in block.lines[first..].iter_mut().zip(row) {
                         line[l] = *j;
                     }
                 }
                 block.ends.push(block.lines.len() as u32);
-                from = to;
             }
         }
     }

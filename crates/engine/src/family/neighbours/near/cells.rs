@@ -49,11 +49,19 @@ pub(super) struct Cells<const D: usize> {
     count: [usize; D],
 }
 
-/// Items in order of cells, those of a cell in order of their numbers.
+/// Items in order of kinds, those of a kind in order of cells, those of a cell in order of their numbers.
 pub(super) struct Sorted {
-    /// `[cells + 1]`: the first of every cell.
-    pub start: Vec<u32>,
+    /// `[kinds × cells + 1]`: the first of every cell.
+    start: Vec<u32>,
     pub item: Vec<u32>,
+}
+
+impl Sorted {
+    /// Where the cells of a kind begin.
+    #[inline(always)]
+    pub fn starts(&self, kind: usize, kinds: usize) -> &[u32] {
+        &self.start[kind * ((self.start.len() - 1) / kinds)..]
+    }
 }
 
 impl<const D: usize> Cells<D> {
@@ -97,16 +105,23 @@ impl<const D: usize> Cells<D> {
             .fold(0, |c, a| c * self.count[a] + self.along(y, a))
     }
 
-    /// Sort items of which is known where they are.
-    pub fn sort(&self, items: usize, at: impl Fn(usize) -> [f64; 4] + Sync) -> Sorted {
+    /// Sort items of which is known where and of what kind they are.
+    pub fn sort(
+        &self,
+        items: usize,
+        kinds: usize,
+        kind: impl Fn(usize) -> usize + Sync,
+        at: impl Fn(usize) -> [f64; 4] + Sync,
+    ) -> Sorted {
+        let cells = self.count.iter().product::<usize>();
         let mut cell = vec![0u32; items];
         for_each_piece(&mut cell, |first, piece| {
             for (n, cell) in piece.iter_mut().enumerate() {
-                *cell = self.of(&at(first + n)) as u32;
+                *cell = (kind(first + n) * cells + self.of(&at(first + n))) as u32;
             }
         });
         // where the next item of every cell goes, one cell late: in the end, where every cell begins
-        let mut start = vec![0u32; self.count.iter().product::<usize>() + 2];
+        let mut start = vec![0u32; kinds * cells + 2];
         for &c in &cell {
             start[c as usize + 2] += 1;
         }
