@@ -209,11 +209,18 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
 /// # Errors
 /// There is no such field, or it has no such component.
 pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOptions>, Failure> {
-    let marks = Marks::of(&deck.spec, sim);
+    let still = deck.spec.schedule.statics().is_some();
+    let step = sim.info().time_step;
+    // in statics t is a part of the load
+    let end = if still {
+        1.0
+    } else {
+        deck.steps(step) as f64 * step
+    };
+    let marks = Marks::of(&deck.spec, sim, end);
     let columns = sim.columns();
     let [length_unit, time_unit, _] = units(deck);
     let breaks = deck.spec.materials.iter().any(|m| m.fracture.is_some());
-    let still = deck.spec.schedule.statics().is_some();
     let mut all = vec![];
     for (n, asked) in deck.output.pictures.iter().enumerate() {
         let wrong = |key: &str, why: String, help: String| {

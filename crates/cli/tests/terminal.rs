@@ -208,6 +208,48 @@ fn pictures_show_what_the_run_is_about_or_what_is_asked_for() {
 }
 
 #[test]
+fn a_film_of_statics_is_magnified_like_its_picture() {
+    let dir = TempDir::new().unwrap();
+    plate(
+        dir.path(),
+        r#"pictures = [{ field = "displacement", film = true }]"#,
+    );
+    good(dir.path(), &["run", "plate.toml", "--out", "auto"]);
+    plate(
+        dir.path(),
+        r#"pictures = [{ field = "displacement", film = true, scale = 1 }]"#,
+    );
+    good(dir.path(), &["run", "plate.toml", "--out", "plain"]);
+    let film =
+        |out: &str| std::fs::read(dir.path().join(out).join("displacement_film.png")).unwrap();
+    assert!(film("auto") != film("plain"));
+}
+
+#[test]
+fn a_load_that_is_over_is_drawn_as_a_load() {
+    let dir = TempDir::new().unwrap();
+    let picture = |velocity: &str, out: &str| {
+        let deck = format!(
+            r#"horizon = {{ m_ratio = 3 }}
+units = "none"
+body = {{ lattice = "square", spacing = 1, region = {{ block = {{ low = [0, 0], high = [20, 10] }} }} }}
+material = {{ density = 1, law = {{ lps = {{ young = 1, poisson = 0.3 }} }} }}
+condition = [{{ region = {{ block = {{ low = [18, 0], high = [20, 10] }} }}, velocity = {{ x = "{velocity}" }} }}]
+run = {{ steps = 10, time_step = 0.1 }}
+output = {{ vtu = false, report = false, pictures = [{{ field = "mark" }}] }}
+"#
+        );
+        std::fs::write(dir.path().join("pulse.toml"), deck).unwrap();
+        good(dir.path(), &["run", "pulse.toml", "--out", out]);
+        std::fs::read(dir.path().join(out).join("mark.png")).unwrap()
+    };
+    // so slow that points stay on their pixels: pictures differ by what is drawn over them
+    let held = picture("0", "held");
+    assert!(picture("t < 0.5 ? 1e-9 : 0", "pulse") == picture("1e-9", "pull"));
+    assert!(picture("t < 0.5 ? 1e-9 : 0", "again") != held);
+}
+
+#[test]
 fn a_picture_of_nothing_is_refused_before_anything_runs() {
     let dir = TempDir::new().unwrap();
     for (output, word) in [

@@ -138,7 +138,7 @@ impl Series {
                     &path,
                     options.field(About::Motion),
                     options,
-                    options.scale.unwrap_or(1.0),
+                    options.scale_of(last, about),
                 )?;
                 paths.push(path);
             }

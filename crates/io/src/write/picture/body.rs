@@ -114,7 +114,7 @@ pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) ->
 }
 
 /// Bounds of the reference positions per axis, `[0, 0]` without points.
-fn bounds(s: &Snapshot) -> [[f64; 2]; 3] {
+pub fn bounds(s: &Snapshot) -> [[f64; 2]; 3] {
     let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     for x in s
         .reference
@@ -128,7 +128,7 @@ fn bounds(s: &Snapshot) -> [[f64; 2]; 3] {
     bounds.map(|b| if b[0] <= b[1] { b } else { [0.0; 2] })
 }
 
-fn longest(bounds: &[[f64; 2]; 3]) -> f64 {
+pub fn longest(bounds: &[[f64; 2]; 3]) -> f64 {
     bounds
         .iter()
         .map(|[low, high]| high - low)

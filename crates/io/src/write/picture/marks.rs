@@ -16,6 +16,8 @@ const SUPPORT: Color = [46, 84, 158];
 
 /// Arrows or supports along a set.
 const ALONG: usize = 7;
+/// Times of a run at which loads are looked at.
+const TIMES: u32 = 32;
 /// Length of an arrow, and size of a support (pixels).
 const ARROW: f64 = 34.0;
 const SIZE: f64 = 9.0;
@@ -48,8 +50,8 @@ impl PartialEq for Marks {
 }
 
 impl Marks {
-    /// Of what a spec does to a body. Free indenters are left out: where they go is not known beforehand.
-    pub fn of(spec: &Spec, sim: &mut dyn Simulation) -> Marks {
+    /// Of what a spec does to a body until the time `end`. Free indenters are left out: where they go is not known beforehand.
+    pub fn of(spec: &Spec, sim: &mut dyn Simulation, end: f64) -> Marks {
         let mut marks = Marks::default();
         for crack in &spec.precracks {
             marks.cracks.extend(corners(&crack.shape));
@@ -65,16 +67,25 @@ impl Marks {
             let points = members.iter().filter_map(|i| reference.get(*i as usize));
             let places = spread(points.copied().collect(), spec.dimension);
             for at in places {
-                marks.add(&condition.kind, at);
+                marks.add(&condition.kind, at, end);
             }
         }
         marks
     }
 
-    fn add(&mut self, kind: &ConditionKind, at: Point) {
-        // what grows with t is there at 1 of any unit
+    fn add(&mut self, kind: &ConditionKind, at: Point, end: f64) {
+        // a pulse is over in the end, what grows begins with nothing: the largest of the run counts
         let towards = |v: &[Option<Expression>; 3]| -> Point {
-            std::array::from_fn(|a| v[a].as_ref().map_or(0.0, |e| e.eval(&at, 1.0)))
+            let then = |k: u32| -> Point {
+                let t = end * f64::from(k) / f64::from(TIMES);
+                std::array::from_fn(|a| v[a].as_ref().map_or(0.0, |e| e.eval(&at, t)))
+            };
+            let size = |p: &Point| p.iter().map(|c| c * c).sum::<f64>();
+            let all = (0..=TIMES).map(then).filter(|p| size(p).is_finite());
+            all.fold(
+                [0.0; 3],
+                |most, p| if size(&p) > size(&most) { p } else { most },
+            )
         };
         match kind {
             ConditionKind::Displacement(v) | ConditionKind::Velocity(v) => {

@@ -112,12 +112,8 @@ impl PictureOptions {
 
     /// By how much displacements are seen well.
     fn magnification(&self, s: &Snapshot) -> f64 {
+        let long = body::longest(&body::bounds(s));
         let finite = |x: &&[f64; 3]| x.iter().all(|c| c.is_finite());
-        let extent = |a: usize| {
-            let all = || s.reference.iter().filter(finite).map(|x| x[a]);
-            all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
-        };
-        let long = (0..3).map(extent).fold(0.0, f64::max);
         let all = s.displacement().iter().filter(finite).flatten();
         let most = all.fold(0.0, |m: f64, c| m.max(c.abs()));
         match most > 0.0 && long > 0.0 {
@@ -127,7 +123,7 @@ impl PictureOptions {
     }
 
     /// How many times as large displacements are drawn.
-    fn scale(&self, s: &Snapshot, about: About) -> f64 {
+    pub(super) fn scale_of(&self, s: &Snapshot, about: About) -> f64 {
         match (self.scale, about.magnified()) {
             (Some(scale), _) => scale,
             // what is large enough is drawn as it is
@@ -148,7 +144,7 @@ pub fn picture(s: &Snapshot, options: &PictureOptions, about: About) -> std::io:
         Some(range) => shown.between(range),
         None => shown,
     };
-    Ok(draw(s, &shown, options.scale(s, about), options))
+    Ok(draw(s, &shown, options.scale_of(s, about), options))
 }
 
 fn draw(s: &Snapshot, shown: &Shown, scale: f64, options: &PictureOptions) -> Image {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::short;
 use crate::read::ReadError;
+use crate::write::history::ledger_columns;
 
 /// Rows of a report.
 const ROWS: usize = 2000;
@@ -23,15 +24,6 @@ const OWN: [&str; 8] = [
 ];
 /// What the time of statics is called.
 pub const LOAD: &str = "part of the load";
-const ENERGIES: [&str; 7] = [
-    "kinetic energy",
-    "strain energy",
-    "contact energy",
-    "released energy",
-    "dissipated energy",
-    "work of conditions",
-    "work of indenters",
-];
 
 /// A column: name, unit, a number for each row.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,10 +121,11 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
         plot("Temperature", &["temperature"], "");
         plot("Pressure", &["pressure"], "");
     }
-    let ledger = |name: &str| ENERGIES.contains(&name) || name == "energy residual";
+    let ledger = ledger_columns("");
+    let ledger: Vec<&str> = ledger.iter().map(|c| &*c.name).collect();
     let probes: Vec<&Column> = columns
         .iter()
-        .filter(|c| !law && !OWN.contains(&&*c.name) && !ledger(&c.name))
+        .filter(|c| !law && !OWN.contains(&&*c.name) && !ledger.contains(&&*c.name))
         .filter(varies)
         .collect();
     let mut units: Vec<&str> = vec![];
@@ -175,8 +168,10 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
         let values: Vec<Value> = (0..rows).filter(kept).map(|r| short(c.values[r])).collect();
         json!({"name": c.name, "unit": c.unit, "values": values})
     };
+    // the last is what the balance misses
+    let energies = &ledger[..ledger.len() - 1];
     let shown = json!({
-        "over": over, "energies": if law { &[][..] } else { &ENERGIES[..] }, "plots": plots, "presets": presets,
+        "over": over, "energies": if law { &[][..] } else { energies }, "plots": plots, "presets": presets,
         "columns": columns.iter().map(column).collect::<Vec<_>>(),
     });
     let note = (every > 1)
