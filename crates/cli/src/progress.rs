@@ -87,8 +87,9 @@ impl Progress for Terminal {
         let time = units.show(time, Dim::TIME);
         self.state = match given > 0.0 {
             true => {
-                let off = 100.0 * ledger.residual() / given;
-                format!("t = {time}, energy off by {off:+.2} %, ")
+                // + 0.0: no negative zeros
+                let off = (1e4 * ledger.residual() / given).round() / 100.0 + 0.0;
+                format!("t = {time}, energy off by {off:.2} %, ")
             }
             false => format!("t = {time}, "),
         };
