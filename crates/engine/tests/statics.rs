@@ -420,3 +420,38 @@ fn statics_has_the_same_bits_on_any_number_of_threads() {
         }
     }
 }
+
+#[test]
+fn a_driven_indenter_pushes_from_where_it_is_told() {
+    let mut spec = block([10.0, 0.0, 0.0], 1, SPRINGS);
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    let end = |sim: &mut dyn Simulation| sim.displacements().last().unwrap()[0];
+    // the stiffness of the chain at its end
+    let mut pushed = spec.clone();
+    pushed.conditions.push(ConditionSpec {
+        set: "high".into(),
+        kind: ConditionKind::BodyForce([number(-1e-3), None, None]),
+    });
+    let stiffness = -1e-3 / end(&mut *solved(&pushed));
+    let mut spec = with(&spec, Method::Relaxation, Solver::Auto, 1e-9);
+    spec.schedule.steps = 4;
+    spec.indenters.push(IndenterSpec {
+        stiffness: 0.5,
+        radius: 5.0,
+        motion: IndenterMotion::Kinematic([
+            text("15 - 0.1*t").unwrap(),
+            number(0.0).unwrap(),
+            number(0.0).unwrap(),
+        ]),
+    });
+    let mut sim = solved(&spec);
+    let u = end(&mut *sim);
+    let deep = 0.1 + u;
+    assert!(deep > 0.0 && u < -0.01, "{u}");
+    let force = 0.5 * deep * deep;
+    assert!((force / (-u * stiffness) - 1.0).abs() < 1e-6, "{force} {u}");
+    // the work of the indenter is what the chain holds
+    let ledger = sim.ledger().unwrap();
+    assert!((ledger.work_indenter / ledger.strain - 1.0).abs() < 1e-6);
+    assert!(ledger.residual().abs() < 1e-6 * ledger.strain);
+}

@@ -262,6 +262,33 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
+    /// Where it is at this time, in statics; what is near is looked for again.
+    pub fn place(&mut self, t: f64) {
+        if let Motion::Kinematic(c) = &self.motion {
+            self.center = std::array::from_fn(|a| c[a].eval(&[0.0; 3], t));
+            self.slack = 0.0;
+        }
+    }
+
+    /// Does it move by the forces on it?
+    pub fn is_free(&self) -> bool {
+        matches!(self.motion, Motion::Free { .. })
+    }
+
+    /// The points that it pushes, with the force densities on them.
+    pub fn pushed(&self) -> &[(u32, [f64; D])] {
+        &self.touched
+    }
+
+    /// Work over an increment of statics by the trapezoidal rule: forces of before and of now, displacements of before and of now.
+    pub fn account(&mut self, before: &[(u32, [f64; D])], body: &Body<D>, u: [&Field<D>; 2]) {
+        for (s, f) in before.iter().chain(&self.touched) {
+            let i = *s as usize;
+            let path = (0..D).map(|a| f[a] * (u[1][a][i] - u[0][a][i]));
+            self.work += 0.5 * body.volume.at(i) * path.sum::<f64>();
+        }
+    }
+
     /// Kinetic energy of an indenter with mass.
     pub fn kinetic(&self) -> f64 {
         match &self.motion {

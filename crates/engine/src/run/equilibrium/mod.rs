@@ -9,6 +9,7 @@ use self::state::StaticState;
 use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
+use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
@@ -107,6 +108,13 @@ impl<const D: usize> Model<D> {
             }
             _ => None,
         };
+        if self.indenters.iter().any(Indenter::is_free) {
+            return Err(BuildError::unsupported(
+                "indenter",
+                "an indenter with a mass moves in time, and statics has none",
+            )
+            .help("leave mass and velocity out, and write center as a function of t from 0 to 1"));
+        }
         if let Some(wrong) = wrong {
             return Err(BuildError::unsupported("conditions", wrong)
                 .help("prescribe a displacement, as a function of t from 0 to 1"));
@@ -212,17 +220,23 @@ impl<const D: usize> Model<D> {
             true => zeros(self.body.len),
             false => self.external(),
         };
+        let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
         self.step += 1;
         let result = self.settle_increment(&mut state);
         if let Err(error) = result {
             self.step -= 1;
             (self.u, self.f) = (u, f);
+            let t = self.time();
+            self.indenters.iter_mut().for_each(|i| i.place(t));
             self.refresh_images();
             self.statics = Some(state);
             return Err(self.unsolved(error));
         }
         state.solved = result.unwrap_or_default();
         self.statics = Some(state);
+        for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
+            indenter.account(before, &self.body, [&u, &self.u]);
+        }
         self.account(&u, &f, &external);
         Ok(())
     }
@@ -254,6 +268,7 @@ impl<const D: usize> Model<D> {
             for c in &self.constraints {
                 c.place(&mut self.u, t);
             }
+            self.indenters.iter_mut().for_each(|i| i.place(t));
             let before = self.broken;
             let solved = match state.options.method {
                 Method::Linear => self.settle_linear(state, &support)?,
