@@ -61,11 +61,31 @@ impl Bench {
         Ok((0..values.len()).map(|i| values.at(i, component)).collect())
     }
 
+    /// What a probe measures now, by the name of its column: `load_y`.
+    pub fn probe(&mut self, column: &str) -> Result<f64, Failure> {
+        let at = self.sim.probe_columns();
+        let at = at.iter().position(|c| c.name == column);
+        let at = at.ok_or_else(|| Failure::new(format!("no probe {column}")))?;
+        Ok(self.sim.measure()[at])
+    }
+
     /// What the program draws at the end of a run.
     pub fn damage(
         &mut self,
         context: &Context,
         name: &str,
+        found: &mut Findings,
+    ) -> Result<(), Failure> {
+        self.drawn(context, name, ["damage", ""], About::Fracture, found)
+    }
+
+    /// The same of any field, or a component of it.
+    pub fn drawn(
+        &mut self,
+        context: &Context,
+        name: &str,
+        [field, component]: [&str; 2],
+        about: About,
         found: &mut Findings,
     ) -> Result<(), Failure> {
         let path: PathBuf = context.out.join(format!("{name}.png"));
@@ -74,10 +94,13 @@ impl Bench {
             length_unit: "m".into(),
             time_unit: "s".into(),
             width: 800,
+            field: Some(field.into()),
+            component: Some(component.to_string()).filter(|c| !c.is_empty()),
+            still: matches!(about, About::Equilibrium),
             ..PictureOptions::default()
         };
-        let shown = self.sim.snapshot(&["damage"], false);
-        picture::write(&path, &shown, &options, About::Fracture)?;
+        let shown = self.sim.snapshot(&[field], false);
+        picture::write(&path, &shown, &options, about)?;
         found.file(path);
         Ok(())
     }
@@ -138,6 +161,11 @@ pub const CRACKED: f64 = 0.35;
 /// Speed of Rayleigh waves, Viktorov's approximation.
 pub fn rayleigh(young: f64, nu: f64, density: f64) -> f64 {
     (young / (2.0 * (1.0 + nu)) / density).sqrt() * (0.862 + 1.14 * nu) / (1.0 + nu)
+}
+
+/// What values near whose error is of first order in the spacing, from those of a spacing and of half of it.
+pub fn limit(coarse: f64, fine: f64) -> f64 {
+    2.0 * fine - coarse
 }
 
 /// Slope of the least squares' line.

@@ -12,10 +12,25 @@ mod brazilian_disk;
 mod cantilever;
 #[path = "compact-tension/mod.rs"]
 mod compact_tension;
+#[path = "double-cantilever/mod.rs"]
+mod double_cantilever;
+#[path = "fibre-composite/mod.rs"]
+mod fibre_composite;
+#[path = "fragmenting-cylinder/mod.rs"]
+mod fragmenting_cylinder;
+mod hertz;
 mod kalthoff;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
 mod spall;
+#[path = "sphere-on-plate/mod.rs"]
+mod sphere_on_plate;
+#[path = "thin-film/mod.rs"]
+mod thin_film;
+#[path = "three-point-bend/mod.rs"]
+mod three_point_bend;
+#[path = "vibrating-plate/mod.rs"]
+mod vibrating_plate;
 
 use crate::Experiment;
 
@@ -30,5 +45,13 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &compact_tension::CompactTension,
         &branching::Branching,
         &kalthoff::Kalthoff,
+        &three_point_bend::ThreePointBend,
+        &double_cantilever::DoubleCantilever,
+        &vibrating_plate::VibratingPlate,
+        &hertz::Hertz,
+        &fibre_composite::FibreComposite,
+        &thin_film::ThinFilm,
+        &sphere_on_plate::SphereOnPlate,
+        &fragmenting_cylinder::FragmentingCylinder,
     ]
 }
