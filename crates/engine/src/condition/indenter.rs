@@ -50,6 +50,38 @@ impl Form {
             Form::Plane(axis) => d.get(axis).copied().unwrap_or(0.0),
         }
     }
+
+    /// The way from the centre to a point, and its length across the form.
+    fn offset<const D: usize>(
+        self,
+        center: &[f64; 3],
+        body: &Body<D>,
+        u: &Field<D>,
+        i: usize,
+    ) -> ([f64; D], f64) {
+        // the centre may lie off a plane or line of points
+        let off = (D..3).filter(|a| self != Form::Cylinder(*a));
+        let aside: f64 = off.map(|a| center[a] * center[a]).sum();
+        let x = body.position(i);
+        let d: [f64; D] = std::array::from_fn(|a| {
+            let d = x[a] + u[a][i] - center[a];
+            match (self, body.period[a]) {
+                (Form::Sphere | Form::Cylinder(_), Some(p)) => d - p * (d / p).round(),
+                (Form::Plane(_), _) | (_, None) => d,
+            }
+        });
+        (d, self.distance(&d, aside))
+    }
+}
+
+impl Push {
+    /// From a surface of this radius to a point at this distance; negative where it is pushed.
+    fn gap(self, distance: f64, radius: f64) -> f64 {
+        match self {
+            Push::Out => distance - radius,
+            Push::In => radius - distance,
+        }
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -189,24 +221,9 @@ impl<const D: usize> Indenter<D> {
             self.center = next;
         }
         let (form, push) = (self.form, self.push);
-        // the centre may lie off a plane or line of points
-        let off = (D..3).filter(|a| form != Form::Cylinder(*a));
-        let aside: f64 = off.map(|a| self.center[a] * self.center[a]).sum();
-        let offset = |i: usize| -> ([f64; D], f64) {
-            let x = body.position(i);
-            let d: [f64; D] = std::array::from_fn(|a| {
-                let d = x[a] + u[a][i] - self.center[a];
-                match (form, body.period[a]) {
-                    (Form::Sphere | Form::Cylinder(_), Some(p)) => d - p * (d / p).round(),
-                    (Form::Plane(_), _) | (_, None) => d,
-                }
-            });
-            (d, form.distance(&d, aside))
-        };
-        let gap = |r: f64| match push {
-            Push::Out => r - self.radius,
-            Push::In => self.radius - r,
-        };
+        let (center, radius) = (self.center, self.radius);
+        let offset = |i: usize| form.offset(&center, body, u, i);
+        let gap = |r: f64| push.gap(r, radius);
         if self.slack <= 0.0 {
             // two spacings: a fast indenter looks around every few dozen steps
             self.slack = 2.0 * body.spacing;
@@ -267,6 +284,16 @@ impl<const D: usize> Indenter<D> {
         if let Motion::Kinematic(c) = &self.motion {
             self.center = std::array::from_fn(|a| c[a].eval(&[0.0; 3], t));
             self.slack = 0.0;
+        }
+    }
+
+    /// Adds what it resists with at each point that it pushes (force / length), 2 K |g| V, to sums by slot.
+    pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
+        for &s in self.members.as_ref().unwrap_or(&body.slots) {
+            let i = s as usize;
+            let (_, r) = self.form.offset(&self.center, body, u, i);
+            let deep = -self.push.gap(r, self.radius);
+            sum[i] += 2.0 * self.stiffness * deep.max(0.0) * body.volume.at(i);
         }
     }
 

@@ -378,6 +378,13 @@ impl<const D: usize> Model<D> {
         let top = largest_ratio(&self.body, self.interaction.as_mut(), &mass);
         // a step of 1 is stable to 4; half of that leaves room for stiffening and contact
         mass.iter_mut().for_each(|m| *m *= 0.5 * top);
+        // indenters are deepest before the body has given way
+        sum.fill(0.0);
+        for indenter in &self.indenters {
+            indenter.add_stiffness(&self.body, &self.u, &mut sum);
+        }
+        let pushed = self.by_id(|i| sum[i]);
+        mass.iter_mut().zip(pushed).for_each(|(m, k)| *m += 0.5 * k);
         let reference = self.residual_of_reference(support);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
