@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use peridyne::run::{Options, Simulation, build};
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, UnitSystem};
 use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::picture::{self, PictureOptions};
 use peridyne_io::write::plot::{ColorMap, Map};
@@ -93,7 +93,9 @@ impl Bench {
             title: self.deck.spec.title.clone(),
             length_unit: "m".into(),
             time_unit: "s".into(),
-            width: 800,
+            units: UnitSystem::Si,
+            // names of components need room
+            width: if component.is_empty() { 800 } else { 1200 },
             field: Some(field.into()),
             component: Some(component.to_string()).filter(|c| !c.is_empty()),
             still: matches!(about, About::Equilibrium),

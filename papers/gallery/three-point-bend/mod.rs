@@ -67,22 +67,22 @@ fn notched(context: &Context, part: f64, h: &str, found: &mut Findings) -> Resul
 /// Loads of the increment before the first bonds break and of that in which they do, over that at which K is K_c.
 fn breaks(h: &str) -> Result<[f64; 2], Failure> {
     let critical = (E * G).sqrt() * B * W.sqrt() / intensity(0.5);
-    // from 0.8 on in small increments
-    let last = 0.8 + INCREMENT * 30.0;
+    // from 0.9 on in small increments
+    let last = 0.9 + INCREMENT * 20.0;
     let set = [
         ("constants.h", h),
         ("constants.P", &*format!("{} N", last * critical)),
-        ("constants.first", &*format!("{}", 0.8 / last)),
+        ("constants.first", &*format!("{}", 0.9 / last)),
         ("material.fracture.energy", "500 J/m^2"),
         ("statics.method", "relaxation"),
         ("statics.tolerance", "1e-4"),
-        ("statics.increments", "30"),
+        ("statics.increments", "20"),
     ];
     let mut bench = Bench::new(DECK, &set)?;
     for n in 1..=bench.steps() {
         bench.step()?;
         if bench.sim.broken() > 0 {
-            let now = 0.8 + INCREMENT * n as f64;
+            let now = 0.9 + INCREMENT * n as f64;
             return Ok([now - INCREMENT, now]);
         }
     }
@@ -106,7 +106,7 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let slender = P * 0.2f64.powi(3) / (4.0 * E * B * W.powi(3));
     let key = "Timoshenko's deflection over Euler and Bernoulli's";
     found.measured(key, deflection(0.2) / slender, "");
-    let parts = [0.3, 0.4, 0.5, 0.6, 0.7];
+    let parts = [0.3, 0.5, 0.7];
     let mut plot = Plot::new("Stress intensity of a notched beam")
         .x("a/W", "")
         .y("K B sqrt(W)/P", "");
@@ -133,11 +133,11 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         plot = plot.points(&format!("h = {h}"), &parts, &all);
         table = table.column(&format!("K over ASTM's, h = {h}"), "", off.clone());
         found.measured(
-            &format!("K over ASTM's, a/W = 0.3 to 0.7, h = {h}"),
+            &format!("K over ASTM's, a/W = 0.3, 0.5, 0.7, h = {h}"),
             format!("{off:.4?}"),
             "",
         );
-        middle.push(off[2]);
+        middle.push(off[1]);
     }
     found.picture(plot.save(&context.out, "intensity")?);
     let path = context.out.join("intensity.csv");
