@@ -56,7 +56,6 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let exact: Vec<f64> = all.iter().map(|a| beuth() * a * a).collect();
     plot = plot.line("half-plane", &all, &exact);
     let mut released = vec![];
-    let mut table = Table::new();
     for (k, n) in layers.iter().enumerate() {
         context.say(&format!("{n} spacings in the film"));
         let last = k + 1 == layers.len();
@@ -77,15 +76,15 @@ fn run(context: &Context) -> Result<Findings, Failure> {
             full,
             "",
         );
-        table = table
-            .column(&format!("depth/f, f = {n} h"), "", depths)
-            .column("energy E'/(σ² f²)", "", row);
+        let path = context.out.join(format!("released-{n}.csv"));
+        Table::new()
+            .column("depth/f", "", depths)
+            .column("energy E'/(σ² f²)", "", row)
+            .save(&path)?;
+        found.file(path);
         released.push(full);
     }
     found.picture(plot.save(&context.out, "released")?);
-    let path = context.out.join("released.csv");
-    table.save(&path)?;
-    found.file(path);
     let end = released.len() - 1;
     let ratio = layers[end] as f64 / layers[end - 1] as f64;
     // the error is of first order in the spacing
