@@ -47,7 +47,7 @@ fn impropers_are_read_in_degrees() {
     let made = made.unwrap();
     let improper = Form::HarmonicImproper {
         stiffness: 12.0,
-        angle: std::f64::consts::FRAC_PI_6,
+        angle: 30f64.to_radians(),
     };
     assert_eq!(made.forms, [improper]);
     assert_eq!(made.terms[0].points, [0, 1, 2, 3]);
