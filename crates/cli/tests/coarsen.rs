@@ -89,6 +89,59 @@ fn a_crystal_with_a_vacancy_is_relaxed_coarsened_twice_and_runs() {
     assert!(errors.iter().all(|e| *e < 0.1), "{told}");
 }
 
+/// Silicon of Stillinger and Weber with one of its two lattices taken out: a set of sites, which coarse points have no more.
+#[test]
+fn a_layer_of_silicon_keeps_one_of_its_lattices_and_moves_as_before() {
+    let dir = tempfile::tempdir().unwrap();
+    let done = coarsen(
+        "good/silicon_layer.toml",
+        dir.path(),
+        &["--keep", "kept", "--scheme", "schur", "--run"],
+    );
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(0), "{said}");
+    let json = std::fs::read_to_string(dir.path().join("level1.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    // 4 of 8 atoms of a cell, and of the others those of the layers at the faces
+    assert_eq!(report["points"], 4 * 24 + 16);
+    assert_eq!(report["checked_positive_semidefinite"], true);
+    let (_, after) = told.split_once("displacement error ").unwrap();
+    let error: f64 = after.split(' ').next().unwrap().parse().unwrap();
+    assert!(error < 1e-8, "{told}");
+}
+
+/// What is held by a set of sites cannot be held so where there are no sites.
+#[test]
+fn sets_of_old_points_are_refused_where_they_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let text = std::fs::read_to_string(deck("good/silicon_layer.toml")).unwrap();
+    std::fs::copy(deck("good/Si.sw"), dir.path().join("Si.sw")).unwrap();
+    let region = "region = { block = { low = [\"-a\", \"-a\", \"-a\"], high = [\"0.3*a\", \"9*a\", \"9*a\"] } }";
+    assert!(text.contains(region));
+    for (members, expected) in [
+        (
+            "basis = [1]",
+            "sets.left is sites of the old lattice's cell: give it a region",
+        ),
+        (
+            "random = { part = 0.2, seed = 1 }",
+            "sets.left is drawn from the old points",
+        ),
+    ] {
+        let file = dir.path().join("layer.toml");
+        std::fs::write(&file, text.replace(region, members)).unwrap();
+        let arguments = ["--keep", "kept", "--scheme", "schur"];
+        let done = coarsen(file.to_str().unwrap(), &out, &arguments);
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(2), "{said}");
+        let flat: Vec<&str> = said.split_whitespace().filter(|w| *w != "│").collect();
+        assert!(flat.join(" ").contains(expected), "{said}");
+        assert!(!out.exists());
+    }
+}
+
 #[test]
 fn what_is_wrong_is_named_and_nothing_is_written() {
     let dir = tempfile::tempdir().unwrap();

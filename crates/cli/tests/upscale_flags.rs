@@ -9,6 +9,10 @@ fn copper() -> String {
     path.to_str().unwrap().to_string()
 }
 
+fn silicon() -> String {
+    copper().replace("copper.eam.alloy", "Si.sw")
+}
+
 /// Runs the program, which must end with this status; what it said and complained.
 fn peridyne(arguments: &[&str], status: i32) -> [String; 2] {
     let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
@@ -82,6 +86,29 @@ fn copper_of_a_file_is_upscaled_at_its_own_constant() {
     for e in card["energies"].as_array().unwrap() {
         let (a, b) = (number(e, "/fine"), number(e, "/coarse"));
         assert!((a / b - 1.0).abs() < 1e-9, "{e}");
+    }
+}
+
+/// Files of fans: silicon rests where LAMMPS has no pressure, and of two elements one is named.
+#[test]
+fn silicon_of_a_file_is_upscaled() {
+    let decks = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../decks/good");
+    let file = |name: &str| decks.join(name).to_str().unwrap().to_string();
+    let crystal = "--lattice diamond --mass 28.0855 --cells 6,6,6";
+    let [silicon, carbide] = ["Si.sw", "SiC.tersoff"].map(file);
+    for (flags, rest) in [
+        (format!("stillinger_weber={silicon}"), 5.4309498),
+        (format!("tersoff={carbide} --element Si"), 5.4321148),
+    ] {
+        let (fine, cards) = upscaled(&format!("--potential {flags} {crystal}"), &["2"]);
+        let spacing = fine["body"]["spacing"].as_float().unwrap();
+        assert!((spacing - rest).abs() < 1e-6, "{spacing}");
+        let card = &cards[0];
+        assert!(number(card, "/fine/reference_pressure").abs() < 1e-10);
+        for e in card["energies"].as_array().unwrap() {
+            let (a, b) = (number(e, "/fine"), number(e, "/coarse"));
+            assert!((a / b - 1.0).abs() < 1e-9, "{e}");
+        }
     }
 }
 
@@ -200,6 +227,11 @@ fn what_is_wrong_names_the_flag_and_writes_nothing() {
             vec!["young"],
         ),
         ("--potential morse --units si --lattice chain --m-ratio 1".into(), vec!["--mass is missing"]),
+        (format!("--potential stillinger_weber={} --lattice diamond", silicon()), vec!["--mass is missing"]),
+        (
+            format!("--potential stillinger_weber={} --mass 28 --lattice diamond --m-ratio 2", silicon()),
+            vec!["lives on current neighbours"],
+        ),
         ("deck.toml --potential lj --lattice fcc".into(), vec!["cannot be used with"]),
     ] {
         let mut arguments = vec!["upscale", "--out", out.to_str().unwrap()];

@@ -1,10 +1,10 @@
-//! Terms between particles that are bonded whatever moves: bonds in halves at their two ends, angles at their vertex, dihedrals at their second
+//! Terms between particles that are bonded whatever moves: bonds in halves at their two ends, angles at their vertex, dihedrals and impropers at their second
 //! particle. Between particles that are a few bonds apart only a part of the pair potential is left.
 
 use crate::FieldsError;
 use crate::frame::Frame;
 use crate::kernel::dot;
-use peridyne::law::bonded::special_pairs;
+use peridyne::law::bonded::{PARTS, special_pairs};
 use peridyne::law::terms::{Near, Sites, Term};
 use peridyne::spec::BondedSpec;
 
@@ -26,9 +26,6 @@ pub struct Molecules {
     /// The other one, and what is left of the pair potential less 1.
     special: Vec<Vec<(u32, f64)>>,
 }
-
-/// Parts that are told apart.
-pub const PARTS: [&str; 3] = ["bonds", "angles", "dihedrals"];
 
 impl Molecules {
     /// Of so many particles.
@@ -70,6 +67,12 @@ impl Molecules {
             terms,
             special,
         })
+    }
+
+    /// Parts that are told apart: impropers only where there are some.
+    pub(crate) fn parts(&self) -> &'static [&'static str] {
+        let forms = self.spec.forms.iter().map(|f| f.part());
+        &PARTS[..=forms.max().unwrap_or(0).max(2)]
     }
 
     /// Can they go with a potential and a frame?
@@ -145,7 +148,7 @@ impl Molecules {
                 .collect();
             let found = form.pulls(&xi);
             let part = if own.count == 2 { 0.5 } else { 1.0 };
-            term.begin(first + own.count - 2);
+            term.begin(first + form.part());
             term.energy = part * found.energy;
             let others = (0..own.count).filter(|n| *n != own.centre);
             term.particles.extend(others.map(|n| places[n].0));

@@ -11,7 +11,7 @@ use crate::collect::Spare;
 use crate::fields::{Fields, Layout, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::{Kernel, dot};
-use crate::molecules::{self, Molecules};
+use crate::molecules::Molecules;
 use crate::neighbours::Neighbours;
 use crate::partition::{PairForce, Partition};
 use crate::patch::Patch;
@@ -91,7 +91,7 @@ pub fn evaluate(
     }
     let names = match method.by_part {
         true => {
-            let bonded = molecules.map_or(&[][..], |_| &molecules::PARTS);
+            let bonded = molecules.map_or(&[][..], |m| m.parts());
             let bonded = bonded.iter().map(|p| p.to_string());
             sites.parts().into_iter().chain(bonded).collect()
         }

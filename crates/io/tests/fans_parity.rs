@@ -1,4 +1,4 @@
-//! Silicon, silicon carbide and hexane of `verify/lammps/fans`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
+//! Silicon, silicon carbide, hexane and isobutane of `verify/lammps/fans`, from LAMMPS's data files, against the numbers that LAMMPS computed for them.
 
 mod golden;
 
@@ -64,6 +64,19 @@ fn hexane_is_that_of_lammps() {
         0.118 * kcal
     );
     compare_deck("hexane", &parsed(&text));
+}
+
+/// Impropers, and `atom_style full` whose charges are 0.
+#[test]
+fn isobutane_is_that_of_lammps() {
+    let kcal = 0.0433641153;
+    let text = format!(
+        "units = {{ system = \"metal\", constants = \"lammps\" }}\nrun = {{ steps = 100, time_step = 0.0005 }}\n\
+         periodic = [\"x\", \"y\", \"z\"]\nbody.file = \"isobutane.data\"\nmolecules = {{ special = [0, 0, 0] }}\n\
+         material.law = {{ lennard_jones = {{ epsilon = {:?}, sigma = 3.91, cutoff = 9 }} }}\n",
+        0.16 * kcal
+    );
+    compare_deck("isobutane", &parsed(&text));
 }
 
 /// Two kinds of atom, each a material of the deck.

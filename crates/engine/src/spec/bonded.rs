@@ -14,6 +14,9 @@ pub enum Form {
     /// `Σ_n C_n cosⁿ φ`; φ is 0 where the ends are on the same side. OPLS, Ryckaert–Bellemans and Fourier's with phases 0 and π are such
     /// sums.
     Dihedral { powers: Vec<f64> },
+    /// `K (χ − χ₀)²` (radians), χ from 0 to π the angle between the planes of the first three and of the last three, 0 where the first and
+    /// the last are on the same side. Where χ is 0 or π and χ₀ is neither, its force has no direction and is taken as 0.
+    HarmonicImproper { stiffness: f64, angle: f64 },
 }
 
 /// Some particles and what they say.

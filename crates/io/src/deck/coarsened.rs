@@ -21,6 +21,48 @@ const GONE: [&str; 13] = [
     "surface",
 ];
 
+/// Keys of sets that mean points of the old body, and what such a set is.
+const OF_POINTS: [(&str, &str); 3] = [
+    ("mark", "a mark of the old file"),
+    ("basis", "sites of the old lattice's cell"),
+    ("random", "drawn from the old points"),
+];
+
+/// Sets that belong to the old points: those that nothing names any more are left out.
+///
+/// # Errors
+/// One is named.
+fn sets(table: &mut Table) -> Result<(), String> {
+    let Some(mut sets) = table.remove("sets") else {
+        return Ok(());
+    };
+    let mut wrong = None;
+    if let Some(all) = sets.as_table_mut() {
+        all.retain(|name, set| {
+            let what = OF_POINTS.iter().find(|(key, _)| set.get(*key).is_some());
+            let named = { table.iter() }.any(|(key, v)| key != "title" && names(v, name));
+            if let (Some((_, what)), true) = (what, named) {
+                wrong.get_or_insert(format!(
+                    "sets.{name} is {what}: give it a region, or where, so that coarse points have it, too"
+                ));
+            }
+            what.is_none()
+        });
+    }
+    table.insert("sets".into(), sets);
+    wrong.map_or(Ok(()), Err)
+}
+
+/// Is the name one of the texts of a value?
+fn names(value: &Value, name: &str) -> bool {
+    match value {
+        Value::String(text) => text == name,
+        Value::Array(all) => all.iter().any(|v| names(v, name)),
+        Value::Table(all) => all.values().any(|v| names(v, name)),
+        Value::Integer(_) | Value::Float(_) | Value::Boolean(_) | Value::Datetime(_) => false,
+    }
+}
+
 /// The deck on the linear body in `file` (beside it): the same sets, conditions and schedule.
 ///
 /// # Errors
@@ -54,12 +96,7 @@ pub fn coarsened(deck: &Deck, file: &str, level: usize) -> Result<Rewritten, Str
     let mut material = Table::new();
     material.insert("law".into(), "micromoduli".into());
     table.insert("material".into(), Value::Table(material));
-    let sets = table.get("sets").and_then(Value::as_table);
-    if let Some((name, _)) = sets.and_then(|s| s.iter().find(|(_, s)| s.get("mark").is_some())) {
-        return Err(format!(
-            "sets.{name} is a mark of the old file: give it a region, so that coarse points have it, too"
-        ));
-    }
+    sets(&mut table)?;
     Ok(Rewritten {
         text: toml::to_string_pretty(&table).map_err(|e| e.to_string())?,
         files: vec![],

@@ -18,6 +18,7 @@ mod syntax;
 mod units;
 pub mod upscaled;
 mod value;
+mod whole;
 
 #[cfg(test)]
 mod tests;
@@ -38,6 +39,7 @@ use serde::Deserialize;
 use source::Source;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use whole::Whole;
 
 /// A deck that was understood.
 #[derive(Debug, Clone)]
@@ -144,7 +146,7 @@ impl Deck {
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
         locate::interfaces(tree.get_mut());
-        let document = Document::deserialize(toml::de::Deserializer::from(tree))
+        let document = Document::deserialize(Whole(toml::de::Deserializer::from(tree)))
             .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
         let folder = Path::new(source.file()).parent().unwrap_or(Path::new(""));
         let units = lower::units(&document);

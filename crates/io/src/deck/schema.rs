@@ -21,6 +21,7 @@ mod tests {
     use super::*;
     use crate::deck::locate;
     use crate::deck::source::Source;
+    use crate::deck::whole::Whole;
     use serde::Deserialize;
     use serde_json::{Value, json};
     use std::path::{Path, PathBuf};
@@ -71,7 +72,7 @@ mod tests {
         locate::name_material(tree.get_mut());
         locate::first_body(tree.get_mut());
         locate::interfaces(tree.get_mut());
-        Document::deserialize(toml::de::Deserializer::from(tree)).is_ok()
+        Document::deserialize(Whole(toml::de::Deserializer::from(tree))).is_ok()
     }
 
     /// All decks with one fault: an unknown key in a table, a value of another type, a key left out.
@@ -101,6 +102,10 @@ mod tests {
                             put(Value::Array(other));
                         });
                     }
+                    // an item more, and one less
+                    let last = items.last().cloned();
+                    put({ items.iter().cloned() }.chain(last).collect());
+                    put(items.iter().skip(1).cloned().collect());
                     put(json!(1.5));
                 }
                 _ => {}
@@ -169,7 +174,7 @@ mod tests {
             let text = toml::to_string(deck).unwrap();
             let source = Source::new(&text, "deck.toml", &[]);
             let tree = source.tree().unwrap();
-            LawDocument::deserialize(toml::de::Deserializer::from(tree)).is_ok()
+            LawDocument::deserialize(Whole(toml::de::Deserializer::from(tree))).is_ok()
         };
         let good = "decks/good/conservation";
         let (decks, refused) = compare(&law_schema(), good, &["decks/bad/conservation"], read);

@@ -62,6 +62,14 @@ pub(super) fn mistake(source: &Source, span: Option<Range<usize>>, message: &str
                 }
                 None => (message.to_string(), None),
             }
+        } else if let Some(rest) = message.strip_prefix("invalid length ") {
+            match rest.split_once(", expected ") {
+                Some((found, expected)) => {
+                    let expected = expected.replace("an array of length", "a list of");
+                    (format!("expected {expected}, found {found}"), None)
+                }
+                None => (message.to_string(), None),
+            }
         } else if message.starts_with("wanted exactly 1 element") {
             (
                 "expected a table with exactly one entry, which says the kind".into(),

@@ -83,12 +83,16 @@ impl JsonSchema for Written {
     }
 }
 
+/// One to three components.
 fn list<'de, A: SeqAccess<'de>>(mut seq: A) -> Result<Vec<Number>, A::Error> {
     let mut items = Vec::new();
     while let Some(item) = seq.next_element()? {
         items.push(item);
     }
-    Ok(items)
+    match items.len() {
+        1..=3 => Ok(items),
+        n => Err(A::Error::invalid_length(n, &"1 to 3 components")),
+    }
 }
 
 /// A vector: a list of numbers, or one number in 1-D.

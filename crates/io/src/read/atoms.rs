@@ -29,7 +29,7 @@ pub struct Atoms {
     pub low: [f64; 3],
     pub high: [f64; 3],
     pub periodic: [bool; 3],
-    /// Does the file have bonds, angles or dihedrals ([`molecules`](super::molecules))?
+    /// Does the file have bonds, angles, dihedrals or impropers ([`molecules`](super::molecules))?
     pub bonded: bool,
     /// Edges of a box that is not along the axes, one per row, from the corner `low`; `high` is then no more than a bound.
     pub edges: Option<[[f64; 3]; 3]>,

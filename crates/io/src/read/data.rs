@@ -1,4 +1,4 @@
-//! LAMMPS data files of `atom_style atomic` and `molecular`.
+//! LAMMPS data files of `atom_style atomic`, `molecular` and `full`.
 
 use super::atoms::{Atoms, Species};
 use super::lammps::{DataFile, Style};

@@ -61,7 +61,7 @@ pub struct AtomsFile {
     pub species: Vec<Species>,
     /// The velocities are in Å, eV and g/mol.
     pub from_momenta: bool,
-    /// There are bonds, angles or dihedrals.
+    /// There are bonds, angles, dihedrals or impropers.
     pub bonded: bool,
 }
 

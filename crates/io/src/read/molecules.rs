@@ -1,4 +1,4 @@
-//! What bonds the atoms of a LAMMPS data file: its sections `Bonds`, `Angles`, `Dihedrals` and their coefficients, the styles of which stand
+//! What bonds the atoms of a LAMMPS data file: its sections `Bonds`, `Angles`, `Dihedrals`, `Impropers` and their coefficients, the styles of which stand
 //! behind a `#` (`Bond Coeffs # harmonic`), as `write_data` writes them.
 
 mod forms;
@@ -17,7 +17,8 @@ struct Kind {
     atoms: usize,
 }
 
-const KINDS: [Kind; 3] = [
+/// In the order of the parts of bonded terms.
+const KINDS: [Kind; 4] = [
     Kind {
         section: "Bonds",
         coefficients: "Bond Coeffs",
@@ -31,6 +32,11 @@ const KINDS: [Kind; 3] = [
     Kind {
         section: "Dihedrals",
         coefficients: "Dihedral Coeffs",
+        atoms: 4,
+    },
+    Kind {
+        section: "Impropers",
+        coefficients: "Improper Coeffs",
         atoms: 4,
     },
 ];
@@ -63,8 +69,8 @@ pub fn parse_molecules(
 ) -> Result<BondedSpec, ReadError> {
     let mut lines = Lines::new(text, name);
     let mut ids: Vec<u32> = vec![];
-    let mut lists: [Vec<Row>; 3] = Default::default();
-    let mut forms: [HashMap<usize, Form>; 3] = Default::default();
+    let mut lists: [Vec<Row>; 4] = Default::default();
+    let mut forms: [HashMap<usize, Form>; 4] = Default::default();
     let mut section = String::new();
     let mut style = String::new();
     // the first line is a title
@@ -99,7 +105,7 @@ pub fn parse_molecules(
                 lists[n].push((lines.number, of, atoms));
             } else if section == kind.coefficients {
                 let of: usize = lines.parse(Some(words[0]), "a type")?;
-                let form = forms::form(&lines, kind.atoms, &style, &words[1..], length, energy)?;
+                let form = forms::form(&lines, n, &style, &words[1..], length, energy)?;
                 if forms[n].insert(of, form).is_some() {
                     return Err(lines.error(format!("type {of} has coefficients twice")));
                 }

@@ -5,8 +5,9 @@
 //! reach of the box are atoms of their own (ghosts) with copied positions. A tile's lists are stored line by line: line n
 //! holds the n-th neighbour of each of its eight atoms, or an atom infinitely far away.
 //!
-//! Of several kinds, the atoms of a tile are all of one, and so are the neighbours of a line: a pair of kinds is known before its
-//! numbers are read. Lines of a tile come in order of the neighbours' kinds.
+//! Of several kinds there are two ways ([`Lines`]). By kind, the atoms of a tile are all of one, and so are the neighbours of a line, so
+//! that a pair of kinds is known before its numbers are read; lines of a tile come in order of the neighbours' kinds, and each kind fills
+//! up its own last lines. Mixed, atoms stand and are listed as if they were of one kind, and their fourth number says which.
 
 mod build;
 mod cells;
@@ -50,19 +51,32 @@ impl Reaches {
         self.of.iter().copied().fold(0.0, f64::max)
     }
 
+    fn are_equal(&self) -> bool {
+        self.of.iter().all(|r| *r == self.of[0])
+    }
+
     fn between(&self, i: u8, j: u8) -> f64 {
         self.of[usize::from(i) * self.kinds + usize::from(j)]
     }
 }
 
-/// Eight atoms of a kind, with who is near to them.
+/// Who stands in a tile and in a line of atoms of several kinds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lines {
+    /// Atoms of one kind.
+    ByKind,
+    /// Atoms of any; the list writes kinds into their fourth numbers.
+    Mixed,
+}
+
+/// Eight atoms, by kind all of one, with who is near to them.
 #[derive(Debug, Clone, Copy)]
 pub struct Tile<'a> {
     pub number: usize,
-    /// Of its own atoms.
+    /// Of its own atoms, by kind.
     pub kind: usize,
     lines: &'a [[u32; TILE]],
-    /// `[kinds]`: where the lines of each kind of neighbours end, counted as the block does.
+    /// `[groups]`: where the lines of each kind of neighbours end, counted as the block does.
     ends: &'a [u32],
     /// Where the first begins.
     start: usize,
@@ -93,9 +107,10 @@ pub struct NearList<const D: usize> {
     /// The greatest of all, with the margin.
     reach: f64,
     reaches: Reaches,
+    lines: Lines,
     skin: f64,
     period: [Option<f64>; D],
-    /// Slot of every atom, in order of kinds and cells; [`NOBODY`] where the last tile of a kind ends.
+    /// Slot of every atom, in order of kinds (unless these are mixed) and cells; [`NOBODY`] where the last tile of a kind ends.
     order: Vec<u32>,
     /// Kinds of all that have positions; empty where there is one.
     kind: Vec<u8>,
@@ -104,7 +119,7 @@ pub struct NearList<const D: usize> {
     /// `[own][4]`: positions when the list was made.
     then: Vec<[f64; 4]>,
     ghosts: Vec<Ghost<D>>,
-    /// `[own in whole tiles, ghosts, nowhere][4]`: positions; the fourth number is the user's.
+    /// `[own in whole tiles, ghosts, nowhere][4]`: positions; the fourth number is the user's, or the kind where lines are mixed.
     position: Vec<[f64; 4]>,
     blocks: Vec<Block>,
     moved: PerBlock<f64>,
@@ -116,11 +131,11 @@ impl<const D: usize> NearList<D> {
     /// For pairs closer than `cutoff`, with a margin `skin` (lengths). Periods must be at least twice the cut-off; the
     /// margin is made smaller where they leave less.
     pub fn new(body: &Body<D>, cutoff: f64, skin: f64) -> Self {
-        Self::of_kinds(body, Reaches::new(1, |_, _| cutoff), skin)
+        Self::of_kinds(body, Reaches::new(1, |_, _| cutoff), skin, Lines::ByKind)
     }
 
     /// The same for pairs closer than what their kinds reach: materials of the body, or all are of one kind.
-    pub fn of_kinds(body: &Body<D>, reaches: Reaches, skin: f64) -> Self {
+    pub fn of_kinds(body: &Body<D>, reaches: Reaches, skin: f64, lines: Lines) -> Self {
         let cutoff = reaches.longest();
         let shortest = body
             .period
@@ -130,8 +145,8 @@ impl<const D: usize> NearList<D> {
             .fold(f64::INFINITY, f64::min);
         let skin = skin.min(shortest - cutoff).max(0.0);
         let mut of_kind = vec![0usize; reaches.kinds];
-        match reaches.kinds {
-            1 => of_kind[0] = body.points(),
+        match (reaches.kinds, lines) {
+            (1, _) | (_, Lines::Mixed) => of_kind[0] = body.points(),
             _ => { body.slots.iter() }.for_each(|s| of_kind[body.material_of(*s as usize)] += 1),
         }
         let tiles: usize = of_kind.iter().map(|n| n.div_ceil(TILE)).sum();
@@ -139,6 +154,7 @@ impl<const D: usize> NearList<D> {
         NearList {
             reach: cutoff + skin,
             reaches,
+            lines,
             skin,
             period: body.period,
             order: vec![],
@@ -210,19 +226,26 @@ impl<const D: usize> NearList<D> {
     /// The same with kinds.
     #[inline(always)]
     pub fn tiles_of_kinds(&self, b: usize) -> impl Iterator<Item = Tile<'_>> {
-        self.blocks[b].tiles(self.reaches.kinds, b * BLOCK, &self.kind)
+        self.blocks[b].tiles(self.groups(), b * BLOCK, &self.kind)
     }
 
-    /// Number of kinds.
-    #[inline(always)]
-    pub fn kinds(&self) -> usize {
-        self.reaches.kinds
+    /// Groups in which neighbours are found and listed.
+    fn groups(&self) -> usize {
+        match self.lines {
+            Lines::ByKind => self.reaches.kinds,
+            Lines::Mixed => 1,
+        }
+    }
+
+    /// Kind of a listed atom.
+    pub fn kind(&self, atom: usize) -> usize {
+        self.kind.get(atom).map_or(0, |k| usize::from(*k))
     }
 
     /// Lines of one tile.
     #[inline(always)]
     pub fn lines(&self, tile: usize) -> &[[u32; TILE]] {
-        self.blocks[tile / BLOCK].tile(tile % BLOCK, self.reaches.kinds)
+        self.blocks[tile / BLOCK].tile(tile % BLOCK, self.groups())
     }
 
     /// Slots of a tile's atoms.

@@ -7,14 +7,14 @@ use crate::body::{Body, Field, Identity, Values};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
-use crate::family::neighbours::near::{NearList, Reaches};
+use crate::family::neighbours::near::{Lines, NearList, Reaches};
 use crate::interaction::along;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
-use kernel::{Density, Energies, Forces, View};
+use kernel::{Density, Energies, Forces, Table, View};
 
 /// Margin of the list, in cut-offs.
 const SKIN: f64 = 0.12;
@@ -26,6 +26,8 @@ pub struct CurrentAtoms<const D: usize, P> {
     potential: Mixture<P>,
     /// Squared cut-offs of pairs of kinds.
     limits: Vec<f64>,
+    /// Constants of these pairs, where they are evaluated side by side.
+    table: Option<Table>,
     list: NearList<D>,
     faults: Faults,
     sums: PerBlock<[f64; 7]>,
@@ -40,6 +42,9 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         let kinds = potential.kinds();
         let cutoffs = (0..kinds * kinds).map(|n| potential.cutoff(n / kinds, n % kinds));
         let limits = cutoffs.map(|c| c * c).collect();
+        let of = |i, j| potential.of(i, j);
+        let table = potential.is_side_by_side();
+        let table = table.then(|| Table::new(kinds, of));
         let list = list_at(body, &potential, &body.at_rest(), simd);
         let blocks = list.blocks();
         let mut made = CurrentAtoms {
@@ -47,6 +52,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             simd,
             potential,
             limits,
+            table,
             list,
             faults: PerBlock::new(blocks, None),
             sums: PerBlock::sums(blocks),
@@ -68,32 +74,31 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
         let kinds = self.potential.kinds();
         for tile in (0..self.list.blocks()).flat_map(|b| self.list.tiles_of_kinds(b)) {
             for (l, &slot) in self.list.slots(tile.number).iter().enumerate() {
+                let own = self.list.kind(tile.number * TILE + l);
                 let x = at[tile.number * TILE + l];
-                for kind in 0..kinds {
-                    let Some(potential) = self.potential.of(tile.kind, kind) else {
+                for line in tile.lines() {
+                    let z = at[line[l] as usize];
+                    let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
+                    let q: f64 = y.iter().map(|c| c * c).sum();
+                    let kind = self.list.kind(line[l] as usize);
+                    let Some(potential) = self.potential.of(own, kind) else {
                         continue;
                     };
-                    let limit = self.limits[tile.kind * kinds + kind];
-                    for line in tile.of_kind(kind) {
-                        let z = at[line[l] as usize];
-                        let y: [f64; D] = std::array::from_fn(|a| z[a] - x[a]);
-                        let q: f64 = y.iter().map(|c| c * c).sum();
-                        let Some(other) = self.list.original(line[l] as usize) else {
-                            continue;
-                        };
-                        if q >= limit {
-                            continue;
-                        }
-                        visit(NearPair {
-                            potential,
-                            unlike: tile.kind != kind,
-                            slot: slot as usize,
-                            other,
-                            y,
-                            q,
-                            slopes: [x[3], z[3]],
-                        });
+                    let Some(other) = self.list.original(line[l] as usize) else {
+                        continue;
+                    };
+                    if q >= self.limits[own * kinds + kind] {
+                        continue;
                     }
+                    visit(NearPair {
+                        potential,
+                        unlike: own != kind,
+                        slot: slot as usize,
+                        other,
+                        y,
+                        q,
+                        slopes: [x[3], z[3]],
+                    });
                 }
             }
         }
@@ -122,6 +127,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
             position: position.cast(),
             potential: &self.potential,
             limits: &self.limits,
+            mixed: self.table.as_ref().zip(self.potential.each().next()),
         }
     }
 
@@ -166,7 +172,11 @@ fn list_at<const D: usize, P: Potential>(
 ) -> NearList<D> {
     let reaches = Reaches::new(potential.kinds(), |i, j| potential.cutoff(i, j));
     let skin = SKIN * reaches.longest();
-    let mut list = NearList::of_kinds(body, reaches, skin);
+    let lines = match potential.is_side_by_side() {
+        true => Lines::Mixed,
+        false => Lines::ByKind,
+    };
+    let mut list = NearList::of_kinds(body, reaches, skin, lines);
     list.update(body, u, simd);
     list
 }

@@ -1,4 +1,4 @@
-//! Terms between particles that are bonded to each other, whatever moves: bonds, angles, dihedrals. A
+//! Terms between particles that are bonded to each other, whatever moves: bonds, angles, dihedrals, impropers. A
 //! [`Form`] is written once, as an
 //! energy of the ξ = d²/2 of all pairs of its particles, over any [`Number`].
 
@@ -16,6 +16,9 @@ use crate::spec::Form;
 /// Pairs of the particles of a term, in the order of their ξ and of [`place`](super::blocks::place).
 const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)];
 
+/// Parts of a potential that bonded terms belong to ([`Form::part`]).
+pub const PARTS: [&str; 4] = ["bonds", "angles", "dihedrals", "impropers"];
+
 /// Energy of a term with the slopes by the ξ of its pairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulls {
@@ -32,23 +35,26 @@ pub struct Tangents {
 }
 
 impl Form {
-    /// Number of its particles. Of an angle the second is the vertex; of a dihedral the second and third are the axis.
+    /// Number of its particles. Of an angle the second is the vertex; of a dihedral and an improper the second and third are the axis.
     pub fn particles(&self) -> usize {
         match self {
             Form::HarmonicBond { .. } => 2,
             Form::HarmonicAngle { .. }
             | Form::CosineAngle { .. }
             | Form::CosineSquaredAngle { .. } => 3,
-            Form::Dihedral { .. } => 4,
+            Form::Dihedral { .. } | Form::HarmonicImproper { .. } => 4,
         }
     }
 
-    /// Which part of a potential it belongs to.
-    pub fn part(&self) -> &'static str {
-        match self.particles() {
-            2 => "bonds",
-            3 => "angles",
-            _ => "dihedrals",
+    /// Which of [`PARTS`] it belongs to.
+    pub fn part(&self) -> usize {
+        match self {
+            Form::HarmonicBond { .. } => 0,
+            Form::HarmonicAngle { .. }
+            | Form::CosineAngle { .. }
+            | Form::CosineSquaredAngle { .. } => 1,
+            Form::Dihedral { .. } => 2,
+            Form::HarmonicImproper { .. } => 3,
         }
     }
 
@@ -76,6 +82,10 @@ impl Form {
                 (off * off).times(*stiffness)
             }
             Form::Dihedral { powers } => dihedral::polynomial(powers, dihedral::cosine(xi)),
+            Form::HarmonicImproper { stiffness, angle } => {
+                let wider = angle::arc_cosine(dihedral::cosine(xi)).plus(-angle);
+                (wider * wider).times(*stiffness)
+            }
         }
     }
 

@@ -34,6 +34,10 @@ fn forms() -> Vec<Form> {
         Form::Dihedral {
             powers: vec![0.3, -1.2, 0.4, 2.0, 0.0, -0.7],
         },
+        Form::HarmonicImproper {
+            stiffness: 7.0,
+            angle: 0.3,
+        },
     ]
 }
 
@@ -83,11 +87,47 @@ fn by_vectors(form: &Form, x: &[[f64; 3]; 4]) -> f64 {
             cosine: best,
         } => stiffness * (cosine - best).powi(2),
         Form::Dihedral { powers } => {
-            let m = cross(minus(x[1], x[0]), minus(x[2], x[1]));
-            let n = cross(minus(x[2], x[1]), minus(x[3], x[2]));
-            let c = dot(m, n) / (dot(m, m) * dot(n, n)).sqrt();
+            let c = between_planes(x);
             (0..).zip(powers).map(|(n, p)| p * c.powi(n)).sum()
         }
+        Form::HarmonicImproper { stiffness, angle } => {
+            stiffness * (between_planes(x).acos() - angle).powi(2)
+        }
+    }
+}
+
+/// Cosine of the angle between the planes of the first and of the last three.
+fn between_planes(x: &[[f64; 3]; 4]) -> f64 {
+    let m = cross(minus(x[1], x[0]), minus(x[2], x[1]));
+    let n = cross(minus(x[2], x[1]), minus(x[3], x[2]));
+    dot(m, n) / (dot(m, m) * dot(n, n)).sqrt()
+}
+
+/// A flat improper with χ₀ = 0 is at rest and stiff: `K χ²` of the height of the first over the plane of the others.
+#[test]
+fn an_improper_is_smooth_where_it_is_flat() {
+    let form = Form::HarmonicImproper {
+        stiffness: 7.0,
+        angle: 0.0,
+    };
+    let flat = [[0.2, 1.0, 0.0], [0.0; 3], [1.5, 0.0, 0.0], [1.1, 1.3, 0.0]];
+    for height in [1e-2f64, 1e-3, 1e-4] {
+        let mut x = flat;
+        x[0][2] = height;
+        let chi = height.atan();
+        let xi = distances(&form, &x);
+        let found = form.pulls(&xi);
+        assert!((found.energy - 7.0 * chi * chi).abs() < 1e-13);
+        let mut pulled = 0.0;
+        for ((a, b), g) in form.pairs().iter().zip(found.pulls) {
+            let y = x[*a][2] - x[*b][2];
+            pulled += g * y * (f64::from(u8::from(*a == 0)) - f64::from(u8::from(*b == 0)));
+        }
+        let slope = 14.0 * chi / (1.0 + height * height);
+        assert!(
+            (pulled / slope - 1.0).abs() < 1e-7,
+            "{height}: {pulled} {slope}"
+        );
     }
 }
 

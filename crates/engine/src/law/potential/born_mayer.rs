@@ -1,5 +1,6 @@
 //! Born-Mayer: `φ = A e^((σ − r)/ρ) − C / r⁶ + D / r⁸` (Born & Mayer 1932; Huggins & Mayer 1933; signs as LAMMPS's `born`).
 
+use super::constants::{Constants, MOST, Same};
 use super::cut::{self, Cut, Ends};
 use super::{Described, Potential};
 use crate::columns::Dimension;
@@ -28,10 +29,28 @@ impl Potential for BornMayer {
 
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {
-        let repulsion = q.sqrt().plus(-self.sigma).times(-1.0 / self.range).exp();
+        self.pair_of(Same(&self.constants()), q)
+    }
+
+    const CONSTANTS: usize = 5;
+
+    #[inline(always)]
+    fn constants(&self) -> [f64; MOST] {
+        let mut all = [0.0; MOST];
+        all[0] = -self.sigma;
+        all[1] = -1.0 / self.range;
+        all[2] = self.strength;
+        all[3] = -self.eighth;
+        all[4] = self.dispersion;
+        all
+    }
+
+    #[inline(always)]
+    fn pair_of<N: Number>(&self, of: impl Constants<N>, q: N) -> N {
+        let repulsion = of.times(of.plus(q.sqrt(), 0), 1).exp();
         let inverse = q.recip();
-        let attraction = inverse.times(-self.eighth).plus(self.dispersion);
-        repulsion.times(self.strength) - inverse.power(3) * attraction
+        let attraction = of.plus(of.times(inverse, 3), 4);
+        of.times(repulsion, 2) - inverse.power(3) * attraction
     }
 }
 

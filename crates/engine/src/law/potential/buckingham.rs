@@ -1,5 +1,6 @@
 //! Buckingham: `φ = A e^(−r/ρ) − C / r⁶` (Buckingham 1938). It falls to −∞ at r = 0.
 
+use super::constants::{Constants, MOST, Same};
 use super::cut::{self, Cut, Ends};
 use super::{Described, Potential};
 use crate::columns::Dimension;
@@ -25,8 +26,24 @@ impl Potential for Buckingham {
 
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {
-        let repulsion = q.sqrt().times(-1.0 / self.range).exp();
-        repulsion.times(self.strength) - q.recip().power(3).times(self.dispersion)
+        self.pair_of(Same(&self.constants()), q)
+    }
+
+    const CONSTANTS: usize = 3;
+
+    #[inline(always)]
+    fn constants(&self) -> [f64; MOST] {
+        let mut all = [0.0; MOST];
+        all[0] = -1.0 / self.range;
+        all[1] = self.strength;
+        all[2] = self.dispersion;
+        all
+    }
+
+    #[inline(always)]
+    fn pair_of<N: Number>(&self, of: impl Constants<N>, q: N) -> N {
+        let repulsion = of.times(q.sqrt(), 0).exp();
+        of.times(repulsion, 1) - of.times(q.recip().power(3), 2)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Ends of pair potentials: cut, shifted to zero energy, shifted to zero energy and force, or switched off smoothly.
 
 use super::Potential;
+use super::constants::{Constants, MOST, Same};
 use crate::columns::Dimension;
 use crate::law::descriptor::{Bounds, Key, Need, Wrong, number, word};
 use crate::law::number::{Dual, Number};
@@ -148,32 +149,35 @@ pub struct Cut<P> {
     potential: P,
     cutoff: f64,
     end: End,
-    /// Energy and slope in r that are taken away.
-    level: f64,
-    slope: f64,
-    center: f64,
+    /// What the end does: `φ + [0]`, less `[2] (r + [1])`; or φ times the switch of `[2] (r + [1])`.
+    ending: [f64; ENDING],
 }
+
+const ENDING: usize = 3;
 
 impl<P: Potential> Cut<P> {
     /// `potential`, ended.
     pub fn new(potential: P, Ends { cutoff, end }: Ends) -> Self {
-        let mut cut = Cut {
+        let last = || match cutoff.is_finite() {
+            true => potential.pair(Dual::variable(cutoff * cutoff)),
+            false => Dual::constant(0.0),
+        };
+        let ending = match end {
+            End::Truncated => [0.0; ENDING],
+            End::Shifted => [-last().value, 0.0, 0.0],
+            // dφ/dr = 2 r dφ/dq
+            End::ShiftedForce if cutoff.is_finite() => {
+                [-last().value, -cutoff, 2.0 * cutoff * last().slope]
+            }
+            End::ShiftedForce => [0.0; ENDING],
+            End::Smooth(near) => [0.0, -near, 1.0 / (cutoff - near)],
+        };
+        Cut {
             potential,
             cutoff,
             end,
-            level: 0.0,
-            slope: 0.0,
-            center: 0.0,
-        };
-        if cutoff.is_finite() && matches!(end, End::Shifted | End::ShiftedForce) {
-            let last = cut.potential.pair(Dual::variable(cutoff * cutoff));
-            cut.level = last.value;
-            if end == End::ShiftedForce {
-                // dφ/dr = 2 r dφ/dq
-                (cut.slope, cut.center) = (2.0 * cutoff * last.slope, cutoff);
-            }
+            ending,
         }
-        cut
     }
 }
 
@@ -194,17 +198,38 @@ impl<P: Potential> Potential for Cut<P> {
 
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {
-        let whole = self.potential.pair(q);
+        self.pair_of(Same(&self.constants()), q)
+    }
+
+    const CONSTANTS: usize = match P::CONSTANTS {
+        0 => 0,
+        n => n + ENDING,
+    };
+
+    #[inline(always)]
+    fn constants(&self) -> [f64; MOST] {
+        let mut all = self.potential.constants();
+        for (n, x) in self.ending.iter().enumerate() {
+            all[P::CONSTANTS + n] = *x;
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn pair_of<N: Number>(&self, of: impl Constants<N>, q: N) -> N {
+        let whole = self.potential.pair_of(of, q);
+        let [level, start, factor] = [P::CONSTANTS, P::CONSTANTS + 1, P::CONSTANTS + 2];
         match self.end {
             End::Truncated => whole,
-            End::Shifted => whole.plus(-self.level),
-            End::ShiftedForce => {
-                whole.plus(-self.level) - q.sqrt().plus(-self.center).times(self.slope)
-            }
-            End::Smooth(near) => {
-                whole * switch(q.sqrt().plus(-near).times(1.0 / (self.cutoff - near)))
-            }
+            End::Shifted => of.plus(whole, level),
+            End::ShiftedForce => of.plus(whole, level) - of.times(of.plus(q.sqrt(), start), factor),
+            End::Smooth(_) => whole * switch(of.times(of.plus(q.sqrt(), start), factor)),
         }
+    }
+
+    fn is_alike(&self, other: &Self) -> bool {
+        let same = std::mem::discriminant(&self.end) == std::mem::discriminant(&other.end);
+        same && self.potential.is_alike(&other.potential)
     }
 
     #[inline(always)]

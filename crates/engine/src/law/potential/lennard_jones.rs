@@ -1,5 +1,6 @@
 //! Lennard-Jones: `φ = 4ε [(σ/r)¹² − (σ/r)⁶]` (Jones 1924; seleson2009 (5.1)).
 
+use super::constants::{Constants, MOST, Same};
 use super::cut::{self, Cut, Ends};
 use super::{Described, KeptReach, Potential, Unlike};
 use crate::columns::Dimension;
@@ -23,8 +24,23 @@ impl Potential for LennardJones {
 
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {
-        let s6 = q.recip().times(self.sigma * self.sigma).power(3);
-        (s6 * s6 - s6).times(4.0 * self.epsilon)
+        self.pair_of(Same(&self.constants()), q)
+    }
+
+    const CONSTANTS: usize = 2;
+
+    #[inline(always)]
+    fn constants(&self) -> [f64; MOST] {
+        let mut all = [0.0; MOST];
+        all[0] = self.sigma * self.sigma;
+        all[1] = 4.0 * self.epsilon;
+        all
+    }
+
+    #[inline(always)]
+    fn pair_of<N: Number>(&self, of: impl Constants<N>, q: N) -> N {
+        let s6 = of.times(q.recip(), 0).power(3);
+        of.times(s6 * s6 - s6, 1)
     }
 }
 

@@ -7,6 +7,9 @@ use super::{Described, Potential, make};
 use crate::law::descriptor::Wrong;
 use crate::spec::{Mixing, Parameters};
 
+/// Kinds whose pairs are evaluated side by side.
+pub const FEW: usize = 4;
+
 /// A potential of several kinds of atoms, or of one.
 #[derive(Debug, Clone)]
 pub struct Mixture<P> {
@@ -58,6 +61,15 @@ impl<P: Potential> Mixture<P> {
     pub fn reach(&self) -> f64 {
         let all = self.of.iter().flatten().map(Potential::cutoff);
         all.fold(0.0, f64::max)
+    }
+
+    /// Can pairs of several kinds be evaluated side by side? They differ in constants alone, and are of a few kinds.
+    pub fn is_side_by_side(&self) -> bool {
+        let mut each = self.each();
+        let few = (2..=FEW).contains(&self.kinds);
+        few && each.next().is_some_and(|first| {
+            P::CONSTANTS > 0 && first.is_alike(first) && each.all(|p| p.is_alike(first))
+        })
     }
 
     /// What all pairs have.

@@ -7,6 +7,7 @@
 pub mod born_mayer;
 pub mod buckingham;
 pub mod bulk;
+pub mod constants;
 pub mod cut;
 mod described;
 pub mod lennard_jones;
@@ -20,6 +21,7 @@ pub use described::{Described, KeptReach, Kinds, Unlike, Visitor};
 pub(crate) use described::{look_up, make};
 
 use super::number::Number;
+use constants::{Constants, MOST};
 use std::sync::Arc;
 
 /// All that come with the engine, a line each.
@@ -55,6 +57,26 @@ pub trait Potential: Clone + Send + Sync + 'static {
 
     /// Pair energy φ (energy) of `q = r²`.
     fn pair<N: Number>(&self, q: N) -> N;
+
+    /// How many constants the pair energy has, if it is written as a function of them ([`Potential::pair_of`]): then pairs of several kinds
+    /// are evaluated side by side.
+    const CONSTANTS: usize = 0;
+
+    /// Its constants, in an order of its own; 0 beyond.
+    fn constants(&self) -> [f64; MOST] {
+        [0.0; MOST]
+    }
+
+    /// φ with these constants in place of its own.
+    #[inline(always)]
+    fn pair_of<N: Number>(&self, _of: impl Constants<N>, q: N) -> N {
+        self.pair(q)
+    }
+
+    /// Does it differ from another in constants alone?
+    fn is_alike(&self, _other: &Self) -> bool {
+        Self::CONSTANTS > 0
+    }
 
     /// Density f that an atom adds at the distance `√q`.
     fn density<N: Number>(&self, _q: N) -> N {

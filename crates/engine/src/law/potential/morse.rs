@@ -1,5 +1,6 @@
 //! Morse: `φ = D [e^(−2α(r−r0)) − 2 e^(−α(r−r0))]` (Morse 1929).
 
+use super::constants::{Constants, MOST, Same};
 use super::cut::{self, Cut, Ends};
 use super::{Described, Potential};
 use crate::columns::Dimension;
@@ -24,8 +25,24 @@ impl Potential for Morse {
 
     #[inline(always)]
     fn pair<N: Number>(&self, q: N) -> N {
-        let e = q.sqrt().plus(-self.distance).times(-self.alpha).exp();
-        (e * e - e.times(2.0)).times(self.depth)
+        self.pair_of(Same(&self.constants()), q)
+    }
+
+    const CONSTANTS: usize = 3;
+
+    #[inline(always)]
+    fn constants(&self) -> [f64; MOST] {
+        let mut all = [0.0; MOST];
+        all[0] = -self.distance;
+        all[1] = -self.alpha;
+        all[2] = self.depth;
+        all
+    }
+
+    #[inline(always)]
+    fn pair_of<N: Number>(&self, of: impl Constants<N>, q: N) -> N {
+        let e = of.times(of.plus(q.sqrt(), 0), 1).exp();
+        of.times(e * e - e.times(2.0), 2)
     }
 }
 

@@ -9,6 +9,7 @@ use super::error::DeckError;
 use super::source::Source;
 use super::syntax;
 use super::units::UnitSystem;
+use super::whole::Whole;
 use super::{Dim, locate};
 use crate::write::folder::stays;
 use peridyne::error::BuildError;
@@ -67,7 +68,7 @@ impl LawDeck {
     ) -> Result<LawDeck, DeckError> {
         let source = Source::new(text, file_name, overrides);
         let tree = source.tree()?;
-        let document = LawDocument::deserialize(toml::de::Deserializer::from(tree))
+        let document = LawDocument::deserialize(Whole(toml::de::Deserializer::from(tree)))
             .map_err(|e| syntax::mistake(&source, e.span(), e.message()))?;
         let lowered = lower::lower(&source, &document)?;
         let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));

@@ -4,7 +4,7 @@ use crate::deck::value::At;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Bonds, angles and dihedrals of `body.file`, a LAMMPS data file whose sections of coefficients name their styles
+/// Bonds, angles, dihedrals and impropers of `body.file`, a LAMMPS data file whose sections of coefficients name their styles
 /// (`Bond Coeffs # harmonic`).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -434,7 +434,7 @@ pub(super) fn molecules(
         (None, Some(file)) if bonded => {
             return Err(context.error_with(
                 &file.span,
-                "the file has bonds, angles or dihedrals, and the deck does not ask for them",
+                "the file has bonds, angles, dihedrals or impropers, and the deck does not ask for them",
                 "add molecules = { special = [0, 0, 0] }: what is left of the potential between atoms that are one, two and three bonds apart",
             ));
         }
@@ -443,8 +443,8 @@ pub(super) fn molecules(
         (Some(written), _) => {
             return Err(context.error_with(
                 &written.span,
-                "there are no molecules: no bonds, angles or dihedrals in body.file",
-                "give a LAMMPS data file of atom_style molecular, or remove this key",
+                "there are no molecules: no bonds, angles, dihedrals or impropers in body.file",
+                "give a LAMMPS data file of atom_style molecular or full, or remove this key",
             ));
         }
     };

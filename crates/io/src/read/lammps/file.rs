@@ -1,4 +1,4 @@
-//! Data files of `atom_style peri` and `atomic`.
+//! Data files of `atom_style peri`, `atomic`, `molecular` and `full` without charges.
 
 use super::lines::{Lines, Result, finite};
 use std::io::BufRead;
@@ -12,18 +12,35 @@ pub enum Style {
     Atomic,
     /// `id molecule type x y z [ix iy iz]`
     Molecular,
+    /// `id molecule type charge x y z [ix iy iz]`
+    Full,
 }
 
 impl Style {
+    /// Where an atom's type stands; of molecules the number comes before it.
+    fn kind_at(self) -> usize {
+        match self {
+            Style::Peri | Style::Atomic => 1,
+            Style::Molecular | Style::Full => 2,
+        }
+    }
+
+    /// Can its atoms be bonded?
+    fn bonds(self) -> bool {
+        self.kind_at() == 2
+    }
+
     /// Numbers of an atom without image flags.
     fn columns(self) -> usize {
         match self {
             Style::Peri => 7,
             Style::Atomic => 5,
             Style::Molecular => 6,
+            Style::Full => 7,
         }
     }
 
+    /// [`Style::Full`] has as many as [`Style::Peri`] and must be named.
     fn of(columns: usize) -> Option<Style> {
         let styles = [Style::Peri, Style::Atomic, Style::Molecular];
         styles
@@ -47,7 +64,7 @@ pub struct DataFile {
     pub atoms: DataAtoms,
     /// Image flags other than 0 were present (and are dropped).
     pub had_images: bool,
-    /// Are there bonds, angles or dihedrals?
+    /// Are there bonds, angles, dihedrals or impropers?
     pub bonded: bool,
 }
 
@@ -79,16 +96,18 @@ impl DataAtoms {
 
 const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
 /// What bonds atoms.
-const BONDED: [&str; 6] = [
+const BONDED: [&str; 8] = [
     "Bonds",
     "Angles",
     "Dihedrals",
+    "Impropers",
     "Bond Coeffs",
     "Angle Coeffs",
     "Dihedral Coeffs",
+    "Improper Coeffs",
 ];
 
-/// Reads a data file of `atom_style peri` or `atomic`.
+/// Reads a data file of `atom_style peri`, `atomic`, `molecular` or `full`; charges of the last must be 0.
 ///
 /// # Errors
 /// File and line of the first mistake.
@@ -117,9 +136,6 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
                     return Err(lines.fail(format!("the box is empty: {low} is not below {high}")));
                 }
                 bounds[usize::from(a.as_bytes()[0] - b'x')] = Some([low, high]);
-            }
-            [n, "impropers"] if n != "0" => {
-                return Err(lines.fail("impropers are not supported"));
             }
             [n, "bonds" | "angles" | "dihedrals" | "impropers"] => bonded |= n != "0",
             [_, "bond" | "angle" | "dihedral" | "improper", "types"] => {}
@@ -159,10 +175,10 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
             }
             ("Masses", _) => masses = read_masses(&mut lines, types)?,
             (name, _) if BONDED.contains(&name) => {
-                if style.is_some_and(|s| s != Style::Molecular) {
+                if style.is_some_and(|s| !s.bonds()) {
                     return Err(lines
                         .fail(format!("`{name}` is not supported in this atom_style"))
-                        .help("write `Atoms # molecular` and id molecule type x y z"));
+                        .help("write `Atoms # molecular` and id molecule type x y z, or `Atoms # full` and id molecule type charge x y z"));
                 }
                 // another reader looks at them
                 bonded = true;
@@ -196,10 +212,10 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
         }
     }
     let style = style.unwrap_or(Style::Peri);
-    if bonded && style != Style::Molecular {
+    if bonded && !style.bonds() {
         return Err(lines
-            .fail("bonds, angles and dihedrals belong to `atom_style molecular`")
-            .help("write `Atoms # molecular` and id molecule type x y z"));
+            .fail("bonds, angles, dihedrals and impropers belong to `atom_style molecular`")
+            .help("write `Atoms # molecular` and id molecule type x y z, or `Atoms # full` and id molecule type charge x y z"));
     }
     let atoms = atoms.unwrap_or_default();
     Ok(DataFile {
@@ -223,10 +239,11 @@ fn told_style<R: BufRead>(lines: &Lines<R>) -> Result<Option<Style>> {
         "peri" => Ok(Some(Style::Peri)),
         "atomic" => Ok(Some(Style::Atomic)),
         "molecular" | "bond" | "angle" => Ok(Some(Style::Molecular)),
+        "full" => Ok(Some(Style::Full)),
         "" => Ok(None),
         other => Err(lines
             .fail(format!("atom_style `{other}` is not supported"))
-            .help("supported: peri, atomic, bond, angle, molecular")),
+            .help("supported: peri, atomic, bond, angle, molecular, full")),
     }
 }
 
@@ -331,17 +348,27 @@ fn read_atoms<R: BufRead>(
                     columns + 3,
                     words.len()
                 ))
-                .help("atom_style peri: id type volume density x y z [ix iy iz]; atom_style atomic: id type x y z [ix iy iz]; atom_style molecular: id molecule type x y z [ix iy iz]"));
+                .help("atom_style peri: id type volume density x y z [ix iy iz]; atom_style atomic: id type x y z [ix iy iz]; atom_style molecular: id molecule type x y z [ix iy iz]; `Atoms # full`: id molecule type charge x y z [ix iy iz]"));
         }
         let id = whole(lines, &words[0])?;
-        // a molecule's number comes between
-        let kind_at = if told == Style::Molecular { 2 } else { 1 };
+        let mut kind_at = told.kind_at();
         let kind = whole(lines, &words[kind_at])?;
         if id == 0 {
             return Err(lines.fail("atom ids start at 1"));
         }
         if !(1..=types).contains(&kind) {
             return Err(lines.fail(format!("atom type {kind} is not between 1 and {types}")));
+        }
+        if told == Style::Full {
+            kind_at += 1;
+            let charge = finite(&words[kind_at]).map_err(|e| lines.fail(e))?;
+            if charge != 0.0 {
+                return Err(lines
+                    .fail(format!(
+                        "atom {id} has the charge {charge}, and there is no Coulomb law"
+                    ))
+                    .help("charges of `atom_style full` must be 0"));
+            }
         }
         let mut v = [1.0; 5];
         let numbers = &words[kind_at + 1..columns];

@@ -7,12 +7,13 @@ use peridyne::spec::Form;
 
 const BONDS: &str = "harmonic";
 const ANGLES: &str = "harmonic, cosine, cosine/squared";
+const IMPROPERS: &str = "harmonic";
 const DIHEDRALS: &str = "opls, harmonic, charmm, fourier, multi/harmonic, nharmonic";
 
-/// The form of so many atoms that words of a style mean.
+/// The form of a part ([`peridyne::law::bonded::PARTS`]) that words of a style mean.
 pub(super) fn form(
     lines: &Lines,
-    atoms: usize,
+    part: usize,
     style: &str,
     words: &[&str],
     length: f64,
@@ -22,34 +23,38 @@ pub(super) fn form(
     for word in words {
         numbers.push(lines.finite(Some(word), "a coefficient")?);
     }
-    let made = match (atoms, style, &numbers[..]) {
-        (2, "harmonic", &[k, r]) => Form::HarmonicBond {
+    let made = match (part, style, &numbers[..]) {
+        (0, "harmonic", &[k, r]) => Form::HarmonicBond {
             stiffness: k * energy / (length * length),
             length: r * length,
         },
-        (3, "harmonic", &[k, degrees]) => Form::HarmonicAngle {
+        (1, "harmonic", &[k, degrees]) => Form::HarmonicAngle {
             stiffness: k * energy,
             angle: degrees.to_radians(),
         },
-        (3, "cosine", &[k]) => Form::CosineAngle {
+        (1, "cosine", &[k]) => Form::CosineAngle {
             stiffness: k * energy,
         },
-        (3, "cosine/squared", &[k, degrees]) => Form::CosineSquaredAngle {
+        (1, "cosine/squared", &[k, degrees]) => Form::CosineSquaredAngle {
             stiffness: k * energy,
             cosine: degrees.to_radians().cos(),
         },
-        (4, _, numbers) => {
+        (3, "harmonic", &[k, degrees]) => Form::HarmonicImproper {
+            stiffness: k * energy,
+            angle: degrees.to_radians(),
+        },
+        (2, _, numbers) => {
             let powers = dihedral(lines, style, numbers)?;
             Form::Dihedral {
                 powers: powers.iter().map(|p| p * energy).collect(),
             }
         }
-        (2, "harmonic", _) | (3, "harmonic" | "cosine" | "cosine/squared", _) => {
+        (0 | 3, "harmonic", _) | (1, "harmonic" | "cosine" | "cosine/squared", _) => {
             return Err(other_number(lines, style, numbers.len()));
         }
         _ => {
-            let known = if atoms == 2 { BONDS } else { ANGLES };
-            return Err(unknown(lines, style, known));
+            let known = [BONDS, ANGLES, DIHEDRALS, IMPROPERS];
+            return Err(unknown(lines, style, known[part]));
         }
     };
     Ok(made)

@@ -42,6 +42,18 @@ fn terms_name_places_and_constants_grow_with_units() {
 }
 
 #[test]
+fn impropers_are_read_in_degrees() {
+    let made = parse("Improper Coeffs # harmonic\n\n1 4 30\n\nImpropers\n\n1 1 3 5 7 9\n");
+    let made = made.unwrap();
+    let improper = Form::HarmonicImproper {
+        stiffness: 12.0,
+        angle: 30f64.to_radians(),
+    };
+    assert_eq!(made.forms, [improper]);
+    assert_eq!(made.terms[0].points, [0, 1, 2, 3]);
+}
+
+#[test]
 fn what_cannot_be_is_named_with_its_line() {
     let error = |rest: &str| parse(rest).unwrap_err().to_string();
     assert!(error("Bonds\n\n1 1 3 5\n").contains("type 1 has no coefficients"));
@@ -51,6 +63,8 @@ fn what_cannot_be_is_named_with_its_line() {
     assert!(error("Bonds\n\n1 1 3\n").contains("and 2 atoms"));
     let bonds = "Bond Coeffs # harmonic\n\n1 4 1\n\nBonds\n\n1 1 3 6\n";
     assert!(error(bonds).contains("no atom with id 6"));
+    let improper = "Improper Coeffs # cvff\n\n1 2 1 2\n";
+    assert!(error(improper).contains("`cvff` is not known; known are harmonic"));
     let phase = "Dihedral Coeffs # charmm\n\n1 2 3 60 0\n";
     assert!(error(phase).contains("knows left from right"));
 }

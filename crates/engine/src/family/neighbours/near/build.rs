@@ -1,7 +1,7 @@
 //! Making the list anew: atoms wrapped into the box, in order of cells, with their ghosts, and who is near to whom.
 
 use super::cells::{Cells, Extent, Sorted};
-use super::{BLOCK, NOBODY, NearList, Reaches, Tile, atoms_of, ghosts, position};
+use super::{BLOCK, Lines, NOBODY, NearList, Reaches, Tile, atoms_of, ghosts, position};
 use crate::body::{Body, Field};
 use crate::execute::blocks::{PerBlock, Shared, for_each_piece, run_blocks};
 use crate::execute::lane::{Lane, TILE};
@@ -15,24 +15,24 @@ const NOWHERE: f64 = 1e30;
 pub(super) struct Block {
     /// `[lines]` neighbours.
     lines: Vec<[u32; TILE]>,
-    /// `[tile][kind]`: where its lines of neighbours of each kind end.
+    /// `[tile][group]`: where its lines of neighbours of each kind, or of all, end.
     ends: Vec<u32>,
 }
 
 impl Block {
-    /// Its tiles, the first of which has this number; `kind` are those of all atoms, if there are several.
+    /// Its tiles, the first of which has this number; `kind` are those of all atoms, if there are several. Neighbours are in so many groups.
     #[inline(always)]
     pub fn tiles<'a>(
         &'a self,
-        kinds: usize,
+        groups: usize,
         first: usize,
         kind: &'a [u8],
     ) -> impl Iterator<Item = Tile<'a>> {
         let mut start = 0;
-        let each = self.ends.chunks_exact(kinds).enumerate();
+        let each = self.ends.chunks_exact(groups).enumerate();
         each.map(move |(n, ends)| {
             let begin = start;
-            start = ends[kinds - 1] as usize;
+            start = ends[groups - 1] as usize;
             Tile {
                 number: first + n,
                 kind: kind.get((first + n) * TILE).map_or(0, |k| usize::from(*k)),
@@ -45,12 +45,12 @@ impl Block {
 
     /// The lines of one of them.
     #[inline(always)]
-    pub fn tile(&self, n: usize, kinds: usize) -> &[[u32; TILE]] {
+    pub fn tile(&self, n: usize, groups: usize) -> &[[u32; TILE]] {
         let first = match n {
             0 => 0,
-            n => self.ends[n * kinds - 1] as usize,
+            n => self.ends[n * groups - 1] as usize,
         };
-        &self.lines[first..self.ends[(n + 1) * kinds - 1] as usize]
+        &self.lines[first..self.ends[(n + 1) * groups - 1] as usize]
     }
 
     pub fn bytes(&self) -> usize {
@@ -78,12 +78,17 @@ impl<const D: usize> NearList<D> {
         self.position.extend_from_slice(&self.then);
         self.position
             .resize(self.first_ghost(), [NOWHERE * self.reach; 4]);
+        if self.lines == Lines::Mixed {
+            for (x, kind) in self.position.iter_mut().zip(&self.kind) {
+                x[3] = f64::from(*kind);
+            }
+        }
         self.ghosts = ghosts::find(&self.then, &self.period, self.reach);
         let all = self.first_ghost() + self.ghosts.len();
         self.position.resize(all + 1, [NOWHERE * self.reach; 4]);
         ghosts::refresh(&self.ghosts, self.first_ghost(), &mut self.position);
 
-        if self.kinds() > 1 {
+        if self.reaches.kinds > 1 {
             // ghosts are of the kind of what they copy, what is nowhere of any
             self.kind.resize(self.first_ghost(), 0);
             let ghosts = self.ghosts.iter().map(|g| self.kind[g.of as usize]);
@@ -94,8 +99,11 @@ impl<const D: usize> NearList<D> {
         let gap = self.first_ghost() - own;
         let atom = |n: usize| if n < own { n } else { n + gap };
         let at = |n: usize| self.position[atom(n)];
-        let kind = |n: usize| self.kind.get(atom(n)).map_or(0, |k| usize::from(*k));
-        let mut sorted = cells.sort(own + self.ghosts.len(), self.kinds(), kind, at);
+        let group = |n: usize| match self.lines {
+            Lines::ByKind => self.kind(atom(n)),
+            Lines::Mixed => 0,
+        };
+        let mut sorted = cells.sort(own + self.ghosts.len(), self.groups(), group, at);
         for_each_piece(&mut sorted.item, |_, piece| {
             piece.iter_mut().for_each(|n| *n = atom(*n as usize) as u32);
         });
@@ -108,8 +116,19 @@ impl<const D: usize> NearList<D> {
             });
             column
         });
+        let mut of = vec![];
+        if self.lines == Lines::Mixed && !self.reaches.are_equal() {
+            of.resize(sorted.item.len() + TILE, 0.0);
+            for_each_piece(&mut of[..sorted.item.len()], |first, piece| {
+                for (kind, n) in piece.iter_mut().zip(&sorted.item[first..]) {
+                    *kind = f64::from(self.kind[*n as usize]);
+                }
+            });
+        }
         let mut blocks = std::mem::take(&mut self.blocks);
         let kernel = Find {
+            groups: self.groups(),
+            of: &of,
             cells: &cells,
             sorted: &sorted,
             at: &at,
@@ -127,18 +146,21 @@ impl<const D: usize> NearList<D> {
         self.builds += 1;
     }
 
-    /// Put own atoms in order of kinds, and those of a kind in order of cells.
+    /// Put own atoms in order of kinds, and those of a kind in order of cells; where kinds are mixed in order of cells alone.
     fn arrange(&mut self, cells: &Cells<D>, base: &[[f64; 4]], body: &Body<D>, u: &Field<D>) {
         let slots = &body.slots;
-        let kinds = self.kinds();
-        let kind = |n: usize| match kinds {
+        let groups = self.groups();
+        let kind = |n: usize| body.material_of(slots[n] as usize);
+        let group = |n: usize| match groups {
             1 => 0,
-            _ => body.material_of(slots[n] as usize),
+            _ => kind(n),
         };
         let at = |n: usize| position(&base[n], u, slots[n]);
-        let mut order = cells.sort(base.len(), kinds, kind, at).item;
-        if kinds > 1 {
-            (order, self.kind) = in_tiles_of_a_kind(&order, kinds, |n| kind(n as usize) as u8);
+        let mut order = cells.sort(base.len(), groups, group, at).item;
+        if groups > 1 {
+            (order, self.kind) = in_tiles_of_a_kind(&order, groups, |n| kind(n as usize) as u8);
+        } else if self.reaches.kinds > 1 {
+            self.kind = order.iter().map(|n| kind(*n as usize) as u8).collect();
         }
         let nowhere = NOWHERE * self.reach;
         self.base.resize(order.len(), [0.0; 4]);
@@ -223,22 +245,50 @@ struct Find<'a, const D: usize> {
     position: &'a [[f64; 4]],
     order: &'a [u32],
     kind: &'a [u8],
+    /// Groups in which neighbours are found.
+    groups: usize,
+    /// Kinds of the sorted, with room as above; empty where they are known, or do not matter.
+    of: &'a [f64],
     reaches: &'a Reaches,
     skin: f64,
     blocks: Shared<Block>,
 }
 
 impl<const D: usize> Find<'_, D> {
-    /// The atoms of a kind within reach of atom `i`, itself left out.
+    /// How far atom `i` is listed with atoms of a kind, squared; 0: not at all.
     #[inline(always)]
-    fn row<L: Lane>(&self, i: usize, kind: usize, row: &mut Vec<u32>) {
+    fn square(&self, i: usize, kind: usize) -> f64 {
         let own = self.kind.get(i).copied().unwrap_or(0);
-        let reach = self.reaches.between(own, kind as u8);
-        if reach == 0.0 {
+        match self.reaches.between(own, kind as u8) {
+            0.0 => 0.0,
+            reach => (reach + self.skin) * (reach + self.skin),
+        }
+    }
+
+    /// How far it is listed with the sorted ones that begin at `k`.
+    #[inline(always)]
+    fn squares<L: Lane>(&self, i: usize, k: usize) -> L {
+        // SAFETY: there is room for a tile after the last atom
+        let of = unsafe { L::load(self.of.as_ptr().add(k)) };
+        let last = self.reaches.kinds - 1;
+        let mut found = L::splat(self.square(i, last));
+        for kind in (0..last).rev() {
+            let up_to = of.lt(L::splat(kind as f64 + 0.5));
+            found = L::select(up_to, L::splat(self.square(i, kind)), found);
+        }
+        found
+    }
+
+    /// The atoms of a group within reach of atom `i`, itself left out.
+    #[inline(always)]
+    fn row<L: Lane>(&self, i: usize, group: usize, row: &mut Vec<u32>) {
+        let each = !self.of.is_empty();
+        let square = self.square(i, group);
+        if square == 0.0 && !each {
             return;
         }
-        let square = L::splat((reach + self.skin) * (reach + self.skin));
-        let start = self.sorted.starts(kind, self.reaches.kinds);
+        let mut square = L::splat(square);
+        let start = self.sorted.starts(group, self.groups);
         let x = &self.position[i];
         let mut center = [L::splat(0.0); D];
         for a in 0..D {
@@ -255,6 +305,9 @@ impl<const D: usize> Find<'_, D> {
                     // SAFETY: there is room for a tile after the last atom
                     let d = unsafe { L::load(self.at[a].as_ptr().add(k)) } - center[a];
                     q = d.fma(d, q);
+                }
+                if each {
+                    square = self.squares(i, k);
                 }
                 let mut near = L::bits(q.lt(square));
                 if last - k < TILE {
@@ -285,12 +338,12 @@ impl<const D: usize> Kernel for Find<'_, D> {
         let mut rows: [Vec<u32>; TILE] = Default::default();
         let own = self.order.len();
         for t in b * BLOCK..((b + 1) * BLOCK).min(own.div_ceil(TILE)) {
-            for kind in 0..self.reaches.kinds {
+            for group in 0..self.groups {
                 for (l, row) in rows.iter_mut().enumerate() {
                     row.clear();
                     let i = t * TILE + l;
                     if i < own && self.order[i] != NOBODY {
-                        self.row::<L>(i, kind, row);
+                        self.row::<L>(i, group, row);
                     }
                 }
                 let first = block.lines.len();

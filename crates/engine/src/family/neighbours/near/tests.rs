@@ -104,7 +104,7 @@ fn reaches(kinds: usize) -> Reaches {
 }
 
 /// Everything that a list holds after being made, moved and made again.
-fn trace(threads: usize, kinds: usize) -> Vec<u64> {
+fn trace(threads: usize, kinds: usize, lines: Lines) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(|| {
         let mut random = Random(2);
@@ -112,7 +112,7 @@ fn trace(threads: usize, kinds: usize) -> Vec<u64> {
         let mut body = gas::<3>(20_000, 20.0, true, &mut random);
         mix(&mut body, kinds, &mut random);
         let mut u = body.at_rest();
-        let mut list = NearList::of_kinds(&body, reaches(kinds), 0.2);
+        let mut list = NearList::of_kinds(&body, reaches(kinds), 0.2, lines);
         let mut bits = vec![];
         for (length, anew) in [(0.0, true), (0.05, false), (3.0, true)] {
             for c in &mut u {
@@ -135,39 +135,57 @@ fn trace(threads: usize, kinds: usize) -> Vec<u64> {
 
 #[test]
 fn the_number_of_threads_does_not_show() {
-    for kinds in [1, 3] {
-        let one = trace(1, kinds);
-        assert!(trace(2, kinds) == one && trace(5, kinds) == one);
+    for (kinds, lines) in [(1, Lines::ByKind), (3, Lines::ByKind), (3, Lines::Mixed)] {
+        let one = trace(1, kinds, lines);
+        assert!(trace(2, kinds, lines) == one && trace(5, kinds, lines) == one);
     }
 }
 
 #[test]
 fn lists_of_kinds_are_those_of_all_their_pairs() {
+    for lines in [Lines::ByKind, Lines::Mixed] {
+        of_kinds(lines);
+    }
+}
+
+fn of_kinds(lines: Lines) {
     let mut random = Random(3);
     let length = 6.0;
     let mut body = gas::<3>(700, length, true, &mut random);
     mix(&mut body, 3, &mut random);
     let mut u = body.at_rest();
     let reaches = reaches(3);
-    let mut list = NearList::of_kinds(&body, reaches.clone(), 0.3);
+    let mut list = NearList::of_kinds(&body, reaches.clone(), 0.3, lines);
     for round in 0..3 {
         list.update(&body, &u, Simd::detect());
         let mut found = vec![];
         for tile in (0..list.blocks()).flat_map(|b| list.tiles_of_kinds(b)) {
             for (l, &slot) in list.slots(tile.number).iter().enumerate() {
-                assert_eq!(body.material_of(slot as usize), tile.kind);
-                for kind in 0..3 {
-                    for line in tile.of_kind(kind) {
-                        let Some(j) = list.original(line[l] as usize) else {
-                            continue;
-                        };
-                        assert_eq!(body.material_of(j), kind);
-                        let x = list.positions()[tile.number * TILE + l];
-                        let y = list.positions()[line[l] as usize];
-                        let r2: f64 = (0..3).map(|a| (x[a] - y[a]).powi(2)).sum();
-                        if r2 < reaches.between(tile.kind as u8, kind as u8).powi(2) {
-                            found.push((slot as usize, j));
-                        }
+                let own = body.material_of(slot as usize);
+                assert_eq!(list.kind(tile.number * TILE + l), own);
+                let all: Vec<(usize, &[[u32; TILE]])> = match lines {
+                    Lines::ByKind => (0..3).map(|k| (k, tile.of_kind(k))).collect(),
+                    Lines::Mixed => vec![(3, tile.lines())],
+                };
+                assert!(lines == Lines::Mixed || own == tile.kind);
+                for (group, line) in { all.iter() }.flat_map(|(g, of)| of.iter().map(|l| (*g, l))) {
+                    let Some(j) = list.original(line[l] as usize) else {
+                        continue;
+                    };
+                    let kind = body.material_of(j);
+                    assert_eq!(list.kind(line[l] as usize), kind);
+                    let x = list.positions()[tile.number * TILE + l];
+                    let y = list.positions()[line[l] as usize];
+                    match lines {
+                        Lines::ByKind => assert_eq!(kind, group),
+                        Lines::Mixed => assert_eq!([x[3], y[3]], [own as f64, kind as f64]),
+                    }
+                    let r2: f64 = (0..3).map(|a| (x[a] - y[a]).powi(2)).sum();
+                    let reach = reaches.between(own as u8, kind as u8);
+                    // who is listed is in reach of it with the margin, as far as it moved
+                    assert!(reach > 0.0 && r2 < (reach + 0.3 + 0.3).powi(2));
+                    if r2 < reach.powi(2) {
+                        found.push((slot as usize, j));
                     }
                 }
             }

@@ -1,5 +1,7 @@
 //! The sweeps over current neighbours: lanes run over the atoms of a tile. Of several kinds, all pairs of a line are of one pair of
-//! kinds, so that their potential is the same.
+//! kinds, so that their potential is the same; or, where potentials differ in constants alone, each lane has its own.
+
+mod line;
 
 use crate::body::Values;
 use crate::execute::blocks::Shared;
@@ -10,7 +12,10 @@ use crate::interaction::atoms::{density_fault, embed};
 use crate::interaction::{Fault, VIRIAL};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
-use crate::law::potential::mixture::Mixture;
+use crate::law::potential::mixture::{FEW, Mixture};
+use line::{Alike, Line, Mixed};
+
+pub(super) use line::Table;
 
 pub(super) struct View<'a, const D: usize, P> {
     pub list: &'a NearList<D>,
@@ -19,15 +24,8 @@ pub(super) struct View<'a, const D: usize, P> {
     pub potential: &'a Mixture<P>,
     /// Squared lengths, `[i][j]` of kinds.
     pub limits: &'a [f64],
-}
-
-/// What a tile has with its neighbours of a kind.
-struct Pair<'a, P> {
-    potential: &'a P,
-    /// Squared length.
-    limit: f64,
-    lines: &'a [[u32; TILE]],
-    unlike: bool,
+    /// Where lines are mixed: constants of pairs of kinds, and the potential of any.
+    pub mixed: Option<(&'a Table, &'a P)>,
 }
 
 // SAFETY: the pointer is into the list that the view borrows
@@ -60,70 +58,105 @@ impl<'a, const D: usize, P: Potential> View<'a, D, P> {
         (y, q, j[3])
     }
 
-    /// With neighbours of a kind; `None`: nothing.
-    #[inline(always)]
-    fn pair(&self, tile: &Tile<'a>, kind: usize) -> Option<Pair<'a, P>> {
-        let kinds = self.potential.kinds();
-        Some(Pair {
-            potential: self.potential.of(tile.kind, kind)?,
-            limit: self.limits[tile.kind * kinds + kind],
-            lines: tile.of_kind(kind),
-            unlike: tile.kind != kind,
-        })
-    }
-
     /// Σ f of a tile.
     #[inline(always)]
     fn density<L: Lane>(&self, tile: &Tile<'a>, i: &[L; 4]) -> L {
         let mut density = L::splat(0.0);
-        for kind in 0..self.potential.kinds() {
-            let Some(pair) = self.pair(tile, kind) else {
+        let kinds = self.potential.kinds();
+        for kind in 0..kinds {
+            let Some(potential) = self.potential.of(tile.kind, kind) else {
                 continue;
             };
-            for line in pair.lines {
+            let limit = L::splat(self.limits[tile.kind * kinds + kind]);
+            for line in tile.of_kind(kind) {
                 let (_, q, _) = self.vector(line, i);
-                let f = pair.potential.density(Dual::variable(q)).value;
-                density = density + f.zero_if(q.ge(L::splat(pair.limit)));
+                let f = potential.density(Dual::variable(q)).value;
+                density = density + f.zero_if(q.ge(limit));
             }
         }
         density
     }
 
-    /// Adds the forces of neighbours of a kind.
+    /// Adds what all pairs of a tile say.
     #[inline(always)]
-    fn pulls<const UNLIKE: bool, L: Lane>(
-        &self,
-        pair: &Pair<'a, P>,
-        i: &[L; 4],
-        force: &mut [L; D],
-    ) {
-        for line in pair.lines {
-            let (y, q, other) = self.vector(line, i);
-            let pull = pair.pull::<UNLIKE, L>(q, i[3], other);
-            for a in 0..D {
-                force[a] = pull.fma(y[a], force[a]);
+    fn visit<L: Lane>(&self, tile: &Tile<'a>, i: &[L; 4], sum: &mut impl Sum<L, D>) {
+        if P::CONSTANTS > 0
+            && let Some((table, any)) = self.mixed
+        {
+            let lines = tile.lines();
+            match table.kinds() {
+                2 => self.add(lines, &Mixed::<P, L, 2>::new(any, table, i[3]), i, sum),
+                _ => self.add(lines, &Mixed::<P, L, FEW>::new(any, table, i[3]), i, sum),
             }
+            return;
+        }
+        let kinds = self.potential.kinds();
+        for kind in 0..kinds {
+            let Some(potential) = self.potential.of(tile.kind, kind) else {
+                continue;
+            };
+            let (lines, limit) = (tile.of_kind(kind), self.limits[tile.kind * kinds + kind]);
+            if P::EMBEDDED && tile.kind != kind {
+                self.add(lines, &Alike::<P, true> { potential, limit }, i, sum);
+            } else {
+                self.add(lines, &Alike::<P, false> { potential, limit }, i, sum);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add<L: Lane>(
+        &self,
+        lines: &[[u32; TILE]],
+        says: &impl Line<L>,
+        i: &[L; 4],
+        sum: &mut impl Sum<L, D>,
+    ) {
+        for line in lines {
+            let (y, q, other) = self.vector(line, i);
+            sum.add(says, &y, q, [i[3], other]);
         }
     }
 }
 
-impl<P: Potential> Pair<'_, P> {
-    /// `dφ/dq + (F′_i + F′_j) df/dq`, of unlike atoms `dφ/dq + F′_i df_ij/dq + F′_j df_ji/dq`; 0 beyond the cut-off.
+/// What is gathered from the pairs of a tile.
+trait Sum<L: Lane, const D: usize> {
+    /// Vectors, squared lengths and fourth numbers of a line.
+    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, fourth: [L; 2]);
+}
+
+struct Pulls<L, const D: usize>([L; D]);
+
+impl<L: Lane, const D: usize> Sum<L, D> for Pulls<L, D> {
     #[inline(always)]
-    fn pull<const UNLIKE: bool, L: Lane>(&self, q: L, own: L, other: L) -> L {
-        let at = Dual::variable(q);
-        let pull = if P::EMBEDDED {
-            let [pair, density] = self.potential.both(at);
-            if UNLIKE {
-                let given = self.potential.given(at).slope;
-                given.fma(other, density.slope.fma(own, pair.slope))
-            } else {
-                density.slope.fma(own + other, pair.slope)
+    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, [own, other]: [L; 2]) {
+        let pull = line.pull(q, own, other);
+        for a in 0..D {
+            self.0[a] = pull.fma(y[a], self.0[a]);
+        }
+    }
+}
+
+struct Sums<L> {
+    energy: L,
+    /// Is the virial asked for?
+    asked: bool,
+    virial: [L; 6],
+}
+
+impl<L: Lane, const D: usize> Sum<L, D> for Sums<L> {
+    #[inline(always)]
+    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, [own, other]: [L; 2]) {
+        self.energy = self.energy + line.energy(q, other);
+        if !self.asked {
+            return;
+        }
+        let pull = line.pull(q, own, other);
+        for (v, (m, n)) in self.virial.iter_mut().zip(VIRIAL) {
+            if n < D {
+                *v = (pull * y[m]).fma(y[n], *v);
             }
-        } else {
-            self.potential.pair(at).slope
-        };
-        pull.zero_if(q.ge(L::splat(self.limit)))
+        }
     }
 }
 
@@ -177,19 +210,10 @@ impl<const D: usize, P: Potential> Kernel for Forces<'_, D, P> {
         let view = &self.view;
         for tile in view.list.tiles_of_kinds(block) {
             let i = view.here::<L>(tile.number);
-            let mut force = [L::splat(0.0); D];
-            for kind in 0..view.potential.kinds() {
-                let Some(pair) = view.pair(&tile, kind) else {
-                    continue;
-                };
-                if P::EMBEDDED && pair.unlike {
-                    view.pulls::<true, L>(&pair, &i, &mut force);
-                } else {
-                    view.pulls::<false, L>(&pair, &i, &mut force);
-                }
-            }
+            let mut force = Pulls([L::splat(0.0); D]);
+            view.visit(&tile, &i, &mut force);
             for a in 0..D {
-                let f = force[a].to_array();
+                let f = force.0[a].to_array();
                 for (f, &slot) in f.iter().zip(view.list.slots(tile.number)) {
                     let scale = 2.0 / self.volume.at(slot as usize);
                     // SAFETY: every slot belongs to one atom
@@ -217,30 +241,15 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
         let mut sum = [0.0; 7];
         for tile in view.list.tiles_of_kinds(block) {
             let i = view.here::<L>(tile.number);
-            let mut energy = L::splat(0.0);
-            let mut virial = [L::splat(0.0); 6];
-            for kind in 0..view.potential.kinds() {
-                let Some(pair) = view.pair(&tile, kind) else {
-                    continue;
-                };
-                for line in pair.lines {
-                    let (y, q, other) = view.vector(line, &i);
-                    let phi = pair.potential.pair(Dual::variable(q)).value;
-                    energy = energy + phi.zero_if(q.ge(L::splat(pair.limit)));
-                    if !self.virial {
-                        continue;
-                    }
-                    let pull = match pair.unlike {
-                        true => pair.pull::<true, L>(q, i[3], other),
-                        false => pair.pull::<false, L>(q, i[3], other),
-                    };
-                    for (v, (m, n)) in virial.iter_mut().zip(VIRIAL) {
-                        if n < D {
-                            *v = (pull * y[m]).fma(y[n], *v);
-                        }
-                    }
-                }
-            }
+            let mut sums = Sums {
+                energy: L::splat(0.0),
+                asked: self.virial,
+                virial: [L::splat(0.0); 6],
+            };
+            view.visit(&tile, &i, &mut sums);
+            let Sums {
+                mut energy, virial, ..
+            } = sums;
             energy = energy * L::splat(0.5);
             if P::EMBEDDED
                 && let Some(own) = view.potential.own(tile.kind)
