@@ -6,6 +6,12 @@
 //! modulus would. `Σ ω ν V z⊗ξ = 0`, so it does no work on F: `W = ψ + (g/2) Σ ω ν V z²`.
 //! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
 
+pub mod correspondence;
+pub mod hardening;
+pub mod hypoelastic;
+pub mod hypoelastic_plastic;
+pub mod rate;
+
 use super::tensor::{self, Matrix};
 use super::{Bond, Columns, End, Free, Material, Numbers, Site, Source};
 use crate::columns::{Declaration, Dimension, Shape};
@@ -27,11 +33,22 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         vec![]
     }
 
+    /// [`Material::failure`]
+    fn failure(&self) -> Option<usize> {
+        None
+    }
+
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
 
     /// Shear modulus of small strains (pressure).
     fn shear(&self, material: usize) -> f64;
+
+    /// What was dissipated between two memories (energy / volume); what is stored then leaves it out.
+    #[inline(always)]
+    fn dissipated<N: Number>(&self, _before: &Self::Past<N>, _after: &Self::Past<N>) -> N {
+        N::constant(0.0)
+    }
 
     /// At `F = 1 + H`, without cancellation where H is small.
     fn stress<N: Number>(
@@ -47,7 +64,7 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
 pub struct Stressed<N, P, const D: usize> {
     /// First Piola–Kirchhoff stress P.
     pub stress: Matrix<N, D>,
-    /// What is stored, or the work done where nothing is (energy / volume).
+    /// What is stored and what the step dissipated, or the work done where nothing is stored (energy / volume).
     pub energy: N,
     /// What is remembered then.
     pub past: P,
@@ -134,6 +151,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
             point: vec![answers.derived()],
             ..Columns::default()
         }
+    }
+
+    fn failure(&self) -> Option<usize> {
+        self.law.failure()
     }
 
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64> {
@@ -227,12 +248,12 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     #[inline(always)]
     fn remember<N: Number>(
         &self,
-        _: &SiteOf<N, L, D>,
+        site: &SiteOf<N, L, D>,
         point: &Self::Point<N>,
         past: &mut L::Past<N>,
     ) -> N {
         *past = point.1;
-        N::constant(0.0)
+        self.law.dissipated(site.past, past)
     }
 }
 
