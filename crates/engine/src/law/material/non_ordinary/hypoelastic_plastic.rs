@@ -292,8 +292,10 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
                 deviator[r][k] = (two * c[SHEAR]).fma(deviator[r][k], old[r][k]);
             }
         }
+        // at rest q has no slope: the least number has none either
+        let square = N::constant(1.5) * double(&deviator, &deviator);
         let trial = Trial {
-            q: (N::constant(1.5) * double(&deviator, &deviator)).sqrt(),
+            q: square.most(N::constant(f64::MIN_POSITIVE)).sqrt(),
             p: bulk.fma(spread, memory[MEAN]),
             deviator,
         };

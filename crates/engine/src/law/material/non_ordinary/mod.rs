@@ -15,6 +15,7 @@ pub mod rate;
 use super::tensor::{self, Matrix};
 use super::{Bond, Columns, End, Free, Material, Numbers, Site, Source};
 use crate::columns::{Declaration, Dimension, Shape};
+use crate::execute::lane::Piece;
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Shelved};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
@@ -68,6 +69,23 @@ pub struct Stressed<N, P, const D: usize> {
     pub energy: N,
     /// What is remembered then.
     pub past: P,
+}
+
+/// [`Classical::stress`], compiled once for each kind of number, whatever asks for it.
+struct Asked<'a, L: Classical<D>, N: Number, const D: usize> {
+    law: &'a L,
+    constants: &'a L::Constants<N>,
+    past: &'a L::Past<N>,
+    h: &'a Matrix<N, D>,
+}
+
+impl<L: Classical<D>, N: Number, const D: usize> Piece for Asked<'_, L, N, D> {
+    type Out = Stressed<N, L::Past<N>, D>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Out {
+        self.law.stress(self.constants, self.past, self.h)
+    }
 }
 
 /// A classical law on a family.
@@ -193,7 +211,12 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     ) {
         let (form, (control, constants)) = (site.form, site.constants);
         let h = gradient(form, &sum);
-        let now = self.law.stress(constants, site.past, &h);
+        let now = N::apart(Asked {
+            law: &self.law,
+            constants,
+            past: site.past,
+            h: &h,
+        });
         let along = tensor::product(&now.stress, &form.0);
         let g = *control * form.1[0];
         let ((out, slope), past) = point;
@@ -239,7 +262,13 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         point: &Self::Point<N>,
     ) -> N {
         let h = gradient(site.form, &sum);
-        let energy = self.law.stress(&site.constants.1, site.past, &h).energy;
+        let strained = N::apart(Asked {
+            law: &self.law,
+            constants: &site.constants.1,
+            past: site.past,
+            h: &h,
+        });
+        let energy = strained.energy;
         // H K Hᵀ = S Hᵀ
         let seen = N::constant(0.5) * point.0.1 * tensor::contraction(&sum, &h);
         known(site.form, energy, N::constant(0.0)) - seen
