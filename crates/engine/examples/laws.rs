@@ -48,6 +48,12 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
             .with("hardening", Parameter::Number(0.1));
         LawSpec::named("elastic_plastic", all)
     };
+    let metal = |yields: f64| {
+        let all = elastic()
+            .with("yield_stress", Parameter::Number(yields))
+            .with("hardening", Parameter::Number(0.1));
+        LawSpec::named("hypoelastic_plastic", all)
+    };
     let branches = |count: usize| {
         let rows = (0..count)
             .map(|b| vec![0.2, 10f64.powi(b as i32)])
@@ -77,6 +83,8 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         ("correspondence, linear", correspondence("linear")),
         ("correspondence, neo_hookean", correspondence("neo_hookean")),
         ("hypoelastic", LawSpec::named("hypoelastic", elastic())),
+        ("metal, elastic yet", metal(1e3)),
+        ("metal, flowing", metal(1e-9)),
         ("softening", LawSpec::named("softening", softening)),
     ]
 }

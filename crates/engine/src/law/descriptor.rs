@@ -479,6 +479,8 @@ pub struct Given<'a> {
     pub micromodulus: Option<f64>,
     /// ∞: bonds never break.
     pub critical_stretch: f64,
+    /// Mass per reference volume.
+    pub density: f64,
     /// Of the full ball, where constants are those of the continuum (length² volume).
     pub weighted_volume: Option<f64>,
 }

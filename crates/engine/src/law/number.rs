@@ -2,7 +2,7 @@
 //! or a Taylor series (elastic constants, gradient coefficients). So every law is written once, and its derivatives are exact.
 
 use super::spline::{Spline, Twin};
-use crate::execute::lane::{Lane, elementary};
+use crate::execute::lane::{Lane, Piece, elementary};
 use std::ops::{Add, Mul, Sub};
 
 /// What a law may do with its arguments. Implemented by every lane, by [`Dual`] and by [`Jet`](super::jet::Jet); a law asks for
@@ -55,6 +55,11 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     }
     /// Is any of these numbers below the limit?
     fn any_below(self, limit: f64) -> bool;
+    /// Do a piece of work out of line, in code of these numbers' instruction set, where they have one.
+    #[inline(always)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        piece.run()
+    }
 
     /// Whole powers, by squaring.
     #[inline(always)]
@@ -123,6 +128,10 @@ impl<L: Lane> Number for L {
     #[inline(always)]
     fn any_below(self, limit: f64) -> bool {
         L::any(self.lt(L::splat(limit)))
+    }
+    #[inline(always)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        <L as Lane>::apart(piece)
     }
     #[inline(always)]
     fn table(self, table: &Spline) -> L {
@@ -316,6 +325,10 @@ impl<L: Lane> Number for Dual<L> {
     #[inline(always)]
     fn any_below(self, limit: f64) -> bool {
         self.value.any_below(limit)
+    }
+    #[inline(always)]
+    fn apart<P: Piece>(piece: P) -> P::Out {
+        <L as Lane>::apart(piece)
     }
     #[inline(always)]
     fn choose(self, limit: Self, a: Self, b: Self) -> Self {

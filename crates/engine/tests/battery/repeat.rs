@@ -102,7 +102,7 @@ fn names(kind: LatticeKind) -> Vec<&'static str> {
         names.extend(["correspondence", "neo-hookean mixed"]);
     }
     if kind == LatticeKind::Cubic {
-        names.extend(["elastic-plastic", "plastic mixed", "hypoelastic"]);
+        names.extend(["elastic-plastic", "plastic mixed", "hypoelastic", "metal and soil"]);
     }
     names
 }

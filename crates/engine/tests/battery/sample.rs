@@ -67,6 +67,14 @@ pub fn materials() -> Vec<Material> {
             elastic(young, 0.3).with("stress", Parameter::Word(stress.into())),
         )
     };
+    let flowing = |yield_stress: f64, hardening: f64, friction: f64| {
+        let more = elastic(3.0, 0.3)
+            .with("yield_stress", Parameter::Number(yield_stress))
+            .with("hardening", Parameter::Number(hardening))
+            .with("friction", Parameter::Number(friction))
+            .with("dilatancy", Parameter::Number(0.5 * friction));
+        LawSpec::named("hypoelastic_plastic", more)
+    };
     let softening = |young: f64| {
         let all = Parameters::numbers(&[("young", young), ("onset", 0.1)]);
         LawSpec::named("softening", all)
@@ -152,6 +160,25 @@ pub fn materials() -> Vec<Material> {
             ..one(
                 "hypoelastic",
                 LawSpec::named("hypoelastic", elastic(3.0, 0.3)),
+                Influence::Inverse,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            ..two(
+                "mooney-rivlin mixed",
+                correspondence(3.0, "mooney_rivlin"),
+                correspondence(1.0, "mooney_rivlin"),
+                Influence::Inverse,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            potential: false,
+            ..two(
+                "metal and soil",
+                flowing(0.06, 0.3, 0.0),
+                flowing(0.08, 0.1, 0.3),
                 Influence::Inverse,
             )
         },

@@ -24,17 +24,21 @@ pub struct Off {
 pub enum Answer {
     /// It is run.
     Met(fn() -> Vec<Off>),
+    /// It is run, and met but for this.
+    Part(fn() -> Vec<Off>, &'static str),
     /// By a test of another file.
     MetBy(&'static str),
     /// It is not met.
     Not(&'static str),
 }
-use Answer::{Met, MetBy, Not};
+use Answer::{Met, MetBy, Not, Part};
 
 const THERMAL: &str = "thermal strains: no law has them";
 const INTERFACE_AWARE: &str = "the position-aware linear solid is no law here";
 const DIFFUSION: &str = "diffusion: no law here";
-const J2: &str = "classical plasticity in rate form is no law here";
+const PLASTIC_STRAIN: &str = "its equivalent plastic strain weighs each increment by the mean of the old and the scaled new direction, which is not of length one: at these steps it is a tenth below the plastic work over the yield stress";
+const HARDENING: &str = "its hardening follows that strain, and its plastic multiplier leaves out the hardening so far: another stress at this step, which tests/peers/correspondence.rs holds beside ours";
+const FLAW: &str = "yield stresses that depend on the place, and what is said of the case without a flaw";
 const BOND_ASSOCIATED: &str =
     "bond-associated: a deformation gradient of its own for each bond, which no law here has";
 
@@ -104,7 +108,7 @@ const CASES: [(&str, Answer); 43] = [
     ),
     (
         "ElasticPlasticCorrespondenceFullyPrescribedTension",
-        Not(J2),
+        Part(correspondence::perfectly_plastic, PLASTIC_STRAIN),
     ),
     (
         "InitialDamage",
@@ -123,11 +127,11 @@ const CASES: [(&str, Answer); 43] = [
     ),
     (
         "IsotropicHardeningPlasticFullyPrescribedTension_NoFlaw",
-        Not(J2),
+        Not(HARDENING),
     ),
     (
         "IsotropicHardeningPlasticFullyPrescribedTension_WithFlaw",
-        Not(J2),
+        Not(FLAW),
     ),
     ("LinearLPSBar", Met(elastic::linear_bar)),
     (
@@ -153,11 +157,11 @@ const CASES: [(&str, Answer); 43] = [
     ),
     (
         "ViscoplasticNeedlemanFullyPrescribedTension_NoFlaw",
-        Not(J2),
+        Not(HARDENING),
     ),
     (
         "ViscoplasticNeedlemanFullyPrescribedTension_WithFlaw",
-        Not(J2),
+        Not(FLAW),
     ),
     ("WaveInBar", Met(elastic::wave_in_bar)),
     ("ep_cube", Met(plastic::cube)),
@@ -168,7 +172,7 @@ fn cases_are_met_at_their_tolerance() {
     let mut missed = vec![];
     for (case, answer) in &CASES {
         match answer {
-            Met(run) => {
+            Met(run) | Part(run, _) => {
                 let all = run();
                 assert!(!all.is_empty());
                 for Off {
@@ -182,6 +186,9 @@ fn cases_are_met_at_their_tolerance() {
                     if !(off <= tolerance) {
                         missed.push(format!("{case}: {what} by {off:e}"));
                     }
+                }
+                if let Part(_, but) = answer {
+                    println!("{case}: not met: {but}");
                 }
             }
             MetBy(file) => println!("{case}: met by {file}"),

@@ -14,13 +14,16 @@ use crate::law::material::{Material, Numbers};
 /// Most numbers that a form has.
 const FORM: usize = 32;
 
-/// Which bonds are beyond their critical stretch; they break later. Knows nothing of laws.
+/// Which bonds are beyond their critical stretch, or between points whose mean damage has reached 1; they break later. Knows nothing
+/// of laws.
 pub struct Test<'a, const D: usize, F> {
     pub family: &'a F,
     pub moved: Moved<'a, D>,
     pub body: &'a Body<D>,
     pub alive: &'a [u8],
     pub critical: &'a [f64],
+    /// Empty: stretches alone decide.
+    pub damage: &'a [f64],
     pub next: Shared,
     pub toughness: &'a [Toughness],
     /// Do points without whole bonds keep the critical stretch that they had?
@@ -43,11 +46,17 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                 let place = f.place::<L>(rows);
                 let u = F::displacement::<L>(&self.moved, rows);
                 let own = rows.one::<L>(self.critical.as_ptr());
+                let fails = !self.damage.is_empty();
+                let damaged = match fails {
+                    true => rows.one::<L>(self.damage.as_ptr()),
+                    false => L::splat(0.0),
+                };
                 let mut lowest = L::splat(f64::INFINITY);
                 let mut torn = 0;
                 for k in 0..f.bonds(group) {
                     let byte = f.byte(group, k);
-                    let dead = L::dead(*self.alive.get_unchecked(byte));
+                    let alive = *self.alive.get_unchecked(byte);
+                    let dead = L::dead(alive);
                     let ends = f.ends(group, k);
                     let mut eta = F::displacement::<L>(&self.moved, ends);
                     for a in 0..D {
@@ -57,7 +66,11 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                     let e = relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead);
                     lowest = e.min(lowest);
                     let other = ends.one::<L>(self.critical.as_ptr());
-                    let breaks = L::bits(other.min(own).lt(e)) as u8;
+                    let mut breaks = L::bits(other.min(own).lt(e)) as u8;
+                    if fails {
+                        let both = damaged + ends.one::<L>(self.damage.as_ptr());
+                        breaks |= L::bits(both.ge(L::splat(2.0))) as u8 & alive;
+                    }
                     *self.breaks.at(byte) = breaks;
                     torn |= breaks;
                 }

@@ -243,6 +243,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + self.point.bytes()
             + self.past.bytes()
             + 8 * (self.memory.len() + self.room.records.len())
-            + 8 * (self.critical.len() + self.next.len())
+            + 8 * (self.critical.len() + self.next.len() + self.damage.len())
     }
 }

@@ -55,6 +55,8 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     /// Critical `e` per slot, now and next; empty: nothing breaks.
     critical: Column,
     next: Column,
+    /// Damage per slot of a law that fails by it ([`Material::failure`]); empty: none does.
+    damage: Column,
     /// Bits of bonds that break in a sweep, and marks of their groups.
     breaks: Vec<u8>,
     torn: Vec<u8>,
@@ -114,11 +116,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
             }
         }
-        let breaks = toughness.iter().any(|t| t.s00.is_finite());
-        let critical = || match breaks {
-            true => Column::new(body.len, f64::INFINITY, field::line(3)),
+        let fails = law.failure().is_some();
+        let breaks = fails || toughness.iter().any(|t| t.s00.is_finite());
+        let column = |is: bool, x: f64| match is {
+            true => Column::new(body.len, x, field::line(3)),
             false => Column::default(),
         };
+        let critical = || column(breaks, f64::INFINITY);
         let several = toughness.len() > 1;
         let store = |numbers| Store::zeros(family.layout(numbers));
         let blocks = family.groups().div_ceil(BLOCK);
@@ -140,6 +144,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             memory: vec![0.0; family.memory() * <M::Memory<f64> as Numbers<f64>>::COUNT],
             critical: critical(),
             next: critical(),
+            damage: column(fails, 0.0),
             breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
             torn: vec![0; if breaks { family.groups() } else { 0 }],
             step: 0.0,
@@ -273,6 +278,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         v: &Field<D>,
         drift: f64,
     ) -> Tally {
+        self.look_damage(body);
         let next = Shared(self.next.as_mut_ptr());
         let breaks = Shared(self.breaks.as_mut_ptr());
         let torn = Shared(self.torn.as_mut_ptr());
@@ -285,6 +291,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             body,
             alive: &self.alive,
             critical: &self.critical,
+            damage: &self.damage,
             next,
             toughness: &self.toughness,
             keeps: M::PASSES > 0,
@@ -309,6 +316,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             drift,
         };
         self.tallies.fold(self.simd, &kernel, Tally::add_assign)
+    }
+
+    /// Damage as the points remember it.
+    fn look_damage(&mut self, body: &Body<D>) {
+        let Some(n) = self.law.failure() else { return };
+        for &slot in &body.slots {
+            self.damage[slot as usize] = self.past.get(n, slot as usize);
+        }
+        body.fill_images(&mut self.damage);
     }
 
     /// Memory at the end of a step.

@@ -5,9 +5,7 @@
 //! so action is reaction whatever the law says.
 
 pub mod bonds;
-pub mod correspondence;
 pub mod elastic_plastic;
-pub mod hypoelastic;
 pub mod non_ordinary;
 pub mod numbers;
 pub mod softening;
@@ -27,8 +25,9 @@ pub fn each(kinds: &mut impl Kinds) {
     kinds.law_or_smaller::<viscoelastic::Viscoelastic, viscoelastic::Viscoelastic<1>>(
         viscoelastic::one_branch,
     );
-    kinds.solid::<NonOrdinary<correspondence::Correspondence>>();
-    kinds.solid::<NonOrdinary<hypoelastic::Hypoelastic>>();
+    kinds.solid::<NonOrdinary<non_ordinary::correspondence::Correspondence>>();
+    kinds.solid::<NonOrdinary<non_ordinary::hypoelastic::Hypoelastic>>();
+    kinds.solid::<NonOrdinary<non_ordinary::hypoelastic_plastic::HypoelasticPlastic>>();
     kinds.law::<softening::Softening>();
 }
 
@@ -246,6 +245,11 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Names of what the law remembers and makes.
     fn columns(&self) -> Columns {
         Columns::default()
+    }
+
+    /// Which number of [`Material::Past`] is a damage: a bond breaks when the mean of its ends reaches 1.
+    fn failure(&self) -> Option<usize> {
+        None
     }
 
     /// Constants of a material for a step of length `dt`; 0: time stands still.

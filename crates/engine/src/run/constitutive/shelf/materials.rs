@@ -107,6 +107,7 @@ struct Made {
     solid: Option<Solid>,
     micromodulus: Option<f64>,
     critical_stretch: f64,
+    density: f64,
 }
 
 /// The law of the shelf that a body's materials name; `None`: they name none.
@@ -145,6 +146,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
                 _ => None,
             },
             critical_stretch: toughness[n].s00,
+            density: spec.materials[n].density,
         });
     }
     let Some(entry) = shelf.entry(&first.name) else {
@@ -214,6 +216,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 solid: made.solid,
                 micromodulus: made.micromodulus,
                 critical_stretch: made.critical_stretch,
+                density: made.density,
                 weighted_volume: chosen.weighted_volume,
             }
         })

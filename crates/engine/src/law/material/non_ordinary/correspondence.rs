@@ -1,9 +1,12 @@
 //! Correspondence (Silling et al. 2007): any classical stress P(F) that is the slope of a stored energy ψ(F), by
-//! [`non_ordinary`](super::non_ordinary).
+//! [`non_ordinary`](super).
 
-use super::non_ordinary::{Classical, Stressed};
-use super::tensor::{self, Matrix};
-use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value};
+use super::{Classical, Stressed};
+use crate::columns::Dimension;
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
+};
+use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
@@ -14,6 +17,9 @@ pub enum Stress {
     Linear,
     /// `ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J` (Bonet & Wood 1997, (5.28)).
     NeoHookean,
+    /// `ψ = C₁₀ (J^(−2/3) I₁ − 3) + C₀₁ (J^(−4/3) I₂ − 3) + κ/2 (J − 1)²`, `C₁₀ = μ/2 − C₀₁` (Mooney 1940; Rivlin 1948; the volume
+    /// apart as by Simo & Taylor 1982).
+    MooneyRivlin,
 }
 
 /// Constants of one material.
@@ -22,6 +28,8 @@ pub struct CorrespondenceConstants {
     /// Lamé's λ of the solid and shear modulus μ.
     pub lame: f64,
     pub shear: f64,
+    /// C₀₁ of Mooney and Rivlin.
+    pub second: f64,
 }
 
 /// See the module. All materials have the same kind of stress.
@@ -36,17 +44,18 @@ pub struct Correspondence {
 
 const LAME: usize = 0;
 const SHEAR: usize = 1;
+const SECOND: usize = 2;
 
 /// Steps of Newton's method for the thickness: from the linear estimate six reach round-off for stretches of 0.3 to 3.
 const THICKNESS_STEPS: usize = 6;
 
 impl<const D: usize> Classical<D> for Correspondence {
-    type Constants<N: Number> = [N; 2];
+    type Constants<N: Number> = [N; 3];
     type Past<N: Number> = [N; 0];
 
-    fn constants(&self, material: usize, _: f64) -> [f64; 2] {
+    fn constants(&self, material: usize, _: f64) -> [f64; 3] {
         let m = &self.materials[material];
-        [m.lame, m.shear]
+        [m.lame, m.shear, m.second]
     }
 
     fn shear(&self, material: usize) -> f64 {
@@ -56,7 +65,7 @@ impl<const D: usize> Classical<D> for Correspondence {
     #[inline(always)]
     fn stress<N: Number>(
         &self,
-        c: &[N; 2],
+        c: &[N; 3],
         past: &[N; 0],
         h: &Matrix<N, D>,
     ) -> Stressed<N, [N; 0], D> {
@@ -125,6 +134,7 @@ impl<const D: usize> Classical<D> for Correspondence {
                 let energy = half * c[SHEAR] * shear + half * pull * volume;
                 (p, energy)
             }
+            Stress::MooneyRivlin => mooney_rivlin(c, h, &twice),
         };
         Stressed {
             stress,
@@ -132,6 +142,61 @@ impl<const D: usize> Classical<D> for Correspondence {
             past: *past,
         }
     }
+}
+
+/// P and ψ of Mooney and Rivlin, from H and A = C − 1: `F − ⅓ I₁ F⁻ᵀ = F⁻ᵀ dev A`, and so on, so that nothing large is taken away. In the
+/// plane nothing is stretched across.
+#[inline(always)]
+fn mooney_rivlin<N: Number, const D: usize>(
+    c: &[N; 3],
+    h: &Matrix<N, D>,
+    a: &Matrix<N, D>,
+) -> (Matrix<N, D>, N) {
+    let (half, third, two) = (N::constant(0.5), N::constant(1.0 / 3.0), N::constant(2.0));
+    let (one, three) = (N::constant(1.0), N::constant(3.0));
+    let trace = tensor::trace(a);
+    let second = half * (trace * trace - tensor::contraction(a, a));
+    let beyond = tensor::dilation(h);
+    // J² − 1 = tr A + rest, and t = ⅓ ln J²
+    let rest = tensor::dilation_beyond(a);
+    let square = trace + rest;
+    let t = third * square.ln_1p();
+    let log = ln_rest(square);
+    let (first, other) = (half * c[SHEAR] - c[SECOND], c[SECOND]);
+    // J^(−2/3) and J^(−4/3)
+    let shrink = (N::constant(0.0) - t).exp();
+    let both = shrink * shrink;
+    let of_first = N::constant(0.0) - rest - log - three * exp_rest(t);
+    let of_second = second - two * (rest + log) - three * exp_rest(two * t);
+    let bulk = N::constant(2.0 / 3.0).fma(c[SHEAR], c[LAME]);
+    let energy =
+        first * shrink * of_first + other * both * of_second + half * bulk * beyond * beyond;
+    // F⁻ᵀ times this, beside the volume
+    let product = tensor::product(a, a);
+    let (first, other) = (two * first * shrink, two * other * both);
+    let mut state = *a;
+    for r in 0..D {
+        for k in 0..D {
+            let more = trace.fma(a[r][k], a[r][k] - product[r][k]);
+            state[r][k] = first.fma(a[r][k], other * more);
+        }
+        let level = first * trace + other * (trace + two * second);
+        state[r][r] = state[r][r] - third * level;
+    }
+    let cofactors = tensor::cofactor_beyond(h);
+    let mut cofactor = cofactors;
+    for r in 0..D {
+        cofactor[r][r] = cofactors[r][r] + one;
+    }
+    let inverse = (one + beyond).recip();
+    let shear = tensor::product(&cofactor, &state);
+    let mut p = shear;
+    for r in 0..D {
+        for k in 0..D {
+            p[r][k] = inverse.fma(shear[r][k], bulk * beyond * cofactor[r][k]);
+        }
+    }
+    (p, energy)
 }
 
 /// `ln(1 + x) − x`, without cancellation: with z = x/(2 + x), `ln(1 + x) = 2 artanh z`.
@@ -163,7 +228,7 @@ const NEAR: f64 = 0.2;
 
 /// x = ln λ₃² with no stress across: `μ (e^x − 1) + λ (ln J₂ + x/2) = 0`.
 #[inline(always)]
-fn thickness<N: Number>(c: &[N; 2], plane: N) -> N {
+fn thickness<N: Number>(c: &[N; 3], plane: N) -> N {
     let (half, two) = (N::constant(0.5), N::constant(2.0));
     let mut x = (N::constant(0.0) - two * c[LAME] * plane).div(two.fma(c[SHEAR], c[LAME]));
     for _ in 0..THICKNESS_STEPS {
@@ -189,10 +254,23 @@ impl Shelved for Correspondence {
                     "neo_hookean",
                     "ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 ln²J (Bonet & Wood 1997)",
                 ),
+                (
+                    "mooney_rivlin",
+                    "ψ = C₁₀ (J^(−2/3) I₁ − 3) + C₀₁ (J^(−4/3) I₂ − 3) + κ/2 (J − 1)², C₁₀ = μ/2 − C₀₁ (Mooney 1940; Rivlin 1948)",
+                ),
             ]),
             need: Need::Word("linear"),
             doc: "Classical law P(F).",
         });
+        keys.push(
+            descriptor::number(
+                "second_invariant",
+                Dimension::PRESSURE,
+                Bounds::NOT_NEGATIVE,
+                "C₀₁ of mooney_rivlin, at most half the shear modulus.",
+            )
+            .or(0.0),
+        );
         Descriptor {
             name: "correspondence".into(),
             doc: "Non-ordinary: T = ω (P(F) K⁻¹ ξ + g z), F from the family, z what it does not see. Two of young, poisson, bulk, shear.".into(),
@@ -212,11 +290,16 @@ impl Shelved for Correspondence {
         let word = |m: &Given| match m.parameters.word("stress") {
             Some("linear") => Some(Stress::Linear),
             Some("neo_hookean") => Some(Stress::NeoHookean),
+            Some("mooney_rivlin") => Some(Stress::MooneyRivlin),
             Some(_) | None => None,
         };
+        let plane_stress = d == 2 && plane == Plane::Stress;
         let mut made = vec![];
         let Some(stress) = materials.first().and_then(word) else {
-            return Err((0, "the stress is linear or neo_hookean".into()));
+            return Err((
+                0,
+                "the stress is linear, neo_hookean or mooney_rivlin".into(),
+            ));
         };
         for (n, m) in materials.iter().enumerate() {
             if word(m) != Some(stress) {
@@ -226,14 +309,34 @@ impl Shelved for Correspondence {
                 ));
             }
             let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
+            let second = m.parameters.number("second_invariant").unwrap_or(0.0);
+            if second > 0.0 && stress != Stress::MooneyRivlin {
+                return Err((n, "`second_invariant` is of mooney_rivlin alone".into()));
+            }
+            if second > 0.5 * moduli.shear() {
+                return Err((
+                    n,
+                    format!(
+                        "`second_invariant` is {second:e}, expected at most half the shear modulus, {:e}: C₁₀ would be negative",
+                        0.5 * moduli.shear()
+                    ),
+                ));
+            }
+            if plane_stress && stress == Stress::MooneyRivlin {
+                return Err((
+                    n,
+                    "mooney_rivlin keeps its thickness in the plane, which is plane strain: write plane = \"strain\", or take neo_hookean".into(),
+                ));
+            }
             made.push(CorrespondenceConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
+                second,
             });
         }
         Ok(Correspondence {
             stress,
-            plane_stress: d == 2 && plane == Plane::Stress,
+            plane_stress,
             materials: made,
         })
     }
@@ -263,14 +366,17 @@ mod tests {
     #[test]
     fn stress_is_the_slope_of_energy() {
         let h = [[0.11, -0.07], [0.2, -0.05]];
-        for stress in [Stress::Linear, Stress::NeoHookean] {
+        for stress in [Stress::Linear, Stress::NeoHookean, Stress::MooneyRivlin] {
             for plane_stress in [false, true] {
+                if plane_stress && stress == Stress::MooneyRivlin {
+                    continue;
+                }
                 let law = Correspondence {
                     stress,
                     plane_stress,
                     materials: vec![],
                 };
-                let c = [1.3, 0.7];
+                let c = [1.3, 0.7, 0.2];
                 let p = law.stress(&c, &[], &h).stress;
                 for r in 0..2 {
                     for s in 0..2 {
@@ -295,5 +401,52 @@ mod tests {
                 assert!((energy / (small * small) - 0.5 * (lame + 1.4)).abs() < 1e-7);
             }
         }
+    }
+
+    /// Mooney and Rivlin in space: P is the slope of ψ, and ψ that of the plain formula.
+    #[test]
+    fn mooney_and_rivlin_in_space() {
+        let law = Correspondence {
+            stress: Stress::MooneyRivlin,
+            plane_stress: false,
+            materials: vec![],
+        };
+        let c = [1.3, 0.7, 0.2];
+        let h = [[0.11, -0.07, 0.3], [0.2, -0.05, 0.1], [-0.15, 0.02, 0.08]];
+        let (p, energy) = {
+            let made = law.stress(&c, &[], &h);
+            (made.stress, made.energy)
+        };
+        let mut f = h;
+        (0..3).for_each(|a| f[a][a] += 1.0);
+        let right = tensor::transposed_product(&f, &f);
+        let j = tensor::determinant(&f);
+        let first = tensor::trace(&right);
+        let second = 0.5 * (first * first - tensor::contraction(&right, &right));
+        let bulk = 1.3 + 2.0 / 3.0 * 0.7;
+        let plain = 0.15 * (j.powf(-2.0 / 3.0) * first - 3.0)
+            + 0.2 * (j.powf(-4.0 / 3.0) * second - 3.0)
+            + 0.5 * bulk * (j - 1.0) * (j - 1.0);
+        assert!((energy - plain).abs() < 1e-14, "{energy} {plain}");
+        for r in 0..3 {
+            for s in 0..3 {
+                let at = |step: f64| {
+                    let mut h = h;
+                    h[r][s] += step;
+                    law.stress(&c, &[], &h).energy
+                };
+                let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
+                assert!(
+                    (slope - p[r][s]).abs() < 1e-9,
+                    "{r}{s}: {slope} {}",
+                    p[r][s]
+                );
+            }
+        }
+        // Hooke's, to the last digits
+        let small = 1e-9;
+        let made = law.stress(&c, &[], &[[small, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        assert!((made.stress[0][0] / small / (1.3 + 1.4) - 1.0).abs() < 1e-8);
+        assert!((made.energy / (small * small) / (0.5 * (1.3 + 1.4)) - 1.0).abs() < 1e-8);
     }
 }

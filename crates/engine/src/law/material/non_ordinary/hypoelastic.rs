@@ -1,30 +1,19 @@
-//! Hypoelastic correspondence: a stress that grows with the rate of deformation, as rate forms of classical codes have it, by
-//! [`non_ordinary`](super::non_ordinary).
+//! Hypoelastic correspondence: a stress that grows with the rate of deformation, as rate forms of classical codes have it: in
+//! a step ([`rate`](super::rate)) the unrotated stress grows by `λ tr(Δε) 1 + 2μ Δε`.
 //!
-//! With `F = RU` the Cauchy stress seen from the turned material, `σ_u = Rᵀ σ R`, has the rate `σ̇_u = λ tr(d) 1 + 2μ d` of the unrotated
-//! rate of deformation `d = Rᵀ D R = sym(U̇ U⁻¹)`: the rate of Green & Naghdi (1965), as Flanagan & Taylor (1987) integrate it. A step adds
-//! `λ tr(Δε) 1 + 2μ Δε` with `Δε = sym(ΔU Ū⁻¹)`: no rotation, however large, is seen. `P = J σ F⁻ᵀ = R σ_u cof(U)`.
 //! In one direction `σ = (λ + 2μ) ln F`. In simple shear it does not oscillate (Dienes 1979).
 //!
 //! Such a law has no potential: what it has for energy is the work of its stress, `ẇ = J σ_u : d`, by the trapezoidal rule, which a closed path
 //! does not give back in full. Energy is balanced with it to second order in the step; where bonds let go after the force, to first order, as
 //! their family then has its stress by another path than its energy.
 
-use super::non_ordinary::{Classical, Stressed};
-use super::tensor::{self, Matrix};
-use crate::columns::{Declaration, Dimension, Shape};
-use crate::law::descriptor::{self, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value};
+use super::rate::{self, INCREMENT, Increment, Step};
+use super::{Classical, Stressed};
+use crate::columns::Declaration;
+use crate::law::descriptor::{self, Descriptor, Given, MODULI, Memory, Shelved};
+use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
-
-/// Where in a step Ū is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Increment {
-    /// The mean of both ends, `½(U + U′)`: of second order (Hughes & Winget 1980).
-    Middle,
-    /// The end: of first order.
-    End,
-}
 
 /// Constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,20 +36,6 @@ const SHEAR: usize = 1;
 
 /// U − 1 and σ_u at the end of the last step, and the work so far.
 type Past<N, const D: usize> = ([Matrix<N, D>; 2], N);
-/// `sym(ΔU Ū⁻¹)` of `ΔU = dv` and `Ū = 1 + v`.
-#[inline(always)]
-fn increment<N: Number, const D: usize>(dv: &Matrix<N, D>, v: &Matrix<N, D>) -> Matrix<N, D> {
-    let cofactors = tensor::cofactor_beyond(v);
-    let half = N::constant(0.5) * (N::constant(1.0) + tensor::dilation(v)).recip();
-    let more = tensor::product(dv, &cofactors);
-    let mut out = *dv;
-    for r in 0..D {
-        for c in 0..D {
-            out[r][c] = half * ((dv[r][c] + more[r][c]) + (dv[c][r] + more[c][r]));
-        }
-    }
-    out
-}
 
 impl<const D: usize> Classical<D> for Hypoelastic {
     type Constants<N: Number> = [N; 2];
@@ -68,26 +43,7 @@ impl<const D: usize> Classical<D> for Hypoelastic {
     const POTENTIAL: bool = false;
 
     fn columns(&self) -> Vec<Declaration> {
-        vec![
-            Declaration::of_points(
-                "biot_strain",
-                Shape::Tensor,
-                Dimension::NUMBER,
-                "U − 1 of the right stretch U of the family's deformation gradient.",
-            ),
-            Declaration::of_points(
-                "unrotated_stress",
-                Shape::Tensor,
-                Dimension::PRESSURE,
-                "Cauchy stress seen from the turned material, Rᵀ σ R.",
-            ),
-            Declaration::of_points(
-                "stress_work",
-                Shape::Scalar,
-                Dimension::PRESSURE,
-                "Work of the stress so far per reference volume, ∫ J σ : D dt.",
-            ),
-        ]
+        rate::columns()
     }
 
     fn constants(&self, material: usize, _: f64) -> [f64; 2] {
@@ -106,22 +62,11 @@ impl<const D: usize> Classical<D> for Hypoelastic {
         past: &Past<N, D>,
         h: &Matrix<N, D>,
     ) -> Stressed<N, Past<N, D>, D> {
-        let ([v0, s0], work) = past;
-        let (half, two) = (N::constant(0.5), N::constant(2.0));
-        let (turn, v) = tensor::polar(h);
-        let (mut dv, mut middle) = (v, v);
-        for r in 0..D {
-            for k in 0..D {
-                dv[r][k] = v[r][k] - v0[r][k];
-                middle[r][k] = half.fma(dv[r][k], v0[r][k]);
-            }
-        }
-        let mean = increment(&dv, &middle);
-        let strain = match self.increment {
-            Increment::Middle => mean,
-            Increment::End => increment(&dv, &v),
-        };
-        let pressure = c[LAME] * tensor::trace(&strain);
+        let ([before, s0], work) = past;
+        let step = Step::new(self.increment, before, h);
+        let strain = &step.strain;
+        let two = N::constant(2.0);
+        let pressure = c[LAME] * tensor::trace(strain);
         let mut s = *s0;
         for r in 0..D {
             for k in 0..D {
@@ -129,30 +74,11 @@ impl<const D: usize> Classical<D> for Hypoelastic {
             }
             s[r][r] = s[r][r] + pressure;
         }
-        // J σ : Δε at both ends
-        let one = N::constant(1.0);
-        let before = (one + tensor::dilation(v0)) * tensor::contraction(s0, &mean);
-        let after = (one + tensor::dilation(&v)) * tensor::contraction(&s, &mean);
-        let work = half.fma(before + after, *work);
-        // R σ cof(U)
-        let more = tensor::product(&turn, &s);
-        let mut turned = s;
-        for r in 0..D {
-            for k in 0..D {
-                turned[r][k] = s[r][k] + more[r][k];
-            }
-        }
-        let more = tensor::product(&turned, &tensor::cofactor_beyond(&v));
-        let mut p = turned;
-        for r in 0..D {
-            for k in 0..D {
-                p[r][k] = turned[r][k] + more[r][k];
-            }
-        }
+        let work = *work + step.work(s0, &s);
         Stressed {
-            stress: p,
+            stress: step.nominal(&s),
             energy: work,
-            past: ([v, s], work),
+            past: ([step.stretch, s], work),
         }
     }
 }
@@ -160,18 +86,7 @@ impl<const D: usize> Classical<D> for Hypoelastic {
 impl Shelved for Hypoelastic {
     fn descriptor() -> Descriptor {
         let mut keys = MODULI.to_vec();
-        keys.push(Key {
-            name: "increment",
-            value: Value::Word(&[
-                (
-                    "middle",
-                    "Ū = ½(U + U′), of second order in the step (Hughes & Winget 1980)",
-                ),
-                ("end", "Ū = U′ at the end of the step, of first order"),
-            ]),
-            need: Need::Word("middle"),
-            doc: "The stretch Ū in the increment of strain sym(ΔU Ū⁻¹).",
-        });
+        keys.push(INCREMENT);
         Descriptor {
             name: "hypoelastic".into(),
             doc: "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
@@ -188,11 +103,7 @@ impl Shelved for Hypoelastic {
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
-        let word = |m: &Given| match m.parameters.word("increment") {
-            Some("middle") => Some(Increment::Middle),
-            Some("end") => Some(Increment::End),
-            Some(_) | None => None,
-        };
+        let word = |m: &Given| Increment::of(m.parameters);
         let Some(increment) = materials.first().and_then(word) else {
             return Err((0, "the increment is middle or end".into()));
         };

@@ -6,9 +6,16 @@
 //! modulus would. `Σ ω ν V z⊗ξ = 0`, so it does no work on F: `W = ψ + (g/2) Σ ω ν V z²`.
 //! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
 
+pub mod correspondence;
+pub mod hardening;
+pub mod hypoelastic;
+pub mod hypoelastic_plastic;
+pub mod rate;
+
 use super::tensor::{self, Matrix};
 use super::{Bond, Columns, End, Free, Material, Numbers, Site, Source};
 use crate::columns::{Declaration, Dimension, Shape};
+use crate::execute::lane::Piece;
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Shelved};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
@@ -27,11 +34,22 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         vec![]
     }
 
+    /// [`Material::failure`]
+    fn failure(&self) -> Option<usize> {
+        None
+    }
+
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
 
     /// Shear modulus of small strains (pressure).
     fn shear(&self, material: usize) -> f64;
+
+    /// What was dissipated between two memories (energy / volume); what is stored then leaves it out.
+    #[inline(always)]
+    fn dissipated<N: Number>(&self, _before: &Self::Past<N>, _after: &Self::Past<N>) -> N {
+        N::constant(0.0)
+    }
 
     /// At `F = 1 + H`, without cancellation where H is small.
     fn stress<N: Number>(
@@ -47,10 +65,27 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
 pub struct Stressed<N, P, const D: usize> {
     /// First Piola–Kirchhoff stress P.
     pub stress: Matrix<N, D>,
-    /// What is stored, or the work done where nothing is (energy / volume).
+    /// What is stored and what the step dissipated, or the work done where nothing is stored (energy / volume).
     pub energy: N,
     /// What is remembered then.
     pub past: P,
+}
+
+/// [`Classical::stress`], compiled once for each kind of number, whatever asks for it.
+struct Asked<'a, L: Classical<D>, N: Number, const D: usize> {
+    law: &'a L,
+    constants: &'a L::Constants<N>,
+    past: &'a L::Past<N>,
+    h: &'a Matrix<N, D>,
+}
+
+impl<L: Classical<D>, N: Number, const D: usize> Piece for Asked<'_, L, N, D> {
+    type Out = Stressed<N, L::Past<N>, D>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Out {
+        self.law.stress(self.constants, self.past, self.h)
+    }
 }
 
 /// A classical law on a family.
@@ -136,6 +171,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         }
     }
 
+    fn failure(&self) -> Option<usize> {
+        self.law.failure()
+    }
+
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64> {
         let d = D as f64;
         let beta = d * (d + 2.0) * self.law.shear(material);
@@ -172,7 +211,12 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     ) {
         let (form, (control, constants)) = (site.form, site.constants);
         let h = gradient(form, &sum);
-        let now = self.law.stress(constants, site.past, &h);
+        let now = N::apart(Asked {
+            law: &self.law,
+            constants,
+            past: site.past,
+            h: &h,
+        });
         let along = tensor::product(&now.stress, &form.0);
         let g = *control * form.1[0];
         let ((out, slope), past) = point;
@@ -218,7 +262,13 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         point: &Self::Point<N>,
     ) -> N {
         let h = gradient(site.form, &sum);
-        let energy = self.law.stress(&site.constants.1, site.past, &h).energy;
+        let strained = N::apart(Asked {
+            law: &self.law,
+            constants: &site.constants.1,
+            past: site.past,
+            h: &h,
+        });
+        let energy = strained.energy;
         // H K Hᵀ = S Hᵀ
         let seen = N::constant(0.5) * point.0.1 * tensor::contraction(&sum, &h);
         known(site.form, energy, N::constant(0.0)) - seen
@@ -227,12 +277,12 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     #[inline(always)]
     fn remember<N: Number>(
         &self,
-        _: &SiteOf<N, L, D>,
+        site: &SiteOf<N, L, D>,
         point: &Self::Point<N>,
         past: &mut L::Past<N>,
     ) -> N {
         *past = point.1;
-        N::constant(0.0)
+        self.law.dissipated(site.past, past)
     }
 }
 

@@ -1,0 +1,474 @@
+//! Metals and soils that flow: the rate form of [`hypoelastic`](super::hypoelastic) with a yield surface that depends on the stress
+//! deviator and the pressure, hardens, feels rate and heat ([`hardening`](super::hardening)), and is damaged.
+//!
+//! With `q = √(3/2 s:s)` of the deviator s and the mean stress p (tension positive), it yields where `q + a p = σ_y` (von Mises for a = 0,
+//! Drucker & Prager 1952) and flows by `Δε^p = Δε̄ (3/2 s/q + ⅓ b 1)`. A step tries the elastic stress first and returns along the
+//! flow (Wilkins 1964; Simo & Hughes 1998, 3.3): `q′ + a p′ − (3μ + aKb) Δε̄ = σ_y(ε̄ + Δε̄, Δε̄/Δt, T)`, in plane strain with the deviator
+//! across. Where that leaves no deviator the stress is the apex, `p = σ_y(ε̄ + q′/3μ)/a`.
+//!
+//! Plastic work, by the trapezoidal rule, is what is dissipated; a part β of it heats the point, which keeps that heat: `ρ c ΔT = β Δw_p`. Damage of Johnson & Cook (1985):
+//! `ΔD = Δε̄/ε_f`, `ε_f = (D₁ + D₂ exp(D₃ p/q)) (1 + D₄ ln(ε̄̇/ε̇₀)) (1 + D₅ T*)`; what it does to bonds is a matter of their fracture.
+
+use super::hardening::{self, Hardening, Kind};
+use super::rate::{self, INCREMENT, Increment, Step};
+use super::{Classical, Stressed};
+use crate::columns::{Declaration, Dimension, Shape};
+use crate::law::descriptor::{
+    self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
+};
+use crate::law::material::tensor::{self, Matrix};
+use crate::law::number::Number;
+use crate::spec::{Influence, LawSpec, Parameters, Plane};
+
+/// Constants of one material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HypoelasticPlasticConstants {
+    /// Lamé's λ and shear modulus μ.
+    pub lame: f64,
+    pub shear: f64,
+    /// a and b (–).
+    pub friction: f64,
+    pub dilatancy: f64,
+    /// Rise of the temperature by plastic work, β/(ρ c) (temperature / pressure).
+    pub heating: f64,
+    /// D₁ to D₅.
+    pub damage: [f64; 5],
+    pub hardening: Hardening,
+}
+
+/// See the module. All materials have the same kind of increment and of hardening.
+#[derive(Debug, Clone)]
+pub struct HypoelasticPlastic {
+    pub increment: Increment,
+    pub kind: Kind,
+    /// Do they have damage?
+    pub damages: bool,
+    /// Per material.
+    pub materials: Vec<HypoelasticPlasticConstants>,
+}
+
+const LAME: usize = 0;
+const SHEAR: usize = 1;
+const FRICTION: usize = 2;
+const DILATANCY: usize = 3;
+const HEATING: usize = 4;
+const DAMAGE: usize = 5;
+type Constants<N> = ([N; 10], hardening::Constants<N>);
+
+/// Numbers that a point remembers.
+const WORK: usize = 0;
+const MEAN: usize = 1;
+const STRAIN: usize = 2;
+const PLASTIC_WORK: usize = 3;
+const RISE: usize = 4;
+const DAMAGED: usize = 5;
+/// U − 1 and σ_u, and the rest.
+type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 6]);
+
+/// Most steps of the search for Δε̄; from the elastic estimate it takes 2 to 8.
+const STEPS: usize = 80;
+/// Where that search begins to doubt, beside the largest possible.
+const LEAST: f64 = 1e-30;
+/// Triaxiality p/q beyond which damage is that of here.
+const TRIAXIALITY: f64 = 10.0;
+
+/// A trial stress.
+struct Trial<N, const D: usize> {
+    deviator: Matrix<N, D>,
+    /// q and p of it.
+    q: N,
+    p: N,
+}
+
+/// `s:s` of a deviator, of which in the plane a part is across it.
+#[inline(always)]
+fn double<N: Number, const D: usize>(a: &Matrix<N, D>, b: &Matrix<N, D>) -> N {
+    let inside = tensor::contraction(a, b);
+    match D {
+        2 => tensor::trace(a).fma(tensor::trace(b), inside),
+        _ => inside,
+    }
+}
+
+/// `σ − p 1`
+#[inline(always)]
+fn beside<N: Number, const D: usize>(stress: &Matrix<N, D>, p: N) -> Matrix<N, D> {
+    let mut s = *stress;
+    for a in 0..D {
+        s[a][a] = s[a][a] - p;
+    }
+    s
+}
+
+/// How a step flows: Δε̄, what is left of the deviator (–), the mean stress, and the plastic part of the dilation.
+struct Flow<N> {
+    strain: N,
+    rest: N,
+    mean: N,
+    dilation: N,
+}
+
+impl HypoelasticPlastic {
+    /// The return from a trial stress.
+    #[inline(always)]
+    fn flow<N: Number, const D: usize>(
+        &self,
+        (c, hard): &Constants<N>,
+        memory: &[N; 6],
+        trial: &Trial<N, D>,
+    ) -> Flow<N> {
+        let (zero, one, third) = (N::constant(0.0), N::constant(1.0), N::constant(1.0 / 3.0));
+        let elastic = Flow {
+            strain: zero,
+            rest: one,
+            mean: trial.p,
+            dilation: zero,
+        };
+        let kind = self.kind;
+        let soft = kind.softened(hard, memory[RISE]);
+        let along = c[FRICTION].fma(trial.p, trial.q);
+        let begins = kind.begins(hard, memory[STRAIN], soft);
+        // above 0: it flows
+        let beyond = zero.choose(kind.flows(hard), along - begins, zero);
+        if !(zero - beyond).any_below(0.0) {
+            return elastic;
+        }
+        let bulk = (N::constant(2.0) * third).fma(c[SHEAR], c[LAME]);
+        let triple = N::constant(3.0) * c[SHEAR];
+        let stiff = (c[FRICTION] * bulk).fma(c[DILATANCY], triple);
+        let (mut high, mut x) = (along.div(stiff), beyond.div(stiff));
+        // lanes that do not flow look for something that they find at once
+        let flows = zero.choose(beyond, one, zero);
+        x = zero.choose(beyond, x, one);
+        high = zero.choose(beyond, high, one);
+        let mut low = N::constant(LEAST) * high;
+        for _ in 0..STEPS {
+            let [y, slope] = kind.yields(hard, memory[STRAIN], x, soft);
+            let over = flows * (along - stiff * x - y);
+            low = zero.choose(over, x, low);
+            high = zero.choose(over, high, x);
+            let newton = x + over.div(stiff + slope);
+            // where Newton leaves what is known, halve that on a scale of logarithms
+            let half = (low * high).sqrt();
+            let next = newton.choose(low, half, high.choose(newton, half, newton));
+            let next = zero.choose(flows, next, x);
+            let step = (next - x).most(x - next);
+            x = next;
+            if !(N::constant(1e-14) * x - step).any_below(0.0) {
+                break;
+            }
+        }
+        // the apex
+        let deviator = triple * x;
+        let all = trial.q.div(triple);
+        let sharp = trial.q.choose(deviator, flows * c[FRICTION], zero);
+        let at_apex = kind.yields(hard, memory[STRAIN], all, soft)[0].div(c[FRICTION]);
+        let apex = |a: N, b: N| zero.choose(sharp, a, b);
+        let strain = apex(all, x);
+        let dilation = apex((trial.p - at_apex).div(bulk), c[DILATANCY] * x);
+        let rest = apex(zero, one - deviator.div(trial.q));
+        let pick = |a: N, b: N| zero.choose(flows, a, b);
+        Flow {
+            strain: pick(strain, zero),
+            rest: pick(rest, one),
+            mean: pick(trial.p - bulk * dilation, trial.p),
+            dilation: pick(dilation, zero),
+        }
+    }
+
+    /// What a growth of the plastic strain adds to the damage, at this p/q.
+    #[inline(always)]
+    fn damaged<N: Number>(
+        &self,
+        (c, hard): &Constants<N>,
+        rise: N,
+        strain: N,
+        triaxiality: N,
+    ) -> N {
+        let (zero, one) = (N::constant(0.0), N::constant(1.0));
+        if !self.damages {
+            return zero;
+        }
+        let most = N::constant(TRIAXIALITY);
+        let triaxiality = triaxiality.least(most).most(zero - most);
+        let d = |k: usize| c[DAMAGE + k];
+        let shape = d(1).fma((d(2) * triaxiality).exp(), d(0));
+        let quick = d(3).fma(hardening::rate(hard, strain), one);
+        let hot = d(4).fma(hardening::homologous(hard, rise), one);
+        zero.choose(strain, strain.div(shape * quick * hot), zero)
+    }
+}
+
+impl<const D: usize> Classical<D> for HypoelasticPlastic {
+    type Constants<N: Number> = Constants<N>;
+    type Past<N: Number> = Past<N, D>;
+    const POTENTIAL: bool = false;
+
+    fn columns(&self) -> Vec<Declaration> {
+        let scalar =
+            |name, dimension, doc| Declaration::of_points(name, Shape::Scalar, dimension, doc);
+        let mut all = rate::columns();
+        all.extend([
+            scalar(
+                "mean_stress",
+                Dimension::PRESSURE,
+                "Mean Cauchy stress ⅓ tr σ, tension positive, with that across a plane.",
+            ),
+            scalar(
+                "plastic_strain",
+                Dimension::NUMBER,
+                "Equivalent plastic strain ε̄.",
+            ),
+            scalar(
+                "plastic_work",
+                Dimension::PRESSURE,
+                "Plastic work per reference volume, ∫ J σ : D^p dt, which is dissipated.",
+            ),
+            scalar(
+                "temperature_rise",
+                Dimension::TEMPERATURE,
+                "By how much plastic work has heated the point, β w_p/(ρ c).",
+            ),
+            scalar(
+                "ductile_damage",
+                Dimension::NUMBER,
+                "D = ∫ dε̄/ε_f (Johnson & Cook 1985); at 1 it fails.",
+            ),
+        ]);
+        all
+    }
+
+    fn failure(&self) -> Option<usize> {
+        // after U − 1 and the stress
+        self.damages.then_some(2 * D * D + DAMAGED)
+    }
+
+    fn constants(&self, material: usize, dt: f64) -> Constants<f64> {
+        let m = &self.materials[material];
+        let [d1, d2, d3, d4, d5] = m.damage;
+        let own = [
+            m.lame,
+            m.shear,
+            m.friction,
+            m.dilatancy,
+            m.heating,
+            d1,
+            d2,
+            d3,
+            d4,
+            d5,
+        ];
+        (own, m.hardening.constants(dt))
+    }
+
+    fn shear(&self, material: usize) -> f64 {
+        self.materials[material].shear
+    }
+
+    #[inline(always)]
+    fn dissipated<N: Number>(&self, before: &Past<N, D>, after: &Past<N, D>) -> N {
+        after.1[PLASTIC_WORK] - before.1[PLASTIC_WORK]
+    }
+
+    #[inline(always)]
+    fn stress<N: Number>(
+        &self,
+        constants: &Constants<N>,
+        past: &Past<N, D>,
+        h: &Matrix<N, D>,
+    ) -> Stressed<N, Past<N, D>, D> {
+        let c = &constants.0;
+        let ([before, s0], memory) = past;
+        let (zero, half, two) = (N::constant(0.0), N::constant(0.5), N::constant(2.0));
+        let step = Step::new(self.increment, before, h);
+        // the elastic trial
+        let spread = tensor::trace(&step.strain);
+        let third = N::constant(1.0 / 3.0) * spread;
+        let bulk = N::constant(2.0 / 3.0).fma(c[SHEAR], c[LAME]);
+        let old = beside(s0, memory[MEAN]);
+        let mut deviator = beside(&step.strain, third);
+        for r in 0..D {
+            for k in 0..D {
+                deviator[r][k] = (two * c[SHEAR]).fma(deviator[r][k], old[r][k]);
+            }
+        }
+        // at rest q has no slope: the least number has none either
+        let square = N::constant(1.5) * double(&deviator, &deviator);
+        let trial = Trial {
+            q: square.most(N::constant(f64::MIN_POSITIVE)).sqrt(),
+            p: bulk.fma(spread, memory[MEAN]),
+            deviator,
+        };
+        let flow = self.flow(constants, memory, &trial);
+        let mut s = trial.deviator;
+        for r in 0..D {
+            for k in 0..D {
+                s[r][k] = flow.rest * trial.deviator[r][k];
+            }
+        }
+        let q = flow.rest * trial.q;
+        // plastic work at both ends, Δε^p : s = 3/2 Δε̄ s′:s/q′
+        let share = zero.choose(flow.strain, flow.strain.div(trial.q), zero);
+        let direction = N::constant(1.5) * share * double(&trial.deviator, &old);
+        let early = memory[MEAN].fma(flow.dilation, direction);
+        let late = flow.mean.fma(flow.dilation, q * flow.strain);
+        let plastic = half * (step.volumes[0] * early + step.volumes[1] * late);
+        for a in 0..D {
+            s[a][a] = s[a][a] + flow.mean;
+        }
+        let mut now = *memory;
+        now[WORK] = memory[WORK] + step.work(s0, &s);
+        now[MEAN] = flow.mean;
+        now[STRAIN] = memory[STRAIN] + flow.strain;
+        now[PLASTIC_WORK] = memory[PLASTIC_WORK] + plastic;
+        now[RISE] = c[HEATING].fma(plastic, memory[RISE]);
+        let triaxiality = flow.mean.div(q);
+        now[DAMAGED] =
+            memory[DAMAGED] + self.damaged(constants, memory[RISE], flow.strain, triaxiality);
+        Stressed {
+            stress: step.nominal(&s),
+            energy: now[WORK] - memory[PLASTIC_WORK],
+            past: ([step.stretch, s], now),
+        }
+    }
+}
+
+/// Keys beside the moduli and those of hardening.
+const KEYS: [Key; 5] = [
+    descriptor::number(
+        "friction",
+        Dimension::NUMBER,
+        Bounds::NOT_NEGATIVE,
+        "a in the yield surface q + a p = σ_y (Drucker & Prager 1952); 0: von Mises.",
+    )
+    .or(0.0),
+    descriptor::number(
+        "dilatancy",
+        Dimension::NUMBER,
+        Bounds::NOT_NEGATIVE,
+        "b: dilation per equivalent plastic strain; `friction` makes the flow associated.",
+    )
+    .or(0.0),
+    descriptor::number(
+        "heat_capacity",
+        Dimension([2, 0, -2, -1]),
+        Bounds::POSITIVE,
+        "Heat capacity c per mass; left out: plastic work does not heat.",
+    )
+    .need(Need::Optional),
+    descriptor::number(
+        "heated_part",
+        Dimension::NUMBER,
+        Bounds::PART,
+        "Part β of the plastic work that becomes heat (Taylor & Quinney 1934).",
+    )
+    .or(0.9),
+    Key {
+        name: "damage",
+        value: Value::List(5, Dimension::NUMBER, Bounds::ANY),
+        need: Need::Optional,
+        doc: "D₁ to D₅ of the strain at fracture (D₁ + D₂ exp(D₃ p/q)) (1 + D₄ ln(ε̄̇/ε̇₀)) (1 + D₅ T*) (Johnson & Cook 1985).",
+    },
+];
+
+impl Shelved for HypoelasticPlastic {
+    fn descriptor() -> Descriptor {
+        let mut keys = MODULI.to_vec();
+        keys.push(INCREMENT);
+        keys.extend(hardening::KEYS);
+        keys.extend(KEYS);
+        Descriptor {
+            name: "hypoelastic_plastic".into(),
+            doc: "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            source: "Simo & Hughes 1998; Johnson & Cook 1983, 1985; Drucker & Prager 1952; Silling et al. 2007".into(),
+            example: "{ young = \"117 GPa\", poisson = 0.35, yield_stress = \"400 MPa\", hardening = \"100 MPa\" }".into(),
+            influence: Influence::Constant,
+            memory: Memory::Path,
+            keys,
+        }
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        descriptor::moduli(parameters).map(LawSpec::Lps)
+    }
+
+    fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let words = |m: &Given| {
+            let kind = hardening::kind(m.parameters)?;
+            let increment = Increment::of(m.parameters).ok_or("the increment is middle or end")?;
+            Ok((kind, increment, m.parameters.list("damage").is_some()))
+        };
+        let first = materials
+            .first()
+            .ok_or((0, "there is no material".into()))?;
+        let (kind, increment, damages) = words(first).map_err(|m: String| (0, m))?;
+        let mut made = vec![];
+        for (n, m) in materials.iter().enumerate() {
+            let refused = |message: String| (n, message);
+            if d == 2 && plane == Plane::Stress {
+                return Err(refused(
+                    "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\"".into(),
+                ));
+            }
+            if words(m).map_err(refused)? != (kind, increment, damages) {
+                return Err(refused(
+                    "all materials of a body have the same increment, hardening_law and rate_law, and all melt or none, are damaged or none".into(),
+                ));
+            }
+            let moduli = descriptor::moduli(m.parameters).map_err(refused)?;
+            let hardening = Hardening::of(m, kind).map_err(refused)?;
+            let number = |key| m.parameters.number(key);
+            let heating = match (number("heat_capacity"), number("heated_part")) {
+                (Some(capacity), Some(part)) => part / (m.density * capacity),
+                _ => 0.0,
+            };
+            let (friction, dilatancy) = (
+                number("friction").unwrap_or(0.0),
+                number("dilatancy").unwrap_or(0.0),
+            );
+            if dilatancy > friction {
+                return Err(refused(format!(
+                    "a dilatancy of {dilatancy} above a friction of {friction} would give energy away"
+                )));
+            }
+            made.push(HypoelasticPlasticConstants {
+                lame: moduli.lame(),
+                shear: moduli.shear(),
+                friction,
+                dilatancy,
+                heating,
+                damage: damage(m.parameters, kind.heats).map_err(refused)?,
+                hardening,
+            });
+        }
+        Ok(HypoelasticPlastic {
+            increment,
+            kind,
+            damages,
+            materials: made,
+        })
+    }
+}
+
+/// D₁ to D₅.
+fn damage(parameters: &Parameters, heats: bool) -> Result<[f64; 5], String> {
+    let Some(list) = parameters.list("damage") else {
+        return Ok([0.0; 5]);
+    };
+    let mut d = [0.0; 5];
+    d.copy_from_slice(list);
+    if d[3] != 0.0 && parameters.number("reference_rate").is_none() {
+        return Err("the fourth number of `damage` needs `reference_rate`".into());
+    }
+    if d[4] != 0.0 && !heats {
+        return Err("the fifth number of `damage` needs `melting_temperature`".into());
+    }
+    // at the mean stresses of tension, shear and compression
+    let strains = [1.0 / 3.0, 0.0, -1.0 / 3.0].map(|x| d[0] + d[1] * f64::exp(d[2] * x));
+    if strains.iter().any(|s| *s <= 0.0) {
+        return Err(format!(
+            "`damage` gives strains at fracture of {strains:?} in tension, shear and compression, expected positive ones"
+        ));
+    }
+    Ok(d)
+}
