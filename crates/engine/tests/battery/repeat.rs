@@ -102,7 +102,12 @@ fn names(kind: LatticeKind) -> Vec<&'static str> {
         names.extend(["correspondence", "neo-hookean mixed"]);
     }
     if kind == LatticeKind::Cubic {
-        names.extend(["elastic-plastic", "plastic mixed", "hypoelastic", "metal and soil"]);
+        names.extend([
+            "elastic-plastic",
+            "plastic mixed",
+            "hypoelastic",
+            "metal and soil",
+        ]);
     }
     names
 }

@@ -38,7 +38,8 @@ const INTERFACE_AWARE: &str = "the position-aware linear solid is no law here";
 const DIFFUSION: &str = "diffusion: no law here";
 const PLASTIC_STRAIN: &str = "its equivalent plastic strain weighs each increment by the mean of the old and the scaled new direction, which is not of length one: at these steps it is a tenth below the plastic work over the yield stress";
 const HARDENING: &str = "its hardening follows that strain, and its plastic multiplier leaves out the hardening so far: another stress at this step, which tests/peers/correspondence.rs holds beside ours";
-const FLAW: &str = "yield stresses that depend on the place, and what is said of the case without a flaw";
+const FLAW: &str =
+    "yield stresses that depend on the place, and what is said of the case without a flaw";
 const BOND_ASSOCIATED: &str =
     "bond-associated: a deformation gradient of its own for each bond, which no law here has";
 

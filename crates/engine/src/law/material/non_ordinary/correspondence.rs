@@ -1,7 +1,7 @@
 //! Correspondence (Silling et al. 2007): any classical stress P(F) that is the slope of a stored energy ψ(F), by
 //! [`non_ordinary`](super).
 
-use super::{Classical, Stressed};
+use super::{Classical, Stressed, Unseen};
 use crate::columns::Dimension;
 use crate::law::descriptor::{
     self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
@@ -68,6 +68,7 @@ impl<const D: usize> Classical<D> for Correspondence {
         c: &[N; 3],
         past: &[N; 0],
         h: &Matrix<N, D>,
+        _: &Unseen<N>,
     ) -> Stressed<N, [N; 0], D> {
         let (half, two) = (N::constant(0.5), N::constant(2.0));
         let mut f = *h;
@@ -346,6 +347,11 @@ impl Shelved for Correspondence {
 mod tests {
     use super::*;
 
+    const SEEN: Unseen<f64> = Unseen {
+        stiffness: 0.0,
+        square: 0.0,
+    };
+
     #[test]
     fn what_is_left_of_logarithm_and_exponential() {
         for x in [1e-12f64, -1e-9, 1e-4, -0.03, 0.19, -0.19, 0.21, -0.21, 0.9] {
@@ -377,20 +383,20 @@ mod tests {
                     materials: vec![],
                 };
                 let c = [1.3, 0.7, 0.2];
-                let p = law.stress(&c, &[], &h).stress;
+                let p = law.stress(&c, &[], &h, &SEEN).stress;
                 for r in 0..2 {
                     for s in 0..2 {
                         let at = |step: f64| {
                             let mut h = h;
                             h[r][s] += step;
-                            law.stress(&c, &[], &h).energy
+                            law.stress(&c, &[], &h, &SEEN).energy
                         };
                         let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
                         assert!((slope - p[r][s]).abs() < 1e-9, "{law:?} {r}{s}: {slope}");
                     }
                 }
                 let small = 1e-9;
-                let strained = law.stress(&c, &[], &[[small, 0.0], [0.0, 0.0]]);
+                let strained = law.stress(&c, &[], &[[small, 0.0], [0.0, 0.0]], &SEEN);
                 let (p, energy) = (strained.stress, strained.energy);
                 let lame = if plane_stress {
                     2.0 * 1.3 * 0.7 / (1.3 + 1.4)
@@ -414,7 +420,7 @@ mod tests {
         let c = [1.3, 0.7, 0.2];
         let h = [[0.11, -0.07, 0.3], [0.2, -0.05, 0.1], [-0.15, 0.02, 0.08]];
         let (p, energy) = {
-            let made = law.stress(&c, &[], &h);
+            let made = law.stress(&c, &[], &h, &SEEN);
             (made.stress, made.energy)
         };
         let mut f = h;
@@ -433,7 +439,7 @@ mod tests {
                 let at = |step: f64| {
                     let mut h = h;
                     h[r][s] += step;
-                    law.stress(&c, &[], &h).energy
+                    law.stress(&c, &[], &h, &SEEN).energy
                 };
                 let slope = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
                 assert!(
@@ -445,7 +451,7 @@ mod tests {
         }
         // Hooke's, to the last digits
         let small = 1e-9;
-        let made = law.stress(&c, &[], &[[small, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        let made = law.stress(&c, &[], &[[small, 0.0, 0.0], [0.0; 3], [0.0; 3]], &SEEN);
         assert!((made.stress[0][0] / small / (1.3 + 1.4) - 1.0).abs() < 1e-8);
         assert!((made.energy / (small * small) / (0.5 * (1.3 + 1.4)) - 1.0).abs() < 1e-8);
     }

@@ -8,7 +8,7 @@
 //! their family then has its stress by another path than its energy.
 
 use super::rate::{self, INCREMENT, Increment, Step};
-use super::{Classical, Stressed};
+use super::{Classical, Stressed, Unseen};
 use crate::columns::Declaration;
 use crate::law::descriptor::{self, Descriptor, Given, MODULI, Memory, Shelved};
 use crate::law::material::tensor::{self, Matrix};
@@ -61,6 +61,7 @@ impl<const D: usize> Classical<D> for Hypoelastic {
         c: &[N; 2],
         past: &Past<N, D>,
         h: &Matrix<N, D>,
+        _: &Unseen<N>,
     ) -> Stressed<N, Past<N, D>, D> {
         let ([before, s0], work) = past;
         let step = Step::new(self.increment, before, h);
@@ -135,6 +136,11 @@ impl Shelved for Hypoelastic {
 mod tests {
     use super::*;
 
+    const SEEN: Unseen<f64> = Unseen {
+        stiffness: 0.0,
+        square: 0.0,
+    };
+
     const LAMBDA: f64 = 1.3;
     const MU: f64 = 0.7;
 
@@ -152,7 +158,7 @@ mod tests {
         let mut p = [[0.0; D]; D];
         for n in 1..=steps {
             let h = path(f64::from(n) / f64::from(steps));
-            let now = law.stress(&[LAMBDA, MU], &past, &h);
+            let now = law.stress(&[LAMBDA, MU], &past, &h, &SEEN);
             (p, past) = (now.stress, now.past);
         }
         (p, past)

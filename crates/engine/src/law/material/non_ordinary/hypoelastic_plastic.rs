@@ -11,7 +11,7 @@
 
 use super::hardening::{self, Hardening, Kind};
 use super::rate::{self, INCREMENT, Increment, Step};
-use super::{Classical, Stressed};
+use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{
     self, Bounds, Descriptor, Given, Key, MODULI, Memory, Need, Shelved, Value,
@@ -62,8 +62,12 @@ const STRAIN: usize = 2;
 const PLASTIC_WORK: usize = 3;
 const RISE: usize = 4;
 const DAMAGED: usize = 5;
+/// What the control has lost of its stiffness (–), `Σ ω ν V z²`, and the energy that went with it.
+const SOFTENED: usize = 6;
+const UNSEEN: usize = 7;
+const LOST: usize = 8;
 /// U − 1 and σ_u, and the rest.
-type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 6]);
+type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 9]);
 
 /// Most steps of the search for Δε̄; from the elastic estimate it takes 2 to 8.
 const STEPS: usize = 80;
@@ -114,7 +118,7 @@ impl HypoelasticPlastic {
     fn flow<N: Number, const D: usize>(
         &self,
         (c, hard): &Constants<N>,
-        memory: &[N; 6],
+        memory: &[N; 9],
         trial: &Trial<N, D>,
     ) -> Flow<N> {
         let (zero, one, third) = (N::constant(0.0), N::constant(1.0), N::constant(1.0 / 3.0));
@@ -203,6 +207,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
     type Constants<N: Number> = Constants<N>;
     type Past<N: Number> = Past<N, D>;
     const POTENTIAL: bool = false;
+    const SOFTENS: bool = true;
 
     fn columns(&self) -> Vec<Declaration> {
         let scalar =
@@ -233,6 +238,21 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
                 "ductile_damage",
                 Dimension::NUMBER,
                 "D = ∫ dε̄/ε_f (Johnson & Cook 1985); at 1 it fails.",
+            ),
+            scalar(
+                "control_softening",
+                Dimension::NUMBER,
+                "Part of the control's stiffness that flow has taken, 3με̄/(q + 3με̄).",
+            ),
+            scalar(
+                "unseen_square",
+                Dimension([5, 0, 0, 0]),
+                "Σ ω ν V z² of the part z of the deformation that F does not see.",
+            ),
+            scalar(
+                "control_loss",
+                Dimension::PRESSURE,
+                "Energy per reference volume that went with the control's stiffness, which is dissipated.",
             ),
         ]);
         all
@@ -267,7 +287,13 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
 
     #[inline(always)]
     fn dissipated<N: Number>(&self, before: &Past<N, D>, after: &Past<N, D>) -> N {
-        after.1[PLASTIC_WORK] - before.1[PLASTIC_WORK]
+        let lost = after.1[LOST] - before.1[LOST];
+        (after.1[PLASTIC_WORK] - before.1[PLASTIC_WORK]) + lost
+    }
+
+    #[inline(always)]
+    fn control<N: Number>(&self, past: &Past<N, D>) -> N {
+        N::constant(1.0) - past.1[SOFTENED]
     }
 
     #[inline(always)]
@@ -276,6 +302,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         constants: &Constants<N>,
         past: &Past<N, D>,
         h: &Matrix<N, D>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, Past<N, D>, D> {
         let c = &constants.0;
         let ([before, s0], memory) = past;
@@ -325,9 +352,18 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         let triaxiality = flow.mean.div(q);
         now[DAMAGED] =
             memory[DAMAGED] + self.damaged(constants, memory[RISE], flow.strain, triaxiality);
+        // the secant modulus of shear, q/(q + 3με̄) of the elastic one
+        let flown = N::constant(3.0) * c[SHEAR] * now[STRAIN];
+        let soft = zero.choose(flow.strain, flown.div(q + flown), memory[SOFTENED]);
+        now[SOFTENED] = soft.most(memory[SOFTENED]);
+        now[UNSEEN] = unseen.square;
+        // ½ Δg z z′, of second order
+        let mean = half * (memory[UNSEEN] + unseen.square);
+        let lost = half * unseen.stiffness * (now[SOFTENED] - memory[SOFTENED]) * mean;
+        now[LOST] = memory[LOST] + lost;
         Stressed {
             stress: step.nominal(&s),
-            energy: now[WORK] - memory[PLASTIC_WORK],
+            energy: now[WORK] - memory[PLASTIC_WORK] + lost,
             past: ([step.stretch, s], now),
         }
     }

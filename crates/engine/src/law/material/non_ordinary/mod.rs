@@ -3,7 +3,8 @@
 //!
 //! `H = (Σ ω ν V η⊗ξ) K⁻¹`, `F = 1 + H`, `T⟨ξ⟩ = ω (P K⁻¹ ξ + g z)` with the part of the deformation that F does not see,
 //! `z = η − Hξ`, and `g = G_z β/m`, `β = D(D+2) μ`: a control of G_z = 1 resists it as the linear peridynamic solid of the same shear
-//! modulus would. `Σ ω ν V z⊗ξ = 0`, so it does no work on F: `W = ψ + (g/2) Σ ω ν V z²`.
+//! modulus would. `Σ ω ν V z⊗ξ = 0`, so it does no work on F: `W = ψ + (g/2) Σ ω ν V z²`. Of a law that flows the control softens as the
+//! secant modulus of its flow does: else what F does not see would stay elastic, and hold many times the yield stress.
 //! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
 
 pub mod correspondence;
@@ -28,6 +29,8 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
     type Past<N: Number>: Numbers<N>;
     /// [`Material::POTENTIAL`]
     const POTENTIAL: bool = true;
+    /// Does its control soften?
+    const SOFTENS: bool = false;
 
     /// What a point remembers, in the order of its numbers.
     fn columns(&self) -> Vec<Declaration> {
@@ -51,13 +54,29 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         N::constant(0.0)
     }
 
+    /// What is left of its control, 1 at first.
+    #[inline(always)]
+    fn control<N: Number>(&self, _past: &Self::Past<N>) -> N {
+        N::constant(1.0)
+    }
+
     /// At `F = 1 + H`, without cancellation where H is small.
     fn stress<N: Number>(
         &self,
         constants: &Self::Constants<N>,
         past: &Self::Past<N>,
         h: &Matrix<N, D>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, Self::Past<N>, D>;
+}
+
+/// What F does not see of a deformation; of a law whose control does not soften 0.
+#[derive(Debug, Clone, Copy)]
+pub struct Unseen<N> {
+    /// g of the control that is not softened (pressure / length² volume).
+    pub stiffness: N,
+    /// `Σ ω ν V z²` (length² volume).
+    pub square: N,
 }
 
 /// What a classical law answers to a deformation gradient.
@@ -77,6 +96,7 @@ struct Asked<'a, L: Classical<D>, N: Number, const D: usize> {
     constants: &'a L::Constants<N>,
     past: &'a L::Past<N>,
     h: &'a Matrix<N, D>,
+    unseen: Unseen<N>,
 }
 
 impl<L: Classical<D>, N: Number, const D: usize> Piece for Asked<'_, L, N, D> {
@@ -84,7 +104,8 @@ impl<L: Classical<D>, N: Number, const D: usize> Piece for Asked<'_, L, N, D> {
 
     #[inline(always)]
     fn run(self) -> Self::Out {
-        self.law.stress(self.constants, self.past, self.h)
+        self.law
+            .stress(self.constants, self.past, self.h, &self.unseen)
     }
 }
 
@@ -117,10 +138,37 @@ type SiteOf<'a, N, L, const D: usize> = Site<
     <L as Classical<D>>::Past<N>,
 >;
 
+/// `Σ ω ν V η⊗ξ`, and `Σ ω ν V η²` where somebody asks for it.
+type Sum<N, const D: usize> = (Matrix<N, D>, N);
+
 /// H from the sum of the shares.
 #[inline(always)]
-fn gradient<N: Number, const D: usize>(form: &Form<N, D>, sum: &Matrix<N, D>) -> Matrix<N, D> {
-    tensor::product(sum, &form.0)
+fn gradient<N: Number, const D: usize>(form: &Form<N, D>, sum: &Sum<N, D>) -> Matrix<N, D> {
+    tensor::product(&sum.0, &form.0)
+}
+
+/// What H does not see, `H K Hᵀ = S Hᵀ` taken away.
+#[inline(always)]
+fn unseen<N: Number, const D: usize>(
+    form: &Form<N, D>,
+    control: N,
+    sum: &Sum<N, D>,
+    h: &Matrix<N, D>,
+) -> Unseen<N> {
+    Unseen {
+        stiffness: control * form.1[0],
+        square: (sum.1 - tensor::contraction(&sum.0, h)).most(N::constant(0.0)),
+    }
+}
+
+/// η²
+#[inline(always)]
+fn square<N: Number, const D: usize>(eta: &[N; D]) -> N {
+    let mut square = eta[0] * eta[0];
+    for a in 1..D {
+        square = eta[a].fma(eta[a], square);
+    }
+    square
 }
 
 /// `x` of a point whose bonds span the space, else `otherwise`: where F is not known a stress may be anything.
@@ -146,8 +194,7 @@ impl<N: Number, P: Numbers<N>, const D: usize> Source<N> for Either<'_, N, P, D>
 impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     type Constants<N: Number> = Constants<N, L::Constants<N>>;
     type Form<N: Number> = Form<N, D>;
-    /// `Σ ω ν V η⊗ξ`
-    type Sum<N: Number> = Matrix<N, D>;
+    type Sum<N: Number> = Sum<N, D>;
     type Point<N: Number> = Point<N, L::Past<N>, D>;
     type Past<N: Number> = L::Past<N>;
     type Memory<N: Number> = [N; 0];
@@ -188,9 +235,9 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         (inverse, [super::inverse_weight(&shape), sound])
     }
 
-    /// `ω η⊗ξ`
+    /// `ω η⊗ξ`, and `ω η²`
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &EndOf<N, L, D>) -> Matrix<N, D> {
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &EndOf<N, L, D>) -> Sum<N, D> {
         let mut sum = tensor::zero();
         for r in 0..D {
             let eta = bond.omega * bond.eta[r];
@@ -198,7 +245,11 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
                 sum[r][c] = eta * bond.xi[c];
             }
         }
-        sum
+        let whole = match L::SOFTENS {
+            true => bond.omega * square(&bond.eta),
+            false => N::constant(0.0),
+        };
+        (sum, whole)
     }
 
     #[inline(always)]
@@ -206,7 +257,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         &self,
         _: usize,
         site: &SiteOf<N, L, D>,
-        sum: Matrix<N, D>,
+        sum: Sum<N, D>,
         point: &mut Self::Point<N>,
     ) {
         let (form, (control, constants)) = (site.form, site.constants);
@@ -216,22 +267,26 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
             constants,
             past: site.past,
             h: &h,
+            unseen: unseen(form, *control, &sum, &h),
         });
         let along = tensor::product(&now.stress, &form.0);
-        let g = *control * form.1[0];
+        let either = Either {
+            form,
+            now: &now.past,
+            before: site.past,
+        };
         let ((out, slope), past) = point;
+        *past = <L::Past<N> as Numbers<N>>::read(&either, 0);
+        let mut g = *control * form.1[0];
+        if L::SOFTENS {
+            g = g * self.law.control(past);
+        }
         *slope = g;
         for r in 0..D {
             for c in 0..D {
                 out[r][c] = known(form, along[r][c], N::constant(0.0)) - g * h[r][c];
             }
         }
-        let either = Either {
-            form,
-            now: &now.past,
-            before: site.past,
-        };
-        *past = <L::Past<N> as Numbers<N>>::read(&either, 0);
     }
 
     #[inline(always)]
@@ -247,18 +302,14 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     /// `(g/2) ω η²`, of which the point takes back what F sees.
     #[inline(always)]
     fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> N {
-        let mut square = bond.eta[0] * bond.eta[0];
-        for a in 1..D {
-            square = bond.eta[a].fma(bond.eta[a], square);
-        }
-        N::constant(0.5) * end.point.0.1 * bond.omega * square
+        N::constant(0.5) * end.point.0.1 * bond.omega * square(&bond.eta)
     }
 
     #[inline(always)]
     fn point_energy<N: Number>(
         &self,
         site: &SiteOf<N, L, D>,
-        sum: Matrix<N, D>,
+        sum: Sum<N, D>,
         point: &Self::Point<N>,
     ) -> N {
         let h = gradient(site.form, &sum);
@@ -267,10 +318,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
             constants: &site.constants.1,
             past: site.past,
             h: &h,
+            unseen: unseen(site.form, site.constants.0, &sum, &h),
         });
         let energy = strained.energy;
-        // H K Hᵀ = S Hᵀ
-        let seen = N::constant(0.5) * point.0.1 * tensor::contraction(&sum, &h);
+        let seen = N::constant(0.5) * point.0.1 * tensor::contraction(&sum.0, &h);
         known(site.form, energy, N::constant(0.0)) - seen
     }
 
