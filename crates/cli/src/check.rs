@@ -162,7 +162,7 @@ fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) -> R
     };
     let patch = patience(sim).then(|| patch_test(sim));
     let families = sim.families();
-    let trial = trial(sim);
+    let trial = trial(sim, subject.steps);
     let reference = subject.sim.vectors("reference");
     let mut found = find(&subject, &reference, patch, families, trial, threads);
     found.fields = fields;
@@ -288,11 +288,12 @@ fn materials(
     each.collect()
 }
 
-fn trial(sim: &mut dyn Simulation) -> Trial {
+/// No further than the run goes: what would happen after its end is nobody's business.
+fn trial(sim: &mut dyn Simulation, most: u64) -> Trial {
     sim.start(true);
     let begin = Instant::now();
     let (mut steps, mut failed) = (0, None);
-    while begin.elapsed() < TRIAL {
+    while steps < most.max(1) && begin.elapsed() < TRIAL {
         if let Err(error) = sim.step() {
             failed = Some(error.to_string());
             break;

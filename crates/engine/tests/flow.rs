@@ -65,7 +65,7 @@ fn along<const D: usize>(
     let mut all = vec![];
     for n in 1..=steps {
         past = law
-            .stress(&constants, &past, &path(n as f64 / steps as f64))
+            .stress(&constants, &past, &path(n as f64 / steps as f64), &SEEN)
             .past;
         all.push(past);
     }
