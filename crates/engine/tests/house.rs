@@ -330,9 +330,6 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "io/src/deck/lower/mod.rs",
         "a module: the format of files",
     ),
-    ("eam", "io/src/read/mod.rs", "a module: the format of files"),
-    ("eam", "io/src/read/eam/setfl.rs", "the extension of files"),
-    ("eam", "io/src/read/eam/funcfl.rs", "the extension of files"),
     (
         "eam",
         "io/src/write/setfl.rs",
@@ -398,13 +395,26 @@ fn sources() -> BTreeMap<String, String> {
     all
 }
 
+/// Does code know a name: as its own word or as a whole string, not in a sentence for people, nor where it declares a module?
+fn knows(text: &str, name: &str) -> bool {
+    let lines = text.lines();
+    let mut lines = lines.filter(|l| *l != format!("pub mod {name};"));
+    lines.any(|line| {
+        let mut parts = line.split('"').enumerate();
+        parts.any(|(n, part)| match n % 2 {
+            0 => has_word(part, name),
+            _ => part == name,
+        })
+    })
+}
+
 /// Files of `folder` and others that know a name.
 fn touched(
     sources: &BTreeMap<String, String>,
     folder: &str,
     word: &str,
 ) -> (Vec<String>, Vec<String>) {
-    let known = sources.iter().filter(|(_, text)| has_word(text, word));
+    let known = sources.iter().filter(|(_, text)| knows(text, word));
     known
         .map(|(path, _)| path.clone())
         .partition(|path| path.starts_with(folder))

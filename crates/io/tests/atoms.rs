@@ -243,8 +243,12 @@ fn what_is_wrong_is_said_with_its_line() {
             "f:9: the mass must be positive, found -2",
         ),
         (
+            format!("{head}Atoms # sphere\n\n1 1 0 0 0\n"),
+            "f:7: atom_style `sphere` is not supported (supported: peri, atomic, bond, angle, molecular",
+        ),
+        (
             format!("{head}Atoms # full\n\n1 1 0 0 0\n"),
-            "f:7: atom_style `full` is not supported (supported: peri, atomic, bond, angle, molecular)",
+            "f:9: an atom has 7 numbers (or 10 with image flags), found 5",
         ),
         (
             format!("{head}Atoms # atomic\n\n1 1 1.0 1.0 0 0 0\n"),
