@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use tempfile::TempDir;
 
 /// Steps of a run; statics and relaxations are run whole.
@@ -90,34 +91,47 @@ fn without_clock(page: &[u8]) -> Vec<u8> {
     format!("{before}{meta}{after}").into_bytes()
 }
 
+/// One deck on one thread, on two and on four.
+fn compare(dir: &Path, deck: &Path) {
+    let name = deck.file_stem().unwrap().to_str().unwrap();
+    let run = |threads: &str| {
+        let out = dir.join(format!("{name}-{threads}"));
+        let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+            .args(["run", deck.to_str().unwrap(), "--threads", threads, "--out"])
+            .arg(&out)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(0), "{name}: {said}");
+        assert!(!said.contains("energy balance"), "{name}: {said}");
+        files(&out)
+    };
+    let one = run("1");
+    assert!(one.len() >= 2, "{name}");
+    for threads in ["2", "4"] {
+        let many = run(threads);
+        assert!(one.keys().eq(many.keys()), "{name}: other files");
+        for (file, bytes) in &one {
+            let same = many[file] == *bytes;
+            assert!(same, "{name}: {} on {threads} threads", file.display());
+        }
+    }
+}
+
 #[test]
 fn every_good_deck_writes_the_same_bytes_on_any_number_of_threads() {
     let dir = TempDir::new().unwrap();
     let decks = decks(dir.path());
     assert!(decks.len() >= 20);
-    for deck in decks {
-        let name = deck.file_stem().unwrap().to_str().unwrap();
-        let run = |threads: &str| {
-            let out = dir.path().join(format!("{name}-{threads}"));
-            let done = Command::new(env!("CARGO_BIN_EXE_peridyne"))
-                .args(["run", deck.to_str().unwrap(), "--threads", threads, "--out"])
-                .arg(&out)
-                .output()
-                .unwrap();
-            let said = String::from_utf8_lossy(&done.stderr).into_owned();
-            assert_eq!(done.status.code(), Some(0), "{name}: {said}");
-            assert!(!said.contains("energy balance"), "{name}: {said}");
-            files(&out)
-        };
-        let one = run("1");
-        assert!(one.len() >= 2, "{name}");
-        for threads in ["2", "4"] {
-            let many = run(threads);
-            assert!(one.keys().eq(many.keys()), "{name}: other files");
-            for (file, bytes) in &one {
-                let same = many[file] == *bytes;
-                assert!(same, "{name}: {} on {threads} threads", file.display());
-            }
+    let next = AtomicUsize::new(0);
+    // two at a time: much of a run is on one thread
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(deck) = decks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    compare(dir.path(), deck);
+                }
+            });
         }
-    }
+    });
 }

@@ -1,5 +1,5 @@
 //! Hypoelastic correspondence: a stress that grows with the rate of deformation, as rate forms of classical codes have it: in
-//! a step ([`rate`](super::rate)) the unrotated stress grows by `λ tr(Δε) 1 + 2μ Δε`.
+//! a step ([`rate`]) the unrotated stress grows by `λ tr(Δε) 1 + 2μ Δε`.
 //!
 //! In one direction `σ = (λ + 2μ) ln F`. In simple shear it does not oscillate (Dienes 1979).
 //!

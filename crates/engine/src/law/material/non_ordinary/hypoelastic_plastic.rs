@@ -1,5 +1,5 @@
 //! Metals and soils that flow: the rate form of [`hypoelastic`](super::hypoelastic) with a yield surface that depends on the stress
-//! deviator and the pressure, hardens, feels rate and heat ([`hardening`](super::hardening)), and is damaged.
+//! deviator and the pressure, hardens, feels rate and heat ([`hardening`]), and is damaged.
 //!
 //! With `q = √(3/2 s:s)` of the deviator s and the mean stress p (tension positive), it yields where `q + a p = σ_y` (von Mises for a = 0,
 //! Drucker & Prager 1952) and flows by `Δε^p = Δε̄ (3/2 s/q + ⅓ b 1)`. A step tries the elastic stress first and returns along the
