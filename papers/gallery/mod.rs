@@ -12,6 +12,7 @@ mod brazilian_disk;
 mod cantilever;
 #[path = "compact-tension/mod.rs"]
 mod compact_tension;
+mod creep;
 #[path = "double-cantilever/mod.rs"]
 mod double_cantilever;
 #[path = "fibre-composite/mod.rs"]
@@ -25,6 +26,8 @@ mod plate_with_hole;
 mod spall;
 #[path = "sphere-on-plate/mod.rs"]
 mod sphere_on_plate;
+#[path = "taylor-bar/mod.rs"]
+mod taylor_bar;
 #[path = "thin-film/mod.rs"]
 mod thin_film;
 #[path = "three-point-bend/mod.rs"]
@@ -53,5 +56,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &thin_film::ThinFilm,
         &sphere_on_plate::SphereOnPlate,
         &fragmenting_cylinder::FragmentingCylinder,
+        &taylor_bar::TaylorBar,
+        &creep::Creep,
     ]
 }

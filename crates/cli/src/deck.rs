@@ -4,8 +4,8 @@ use crate::Input;
 use crate::failure::Failure;
 use crate::numbers::{memory, whole};
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, Simulation, build};
-use peridyne::spec::Stepper;
+use peridyne::run::{Options, Simulation, TransferInfo, build};
+use peridyne::spec::{Stepper, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use std::io::Read;
 
@@ -21,11 +21,15 @@ pub fn is_deck(input: &Input) -> bool {
 const LARGEST: u64 = 16 << 20;
 
 /// Files that are no decks and no scripts, by how they begin: what they are, and whether a body can be made of them.
-const OTHERS: [(&[u8], &str, bool); 7] = [
+const OTHERS: [(&[u8], &str, bool); 11] = [
     (b"$MeshFormat", "a mesh of gmsh", true),
     (b"*HEADING", "a mesh of Abaqus", true),
     (b"*NODE", "a mesh of Abaqus", true),
     (b"ITEM: ", "a LAMMPS dump", true),
+    (b"CDF\x01", "an Exodus mesh", true),
+    (b"CDF\x02", "an Exodus mesh", true),
+    (b"CDF\x05", "an Exodus mesh", true),
+    (b"\x89HDF", "a file of HDF5", false),
     (b"PK\x03\x04", "an archive of arrays", true),
     (b"\x89PNG", "a picture", false),
     (b"<?xml", "an XML file", false),
@@ -145,6 +149,27 @@ pub fn remarks(deck: &Deck, time_step: f64) -> String {
         .collect()
 }
 
+/// How fast something spreads, and what its steps are beside those of the run.
+fn spreads(t: &TransferInfo, step: f64, units: UnitSystem) -> String {
+    let all = t.diffusivity.iter();
+    let all: Vec<String> = all.map(|d| units.show(*d, Dim::DIFFUSIVITY)).collect();
+    let time = |x: f64| units.show(x, Dim::TIME);
+    let mut text = format!(
+        "{:<10}diffusivity {}, over the body in about {}, explicit steps up to {}",
+        t.quantity.name(),
+        all.join(" and "),
+        time(t.spread),
+        time(t.stable_step),
+    );
+    if let TransferMethod::Explicit { safety } = t.method {
+        let parts = (step / (safety * t.stable_step)).ceil().max(1.0);
+        if parts > 1.0 {
+            text += &format!(" ({} parts of a step)", whole(parts as u64));
+        }
+    }
+    text
+}
+
 /// What was built, in a few lines, with numbers for people.
 pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
     let i = sim.info();
@@ -163,6 +188,10 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         units.show(i.horizon, Dim::LENGTH),
         match i.stepper {
             Stepper::Statics(_) => String::new(),
+            Stepper::Still => format!(
+                "\nstep      {}, no point moves",
+                units.show(i.time_step, Dim::TIME)
+            ),
             Stepper::Verlet => format!(
                 "\nstep      {}, stable up to {}",
                 units.show(i.time_step, Dim::TIME),
@@ -177,6 +206,11 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         memory(bytes),
         bytes / i.points.max(1) as f64,
         i.simd,
+    );
+    text.extend(
+        i.transfers
+            .iter()
+            .map(|t| format!("\n{}", spreads(t, i.time_step, units))),
     );
     for s in i.critical_stretch.iter().filter(|s| s.is_finite()) {
         text += &format!(

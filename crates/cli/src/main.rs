@@ -4,6 +4,7 @@ mod bar;
 mod check;
 mod coarsen;
 mod converge;
+mod convert;
 mod deck;
 mod doc;
 mod failure;
@@ -52,6 +53,8 @@ enum Verb {
     Waves(waves::WavesArguments),
     /// Refine a lattice deck level by level, and fit the order with which its error falls.
     Converge(converge::ConvergeArguments),
+    /// A deck of Peridigm (YAML, XML) or PeriLab (YAML) as one of peridyne; what has no counterpart is named line by line.
+    Convert(convert::ConvertArguments),
     /// Continuum fields from the particles of a trajectory: stress, heat flux and their balance laws.
     Fields(Box<fields::FieldsArguments>),
     /// A peristatic bar pulled at its ends: stiffness, homogenization factors, elongation as a fraction and its limit.
@@ -129,6 +132,7 @@ fn main() -> ExitCode {
         Verb::Coarsen(arguments) => coarsen::coarsen(&arguments),
         Verb::Waves(arguments) => waves::waves(&arguments),
         Verb::Converge(arguments) => converge::converge(&arguments),
+        Verb::Convert(arguments) => convert::convert(&arguments),
         Verb::Fields(arguments) => fields::fields(&arguments),
         Verb::Bar(arguments) => bar::bar(&arguments),
         Verb::Report(arguments) => report::report(&arguments),

@@ -12,11 +12,11 @@ use peridyne::error::{BuildError, size};
 use peridyne::expression::Expression;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
-use peridyne::spec::IndenterMotion;
+use peridyne::spec::{BodySpec, IndenterMotion, Schedule, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
-use peridyne_io::drive::{AtomsPlan, Plan, default_dir, drive, too_many_threads};
+use peridyne_io::drive::{AtomsPlan, ExodusPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
 use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
@@ -102,7 +102,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
         "threads   {threads}\nrunning {steps} steps, results in {}",
         plan.dir.display()
     ));
-    let statics = deck.spec.schedule.statics().is_some();
+    let statics = counts_load(&deck.spec.schedule);
     let times = (!statics).then_some(deck.units);
     let mut progress = Terminal::new(steps, sim.info().directed_bonds, times);
     sim.stop_when(|| signals::received().is_some());
@@ -150,7 +150,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
         every: output.every,
         history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
-        vtu: output.vtu,
+        files: u64::from(output.vtu) + u64::from(output.exodus.is_some()),
         bonds: if output.bonds {
             info.directed_bonds / 2
         } else {
@@ -211,8 +211,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
 pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOptions>, Failure> {
     let still = deck.spec.schedule.statics().is_some();
     let step = sim.info().time_step;
-    // in statics t is a part of the load
-    let end = if still {
+    let end = if counts_load(&deck.spec.schedule) {
         1.0
     } else {
         deck.steps(step) as f64 * step
@@ -229,6 +228,11 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
         };
         // a film is begun before it is known what the run was about
         let about = match (breaks, still) {
+            _ if deck.spec.schedule.stepper == Stepper::Still
+                && let Some(t) = deck.spec.transfers.first() =>
+            {
+                About::Spread(t.quantity.column())
+            }
             (true, _) => About::Fracture,
             (false, true) => About::Equilibrium,
             (false, false) => About::Motion,
@@ -282,6 +286,15 @@ fn units(deck: &Deck) -> [&'static str; 3] {
     }
 }
 
+/// Is t a part of the load, which goes to 1? In statics without a duration it is.
+fn counts_load(schedule: &Schedule) -> bool {
+    let end = match schedule.time_step {
+        TimeStep::Fixed(step) => step * schedule.steps.max(1) as f64,
+        TimeStep::Fraction(_) | TimeStep::Auto => 1.0,
+    };
+    schedule.statics().is_some() && (end - 1.0).abs() < 1e-9
+}
+
 /// Where indenters are that are moved, until `end`.
 fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
     const PARTS: u32 = 100;
@@ -304,7 +317,24 @@ fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
 /// Columns of a frame.
 fn fields(deck: &Deck) -> Vec<String> {
     let usual = || USUAL.map(String::from).to_vec();
-    deck.spec.fields.clone().unwrap_or_else(usual)
+    let spread = deck.spec.transfers.iter().map(|t| t.quantity.column());
+    let spread = || spread.map(str::to_string).chain(usual()).collect();
+    deck.spec.fields.clone().unwrap_or_else(spread)
+}
+
+/// The Exodus file that a deck asks for.
+fn exodus(deck: &Deck) -> Option<ExodusPlan> {
+    let path = deck.output.exodus.clone()?;
+    let bodies = match &deck.spec.body {
+        BodySpec::Several(pieces) => pieces.iter().map(|p| p.name.clone()).collect(),
+        BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => vec![],
+    };
+    Some(ExodusPlan {
+        path,
+        materials: deck.spec.materials.iter().map(|m| m.name.clone()).collect(),
+        bodies,
+        sets: deck.spec.sets.iter().map(|s| s.name.clone()).collect(),
+    })
 }
 
 fn plan(
@@ -342,6 +372,7 @@ fn plan(
             }),
             pictures,
         },
+        exodus: exodus(deck),
         fields: fields(deck),
         continuum: continuum(deck),
         units: deck.units,

@@ -255,6 +255,7 @@ fn report(
         directed_bonds: info.directed_bonds,
         steps,
         time_step: info.time_step,
+        parts_of_a_step: info.parts,
         seconds_stepping: seconds,
         ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
         peak_memory_bytes: run_json::peak_memory_bytes(),

@@ -22,3 +22,4 @@ mod samples;
 pub mod space;
 pub mod spec;
 pub mod statics;
+pub mod transfer;

@@ -488,6 +488,16 @@ fn what_cannot_be_is_refused() {
 /// takes several times as much work.
 #[test]
 fn a_held_bar_holds_its_flow_stress() {
+    held_bar("control", Parameter::Number(0.5));
+}
+
+/// Gradients of bonds need none, and do not lock.
+#[test]
+fn a_held_bar_of_bonds_holds_its_flow_stress() {
+    held_bar("gradient", Parameter::Word("bond".into()));
+}
+
+fn held_bar(key: &str, value: Parameter) {
     let mut quarters = vec![];
     for z in 0..5 {
         for y in 0..5 {
@@ -508,8 +518,8 @@ fn a_held_bar_holds_its_flow_stress() {
         ("poisson", 0.3),
         ("yield_stress", 1.0),
         ("hardening", 1.0),
-        ("control", 0.5),
-    ]);
+    ])
+    .with(key, value);
     let mut spec = Spec::new(3, body, 1.0, LawSpec::named("hypoelastic_plastic", metal));
     spec.horizon = Horizon::Ratio(2);
     for (name, at, sign) in [("low", 1.5, 1.0), ("high", 12.5, -1.0)] {
@@ -536,7 +546,7 @@ fn a_held_bar_holds_its_flow_stress() {
     let ledger = sim.ledger().unwrap();
     let ratio = ledger.work_conditions / ledger.dissipated;
     println!(
-        "work over dissipation {ratio}, residual {:e}",
+        "{key}: work over dissipation {ratio}, residual {:e}",
         ledger.residual()
     );
     assert!(ledger.dissipated > 50.0, "{}", ledger.dissipated);

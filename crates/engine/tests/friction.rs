@@ -49,7 +49,7 @@ fn thrown(set: &str, v: [&str; 2]) -> InitialSpec {
 
 /// A block that falls a little on a held plate and slides, pressed by g = 0.02. No pair begins nearer than it may be,
 /// and points of the plate are so near to each other that it is flat.
-fn sliding(friction: f64) -> Spec {
+fn sliding(friction: FrictionSpec) -> Spec {
     let plate = square(0.25, [-5.0, -0.5, 0.0], [70.0, 0.0, 0.0]);
     let block = square(1.0, [0.0, 1.7, 0.0], [8.0, 5.7, 0.0]);
     let pieces = vec![piece("block", block, true), piece("plate", plate, false)];
@@ -61,7 +61,7 @@ fn sliding(friction: f64) -> Spec {
         bonded: 0.9,
         free: 2.4,
         stiffness: ContactStiffness::Laws,
-        friction,
+        friction: Some(friction),
     });
     spec.conditions = vec![
         ConditionSpec {
@@ -89,7 +89,7 @@ fn mean_velocity(sim: &mut dyn Simulation) -> [f64; 2] {
 #[test]
 fn a_block_slides_with_mu_times_its_weight() {
     let mu = 0.3;
-    let mut sim = build(&sliding(mu), Options::default()).unwrap();
+    let mut sim = build(&sliding(FrictionSpec::constant(mu)), Options::default()).unwrap();
     sim.start(true);
     let mut dissipated = 0.0f64;
     while sim.time() < 60.0 {
@@ -112,9 +112,69 @@ fn a_block_slides_with_mu_times_its_weight() {
     assert!(residual < 2e-3, "{residual}");
 }
 
+/// μ falls from 0.6 at rest to 0.2, over a speed of 0.4: a block that slides at v loses `m g μ(v)`, so that
+/// `∫ dv/μ(v)` over what it lost is the impulse of the plate. And a friction that ends leaves the block its speed.
+#[test]
+fn friction_that_falls_with_speed_and_friction_that_ends() {
+    let (slow, fast, speed) = (0.6, 0.2, 0.4);
+    let rest = AtRest {
+        coefficient: Expression::constant(slow),
+        speed,
+    };
+    let falling = FrictionSpec {
+        at_rest: Some(rest),
+        ..FrictionSpec::constant(fast)
+    };
+    let mut sim = build(&sliding(falling), Options::default()).unwrap();
+    sim.start(true);
+    while sim.time() < 60.0 {
+        sim.step().unwrap();
+    }
+    let [vx, vy] = mean_velocity(sim.as_mut());
+    let pressed = 0.02 * sim.time() + vy;
+    // Simpson's rule
+    let steps = 1000;
+    let mu = |v: f64| fast + (slow - fast) * (-v / speed).exp();
+    let integral: f64 = (0..=steps)
+        .map(|k| {
+            let v = vx + (1.0 - vx) * f64::from(k) / f64::from(steps);
+            let weight = match k {
+                0 => 1.0,
+                k if k == steps => 1.0,
+                k if k % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            weight / mu(v)
+        })
+        .sum();
+    let rubbed = integral * (1.0 - vx) / (3.0 * f64::from(steps));
+    assert!(vx < 0.75, "it slides into the fall of the curve: {vx}");
+    assert!(
+        (rubbed / pressed - 1.0).abs() < 0.03,
+        "{rubbed} of {pressed}"
+    );
+
+    let ends = FrictionSpec {
+        kinetic: Expression::parse("t < 20 ? 0.3 : 0", &[]).unwrap(),
+        at_rest: None,
+    };
+    let mut sim = build(&sliding(ends), Options::default()).unwrap();
+    sim.start(true);
+    let mut at = vec![];
+    for end in [20.0, 22.0, 60.0] {
+        while sim.time() < end {
+            sim.step().unwrap();
+        }
+        at.push(mean_velocity(sim.as_mut())[0]);
+    }
+    assert!(at[0] < 0.95, "{at:?}");
+    // momentum along the plate is kept to round-off without friction
+    assert!((at[2] - at[1]).abs() < 0.01 * (1.0 - at[1]), "{at:?}");
+}
+
 #[test]
 fn a_block_comes_to_rest_and_stays() {
-    let mut spec = sliding(0.9);
+    let mut spec = sliding(FrictionSpec::constant(0.9));
     spec.initial = vec![thrown("block", ["0.3", "0"])];
     let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
@@ -151,7 +211,7 @@ fn glancing() -> Spec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
-        friction: 0.4,
+        friction: Some(FrictionSpec::constant(0.4)),
     });
     spec.initial = vec![thrown("block", ["1.5", "-1"])];
     spec.schedule.time_step = TimeStep::Fraction(0.1);
@@ -233,7 +293,7 @@ fn points(
         bonded: 100.0,
         free: 1.0,
         stiffness: ContactStiffness::Same(18.0 * spring / (PI * horizon.powi(5))),
-        friction: 0.0,
+        friction: None,
     });
     spec.schedule.force_unstable = true;
     spec
@@ -275,7 +335,7 @@ fn peridigm_contact_friction() {
     let at = [[0.0; 3], [0.0, 0.18999999999999995, 0.0]];
     let volume = 0.004188852927999996;
     let mut spec = points(at, volume, 8960.0, 0.2, [1e12, 0.6]);
-    spec.contact.as_mut().unwrap().friction = 0.3;
+    spec.contact.as_mut().unwrap().friction = Some(FrictionSpec::constant(0.3));
     spec.initial = vec![thrown("first", ["10", "0"]), thrown("second", ["-10", "0"])];
     spec.schedule.time_step = TimeStep::Fixed(1e-5);
     let mut sim = build(&spec, Options::default()).unwrap();
@@ -317,4 +377,50 @@ fn peridigm_contact_friction() {
     assert!(sliding.abs() < 0.2, "{sliding}");
     let l = sim.ledger().unwrap();
     assert!((l.residual() / l.initial).abs() < 0.05, "{l:?}");
+}
+
+/// Friction that ends: Peridigm's first two states, while points slide; in the third its friction of μ = 1 turns the sliding round. After 4e-5
+/// nothing rubs any more.
+#[test]
+fn peridigm_contact_friction_that_ends() {
+    let at = [[0.0; 3], [0.0, 0.18999999999999995, 0.0]];
+    let mut spec = points(at, 0.004188852927999996, 8960.0, 0.2, [1e12, 0.6]);
+    spec.contact.as_mut().unwrap().friction = Some(FrictionSpec {
+        kinetic: Expression::parse("t <= 4.00e-5 ? 1 : 0", &[]).unwrap(),
+        at_rest: None,
+    });
+    spec.initial = vec![thrown("first", ["10", "0"]), thrown("second", ["-10", "0"])];
+    spec.schedule.time_step = TimeStep::Fixed(1e-5);
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let close = |found: f64, gold: f64| {
+        assert!((found / gold - 1.0).abs() < 1e-10, "{found}, not {gold}");
+    };
+    let f = sim.vectors("force_density")[0];
+    (0..2).for_each(|a| close(f[a], -3086465969.3340926));
+    for (u, v) in [
+        (
+            [8.277641758184101e-05, -1.7223582418159e-05],
+            [6.562724915395335, -3.440265667621393],
+        ),
+        (
+            [0.0001312544983079067, -6.880531335242787e-05],
+            [3.151529305792881, -6.859142190180987],
+        ),
+    ] {
+        sim.step().unwrap();
+        for a in 0..2 {
+            close(sim.displacements()[0][a], u[a]);
+            close(sim.velocities()[0][a], v[a]);
+        }
+    }
+    while sim.time() < 4.5e-5 {
+        sim.step().unwrap();
+    }
+    let f = sim.vectors("force_density")[0];
+    let u = sim.displacements();
+    let [x, y] = [0, 1].map(|a| u[1][a] - u[0][a] + at[1][a]);
+    let across = (f[0] * y - f[1] * x) / x.hypot(y);
+    assert!(across.abs() < 1e-9 * f[1].abs(), "{across}");
+    assert!(f[1] < -1e8, "they still touch: {f:?}");
 }

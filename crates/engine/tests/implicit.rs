@@ -279,7 +279,7 @@ fn what_has_no_tangent_is_refused() {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
-        friction: 0.0,
+        friction: None,
     });
     assert_eq!(said(&touching).path, "contact");
     let mut auto = spec.clone();

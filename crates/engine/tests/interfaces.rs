@@ -213,7 +213,7 @@ fn pulled() -> Spec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
-        friction: 0.0,
+        friction: None,
     });
     for (set, v) in [("left", "-0.02*(3-x)"), ("right", "0.02*(x-2.5)")] {
         spec.initial.push(InitialSpec {
@@ -313,7 +313,7 @@ fn unlike() -> Spec {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
-        friction: 0.0,
+        friction: None,
     });
     spec.schedule.time_step = TimeStep::Fraction(0.1);
     spec

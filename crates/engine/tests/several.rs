@@ -52,7 +52,7 @@ const CONTACT: ContactSpec = ContactSpec {
     bonded: 0.9,
     free: 1.35,
     stiffness: ContactStiffness::Laws,
-    friction: 0.0,
+    friction: None,
 };
 
 /// Until the materials are given.

@@ -1,6 +1,8 @@
 //! Watches the energy balance of a run: a residual that jumps is said when it does.
 
+use peridyne::error::RunError;
 use peridyne::observe::Ledger;
+use peridyne::run::Info;
 
 /// Growth of the residual from one row to the next that is a jump.
 const JUMP: f64 = 16.0;
@@ -10,6 +12,9 @@ const SMALL: f64 = 1e-4;
 /// of the time step is large beside so little energy. A step that is too long grows without being given anything.
 const BEGINS: f64 = 2.0;
 
+/// Energy out of nothing, as a part of the energy, that no run goes on with.
+const LOST: f64 = 0.5;
+
 /// What the last row of the history had.
 #[derive(Debug, Default)]
 pub struct BalanceWatch {
@@ -18,17 +23,40 @@ pub struct BalanceWatch {
     last: Option<(u64, f64, f64)>,
     /// Energy that the body was given.
     given: f64,
+    /// The most of it so far.
+    most: f64,
     /// The most energy so far.
     scale: f64,
+    /// Is there too much out of nothing in the last row, and in that before?
+    lost: bool,
+    gone: bool,
 }
 
 impl BalanceWatch {
+    /// Two rows in turn, while the body was given little, have half of its energy out of nothing: why such a run is at its end.
+    pub fn gone(&self, step: u64, ledger: &Ledger, info: &Info) -> Option<RunError> {
+        if !(self.gone && info.conserves) {
+            return None;
+        }
+        let before = self.most;
+        Some(RunError::Unstable {
+            step,
+            before,
+            after: before + ledger.residual(),
+            time_step: info.time_step,
+            contact: (ledger.contact > SMALL * self.scale).then_some(info.contact_step),
+        })
+    }
+
     /// A row: what to warn of, if its residual is 16 times that of the row before.
     pub fn row(&mut self, step: u64, ledger: &Ledger) -> Option<String> {
         let residual = ledger.residual();
         let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
         let given = work + ledger.initial.abs();
         let begins = given > BEGINS * std::mem::replace(&mut self.given, given);
+        self.most = self.most.max(given);
+        let lost = !begins && residual > LOST * self.most;
+        self.gone = std::mem::replace(&mut self.lost, lost) && lost;
         let held = ledger.kinetic + ledger.strain + ledger.contact + ledger.released;
         self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
         if !std::mem::replace(&mut self.begun, true) {
@@ -117,5 +145,35 @@ mod tests {
         }
         let told = watch.row(60, &under(6.0, 0.5)).unwrap();
         assert!(told.contains("the step may be too long"), "{told}");
+    }
+
+    /// Energy that grows out of nothing ends a run in the second row, that which a load brings or friction takes does not.
+    #[test]
+    fn energy_out_of_nothing_ends_a_run() {
+        let mut watch = BalanceWatch::default();
+        let mut of = |rows: &[(f64, f64)]| {
+            let rows = rows.iter().enumerate();
+            rows.map(|(n, (kinetic, work))| {
+                let mut ledger = ledger(*kinetic, 0.0);
+                ledger.work_conditions = *work;
+                watch.row(n as u64, &ledger);
+                watch.gone
+            })
+            .collect::<Vec<_>>()
+        };
+        let rows = [
+            (1.0, 0.0),
+            (1.3, 0.0),
+            (1.7, 0.0),
+            (1.4, 0.0),
+            (1.6, 0.0),
+            (1.7, 0.0),
+        ];
+        assert_eq!(of(&rows), [false, false, false, false, false, true]);
+        assert_eq!(
+            of(&[(1.0, 0.0), (4.0, 3.0), (9.0, 8.0), (9.1, 8.0)]),
+            [false; 4]
+        );
+        assert_eq!(of(&[(1.0, 0.0), (0.1, 0.0), (0.1, 0.0)]), [false; 3]);
     }
 }

@@ -1,8 +1,11 @@
 //! Drives a simulation through its steps: observers at their intervals, files as they come, a report at the end.
 
 mod atoms;
+mod exodus;
+mod row;
 
 pub use atoms::AtomsPlan;
+pub use exodus::ExodusPlan;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,7 +22,7 @@ use crate::continuum::run::{FieldsPlan, RunningFields};
 use crate::deck::{Dim, UnitSystem};
 use crate::write::data::write_data;
 use crate::write::folder::{Folder, is_inside};
-use crate::write::history::{Column, History, ledger_columns, ledger_values};
+use crate::write::history::History;
 use crate::write::linear::write_linear;
 use crate::write::picture::{self, shown::About};
 use crate::write::report::{self, ReportError};
@@ -58,6 +61,8 @@ pub struct Plan {
     /// Write `linear_body.npz` about the last state.
     pub linear_body: bool,
     pub series: SeriesOptions,
+    /// Frames in an Exodus file.
+    pub exodus: Option<ExodusPlan>,
     /// Columns of a frame.
     pub fields: Vec<String>,
     /// Of the numbers that are computed, for headers of probes.
@@ -80,7 +85,11 @@ impl Plan {
             let shown = match &picture.field {
                 Some(field) => vec![field.as_str()],
                 // what a run is about is known in the end
-                None => vec![About::Fracture.field(), About::Motion.field()],
+                None => {
+                    let spread = { sim.transfers().into_iter() }.map(|(q, _)| q.column());
+                    let others = [About::Fracture.field(), About::Motion.field()];
+                    spread.chain(others).collect()
+                }
             };
             for field in shown {
                 if !fields.contains(&field) {
@@ -104,6 +113,7 @@ impl Plan {
         file(modes, "modes/points.pvd");
         file(self.linear_body, "linear_body.npz");
         let dump = series.dump.iter().map(|(name, _)| name);
+        let dump = dump.chain(self.exodus.iter().map(|e| &e.path));
         let atoms = self.atoms.iter();
         let named = atoms.flat_map(|a| a.trajectories.iter().map(|(n, _)| n).chain(&a.data));
         files.extend(dump.chain(named).map(|n| n.display().to_string()));
@@ -138,7 +148,9 @@ impl Plan {
             let trajectories = a.trajectories.iter().map(|(path, _)| path);
             trajectories.chain(&a.data)
         });
-        for name in named {
+        let points = self.series.dump.iter().map(|(name, _)| name);
+        let points = points.chain(self.exodus.iter().map(|e| &e.path));
+        for name in named.chain(points) {
             if !self.allow_outside && !is_inside(&self.dir, name) {
                 let path = self.dir.join(name);
                 let error = io::Error::other("it is outside the folder of the results");
@@ -195,25 +207,7 @@ pub fn drive(
     let _held = Folder::claim(&plan.dir)?;
     plan.stays_inside()?;
     let mut series = Series::new(&plan.dir, plan.series.clone())?;
-    let mut columns = vec![Column::new("time", &plan.time_unit)];
-    columns.extend(ledger_columns(&plan.energy_unit));
-    columns.push(Column::new("broken_directed_bonds", ""));
-    if sim.solved().is_some() {
-        columns.push(Column::new("iterations", ""));
-        columns.push(Column::new("solver_residual", ""));
-    }
-    if let Some(atoms) = &plan.atoms {
-        columns.push(Column::new("temperature", &atoms.temperature_unit));
-        columns.push(Column::new("pressure", &atoms.pressure_unit));
-    }
-    columns.extend(sim.probe_columns().into_iter().map(|c| {
-        let unit = match (c.rooted, c.moment, plan.units) {
-            (true, _, units) => units.root_unit(c.dimension),
-            (false, true, UnitSystem::Si) => "N m".into(),
-            (false, _, units) => units.unit(c.dimension),
-        };
-        Column::new(c.name, &unit)
-    }));
+    let columns = row::columns(sim, plan);
     let mut trajectories = Vec::new();
     if let Some(atoms) = &plan.atoms {
         for (path, format) in &atoms.trajectories {
@@ -225,6 +219,10 @@ pub fn drive(
     let running = asked.map(|asked| RunningFields::new(sim, asked, &plan.dir));
     let mut running = running.transpose()?;
     let mut history = History::create(&plan.dir.join("history.csv"), &columns)?;
+    let mut exodus = plan.exodus.as_ref().map(|asked| {
+        let place = (&*plan.dir, &*plan.title);
+        exodus::Frames::new(asked, place, sim, &columns)
+    });
     sim.start(true);
     let broken = sim.broken();
     let mut stepping = Duration::ZERO;
@@ -236,6 +234,7 @@ pub fn drive(
     let mut ended = None;
     // what the history and the trajectories tell of already
     let mut told = None;
+    let mut row = None;
     for n in 0..=plan.steps {
         if n > 0 {
             let begin = Instant::now();
@@ -264,7 +263,9 @@ pub fn drive(
             ended = progress.ended();
         }
         let last = n == plan.steps || ended.is_some();
-        if (n % plan.history == 0 || last) && told != Some(sim.step_number()) {
+        let frame = n == 0 || plan.every.is_some_and(|e| n % e == 0);
+        let rows = (n % plan.history == 0 || last) && told != Some(sim.step_number());
+        if rows || (frame && exodus.is_some()) {
             match sim.ledger() {
                 Ok(l) => ledger = l,
                 Err(error) => {
@@ -272,26 +273,26 @@ pub fn drive(
                     break;
                 }
             }
-            let mut row = vec![sim.time()];
-            row.extend(ledger_values(&ledger));
-            row.push(sim.broken() as f64);
-            if let Some(solved) = sim.solved() {
-                row.extend([solved.iterations as f64, solved.residual]);
-            }
-            if let Some(atoms) = &plan.atoms {
-                row.extend(atoms.thermo(sim, ledger.kinetic));
-            }
-            row.extend(sim.measure());
-            history.push(sim.step_number(), &row)?;
-            told = Some(sim.step_number());
-            progress.row(sim.step_number(), sim.time(), &ledger, sim.broken());
-            if let Some(jump) = balance.row(sim.step_number(), &ledger) {
+            row = Some((sim.step_number(), row::row(sim, plan, &ledger)));
+        }
+        if let Some((step, row)) = row.as_ref().filter(|_| rows) {
+            history.push(*step, row)?;
+            told = Some(*step);
+            progress.row(*step, sim.time(), &ledger, sim.broken());
+            if let Some(jump) = balance.row(*step, &ledger) {
                 progress.warning(&jump);
                 warnings.push(jump);
             }
+            let explicit = matches!(sim.info().stepper, Stepper::Verlet);
+            stopped = balance
+                .gone(sim.step_number(), &ledger, sim.info())
+                .filter(|_| explicit);
+            if stopped.is_some() {
+                break;
+            }
         }
         if let Some(atoms) = plan.atoms.as_ref().filter(|_| !trajectories.is_empty())
-            && (n == 0 || last || plan.every.is_some_and(|e| n % e == 0))
+            && (frame || last)
             && framed != Some(sim.step_number())
         {
             let frame = atoms.frame(sim);
@@ -304,8 +305,12 @@ pub fn drive(
                 warnings.push(text);
             }
         }
-        if !last && (n == 0 || plan.every.is_some_and(|e| n % e == 0)) && series.wants_frames() {
-            series.write(&plan.look(sim))?;
+        if !last && frame && (series.wants_frames() || exodus.is_some()) {
+            let snapshot = plan.look(sim);
+            series.write(&snapshot)?;
+            if let (Some(exodus), Some((_, row))) = (&mut exodus, &row) {
+                exodus.push(&snapshot, row)?;
+            }
         }
         if last {
             break;
@@ -313,10 +318,26 @@ pub fn drive(
     }
     let snapshot = plan.look(sim);
     series.write(&snapshot)?;
+    if let Some(mut exodus) = exodus {
+        let row = row.filter(|(step, _)| *step == sim.step_number());
+        // of a run that stopped, what can be said of the last good state
+        let row = row
+            .map(|(_, row)| row)
+            .unwrap_or_else(|| match sim.ledger() {
+                Ok(ledger) => row::row(sim, plan, &ledger),
+                Err(_) => vec![f64::NAN; columns.len()],
+            });
+        exodus.push(&snapshot, &row)?;
+        exodus.finish()?;
+    }
     let about = match (sim.broken() > broken, &sim.info().stepper) {
         (true, _) => About::Fracture,
         (false, Stepper::Statics(_)) => About::Equilibrium,
         (false, Stepper::Verlet | Stepper::Newmark(_)) => About::Motion,
+        (false, Stepper::Still) => match sim.transfers().first() {
+            Some((quantity, _)) => About::Spread(quantity.column()),
+            None => About::Motion,
+        },
     };
     let pictures = series.finish(&snapshot, about)?;
     let pictures = pictures.iter().filter_map(|p| p.file_name());
@@ -369,6 +390,7 @@ pub fn drive(
         directed_bonds: info.directed_bonds,
         steps: sim.step_number(),
         time_step: info.time_step,
+        parts_of_a_step: info.parts,
         seconds_stepping: stepping.as_secs_f64(),
         ns_per_bond_step: run_json::ns_per_bond_step(
             stepping.as_secs_f64(),

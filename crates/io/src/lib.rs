@@ -3,7 +3,9 @@
 pub mod balance;
 pub mod conservation;
 pub mod continuum;
+pub mod convert;
 pub mod deck;
 pub mod drive;
+mod netcdf;
 pub mod read;
 pub mod write;

@@ -29,6 +29,8 @@ pub fn nominal_moduli(
     // springs are the bond-based solid at small strains
     let springs;
     let law = match law {
+        // no isotropic solid
+        LawSpec::Named(law) if !law.isotropic => return None,
         LawSpec::Springs(s) => {
             springs = LawSpec::Pmb(*s);
             &springs

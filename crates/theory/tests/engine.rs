@@ -91,6 +91,7 @@ fn case(
         pairs: vec![],
         potentials: vec![],
         mixing: None,
+        toughness: vec![],
         release: Release::AtOnce,
         horizon: Horizon::Ratio(ratio),
         volume_scaling: true,
@@ -104,6 +105,7 @@ fn case(
         initial: vec![],
         conditions: vec![],
         indenters: vec![],
+        transfers: vec![],
         family: FamilyChoice::Auto,
         schedule: Schedule {
             steps: 0,

@@ -320,7 +320,7 @@ fn worn() -> Vec<(Spec, Vec<Point>)> {
             bonded: 0.9,
             free: 1.35,
             stiffness: ContactStiffness::Laws,
-            friction: 0.0,
+            friction: None,
         });
         let mut seed = 7u64;
         let mut random = move || {

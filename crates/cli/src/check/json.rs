@@ -53,9 +53,13 @@ pub fn write(found: &Findings) -> String {
         "integrator": match info.stepper {
             Stepper::Verlet => Some("verlet"),
             Stepper::Newmark(_) => Some("newmark"),
+            Stepper::Still => Some("still"),
             Stepper::Statics(_) => None,
         },
         "stable_step": info.stable_step,
+        "spreads": info.transfers.iter().map(|t| json!({
+            "quantity": t.quantity.name(), "diffusivity": t.diffusivity, "stable_step": t.stable_step, "over_the_body": t.spread,
+        })).collect::<Vec<_>>(),
         "contact_step": info.contact_step.is_finite().then_some(info.contact_step),
         "bodies": info.bodies.iter().map(|(name, points)| json!({"name": name, "points": points})).collect::<Vec<_>>(),
         "gaps": info.gaps.iter().map(|g| json!({

@@ -3,6 +3,7 @@
 mod continuum;
 mod look;
 mod points;
+mod spread;
 mod stiffness;
 mod waves;
 
@@ -12,6 +13,7 @@ use crate::numbers::{digits, duration, memory};
 use look::look;
 use peridyne_io::deck::describe;
 use points::{families, points};
+use spread::spread;
 use std::fmt::Write;
 use stiffness::stiffness;
 use waves::{fracture, waves};
@@ -38,6 +40,7 @@ pub fn write(found: &Findings) -> String {
         families(found),
         stiffness(found),
         waves(found),
+        spread(found),
         fracture(found),
         continuum::fields(found),
         cost(found),

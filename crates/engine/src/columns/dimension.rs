@@ -31,6 +31,18 @@ impl Dimension {
     pub const CONTACT_STIFFNESS: Dimension = Dimension([-6, 1, -2, 0]);
     pub const INDENTER_STIFFNESS: Dimension = Dimension([-4, 1, -2, 0]);
     pub const DAMPING: Dimension = Dimension([-3, 1, -1, 0]);
+    pub const CONDUCTIVITY: Dimension = Dimension([1, 1, -3, -1]);
+    /// Per mass.
+    pub const HEAT_CAPACITY: Dimension = Dimension([2, 0, -2, -1]);
+    pub const HEAT_FLUX: Dimension = Dimension([0, 1, -3, 0]);
+    pub const HEAT_SOURCE: Dimension = Dimension([-1, 1, -3, 0]);
+    pub const HEAT_TRANSFER: Dimension = Dimension([0, 1, -3, -1]);
+    pub const EXPANSION: Dimension = Dimension([0, 0, 0, -1]);
+    pub const DIFFUSIVITY: Dimension = Dimension([2, 0, -1, 0]);
+    /// Amount per volume.
+    pub const CONCENTRATION: Dimension = Dimension([-3, 0, 0, 0]);
+    pub const SPECIES_FLUX: Dimension = Dimension([-2, 0, -1, 0]);
+    pub const SPECIES_SOURCE: Dimension = Dimension([-3, 0, -1, 0]);
 
     /// What the usual ones are called.
     const NAMES: &[(Dimension, &'static str)] = &[
@@ -65,6 +77,25 @@ impl Dimension {
             "an indenter stiffness (force per volume and area)",
         ),
         (Dimension::DAMPING, "a damping (mass per volume and time)"),
+        (Dimension::CONDUCTIVITY, "a thermal conductivity"),
+        (Dimension::HEAT_CAPACITY, "a heat capacity per mass"),
+        (Dimension::HEAT_FLUX, "a heat flux (power per area)"),
+        (Dimension::HEAT_SOURCE, "a power per volume"),
+        (Dimension::HEAT_TRANSFER, "a heat transfer coefficient"),
+        (Dimension::EXPANSION, "an inverse temperature"),
+        (Dimension::DIFFUSIVITY, "a diffusivity"),
+        (
+            Dimension::CONCENTRATION,
+            "a concentration (amount per volume)",
+        ),
+        (
+            Dimension::SPECIES_FLUX,
+            "a flux of a species (amount per area and time)",
+        ),
+        (
+            Dimension::SPECIES_SOURCE,
+            "a source of a species (amount per volume and time)",
+        ),
     ];
 
     /// What it is called, if it is a usual one.

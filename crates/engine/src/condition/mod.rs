@@ -10,6 +10,7 @@ pub mod load;
 pub mod own;
 pub mod reaction;
 pub(crate) mod still;
+pub mod toughness;
 
 use crate::expression::Expression;
 use crate::space::Point;

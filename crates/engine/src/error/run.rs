@@ -48,6 +48,19 @@ pub enum RunError {
         position: Option<[f64; 3]>,
         error: SolveError,
     },
+    #[error("step {step}: the factor of the toughness is {value} at ({:.6e}, {:.6e}, {:.6e}), expected a positive number", position[0], position[1], position[2])]
+    Toughness {
+        step: u64,
+        position: [f64; 3],
+        value: f64,
+    },
+    #[error("step {step}: the equations of {quantity} have no solution: {error}")]
+    Transfer {
+        step: u64,
+        /// What spreads.
+        quantity: &'static str,
+        error: SolveError,
+    },
     #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
     Crossing { step: u64, i: u64, j: u64 },
     #[error(

@@ -175,6 +175,15 @@ pub trait Interaction<const D: usize>: Send + Sync {
         out.fill(0.0);
     }
 
+    /// The least length of a whole bond over that in the reference, at most 1, of laws whose bonds are the stiffer the shorter they are; 1 of all
+    /// others. Images of `u` must be fresh.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn shortest(&mut self, _body: &Body<D>, _u: &Field<D>) -> f64 {
+        1.0
+    }
+
     /// Cut bonds whose end points satisfy `crosses`. Returns directed bonds cut. Call before the first sweep.
     fn cut(
         &mut self,
@@ -216,6 +225,16 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// symmetric, and then there is no energy whose slope the forces are.
     fn asymmetry(&self) -> f64 {
         0.0
+    }
+
+    /// From now on bonds have the length of the reference times `1 + ε`, ε the mean of the strains of both ends, where they pull at nothing:
+    /// the law answers to `(ξ + η)/(1 + ε)` in place of `ξ + η`, and its energy to nothing else. A strain for each slot, images
+    /// too. False: the law knows of none, and nothing is changed.
+    ///
+    /// # Panics
+    /// If the body is another one, or the number of strains is not that of its slots.
+    fn expand(&mut self, _body: &Body<D>, _strain: &[f64]) -> bool {
+        false
     }
 
     /// Directed bonds of the reference family.

@@ -1,5 +1,6 @@
 //! Coulomb friction of points that touch: force density `μ K (d − r) V_j` on i along the tangential velocity of j against i,
-//! `w = (1 − n⊗n)(v_j − v_i)` with n from i to j, and the opposite force on j. K (d − r) is what they repel with.
+//! `w = (1 − n⊗n)(v_j − v_i)` with n from i to j, and the opposite force on j. K (d − r) is what they repel with. μ may depend on |w| and on
+//! time ([`FrictionSpec`]).
 //!
 //! Momentum is kept, and what friction does is dissipated. A pair that sticks has no direction: the force is never more than
 //! what takes an equal part of w from every partner within one step, `m |w| / (z Δt)` with the reduced mass `m = m_i m_j/(m_i + m_j)`
@@ -8,12 +9,15 @@
 
 use super::contact::{Contact, Touch};
 use crate::body::{Body, Field, zeros};
+use crate::expression::Expression;
+use crate::spec::FrictionSpec;
 
 /// Friction outside the families, and what it has dissipated.
 #[derive(Debug, Clone)]
 pub struct Friction<const D: usize> {
-    /// μ (–)
-    coefficient: f64,
+    law: FrictionSpec,
+    /// μ_k and μ_s − μ_k now (–), and 1/v_c.
+    now: [f64; 3],
     /// Force density of the last evaluation.
     force: Field<D>,
     /// `[slots]`: with how many a point is in touch.
@@ -22,10 +26,24 @@ pub struct Friction<const D: usize> {
     pub work: f64,
 }
 
+/// μ_k and μ_s − μ_k at a time, and 1/v_c. What is below 0 counts as 0.
+fn coefficients(law: &FrictionSpec, t: f64) -> [f64; 3] {
+    let at = |e: &Expression| match e.eval(&[0.0; 3], t) {
+        x if x < 0.0 => 0.0,
+        x => x,
+    };
+    let kinetic = at(&law.kinetic);
+    match &law.at_rest {
+        None => [kinetic, 0.0, 0.0],
+        Some(rest) => [kinetic, at(&rest.coefficient) - kinetic, 1.0 / rest.speed],
+    }
+}
+
 impl<const D: usize> Friction<D> {
-    pub fn new(coefficient: f64, body: &Body<D>) -> Self {
+    pub fn new(law: FrictionSpec, body: &Body<D>) -> Self {
         Friction {
-            coefficient,
+            law,
+            now: [0.0; 3],
             force: zeros(body.len),
             partners: vec![0; body.len],
             work: 0.0,
@@ -38,15 +56,17 @@ impl<const D: usize> Friction<D> {
     }
 
     /// Adds the force density at the displacements of the contact's last update to `f`. `v` is the velocity of the step's middle,
-    /// `dt` the step that ends, 0 at the start of a run, `step` the one that begins.
+    /// `dt` the step that ends, 0 at the start of a run, `step` the one that begins, `t` the time.
     pub fn add(
         &mut self,
         contact: &Contact<D>,
         body: &Body<D>,
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
+        t: f64,
         [dt, step]: [f64; 2],
     ) {
+        self.now = coefficients(&self.law, t);
         self.partners.fill(0);
         contact.each_contact(u, |touch| {
             self.partners[touch.i] += 1;
@@ -93,7 +113,12 @@ impl<const D: usize> Friction<D> {
         let z = self.partners[i].max(self.partners[j]);
         let most = mi * mj / (mi + mj) * speed / (f64::from(z) * step);
         let normal = touch.stiffness * (touch.d - r) * body.volume.at(i) * body.volume.at(j);
-        let force = (self.coefficient * normal).min(most);
+        let [kinetic, more, slowness] = self.now;
+        let coefficient = match more {
+            0.0 => kinetic,
+            more => kinetic + more * (-speed * slowness).exp(),
+        };
+        let force = (coefficient * normal).min(most);
         Some(w.map(|c| force * c / speed))
     }
 

@@ -9,7 +9,10 @@ use crate::law::Law;
 
 /// Name of the column of whole bonds.
 pub const WHOLE: &str = "whole";
-const ELONGATION: &str = "critical_elongation";
+/// Column of critical values of `e`.
+pub const ELONGATION: &str = "critical_elongation";
+/// Critical `e` of points whose bonds never break, whatever their partners say. (∞ leaves it to them.)
+pub const NEVER: f64 = f64::MAX;
 const CRITICAL: &str = "critical_stretch";
 
 /// What peridynamic laws of bits remember; `breaks`: do bonds break?
@@ -43,7 +46,10 @@ pub fn read_critical<const D: usize>(
     out.clear();
     let of: fn(f64) -> f64 = match name {
         ELONGATION => |e| e,
-        CRITICAL => critical_stretch,
+        CRITICAL => |e| match e {
+            NEVER => f64::INFINITY,
+            e => critical_stretch(e),
+        },
         _ => return false,
     };
     if critical.is_empty() {
@@ -124,6 +130,22 @@ pub fn critical<L: Lane>(s0: L) -> L {
         L::splat(-1.0),
         s0 * (L::splat(2.0) + s0),
     )
+}
+
+/// Ends whose bond never breaks.
+#[inline(always)]
+pub fn spared<L: Lane>(a: L, b: L) -> L::Mask {
+    let never = |x: L| {
+        let known = L::select(x.lt(L::splat(f64::INFINITY)), x, L::splat(0.0));
+        known.ge(L::splat(NEVER))
+    };
+    L::or(never(a), never(b))
+}
+
+/// The critical `e` of a bond from those of its ends: the lower one, unless one of them never fails.
+#[inline(always)]
+pub fn limit<L: Lane>(a: L, b: L) -> L {
+    L::select(spared(a, b), L::splat(f64::INFINITY), a.min(b))
 }
 
 /// What points without whole bonds have: nothing, of laws without a point scalar; of those with one what they had.

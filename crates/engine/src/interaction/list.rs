@@ -56,6 +56,8 @@ pub struct ListInteraction<const D: usize, W: Law> {
     pairs: Arc<BondTable>,
     /// Critical `e` per slot, now and next.
     critical: Vec<f64>,
+    /// Are there points whose bonds never break?
+    spares: bool,
     next: Vec<f64>,
     period: [f64; D],
     inv_period: [f64; D],
@@ -136,6 +138,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             next,
             toughness: &self.toughness,
+            spares: self.spares,
             material: &body.material,
             motion,
         };

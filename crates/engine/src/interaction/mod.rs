@@ -6,7 +6,7 @@ pub(crate) mod bond;
 pub mod contact;
 mod contract;
 pub mod friction;
-mod history;
+pub(crate) mod history;
 pub(crate) mod interface;
 pub(crate) mod linear;
 pub mod list;

@@ -172,6 +172,18 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         total
     }
 
+    fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
+        self.check(body, &[u]);
+        let mut least = 1.0f64;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                take(u, p, &mut own.u);
+                least = least.min(bonds.shortest(&p.body, &own.u));
+            }
+        }
+        least
+    }
+
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for (p, own) in pieces(body).iter().zip(&mut self.own) {

@@ -487,6 +487,11 @@ pub struct Given<'a> {
 
 /// A law that can stand on a shelf.
 pub trait Shelved: Sized {
+    /// Is [`Shelved::linear`] its own elasticity? Of anisotropic laws it is a mean.
+    const ISOTROPIC: bool = true;
+    /// Do its constants hold the critical stretch, so that toughness cannot depend on place and time?
+    const ENDS: bool = false;
+
     fn descriptor() -> Descriptor;
 
     /// The brittle linear law of the same elasticity about the reference. It gives contact its stiffness and a fracture energy its critical

@@ -12,8 +12,9 @@ use super::parts::{Part, parts};
 use super::reference::current_neighbours;
 use super::sets::{assign_materials, initial, sets};
 use super::time_step::{Limits, time_step};
+use super::transfers::state::Transfers;
 use super::{Info, Simulation, Steered};
-use super::{bonds, precracks, surface};
+use super::{bonds, precracks, surface, transfers};
 use super::{contact, gaps};
 use crate::body::zeros;
 use crate::condition::carried::Carried;
@@ -64,6 +65,9 @@ pub fn build_in<const D: usize>(
 ) -> Result<Model<D>, BuildError> {
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
+    if transfers::expanding(&mut resolved) {
+        shelf.resolve(&mut resolved)?;
+    }
     let spec = &resolved;
     consistent(spec)?;
     let simd = options.simd.unwrap_or_else(Simd::detect);
@@ -129,7 +133,7 @@ pub fn build_in<const D: usize>(
         warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
     }
     let cut = precracks::cut(spec, &body, interaction.as_mut(), &mut warnings)?;
-    if spec.contact.as_ref().is_some_and(|c| c.friction > 0.0)
+    if spec.contact.as_ref().is_some_and(|c| c.friction.is_some())
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {
         warnings.push(
@@ -166,7 +170,10 @@ pub fn build_in<const D: usize>(
     let gaps = gaps::between(&body, reach, range);
     let spacing = |n: usize| body.pieces()[n].body.spacing;
     warnings.extend(gaps::warnings(spec, &gaps, spacing));
-    let limits = match options.trust_time_step || spec.schedule.statics().is_some() {
+    let limits = match options.trust_time_step
+        || spec.schedule.statics().is_some()
+        || spec.schedule.stepper == Stepper::Still
+    {
         true => Limits::UNKNOWN,
         false => Limits::of(
             spec,
@@ -210,8 +217,11 @@ pub fn build_in<const D: usize>(
             stepper: spec.schedule.stepper,
             stable_step: limits.stable(),
             contact_step: limits.contact,
+            parts: 1,
+            conserves: asymmetry <= SYMMETRIC && !spec.schedule.force_unstable,
             bodies: names(spec, &body),
             gaps,
+            transfers: vec![],
             cut,
             bytes: 0,
             simd: simd.name(),
@@ -226,6 +236,7 @@ pub fn build_in<const D: usize>(
             r.contact(&parts, &body, pairs.map_or(least_horizon, |p| p.shortest()))
         }),
         friction: contact::friction(spec, &body)?,
+        toughness: None,
         boltzmann: spec.boltzmann,
         release: spec.release,
         stop: || false,
@@ -253,6 +264,11 @@ pub fn build_in<const D: usize>(
         dt,
         step: 0,
         origin: (0, 0.0),
+        fraction: match spec.schedule.time_step {
+            TimeStep::Fixed(_) => None,
+            TimeStep::Fraction(_) | TimeStep::Auto => Some(dt / limits.bond).filter(|x| *x > 0.0),
+        },
+        part: None,
         pending: false,
         broken: 0,
         released: 0.0,
@@ -261,8 +277,9 @@ pub fn build_in<const D: usize>(
         fault: None,
         statics: None,
         implicit: None,
+        stands: false,
+        transfers: Transfers::default(),
     };
-    model.info.bytes = model.bytes();
     if let Some(thermal) = &spec.thermal {
         model.heat(thermal)?;
     }
@@ -274,9 +291,15 @@ pub fn build_in<const D: usize>(
         model.dt = model.dt.min(model.step_of_speeds(potentials)?);
         model.info.time_step = model.dt;
     }
+    model.make_transfers(spec)?;
+    if spec.schedule.stepper == Stepper::Still {
+        model.stand_for(spec)?;
+    }
+    model.info.bytes = model.bytes();
     model.check_fields(spec.fields.as_deref().unwrap_or_default())?;
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
+    model.toughness = model.toughness_of(spec, shelf, &sets)?;
     model.sets = sets;
     // how long a run of a given duration is, its caller knows
     let steps = match spec.schedule.steps {
@@ -285,7 +308,7 @@ pub fn build_in<const D: usize>(
     };
     model.check_agreement(&spec.conditions, steps as f64 * dt)?;
     match spec.schedule.stepper {
-        Stepper::Verlet => {}
+        Stepper::Verlet | Stepper::Still => {}
         Stepper::Newmark(newmark) => {
             model.check_implicit(newmark, spec)?;
             model.implicit = Some(Implicit::new(newmark));

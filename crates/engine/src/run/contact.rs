@@ -181,17 +181,33 @@ pub(super) fn friction<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
 ) -> Result<Option<Friction<D>>, BuildError> {
-    let Some(coefficient) = spec.contact.as_ref().map(|c| c.friction) else {
+    let Some(law) = spec.contact.as_ref().and_then(|c| c.friction.as_ref()) else {
         return Ok(None);
     };
     let path = "contact.friction";
-    if !(coefficient >= 0.0 && coefficient.is_finite()) {
-        let message =
-            format!("the friction coefficient is {coefficient}, expected a number from 0 on");
-        return Err(BuildError::invalid(path, message).help("0.3 is usual"));
+    let mut all = vec![&law.kinetic];
+    all.extend(law.at_rest.iter().map(|r| &r.coefficient));
+    for coefficient in all {
+        if coefficient.depends_on_position() {
+            let message =
+                "the friction coefficient depends on the place, expected an expression of t";
+            return Err(BuildError::unsupported(path, message).help("0.3 is usual"));
+        }
+        let first = coefficient.eval(&[0.0; 3], 0.0);
+        if !(first >= 0.0 && first.is_finite()) {
+            let message =
+                format!("the friction coefficient is {first}, expected a number from 0 on");
+            return Err(BuildError::invalid(path, message).help("0.3 is usual"));
+        }
     }
-    if coefficient == 0.0 {
-        return Ok(None);
+    if let Some(rest) = &law.at_rest
+        && !(rest.speed > 0.0 && rest.speed.is_finite())
+    {
+        let message = format!(
+            "the speed over which friction falls is {}, expected a positive number",
+            rest.speed
+        );
+        return Err(BuildError::invalid(path, message));
     }
     if D == 1 {
         let message = "points on a line have nothing to rub along";
@@ -202,5 +218,5 @@ pub(super) fn friction<const D: usize>(
         return Err(BuildError::unsupported(path, message)
             .help("leave friction out, or take [run] instead of [statics]"));
     }
-    Ok(Some(Friction::new(coefficient, body)))
+    Ok(Some(Friction::new(law.clone(), body)))
 }

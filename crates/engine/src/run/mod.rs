@@ -32,12 +32,15 @@ mod sets;
 mod steered;
 mod surface;
 mod time_step;
+mod toughness;
+mod transfers;
 mod virial;
 
 pub use build::{Options, build, build_in, build_with};
 pub use constitutive::Shelf;
 pub use model::Model;
 pub use sets::materials_of;
+pub use transfers::TransferInfo;
 
 use crate::columns::Declaration;
 use crate::condition::carried::Motion;
@@ -46,8 +49,9 @@ use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, Values};
 use crate::space::Point;
-use crate::spec::{AnyLinearBody, Influence, Stepper};
+use crate::spec::{AnyLinearBody, Influence, Quantity, Stepper};
 use crate::statics::Solved;
+use crate::transfer::TransferAccount;
 
 /// What a model is, for headers and reports.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -80,10 +84,16 @@ pub struct Info {
     pub stable_step: f64,
     /// Of points in contact alone; ∞ without contact.
     pub contact_step: f64,
+    /// Most parts in which a step was done so far, as bonds became shorter and stiffer.
+    pub parts: u32,
+    /// Has it an energy that is kept, as action is reaction? (Where a step that is too long was asked for, nobody says so.)
+    pub conserves: bool,
     /// Names and numbers of points of several bodies; empty: there is one.
     pub bodies: Vec<(String, u64)>,
     /// The shortest distances between bodies that are nearer to each other than the horizon or the range of contact.
     pub gaps: Vec<Gap>,
+    /// What spreads through the bonds.
+    pub transfers: Vec<TransferInfo>,
     /// Bonds cut by pre-cracks, directed.
     pub cut: u64,
     /// Bytes held by the model.
@@ -174,7 +184,7 @@ pub trait Simulation: Steered + Examined + Send {
     fn column(&mut self, name: &str) -> Option<Column>;
     /// Displacements and these columns, of what exists; unbroken bonds if asked for. Nothing else is computed.
     fn snapshot(&mut self, fields: &[&str], bonds: bool) -> Snapshot;
-    /// Sets a persistent column of the law to numbers as [`Simulation::column`] gives them, those of the dimension's components
+    /// Sets a persistent column of the law, or of what spreads, to numbers as [`Simulation::column`] gives them, those of the dimension's components
     /// only. False: there is no such column of the law, it follows from others, or the number of values is another.
     fn set_column(&mut self, name: &str, values: &[f64]) -> bool;
     /// Columns of all probes of the specification.
@@ -189,6 +199,8 @@ pub trait Simulation: Steered + Examined + Send {
     fn set_velocities(&mut self, v: &[Point]);
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
+    /// What came in of every quantity that spreads since the start, and what is there.
+    fn transfers(&self) -> Vec<(Quantity, TransferAccount)>;
     /// What the solver did in the last increment; `None`: steps are steps in time.
     fn solved(&self) -> Option<Solved>;
 }

@@ -4,6 +4,7 @@ use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
 use super::probes::state::Probe;
+use super::transfers::state::Transfers;
 use super::{Info, Simulation};
 use crate::body::{Body, Field};
 use crate::columns::Declaration;
@@ -13,6 +14,7 @@ use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::Load;
 use crate::condition::still::Still;
+use crate::condition::toughness::ToughnessField;
 use crate::dynamics::verlet::Verlet;
 use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
@@ -21,8 +23,19 @@ use crate::interaction::friction::Friction;
 use crate::interaction::{Fault, Interaction, PointEnergies};
 use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot};
 use crate::space::Point;
-use crate::spec::{Carriers, Release};
+use crate::spec::{Carriers, Quantity, Release};
 use crate::statics::Solved;
+use crate::transfer::{Transfer, TransferAccount};
+
+/// Where a step in parts is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StepPart {
+    /// Time at the start of the step.
+    pub begin: f64,
+    /// Length of a part (time), and how many are done.
+    pub length: f64,
+    pub done: u32,
+}
 
 /// A model in D dimensions.
 pub struct Model<const D: usize> {
@@ -33,6 +46,8 @@ pub struct Model<const D: usize> {
     pub(super) contact: Option<Contact<D>>,
     /// Of the same points.
     pub(super) friction: Option<Friction<D>>,
+    /// `None`: that of the materials.
+    pub(super) toughness: Option<ToughnessField>,
     pub(super) u: Field<D>,
     pub(super) v: Field<D>,
     pub(super) f: Field<D>,
@@ -70,6 +85,10 @@ pub struct Model<const D: usize> {
     pub(super) step: u64,
     /// Step and time from which time is counted in whole steps.
     pub(super) origin: (u64, f64),
+    /// Part of its stable step at which a body runs whose bonds become stiffer as they become shorter; `None`: its step stays as it is.
+    pub(super) fraction: Option<f64>,
+    /// Within a step that is done in parts.
+    pub(super) part: Option<StepPart>,
     /// Does `v` wait for the last half kick?
     pub(super) pending: bool,
     /// When a bond past its critical stretch lets go.
@@ -87,6 +106,10 @@ pub struct Model<const D: usize> {
     pub(super) statics: Option<StaticState<D>>,
     /// Steps are implicit.
     pub(super) implicit: Option<Implicit<D>>,
+    /// No step moves points.
+    pub(super) stands: bool,
+    /// What spreads through the bonds.
+    pub(super) transfers: Transfers,
 }
 
 impl<const D: usize> Model<D> {
@@ -97,6 +120,12 @@ impl<const D: usize> Model<D> {
             + self.contact.as_ref().map_or(0, Contact::bytes)
             + self.friction.as_ref().map_or(0, Friction::bytes)
             + 3 * D * 8 * self.body.len
+            + self
+                .transfers
+                .all
+                .iter()
+                .map(Transfer::bytes)
+                .sum::<usize>()
     }
 
     pub(super) fn refresh_images(&mut self) {
@@ -178,6 +207,9 @@ impl<const D: usize> Simulation for Model<D> {
         if self.implicit.is_some() {
             return self.implicit_step();
         }
+        if self.stands {
+            return self.stand();
+        }
         self.advance()
     }
 
@@ -190,7 +222,10 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn time(&self) -> f64 {
-        self.origin.1 + (self.step - self.origin.0) as f64 * self.dt
+        match &self.part {
+            Some(part) => part.begin + f64::from(part.done) * part.length,
+            None => self.origin.1 + (self.step - self.origin.0) as f64 * self.dt,
+        }
     }
 
     fn ledger(&mut self) -> Result<Ledger, RunError> {
@@ -249,6 +284,10 @@ impl<const D: usize> Simulation for Model<D> {
         }
         let named = self.sets.iter().find(|(name, _)| name == set);
         named.map(|(_, ids)| ids.clone())
+    }
+
+    fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
+        self.transfer_accounts()
     }
 
     fn solved(&self) -> Option<Solved> {

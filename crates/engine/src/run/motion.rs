@@ -3,11 +3,16 @@
 use super::Simulation;
 use super::accounts::ledger_base;
 use super::constitutive::{ConstitutiveModel, Laws};
-use super::model::Model;
+use super::model::{Model, StepPart};
 use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::error::RunError;
 use crate::interaction::Sweep;
+
+/// Part of the stable step of now that is not passed, where none was asked for.
+const HELD: f64 = 0.9;
+/// Most parts of a step: a bond that is shorter still is no bond of a solid any more.
+const PARTS: f64 = 1000.0;
 
 impl<const D: usize> Model<D> {
     /// All forces at the current displacements, no bond breaking.
@@ -36,6 +41,7 @@ impl<const D: usize> Model<D> {
             for c in &mut self.v {
                 self.body.fill_images(c);
             }
+            self.tell_toughness();
             let tally = self.interaction.forces(
                 &self.body,
                 &self.u,
@@ -82,7 +88,7 @@ impl<const D: usize> Model<D> {
             }
             if let Some(friction) = &mut self.friction {
                 let state = [&self.u, &self.v];
-                friction.add(contact, body, state, &mut self.f, [dt, self.dt]);
+                friction.add(contact, body, state, &mut self.f, t, [dt, self.dt]);
             }
         }
         for indenter in &mut self.indenters {
@@ -130,6 +136,7 @@ impl<const D: usize> Model<D> {
         for c in &mut self.constraints {
             c.start(&mut self.u, &mut self.v, t, dt);
         }
+        self.start_transfers();
         self.look_again();
         self.forces(bonds, 0.0);
         // energy that came in from outside counts as initial
@@ -137,15 +144,73 @@ impl<const D: usize> Model<D> {
         self.initial_energy = Some(ledger_base(&now));
     }
 
-    /// One step.
+    /// A step in which points stand where they are.
+    pub(super) fn stand(&mut self) -> Result<(), RunError> {
+        self.spread(self.time(), self.dt)?;
+        self.step += 1;
+        Ok(())
+    }
+
+    /// One step; in parts where bonds have become shorter and so stiffer than the step is made for.
     pub(super) fn advance(&mut self) -> Result<(), RunError> {
-        self.depart()?;
-        self.arrive()
+        let parts = self.parts_now();
+        if parts == 1 {
+            self.depart()?;
+            return self.arrive();
+        }
+        self.finish();
+        self.info.parts = self.info.parts.max(parts);
+        let (begin, whole) = (self.time(), self.dt);
+        self.dt = whole / f64::from(parts);
+        self.part = Some(StepPart {
+            begin,
+            length: self.dt,
+            done: 0,
+        });
+        let all = (0..parts).try_for_each(|_| {
+            self.depart()?;
+            self.arrive()
+        });
+        // with the length of a part, and at its time
+        self.finish();
+        let now = self.time();
+        self.part = None;
+        match all {
+            Ok(()) => self.step += 1,
+            // time is that of the last part that went well
+            Err(_) => self.origin = (self.step, now),
+        }
+        self.dt = whole;
+        all
+    }
+
+    /// In how many parts the next step is done: the stable step of bonds whose stiffness is that of a material goes with their length (that of
+    /// waves through the shortest one, Courant, Friedrichs & Lewy 1928).
+    fn parts_now(&mut self) -> u32 {
+        let Some(fraction) = self.fraction else {
+            return 1;
+        };
+        self.refresh_images();
+        let shortest = self.interaction.shortest(&self.body, &self.u);
+        let most = fraction.max(HELD);
+        (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32
+    }
+
+    /// One more step, or part of one.
+    fn count(&mut self, forward: bool) {
+        match (&mut self.part, forward) {
+            (Some(part), true) => part.done += 1,
+            (Some(part), false) => part.done -= 1,
+            (None, true) => self.step += 1,
+            (None, false) => self.step -= 1,
+        }
     }
 
     /// The first half of a step: displacements of its end, velocities of its middle.
     pub(super) fn depart(&mut self) -> Result<(), RunError> {
         let (t, dt) = (self.time(), self.dt);
+        self.update_toughness(t + dt)?;
+        let pressed = self.pressed();
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
         }
@@ -177,7 +242,7 @@ impl<const D: usize> Model<D> {
             self.still.settle(&mut self.v);
             return Err(error);
         }
-        self.step += 1;
+        self.count(true);
         if let Some(contact) = &mut self.contact {
             contact.moved(fastest.sqrt());
         }
@@ -189,7 +254,27 @@ impl<const D: usize> Model<D> {
         self.fastest = fastest.sqrt();
         // whoever asks for velocities now gets those of the middle
         self.pending = false;
+        if let Err(error) = self.spread_after(t - dt, dt, pressed) {
+            self.step_back();
+            return Err(error);
+        }
+        self.pay(1.0, 0.5 * dt);
         Ok(())
+    }
+
+    /// Back to the step before: where it was, and with the forces that were.
+    fn step_back(&mut self) {
+        for &s in &self.body.slots {
+            for a in 0..D {
+                self.u[a][s as usize] -= self.dt * self.v[a][s as usize];
+            }
+        }
+        self.count(false);
+        self.forces(true, 0.0);
+        let dt = self.dt;
+        self.verlet
+            .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, 0.0);
+        self.pending = false;
     }
 
     /// The second half of a step: forces at its end.
@@ -210,17 +295,8 @@ impl<const D: usize> Model<D> {
         self.forces(true, dt);
         if let Some(fault) = self.fault {
             let error = self.explained(fault);
-            // back to the step before: where it was, and with the forces that were
-            for &s in &self.body.slots {
-                for a in 0..D {
-                    self.u[a][s as usize] -= self.dt * self.v[a][s as usize];
-                }
-            }
-            self.step -= 1;
-            self.forces(true, 0.0);
-            self.verlet
-                .retreat(&self.body, &mut self.u, &mut self.v, &self.f, dt, 0.0);
-            self.pending = false;
+            self.retreat_transfers();
+            self.step_back();
             return Err(error);
         }
         for c in &mut self.constraints {

@@ -238,6 +238,9 @@ impl<const D: usize> Model<D> {
         name: &str,
         path: &str,
     ) -> Result<Declaration, BuildError> {
+        if let Some(found) = self.transfer_columns().into_iter().find(|c| c.name == name) {
+            return Ok(found);
+        }
         if let Some(observable) = self.shelf.observable(name) {
             return match self.lacking(observable) {
                 None => Ok(observable.declaration.clone()),
@@ -268,9 +271,11 @@ impl<const D: usize> Model<D> {
 
     /// Everything that has a name and values.
     pub(super) fn declared(&mut self) -> Vec<Declaration> {
-        let mut all = vec![];
+        let mut all = self.transfer_columns();
         for observable in self.shelf.observables().to_vec() {
-            if self.lacking(observable).is_none() {
+            if self.lacking(observable).is_none()
+                && !all.iter().any(|c| c.name == observable.declaration.name)
+            {
                 all.push(observable.declaration.clone());
             }
         }
@@ -290,6 +295,9 @@ impl<const D: usize> Model<D> {
 
     /// Sets a persistent column of the law, by point id or in the order of its bonds.
     pub(super) fn store(&mut self, name: &str, values: &[f64]) -> bool {
+        if self.set_transferred(name, values) {
+            return true;
+        }
         let mut declared = self.interaction.columns().into_iter();
         let Some(column) = declared.find(|c| c.name == name && c.life == Life::Persistent) else {
             return false;
@@ -339,6 +347,13 @@ impl<const D: usize> Model<D> {
 
 impl<const D: usize> View<'_, D> {
     fn column(&mut self, name: &str) -> Option<Column> {
+        if let Some(values) = self.model.transferred(name) {
+            let mut declared = self.model.transfer_columns().into_iter();
+            return Some(Column {
+                declaration: declared.find(|c| c.name == name)?,
+                values: Values::Scalars(values),
+            });
+        }
         match self.model.shelf.observable(name) {
             Some(observable) if !self.model.may(observable) => None,
             Some(observable) => Some(Column {

@@ -17,7 +17,7 @@ const SOLID_FRACTION: f64 = 0.8;
 /// The longest stable explicit steps (time); infinite where nothing limits them, or nobody looked.
 pub(super) struct Limits {
     /// Of the bonds.
-    bond: f64,
+    pub bond: f64,
     /// Of points that touch.
     pub contact: f64,
     touching: Option<ContactLimit>,
@@ -65,6 +65,13 @@ pub(super) fn time_step(
     let explicit = match spec.schedule.stepper {
         Stepper::Verlet | Stepper::Statics(_) => true,
         Stepper::Newmark(_) => false,
+        // what spreads says how long a step may be
+        Stepper::Still => {
+            return match spec.schedule.time_step {
+                TimeStep::Fixed(dt) => Ok(dt),
+                TimeStep::Fraction(_) | TimeStep::Auto => Ok(1.0),
+            };
+        }
     };
     if !explicit && spec.schedule.time_step == TimeStep::Auto {
         return Err(BuildError::missing(

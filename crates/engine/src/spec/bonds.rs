@@ -11,6 +11,25 @@ pub enum BondFactorSpec {
     Crossing { shape: CrackShape, factor: f64 },
 }
 
+/// Toughness of some points.
+#[derive(Debug, Clone)]
+pub struct ToughnessSpec {
+    pub set: String,
+    pub factor: ToughnessFactor,
+}
+
+/// What the critical stretch s00 of points is multiplied with; all that concern a point are multiplied. A bond breaks at the lower one of its
+/// ends.
+#[derive(Debug, Clone)]
+pub enum ToughnessFactor {
+    /// An expression of place and time.
+    Stretch(Expression),
+    /// Of the fracture energy: its root of the critical stretch.
+    Energy(Expression),
+    /// Bonds of these points never break, whatever their other end says.
+    NoFailure,
+}
+
 /// Bonds that a pre-crack cuts.
 #[derive(Debug, Clone)]
 pub struct PrecrackSpec {
@@ -52,8 +71,36 @@ pub struct ContactSpec {
     /// Range in spacings for pairs far apart in the reference; 1.35 in LAMMPS.
     pub free: f64,
     pub stiffness: ContactStiffness,
-    /// Coulomb friction μ between points that were never bonded (–); 0: none.
-    pub friction: f64,
+    /// Coulomb friction between points that were never bonded; `None`: they slide freely.
+    pub friction: Option<FrictionSpec>,
+}
+
+/// Coefficient of friction of points that slide at a speed v: `μ = μ_k + (μ_s − μ_k) exp(−v/v_c)` (Oden & Martins 1985, section 2.4).
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionSpec {
+    /// μ_k of sliding (–), an expression of t.
+    pub kinetic: Expression,
+    /// `None`: the same at rest.
+    pub at_rest: Option<AtRest>,
+}
+
+/// What friction has more at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AtRest {
+    /// μ_s (–), an expression of t.
+    pub coefficient: Expression,
+    /// v_c, at which the difference is 1/e of that at rest (length / time).
+    pub speed: f64,
+}
+
+impl FrictionSpec {
+    /// The same at all speeds and times.
+    pub fn constant(coefficient: f64) -> FrictionSpec {
+        FrictionSpec {
+            kinetic: Expression::constant(coefficient),
+            at_rest: None,
+        }
+    }
 }
 
 /// Stiffness of repulsion (force / volume² / length).

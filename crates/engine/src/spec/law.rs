@@ -47,6 +47,7 @@ impl LawSpec {
             name: name.into(),
             parameters,
             linear: None,
+            isotropic: true,
         })
     }
 
@@ -151,6 +152,8 @@ pub struct NamedLaw {
     pub parameters: Parameters,
     /// The linear law of the same elasticity, once the name was looked up.
     pub linear: Option<Box<LawSpec>>,
+    /// Is that its own elasticity, not a mean over directions?
+    pub isotropic: bool,
 }
 
 /// Constants of a law by their keys.

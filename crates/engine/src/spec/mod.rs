@@ -17,12 +17,14 @@ mod potential;
 mod probe;
 mod schedule;
 mod surface;
+mod transfer;
 
 pub use atoms::{Acting, ActingSpec, Mixing};
 pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
 pub use bonded::{BondedSpec, BondedTerm, Form};
 pub use bonds::{
-    BondFactorSpec, ContactSpec, ContactStiffness, CrackKind, CrackShape, PrecrackSpec,
+    AtRest, BondFactorSpec, ContactSpec, ContactStiffness, CrackKind, CrackShape, FrictionSpec,
+    PrecrackSpec, ToughnessFactor, ToughnessSpec,
 };
 pub use carriers::Carriers;
 pub use condition::{
@@ -41,6 +43,10 @@ pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
 pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};
+pub use transfer::{
+    Area, Exchange, Quantity, TransferCondition, TransferKind, TransferMaterial, TransferMethod,
+    TransferSpec,
+};
 
 /// Everything a run is.
 #[derive(Debug, Clone)]
@@ -69,6 +75,8 @@ pub struct Spec {
     pub potentials: Vec<ActingSpec>,
     /// How constants of pairs of unlike atoms follow, where no potential is given for them; `None`: they must be given.
     pub mixing: Option<Mixing>,
+    /// Factors of the toughness of points.
+    pub toughness: Vec<ToughnessSpec>,
     /// When a bond past its critical stretch lets go.
     pub release: Release,
     pub horizon: Horizon,
@@ -95,6 +103,8 @@ pub struct Spec {
     pub thermal: Option<ThermalSpec>,
     pub conditions: Vec<ConditionSpec>,
     pub indenters: Vec<IndenterSpec>,
+    /// What spreads through the bonds of the reference, each quantity once.
+    pub transfers: Vec<TransferSpec>,
     /// Which family enumerates the bonds; `Auto` takes the stencil for lattice bodies, the list otherwise.
     pub family: FamilyChoice,
     pub schedule: Schedule,
@@ -127,6 +137,7 @@ impl Spec {
             pairs: vec![],
             potentials: vec![],
             mixing: None,
+            toughness: vec![],
             release: Release::AtOnce,
             horizon: Horizon::Ratio(1),
             volume_scaling: false,
@@ -143,6 +154,7 @@ impl Spec {
             thermal: None,
             conditions: vec![],
             indenters: vec![],
+            transfers: vec![],
             family: FamilyChoice::Auto,
             schedule: Schedule {
                 steps: 0,

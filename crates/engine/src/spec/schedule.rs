@@ -14,7 +14,7 @@ impl Schedule {
     pub fn statics(&self) -> Option<Statics> {
         match self.stepper {
             Stepper::Statics(statics) => Some(statics),
-            Stepper::Verlet | Stepper::Newmark(_) => None,
+            Stepper::Verlet | Stepper::Newmark(_) | Stepper::Still => None,
         }
     }
 }
@@ -27,6 +27,8 @@ pub enum Stepper {
     Verlet,
     /// Motion in time by Newmark's method: implicit, stable at any step.
     Newmark(Newmark),
+    /// Points stand where they are in time; what spreads through bonds goes on.
+    Still,
     /// Every step is an increment of load that ends in equilibrium; `time_step` is what t grows by.
     Statics(Statics),
 }

@@ -77,7 +77,7 @@ fn ratio(spec: &Spec, law: &LawSpec, strain: [[f64; 3]; 3]) -> (f64, f64) {
 #[test]
 fn bulk_modulus_is_exact() {
     let mut worst: f64 = 0.0;
-    for case in cases() {
+    for case in cases().into_iter().filter(|c| c.material.is_isotropic()) {
         let mut spec = case.periodic();
         let laws = case.material.laws.clone();
         for (n, law) in laws.into_iter().enumerate() {
@@ -106,7 +106,8 @@ fn bulk_modulus_is_exact() {
 
 #[test]
 fn a_line_has_youngs_modulus_and_triangles_are_isotropic() {
-    for case in cases().into_iter().filter(|c| c.material.laws.len() == 1) {
+    let alike = |c: &Case| c.material.laws.len() == 1 && c.material.is_isotropic();
+    for case in cases().into_iter().filter(alike) {
         if !matches!(
             case.place.kind,
             LatticeKind::Chain | LatticeKind::Triangular

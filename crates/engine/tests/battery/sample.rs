@@ -75,6 +75,23 @@ pub fn materials() -> Vec<Material> {
             .with("dilatancy", Parameter::Number(0.5 * friction));
         LawSpec::named("hypoelastic_plastic", more)
     };
+    let of_bonds = |law: LawSpec| match law {
+        LawSpec::Named(mut law) => {
+            law.parameters
+                .set("gradient", Parameter::Word("bond".into()));
+            LawSpec::Named(law)
+        }
+        law => law,
+    };
+    let ply = |young: f64, fibre: [f64; 3]| {
+        let list = |x: [f64; 3]| Parameter::List(x.to_vec());
+        let all = Parameters::default()
+            .with("young", list([young, 0.3 * young, 0.2 * young]))
+            .with("poisson", list([0.3, 0.25, 0.4]))
+            .with("shear", list([0.2 * young, 0.15 * young, 0.1 * young]))
+            .with("fibre", list(fibre));
+        LawSpec::named("anisotropic", all)
+    };
     let softening = |young: f64| {
         let all = Parameters::numbers(&[("young", young), ("onset", 0.1)]);
         LawSpec::named("softening", all)
@@ -183,9 +200,49 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
+            lives: |d, _| d > 1,
+            ..two(
+                "bonds of rubber",
+                of_bonds(correspondence(3.0, "neo_hookean")),
+                of_bonds(correspondence(1.0, "neo_hookean")),
+                Influence::Inverse,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            potential: false,
+            ..one(
+                "bonds of metal",
+                of_bonds(flowing(0.06, 0.3, 0.0)),
+                Influence::Constant,
+            )
+        },
+        Material {
+            lives: |d, _| d > 1,
+            ..two(
+                "plies",
+                ply(3.0, [1.0, 2.0, 0.0]),
+                ply(2.0, [2.0, -1.0, 0.0]),
+                Influence::Inverse,
+            )
+        },
+        Material {
+            lives: |d, _| d > 1,
+            ..one(
+                "bonds of a ply",
+                of_bonds(ply(3.0, [1.0, 2.0, 0.0])),
+                Influence::Constant,
+            )
+        },
+        Material {
             fracture: Some(3.0),
             ..one("softening", softening(3.0), Influence::Constant)
         },
+        one(
+            "thermoelastic",
+            LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 3.0)])),
+            Influence::Constant,
+        ),
         two(
             "a user's, mixed",
             stiffening(3.0, 4.0),
@@ -252,6 +309,14 @@ pub fn cases() -> Vec<Case> {
         }
     }
     all
+}
+
+impl Material {
+    /// Has it the constants of an isotropic solid?
+    pub fn is_isotropic(&self) -> bool {
+        let plies = |law: &LawSpec| matches!(law, LawSpec::Named(law) if law.name == "anisotropic");
+        !self.laws.iter().any(plies)
+    }
 }
 
 impl Case {
@@ -346,6 +411,7 @@ impl Case {
             pairs: vec![],
             potentials: vec![],
             mixing: None,
+            toughness: vec![],
             release: Release::AtOnce,
             horizon: Horizon::Ratio(ratio),
             volume_scaling: true,
@@ -359,6 +425,7 @@ impl Case {
             initial: vec![],
             conditions: vec![],
             indenters: vec![],
+            transfers: vec![],
             family: FamilyChoice::Auto,
             schedule: Schedule {
                 steps: 0,
@@ -393,7 +460,7 @@ pub const CONTACT: ContactSpec = ContactSpec {
     bonded: 0.9,
     free: 1.35,
     stiffness: ContactStiffness::Laws,
-    friction: 0.0,
+    friction: None,
 };
 
 /// With the laws of the engine, and that of [`crate::own_law`].

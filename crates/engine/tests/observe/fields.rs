@@ -220,7 +220,7 @@ fn stresses_of_points_are_the_virial_of_the_body() {
         bonded: 0.9,
         free: 1.35,
         stiffness: ContactStiffness::Laws,
-        friction: 0.0,
+        friction: None,
     });
     spec.schedule.time_step = TimeStep::Fixed(1e-3);
     let mut sim = made(&spec);

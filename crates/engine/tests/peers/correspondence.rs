@@ -61,6 +61,24 @@ pub fn prescribed_tension() -> Vec<Off> {
     )
 }
 
+/// `ElasticBondAssociatedCorrespondenceFullyPrescribedTension`: the same with a gradient of each bond; the stress alone.
+pub fn bonds_in_tension() -> Vec<Off> {
+    let numbers = Parameters::numbers(&[("young", 200e9), ("poisson", 0.0)]);
+    let numbers = numbers.with("gradient", Parameter::Word("bond".into()));
+    let (at, mut spec) = bar_of("hypoelastic", numbers);
+    hold(&mut spec, "all", ["0", "0.001*y*t/1.0e-8", "0"]);
+    spec.schedule.time_step = TimeStep::Fixed(2e-9);
+    let mut sim = model(&spec);
+    sim.start(true);
+    for _ in 0..5 {
+        sim.step().unwrap();
+    }
+    let case = "ElasticCorrespondenceFullyPrescribedTension";
+    let mut all = compared(sim.as_mut(), &at, [199880087.92806253, 0.0], case);
+    all.truncate(1);
+    all
+}
+
 /// `ElasticCorrespondenceQSTension`: two increments of load; the ends are pulled, the rest finds its place.
 pub fn tension_at_rest() -> Vec<Off> {
     let (at, mut spec) = bar(0.3);

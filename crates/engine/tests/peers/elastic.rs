@@ -1,6 +1,7 @@
 //! Elastic solids, ordinary and bond-based: points that approach and part, bars under given displacements, a wave.
 
 use super::{Off, cells, grid, hold, internal_forces, model, nearest, off, set, stored, worst};
+use peridyne::expression::Expression;
 use peridyne::run::Simulation;
 use peridyne::space::Point;
 use peridyne::spec::*;
@@ -195,6 +196,80 @@ pub fn pairs_that_part(law: LawSpec) -> Vec<Off> {
 
 pub fn bond_breaking() -> Vec<Off> {
     pairs_that_part(lps(130e9, 60e9))
+}
+
+/// The same pairs, whose critical stretch falls from 50 to 0.015 after 7e-5.
+pub fn bond_breaking_in_time() -> Vec<Off> {
+    let at = [
+        [0.525, 0.5, 0.5],
+        [1.575, 0.5, 0.5],
+        [0.525, 1.5, 0.5],
+        [1.575, 1.5, 0.5],
+    ];
+    let mut spec = cells(&at, 1.05, 7800.0, 1.02, lps(130e9, 60e9));
+    spec.materials[0].fracture = Some(FractureSpec {
+        criterion: Criterion::Stretch(50.0),
+        alpha: 0.0,
+    });
+    spec.toughness = vec![ToughnessSpec {
+        set: "all".into(),
+        factor: ToughnessFactor::Stretch(
+            // the peer adds up its steps, and is a rounding beyond 7e-5 after 7,000
+            Expression::parse("t < 6.9995e-5 ? 1 : 0.015/50", &[]).unwrap(),
+        ),
+    }];
+    spec.schedule.time_step = TimeStep::Fixed(1e-8);
+    let mut sim = model(&spec);
+    let v = [-244.939, -244.959, 244.939, 244.959].map(|v| [0.0, v, 0.0]);
+    sim.set_velocities(&v);
+    sim.start(true);
+    let (mut places, mut speeds, mut damages) = (vec![], vec![], vec![]);
+    // at 6, 7 and 10 of its states: displacements and velocities of points 2 and 3, damage
+    for (state, row, damage) in [
+        (
+            6,
+            [
+                0.009948529920941316,
+                0.009949342248085675,
+                24.721772975269754,
+                24.72379158177777,
+            ],
+            0.0,
+        ),
+        (
+            7,
+            [
+                0.009896316280796522,
+                0.009897124344541453,
+                -35.08254602272915,
+                -35.085410617262866,
+            ],
+            1.0,
+        ),
+        (
+            10,
+            [
+                0.008843839900113707,
+                0.008844562026023664,
+                -35.08254602272915,
+                -35.085410617262866,
+            ],
+            1.0,
+        ),
+    ] {
+        while sim.step_number() < 1000 * state {
+            sim.step().unwrap();
+        }
+        let (u, v) = (sim.displacements(), sim.velocities());
+        places.extend([(u[2][1], row[0]), (u[3][1], row[1])]);
+        speeds.extend([(v[2][1], row[2]), (v[3][1], row[3])]);
+        damages.extend(sim.scalars("damage").into_iter().map(|d| (d, damage)));
+    }
+    vec![
+        off("displacement", worst(places), 1e-9),
+        off("velocity", worst(speeds), 1e-9),
+        off("damage", worst(damages), 1e-3),
+    ]
 }
 
 /// A bar of cells of 0.25, stretched along y by 0.1 %.

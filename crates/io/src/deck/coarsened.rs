@@ -5,8 +5,9 @@ use super::upscaled::{Rewritten, table};
 use toml::{Table, Value};
 
 /// What belongs to the old body and its law.
-const GONE: [&str; 13] = [
+const GONE: [&str; 14] = [
     "bond_factor",
+    "toughness",
     "horizon",
     "influence",
     "volume_scaling",

@@ -7,7 +7,7 @@ use peridyne::space::region::Region;
 use peridyne::spec::{
     Acting, BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion,
     LawSpec, MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, PotentialSpec,
-    ProbeSpec, Release, Spec, Stepper, TimeStep,
+    ProbeSpec, Release, Spec, Stepper, TimeStep, ToughnessFactor, TransferMethod, TransferSpec,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -157,14 +157,31 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             }
         });
     }
+    for t in &spec.toughness {
+        let of = match &t.factor {
+            ToughnessFactor::Stretch(e) => format!("critical stretch times {}", e.source()),
+            ToughnessFactor::Energy(e) => format!("fracture energy times {}", e.source()),
+            ToughnessFactor::NoFailure => "bonds never break".to_string(),
+        };
+        lines.push(format!("toughness  on {}: {of}", t.set));
+    }
     if let Some(contact) = &spec.contact {
         lines.push(format!(
             "contact    below {} of the reference distance, within {} spacings{}",
             contact.bonded,
             contact.free,
-            match contact.friction {
-                0.0 => String::new(),
-                friction => format!(", friction {friction}"),
+            match &contact.friction {
+                None => String::new(),
+                Some(friction) => {
+                    let sliding = friction.kinetic.source();
+                    match &friction.at_rest {
+                        None => format!(", friction {sliding}"),
+                        Some(rest) => format!(
+                            ", friction {} at rest, {sliding} sliding",
+                            rest.coefficient.source()
+                        ),
+                    }
+                }
             }
         ));
     }
@@ -187,6 +204,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             units.write(indenter.radius, Dim::LENGTH)
         ));
     }
+    lines.extend(spec.transfers.iter().map(spreading));
     lines.push(format!(
         "acting     {} initial values, {} conditions, {} pre-cracks",
         spec.initial.len(),
@@ -214,6 +232,9 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     }
     let step = match spec.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
+        TimeStep::Auto if spec.schedule.stepper == Stepper::Still => {
+            "the longest explicit one of what spreads".into()
+        }
         TimeStep::Auto if spec.potential().is_some() => {
             "a tenth of the stability limit, less for fast atoms".into()
         }
@@ -226,6 +247,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     };
     let how = match spec.schedule.stepper {
         Stepper::Verlet | Stepper::Statics(_) => String::new(),
+        Stepper::Still => ", no point moves".into(),
         Stepper::Newmark(n) => format!(
             ", implicit by Newmark's method with beta = {}, gamma = {}, tolerance {:e}",
             n.beta, n.gamma, n.tolerance
@@ -233,6 +255,29 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     };
     lines.push(format!("run        {steps} of {step}{how}"));
     lines.join("\n")
+}
+
+/// What spreads, and how.
+fn spreading(t: &TransferSpec) -> String {
+    let how = match t.method {
+        TransferMethod::Explicit { safety } => {
+            format!("explicit, in parts of {safety} of its stable step")
+        }
+        TransferMethod::Implicit { theta, tolerance } => {
+            let name = match theta < 1.0 {
+                true => "Crank and Nicolson",
+                false => "backward Euler",
+            };
+            format!("implicit ({name}), tolerance {tolerance:e}")
+        }
+        TransferMethod::Steady { tolerance } => format!("steady, tolerance {tolerance:e}"),
+    };
+    format!(
+        "{:<11}{how}, {} initial values, {} conditions",
+        t.quantity.name(),
+        t.initial.len(),
+        t.conditions.len()
+    )
 }
 
 /// Names of the laws of a spec and where they come from, each once.

@@ -10,11 +10,12 @@ mod output;
 mod region;
 mod run;
 mod thermal;
+mod transfer;
 mod units;
 use super::units::Dim;
 use super::value::{At, Named, Number, Or, Vector, Written};
-pub use condition::{Condition, Contact, Indenter, Initial};
-pub use crack::{BondFactor, FlatShape, Precrack};
+pub use condition::{Condition, Contact, Friction, Indenter, Initial};
+pub use crack::{BondFactor, FlatShape, Precrack, Toughness};
 pub use fields::{Centre, Fields};
 pub use law::{Given, Law};
 pub use molecules::Molecules;
@@ -26,6 +27,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 pub use thermal::Thermal;
+pub use transfer::{
+    Convection, Heat, HeatMaterial, Radiation, Species, SpeciesExchange, SpeciesMaterial,
+};
 pub use units::{UnitName, Units};
 
 /// A peridyne deck.
@@ -98,6 +102,9 @@ pub struct Document {
     /// Factors of the stiffness of bonds (bond-based laws on lattices); all that concern a bond are multiplied.
     #[serde(default)]
     pub bond_factor: Vec<At<BondFactor>>,
+    /// Factors of the toughness of sets, by place and time, and sets that never fail; all that concern a point are multiplied.
+    #[serde(default)]
+    pub toughness: Vec<At<Toughness>>,
     /// Bonds that never were, or are broken, where they cross a shape.
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,
@@ -107,10 +114,14 @@ pub struct Document {
     pub molecules: Option<At<Molecules>>,
     /// Maxwellian velocities.
     pub thermal: Option<Thermal>,
-    /// Displacements and velocities at t = 0.
+    /// Heat that the bonds conduct.
+    pub heat: Option<At<Heat>>,
+    /// A species that diffuses through the bonds.
+    pub species: Option<At<Species>>,
+    /// Displacements, velocities, temperatures and concentrations at t = 0.
     #[serde(default)]
     pub initial: Vec<At<Initial>>,
-    /// What is held, moved, pushed or damped during the run.
+    /// What is held, moved, pushed, damped, heated or cooled during the run.
     #[serde(default)]
     pub condition: Vec<At<Condition>>,
     /// Rigid spheres, driven or free.
@@ -160,7 +171,7 @@ pub struct Body {
     pub region: Option<At<Shape>>,
     /// Whole cells along each axis from the origin on, instead of a region.
     pub cells: Option<At<Vec<At<u32>>>>,
-    /// Points `x y z volume [mark]` (.txt), a mesh (Abaqus .inp, gmsh .msh as text or binary; its groups are sets), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
+    /// Points `x y z volume [mark]` (.txt), a mesh (Abaqus .inp, gmsh .msh as text or binary, Exodus II .g or .e in netCDF-3; its groups are sets), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
     /// and density of each point, the atom type as mark), or atoms: LAMMPS data of `atom_style atomic`, `molecular`, or `full` with charges of 0, a LAMMPS dump
     /// (.lammpstrj, .dump), extended XYZ (.extxyz). Relative to the deck.
     pub file: Option<At<String>>,
@@ -231,6 +242,10 @@ pub struct Material {
     pub law: At<Law>,
     /// When its bonds break; never when left out.
     pub fracture: Option<At<Fracture>>,
+    /// What it does with heat, where that spreads ([heat]).
+    pub heat: Option<At<HeatMaterial>>,
+    /// What it does with a species, where that spreads ([species]).
+    pub species: Option<At<SpeciesMaterial>>,
 }
 
 /// One of critical_stretch and energy.

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Tables that a deck has several of.
-const SEVERAL: [&str; 7] = [
+const SEVERAL: [&str; 8] = [
     "probe",
     "fields",
     "condition",
@@ -15,10 +15,20 @@ const SEVERAL: [&str; 7] = [
     "precrack",
     "indenter",
     "bond_factor",
+    "toughness",
 ];
 
 /// Tables that it has one of.
-const ONE: [&str; 6] = ["run", "statics", "output", "thermal", "constants", "sets"];
+const ONE: [&str; 8] = [
+    "run",
+    "statics",
+    "output",
+    "thermal",
+    "heat",
+    "species",
+    "constants",
+    "sets",
+];
 
 /// `kind` is a word of other decks than those of bodies.
 pub(super) fn kind(source: &Source, deck: &DeTable) -> Result<(), DeckError> {

@@ -6,7 +6,9 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 /// Keys of one material; a table under `material` with none of them holds named materials.
-const MATERIAL: [&str; 5] = ["set", "density", "mass", "law", "fracture"];
+const MATERIAL: [&str; 7] = [
+    "set", "density", "mass", "law", "fracture", "heat", "species",
+];
 
 /// Name that the material of `[material]` gets.
 const UNNAMED: &str = "material";

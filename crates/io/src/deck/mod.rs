@@ -77,6 +77,8 @@ pub struct OutputSpec {
     pub every: Option<u64>,
     /// VTU series with PVD.
     pub vtu: bool,
+    /// Exodus II file of this name.
+    pub exodus: Option<PathBuf>,
     /// Unbroken bonds in the VTU.
     pub bonds: bool,
     /// The linear body about the last state.

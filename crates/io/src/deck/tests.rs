@@ -59,7 +59,7 @@ fn a_deck_becomes_a_spec() {
             bonded: 0.9,
             free: 1.35,
             stiffness: ContactStiffness::Laws,
-            friction: 0.0,
+            friction: None,
         })
     );
     assert_eq!(spec.schedule.time_step, TimeStep::Fixed(1e-7));

@@ -278,6 +278,7 @@ fn elements(lines: &mut Lines, file: &mut Abaqus, header: &str) -> Result<(), Re
             nodes,
             groups: vec![],
             line: Some(at),
+            volume: None,
         });
     }
     Ok(())

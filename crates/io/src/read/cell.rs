@@ -14,12 +14,14 @@ pub(super) enum Kind {
     Hexa,
     Prism,
     Pyramid,
+    /// A point with a volume of its own.
+    Sphere,
 }
 
 impl Kind {
     pub fn corners(self) -> usize {
         match self {
-            Kind::Vertex => 1,
+            Kind::Vertex | Kind::Sphere => 1,
             Kind::Line => 2,
             Kind::Triangle => 3,
             Kind::Quad | Kind::Tetra => 4,
@@ -34,7 +36,7 @@ impl Kind {
             Kind::Vertex => 0,
             Kind::Line => 1,
             Kind::Triangle | Kind::Quad => 2,
-            Kind::Tetra | Kind::Hexa | Kind::Prism | Kind::Pyramid => 3,
+            Kind::Tetra | Kind::Hexa | Kind::Prism | Kind::Pyramid | Kind::Sphere => 3,
         }
     }
 
@@ -48,13 +50,14 @@ impl Kind {
             Kind::Hexa => "hexahedra",
             Kind::Prism => "prisms",
             Kind::Pyramid => "pyramids",
+            Kind::Sphere => "spheres",
         }
     }
 
     /// Simplices that make the cell, by corner; none of what is no body.
     fn simplices(self) -> &'static [[usize; 4]] {
         match self {
-            Kind::Vertex | Kind::Line => &[],
+            Kind::Vertex | Kind::Line | Kind::Sphere => &[],
             Kind::Triangle => &[[0, 1, 2, 0]],
             Kind::Quad => &[[0, 1, 2, 0], [0, 2, 3, 0]],
             Kind::Tetra => &[[0, 1, 2, 3]],
@@ -74,7 +77,7 @@ impl Kind {
     /// Sides of a cell, by corner: edges in 2-D, faces in 3-D.
     pub fn sides(self) -> &'static [&'static [usize]] {
         match self {
-            Kind::Vertex | Kind::Line => &[],
+            Kind::Vertex | Kind::Line | Kind::Sphere => &[],
             Kind::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
             Kind::Quad => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
             Kind::Tetra => &[&[0, 1, 2], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3]],
@@ -113,6 +116,8 @@ pub(super) struct Cell {
     pub groups: Vec<usize>,
     /// Line of the file, if it has lines.
     pub line: Option<usize>,
+    /// Of a sphere.
+    pub volume: Option<f64>,
 }
 
 /// Nodes by number.
@@ -134,6 +139,9 @@ pub(super) fn measure(
             ))
         })?;
         corners.push(*x);
+    }
+    if let Some(volume) = cell.volume {
+        return Ok((corners[0], volume));
     }
     let flat = cell.kind.dimension() == 2;
     let (mut volume, mut moment) = (0.0, [0.0; 3]);

@@ -77,6 +77,7 @@ impl Gmsh {
             nodes: nodes[..kind.corners()].to_vec(),
             groups,
             line: lines.place(),
+            volume: None,
         });
         Ok(())
     }

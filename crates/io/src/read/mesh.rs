@@ -4,7 +4,7 @@
 //! one of them as a face, edge or corner. A set of nodes holds the cells with all their corners in it, and those with a whole
 //! outer side in it; if there are none, those with a whole side, else with two corners, else with one corner in it.
 
-use super::cell::{Cell, Nodes, measure};
+use super::cell::{Cell, Kind, Nodes, measure};
 use super::lines::Lines;
 use super::{ReadError, Sourced};
 use peridyne::spec::Cloud;
@@ -27,6 +27,12 @@ pub(super) struct Mesh {
     pub groups: Vec<Group>,
     /// Sets of nodes by name.
     pub node_sets: Vec<(String, Vec<u64>)>,
+    /// Sets of cells by name: places in `cells`.
+    pub cell_sets: Vec<(String, Vec<usize>)>,
+    /// Every cell stands once: two with the same nodes are two.
+    pub distinct: bool,
+    /// A set of nodes holds every cell that has one of them.
+    pub touching: bool,
     /// Elements without shape, by type: (type, how many).
     pub shapeless: BTreeMap<String, usize>,
 }
@@ -50,7 +56,9 @@ impl Mesh {
     /// # Errors
     /// No cells, cells without volume or with nodes that do not exist.
     pub fn points(mut self, lines: &Lines) -> Result<Sourced, ReadError> {
-        self.merge();
+        if !self.distinct {
+            self.merge();
+        }
         let dimension = self.cells.iter().map(|c| c.kind.dimension()).max();
         let Some(dimension) = dimension.filter(|d| *d >= 2) else {
             return Err(lines.error(
@@ -87,7 +95,8 @@ impl Mesh {
         Ok(Sourced {
             atoms: None,
             cloud,
-            dimension: Some(dimension),
+            // spheres are points of any dimension
+            dimension: Some(dimension).filter(|_| body.iter().any(|c| c.kind != Kind::Sphere)),
             lines: sources,
             notes,
         })
@@ -136,7 +145,36 @@ impl Mesh {
             add(cloud, name, ids, notes);
         }
         for (name, nodes) in &self.node_sets {
-            add(cloud, name, around.of_nodes(nodes), notes);
+            let cells = match self.touching {
+                true => nodes
+                    .iter()
+                    .flat_map(|n| around.with(*n))
+                    .copied()
+                    .collect(),
+                false => around.of_nodes(nodes),
+            };
+            add(cloud, name, cells, notes);
+        }
+        if self.cell_sets.is_empty() {
+            return;
+        }
+        let inside = self.cells.iter().map(|c| c.kind.dimension() == dimension);
+        let mut count = 0;
+        let place: Vec<Option<u32>> = inside
+            .map(|yes| {
+                count += u32::from(yes);
+                yes.then(|| count - 1)
+            })
+            .collect();
+        for (name, cells) in &self.cell_sets {
+            let mut ids = BTreeSet::new();
+            for c in cells {
+                match place[*c] {
+                    Some(id) => ids.extend([id]),
+                    None => ids.extend(around.with_all(&self.cells[*c].nodes)),
+                }
+            }
+            add(cloud, name, ids, notes);
         }
     }
 

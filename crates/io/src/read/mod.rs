@@ -1,4 +1,4 @@
-//! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, LAMMPS `.data`), atoms
+//! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, Exodus II `.g`, LAMMPS `.data`), atoms
 //! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), and tables and constants of
 //! potentials ([`eam`], [`entries`]).
 //!
@@ -12,6 +12,7 @@ pub mod data;
 pub mod dump;
 pub mod eam;
 pub mod entries;
+pub mod exodus;
 pub mod extxyz;
 pub mod frames;
 mod gmsh;
@@ -26,6 +27,7 @@ pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
+pub(crate) use whole::text_of;
 
 use peridyne::spec::{AnyLinearBody, Cloud};
 use std::collections::HashMap;
@@ -86,8 +88,12 @@ impl ReadError {
     }
 }
 
-const EXTENSIONS: [&str; 12] = [
+const EXTENSIONS: [&str; 16] = [
     "npz",
+    "g",
+    "e",
+    "exo",
+    "gen",
     "inp",
     "msh",
     "data",
@@ -101,7 +107,7 @@ const EXTENSIONS: [&str; 12] = [
     "dump",
 ];
 
-/// Reads a file by its extension: `.inp`, `.msh`, `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), LAMMPS dumps of
+/// Reads a file by its extension: `.inp`, `.msh`, Exodus II (`.g`, `.e`, `.exo`, `.gen`), `.data` and `.lmp` (LAMMPS, `atom_style` peri or atomic), LAMMPS dumps of
 /// atoms (`.lammpstrj`, `.dump`), extended XYZ (`.extxyz`, and `.xyz` whose second line says so), and plain text (`.txt`,
 /// `.xyz`, `.csv` with blanks, `.dat`). `frame` is which of a dump's or of an extended XYZ file's; others have one state.
 ///
@@ -122,7 +128,7 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     };
     if !EXTENSIONS.contains(&extension.as_str()) {
         return Err(error(format!(
-            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .data, .extxyz, .lammpstrj or .npz"
+            "unknown kind of file \".{extension}\": points come as .txt, .inp, .msh, .g, .data, .extxyz, .lammpstrj or .npz"
         )));
     }
     // trajectories may be larger than memory
@@ -146,6 +152,9 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     if extension == "msh" {
         return whole(gmsh::read(&bytes, &name)?, &name);
+    }
+    if matches!(&*extension, "g" | "e" | "exo" | "gen") {
+        return exodus::parse_exodus(&bytes, &name);
     }
     let text = String::from_utf8(bytes).map_err(|_| error("it is not text".into()))?;
     parse(&text, &name, &extension)

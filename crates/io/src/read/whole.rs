@@ -4,7 +4,7 @@ use super::ReadError;
 use std::path::Path;
 
 /// Text and name of a file; old comments may be in Latin-1.
-pub(super) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
+pub(crate) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| ReadError {
         file: name.clone(),

@@ -10,6 +10,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use peridyne::observe::Ledger;
+use peridyne::spec::Quantity;
+use peridyne::transfer::TransferAccount;
 
 use super::atomic::{WriteError, open_to_append, write_file};
 use super::fields::invalid;
@@ -139,6 +141,36 @@ pub fn ledger_values(l: &Ledger) -> [f64; 8] {
         l.work_conditions,
         l.work_indenter,
         l.residual(),
+    ]
+}
+
+/// Columns of the account of what spreads, in the order of [`transfer_values`]; amounts of a species are plain numbers.
+pub fn transfer_columns(quantity: Quantity, energy_unit: &str) -> Vec<Column> {
+    let unit = match quantity {
+        Quantity::Heat => energy_unit,
+        Quantity::Species => "",
+    };
+    let names = [
+        "content",
+        "supplied",
+        "exchanged",
+        "held",
+        "made",
+        "residual",
+    ];
+    let name = |n: &str| Column::new(format!("{} {n}", quantity.name()), unit);
+    names.map(name).to_vec()
+}
+
+/// The account as a row: its entries without the constant `initial`, and what the balance misses.
+pub fn transfer_values(a: &TransferAccount) -> [f64; 6] {
+    [
+        a.content,
+        a.supplied,
+        a.exchanged,
+        a.held,
+        a.made,
+        a.residual(),
     ]
 }
 

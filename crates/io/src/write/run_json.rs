@@ -28,6 +28,8 @@ pub struct RunReport {
     /// Steps done.
     pub steps: u64,
     pub time_step: f64,
+    /// Most parts in which a step was done, as bonds became shorter and stiffer; 1: all were whole.
+    pub parts_of_a_step: u32,
     /// Wall time inside the steps alone (s).
     pub seconds_stepping: f64,
     /// [`ns_per_bond_step`].
@@ -215,6 +217,7 @@ mod tests {
             directed_bonds: 10_009_800,
             steps: 2000,
             time_step: 1e-7,
+            parts_of_a_step: 1,
             seconds_stepping: 10.5,
             ns_per_bond_step: ns_per_bond_step(10.5, 10_009_800, 2000),
             peak_memory_bytes: None,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// A frame of a point in a VTU: positions and vectors as f64, scalars, ids (bytes).
+/// A frame of a point in a VTU or an Exodus file: positions and vectors as f64, scalars, ids (bytes).
 const POINT: f64 = 120.0;
 /// An undirected bond in a VTU: two ids, offset, type.
 const BOND: f64 = 17.0;
@@ -20,8 +20,8 @@ pub struct Amount {
     /// Steps between rows.
     pub history: u64,
     pub points: u64,
-    /// Written as VTU?
-    pub vtu: bool,
+    /// Files that have all points of a frame: VTU, Exodus.
+    pub files: u64,
     /// Undirected bonds, where they are written.
     pub bonds: u64,
     /// Atoms of all trajectories.
@@ -34,7 +34,7 @@ impl Amount {
         let frames = self
             .every
             .map_or(2.0, |e| self.steps as f64 / e as f64 + 1.0);
-        let points = if self.vtu { self.points as f64 } else { 0.0 };
+        let points = (self.files * self.points) as f64;
         let frame = POINT * points + BOND * self.bonds as f64 + ATOM * self.atoms as f64;
         [
             frames * frame,
@@ -70,7 +70,7 @@ mod tests {
             every: Some(10),
             history: 5,
             points: 100,
-            vtu: true,
+            files: 1,
             bonds: 0,
             atoms: 0,
         };

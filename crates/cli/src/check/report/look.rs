@@ -3,6 +3,7 @@
 use super::advice;
 use crate::check::{Findings, mean};
 use crate::numbers::{digits, duration};
+use peridyne::spec::Stepper;
 use peridyne_io::deck::{Dim, rounded};
 use std::fmt::Write;
 
@@ -55,8 +56,10 @@ fn time(found: &Findings) -> Option<String> {
     let shown = found.units.show(lasts, Dim::TIME);
     let long = (0..info.dimension).map(|a| found.high[a] - found.low[a] + info.spacing);
     let long = long.fold(0.0, f64::max);
+    let still = found.spec.schedule.stepper == Stepper::Still;
     let speeds = found.materials.iter().map(|m| m.pressure_wave);
-    let fastest = speeds.filter(|c| c.is_finite()).fold(0.0, f64::max);
+    let fastest = speeds.filter(|c| c.is_finite() && !still);
+    let fastest = fastest.fold(0.0, f64::max);
     Some(match fastest > 0.0 {
         true => format!(
             "time: the run lasts {shown}, in which a wave goes {} times through the longest side",

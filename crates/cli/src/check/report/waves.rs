@@ -6,9 +6,27 @@ use crate::numbers::whole;
 use peridyne::spec::{Criterion, Method, Stepper};
 use peridyne_io::deck::Dim;
 
+/// How long a run is.
+fn lasts(found: &Findings) -> String {
+    let time = found.steps as f64 * found.sim.info().time_step;
+    format!(
+        "{} steps = {}",
+        whole(found.steps),
+        found.units.show(time, Dim::TIME)
+    )
+}
+
 pub(super) fn waves(found: &Findings) -> String {
     let (info, units) = (found.sim.info(), found.units);
     let mut out = String::from("Waves and step\n");
+    if found.spec.schedule.stepper == Stepper::Still {
+        out = String::from("Step\n");
+        row(&mut out, "integrator", "none, no point moves");
+        let step = units.show(info.time_step, Dim::TIME);
+        row(&mut out, "time step", step);
+        row(&mut out, "run", lasts(found));
+        return out;
+    }
     let long = (0..info.dimension)
         .map(|a| found.high[a] - found.low[a] + info.spacing)
         .fold(0.0, f64::max);
@@ -84,15 +102,7 @@ pub(super) fn waves(found: &Findings) -> String {
                 units.show(info.stable_step, Dim::TIME)
             ),
         );
-        row(
-            &mut out,
-            "run",
-            format!(
-                "{} steps = {}",
-                whole(found.steps),
-                units.show(found.steps as f64 * info.time_step, Dim::TIME)
-            ),
-        );
+        row(&mut out, "run", lasts(found));
         return out;
     }
     row(&mut out, "integrator", "velocity Verlet");
@@ -111,15 +121,7 @@ pub(super) fn waves(found: &Findings) -> String {
             }
         ),
     );
-    row(
-        &mut out,
-        "run",
-        format!(
-            "{} steps = {}",
-            whole(found.steps),
-            units.show(found.steps as f64 * info.time_step, Dim::TIME)
-        ),
-    );
+    row(&mut out, "run", lasts(found));
     out
 }
 

@@ -90,6 +90,7 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             pairs,
             next: critical.clone(),
             critical,
+            spares: false,
             period: body.period.map(|p| p.unwrap_or(0.0)),
             inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
             tallies: PerBlock::new(blocks, Tally::default()),

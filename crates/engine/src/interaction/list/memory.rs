@@ -66,7 +66,9 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
 
     pub(super) fn write_named(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
         if name != history::WHOLE {
-            return history::write_critical(body, &mut self.critical, name, values);
+            let known = history::write_critical(body, &mut self.critical, name, values);
+            self.spares = self.critical.contains(&history::NEVER);
+            return known;
         }
         let mut bonds = vec![];
         self.each_line(|row, line, _| bonds.push((line, row % TILE)));

@@ -2,7 +2,7 @@
 
 use super::family::{Family, Moved, Slots, put};
 use super::sweeps::EnergyOf;
-use super::view::{BLOCK, Drift, View, save};
+use super::view::{BLOCK, Drift, View, grown, save};
 use crate::body::{Body, Field};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
@@ -24,6 +24,8 @@ pub struct Test<'a, const D: usize, F> {
     pub critical: &'a [f64],
     /// Empty: stretches alone decide.
     pub damage: &'a [f64],
+    /// Strain by temperature or swelling per slot; empty: none.
+    pub expansion: &'a [f64],
     pub next: Shared,
     pub toughness: &'a [Toughness],
     /// Do points without whole bonds keep the critical stretch that they had?
@@ -63,13 +65,20 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                         eta[a] = (eta[a] - u[a]).zero_if(dead);
                     }
                     let r = f.reference::<L>(group, k, &place, ends, dead);
+                    if !self.expansion.is_empty() {
+                        let [strain, per_length] = grown(self.expansion, rows, ends);
+                        for a in 0..D {
+                            eta[a] = ((eta[a] - strain * r.xi[a]) * per_length).zero_if(dead);
+                        }
+                    }
                     let e = relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead);
                     lowest = e.min(lowest);
                     let other = ends.one::<L>(self.critical.as_ptr());
-                    let mut breaks = L::bits(other.min(own).lt(e)) as u8;
+                    let mut breaks = L::bits(history::limit(other, own).lt(e)) as u8;
                     if fails {
                         let both = damaged + ends.one::<L>(self.damage.as_ptr());
-                        breaks |= L::bits(both.ge(L::splat(2.0))) as u8 & alive;
+                        let fail = L::bits(both.ge(L::splat(2.0))) as u8 & alive;
+                        breaks |= fail & !(L::bits(history::spared(other, own)) as u8);
                     }
                     *self.breaks.at(byte) = breaks;
                     torn |= breaks;
@@ -85,6 +94,43 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                 put(next, self.next, rows);
             }
         }
+    }
+}
+
+/// How much shorter the shortest whole bond of a block is than in the reference: the most `1 − r²/r0²`, or 0.
+pub struct Shortest<'a, const D: usize, F> {
+    pub family: &'a F,
+    pub moved: Moved<'a, D>,
+    pub alive: &'a [u8],
+}
+
+impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
+    type Out = [f64; 2];
+
+    #[inline(always)]
+    fn block<L: Lane>(&self, block: usize) -> [f64; 2] {
+        let f = self.family;
+        let mut most = L::splat(0.0);
+        for group in block * BLOCK..((block + 1) * BLOCK).min(f.groups()) {
+            // SAFETY: groups of the family
+            unsafe {
+                let rows = f.rows(group);
+                let place = f.place::<L>(rows);
+                let u = F::displacement::<L>(&self.moved, rows);
+                for k in 0..f.bonds(group) {
+                    let dead = L::dead(*self.alive.get_unchecked(f.byte(group, k)));
+                    let ends = f.ends(group, k);
+                    let mut eta = F::displacement::<L>(&self.moved, ends);
+                    for a in 0..D {
+                        eta[a] = (eta[a] - u[a]).zero_if(dead);
+                    }
+                    let r = f.reference::<L>(group, k, &place, ends, dead);
+                    let e = relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead);
+                    most = (L::splat(0.0) - e).max(most);
+                }
+            }
+        }
+        [most.to_array().into_iter().fold(0.0, f64::max), 0.0]
     }
 }
 

@@ -1,9 +1,10 @@
 //! What every [`Interaction`] answers.
 
 use super::MaterialInteraction;
-use super::family::{Family, Slots};
+use super::breaking::Shortest;
+use super::family::{Family, Moved, Slots};
 use super::sweeps::Forces;
-use crate::body::{Body, Field, Identity};
+use crate::body::{Body, Column, Field, Identity, field};
 use crate::columns::Declaration;
 use crate::execute::blocks::{Shared, run_blocks};
 use crate::interaction::{
@@ -66,6 +67,26 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         }
         self.room = room;
         total
+    }
+
+    fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
+        self.check(body, &[u]);
+        if !M::STIFFENS {
+            return 1.0;
+        }
+        let room = self.take_room(u, self.step);
+        let kernel = Shortest {
+            family: &self.family,
+            moved: Moved {
+                columns: u,
+                records: &room.records,
+            },
+            alive: &self.alive,
+        };
+        let most = |total: &mut [f64; 2], of: [f64; 2]| total[0] = total[0].max(of[0]);
+        let [shorter, _] = self.sums.fold(self.simd, &kernel, most);
+        self.room = room;
+        (1.0 - shorter).max(0.0).sqrt()
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {
@@ -214,6 +235,16 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         })
     }
 
+    fn expand(&mut self, body: &Body<D>, strain: &[f64]) -> bool {
+        self.check(body, &[]);
+        assert_eq!(strain.len(), body.len, "a strain for each slot");
+        if self.expansion.is_empty() {
+            self.expansion = Column::new(body.len, 0.0, field::line(4));
+        }
+        self.expansion.copy_from_slice(strain);
+        true
+    }
+
     fn columns(&self) -> Vec<Declaration> {
         self.declared()
     }
@@ -243,6 +274,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + self.point.bytes()
             + self.past.bytes()
             + 8 * (self.memory.len() + self.room.records.len())
-            + 8 * (self.critical.len() + self.next.len() + self.damage.len())
+            + 8 * (self.critical.len() + self.next.len())
+            + 8 * (self.damage.len() + self.expansion.len())
     }
 }

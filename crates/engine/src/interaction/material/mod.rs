@@ -57,6 +57,8 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     next: Column,
     /// Damage per slot of a law that fails by it ([`Material::failure`]); empty: none does.
     damage: Column,
+    /// Strain by temperature or swelling per slot; empty: none.
+    expansion: Column,
     /// Bits of bonds that break in a sweep, and marks of their groups.
     breaks: Vec<u8>,
     torn: Vec<u8>,
@@ -145,6 +147,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             critical: critical(),
             next: critical(),
             damage: column(fails, 0.0),
+            expansion: Column::default(),
             breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
             torn: vec![0; if breaks { family.groups() } else { 0 }],
             step: 0.0,
@@ -216,6 +219,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             point: self.point.view(),
             past: self.past.view(),
             memory: Shared(self.memory.as_ptr().cast_mut()),
+            expansion: &self.expansion,
         }
     }
 
@@ -292,6 +296,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             alive: &self.alive,
             critical: &self.critical,
             damage: &self.damage,
+            expansion: &self.expansion,
             next,
             toughness: &self.toughness,
             keeps: M::PASSES > 0,

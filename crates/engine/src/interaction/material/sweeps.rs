@@ -128,6 +128,12 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
         for a in 0..D {
             pull[a] = weight * pull[a];
         }
+        if !v.expansion.is_empty() {
+            let per_length = v.per_length::<L>(at, ends);
+            for a in 0..D {
+                pull[a] = per_length * pull[a];
+            }
+        }
         pull
     }
 }
@@ -156,6 +162,7 @@ pub unsafe fn own_pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
             memory: &memory,
         };
         let own = v.law.answer(&bond, &end).alone(&bond);
+        let weight = weight * v.per_length::<L>(at, ends);
         own.map(|x| weight * x)
     }
 }
@@ -184,15 +191,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                     continue;
                 }
                 let form = at.rows.load::<L, M::Form<L>>(v.form);
-                let mut past = at.rows.load::<L, M::Past<L>>(v.past);
-                let before = past;
-                let site = Site {
-                    constants: &at.constants,
-                    form: &form,
-                    past: &before,
-                };
-                let mut lost = v.law.remember(&site, &point, &mut past);
-                save(self.past, at.rows, &past);
+                let before = at.rows.load::<L, M::Past<L>>(v.past);
+                let (mut lost, mut past) = (L::splat(0.0), before);
+                if M::GATHERS {
+                    past = <M::Past<L> as Numbers<L>>::constant(0.0);
+                }
                 let count = <M::Memory<L> as Numbers<L>>::COUNT;
                 if count > 0 {
                     for k in 0..v.family.bonds(group) {
@@ -207,6 +210,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                         };
                         let mut new = old;
                         lost = weight.fma(v.law.advance(&bond, &end, &mut new), lost);
+                        if M::GATHERS {
+                            past = past.plus(weight, v.law.gathered(&bond, &end, &new));
+                        }
                         for n in 0..count {
                             let (old, new) = (old.get(n), new.get(n));
                             // a line that did not change is not written
@@ -217,6 +223,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                         }
                     }
                 }
+                let site = Site {
+                    constants: &at.constants,
+                    form: &form,
+                    past: &before,
+                };
+                lost = lost + v.law.remember(&site, &point, &mut past);
+                save(self.past, at.rows, &past);
                 for (l, x) in lost.to_array().iter().enumerate() {
                     if v.family.is_point(group, l) {
                         tally.dissipated += x * self.volume.at(at.rows.slot(l));

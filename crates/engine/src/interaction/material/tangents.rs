@@ -63,7 +63,11 @@ struct Half<const D: usize, M: Material<D>> {
     k: usize,
     end: usize,
     xi: [f64; D],
+    /// As the law sees it, and without the strain by temperature or swelling.
     eta: [f64; D],
+    moved: [f64; D],
+    /// `1/(1 + ε)` of that strain.
+    per_length: f64,
     omega: f64,
     weight: f64,
     memory: M::Memory<f64>,
@@ -86,11 +90,17 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         };
         let half = |(k, xi, omega, weight): (usize, [f64; D], f64, f64)| {
             let end = self.family.ends(group, k).slot(l);
+            let moved: [f64; D] = std::array::from_fn(|a| u[a][end] - u[a][slot]);
+            let of = |s: usize| self.expansion.get(s).copied().unwrap_or(0.0);
+            let strain = 0.5 * (of(slot) + of(end));
+            let per_length = 1.0 / (1.0 + strain);
             Half {
                 k,
                 end,
                 xi,
-                eta: std::array::from_fn(|a| u[a][end] - u[a][slot]),
+                eta: std::array::from_fn(|a| (moved[a] - strain * xi[a]) * per_length),
+                moved,
+                per_length,
                 omega,
                 weight,
                 // SAFETY: a bond of the family
@@ -136,7 +146,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             for a in 0..D {
                 let slopes = share(b, Some(a), None);
                 for (s, own) in own.iter_mut().enumerate() {
-                    own[a] = b.weight * slopes.get(s).slope;
+                    own[a] = b.weight * b.per_length * slopes.get(s).slope;
                     if a == 0 {
                         sum.set(s, sum.get(s) + b.weight * slopes.get(s).value);
                     }
@@ -218,11 +228,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 state.alone(&mirrored(&bond)).map(|x| still(0.0) - x)
             }
         };
+        let weight = b.weight * b.per_length;
         let mut stiffness = [[0.0; D]; D];
         for c in 0..D {
             let slopes = pull(Some(c), None);
             for r in 0..D {
-                stiffness[r][c] = b.weight * slopes[r].slope;
+                stiffness[r][c] = weight * b.per_length * slopes[r].slope;
             }
         }
         let channels = node.gain.first().map_or(0, Vec::len);
@@ -231,11 +242,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             let slopes = pull(None, Some(n));
             for (c, through) in through.iter_mut().enumerate() {
                 for r in 0..D {
-                    through[r] += b.weight * slopes[r].slope * gain[c];
+                    through[r] += weight * slopes[r].slope * gain[c];
                 }
             }
         }
-        let value = pull(None, None).map(|x| b.weight * x.value);
+        let value = pull(None, None).map(|x| weight * x.value);
         (stiffness, through, value)
     }
 
@@ -269,7 +280,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 let back = unsafe { view.memory_back::<f64>(group, b.k, l) };
                 let (own, pull, force) = self.answer(node, b, &b.memory, true);
                 let (other, partner_pull, more) = self.answer(partner, b, &back, false);
-                let y: [f64; D] = std::array::from_fn(|a| b.xi[a] + b.eta[a]);
+                let y: [f64; D] = std::array::from_fn(|a| b.xi[a] + b.moved[a]);
                 let square: f64 = y.iter().map(|c| c * c).sum();
                 let along: f64 = (0..D).map(|a| (force[a] + more[a]) * y[a]).sum();
                 let channels = b.share.iter().enumerate().map(|(c, share)| Channel {

@@ -28,6 +28,8 @@ pub struct View<'a, const D: usize, F, M> {
     pub past: Rows,
     /// What bonds remember.
     pub memory: Shared,
+    /// Strain by temperature or swelling per slot; empty: none.
+    pub expansion: &'a [f64],
 }
 
 /// The points of a group.
@@ -160,13 +162,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             self.family
                 .reference::<L>(at.number, k, &at.place, ends, dead)
         };
+        let mut eta = eta;
+        if !self.expansion.is_empty() {
+            // SAFETY: slots of the family, a number per slot
+            let [strain, per_length] = unsafe { grown(self.expansion, at.rows, ends) };
+            for a in 0..D {
+                eta[a] = ((eta[a] - strain * r.xi[a]) * per_length).zero_if(dead);
+            }
+        }
         let e = relative_square_stretch(eta, r.xi, r.two_by_square);
         let bond = Bond {
             xi: r.xi,
             eta,
             length: r.length,
             inv_length: r.inv_length,
-            omega: r.omega,
+            omega: r.omega.zero_if(dead),
             stretch: if M::STRETCHES {
                 Series::<Stretch>::new().at(e)
             } else {
@@ -175,6 +185,20 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             inv_current: r.inv_length * lane::inv_sqrt(L::splat(1.0) + e),
         };
         (bond, r.weight)
+    }
+
+    /// `1/(1 + ε)` of the bonds from a group to these ends: what forces are multiplied by, since the law answers to `(ξ + η)/(1 + ε)`.
+    ///
+    /// # Safety
+    /// The ends of a bond of the group.
+    #[inline(always)]
+    pub unsafe fn per_length<L: Lane>(&self, at: &GroupOf<L, D, F, M>, ends: F::Slots) -> L {
+        if self.expansion.is_empty() {
+            return L::splat(1.0);
+        }
+        // SAFETY: the caller's promise
+        let [_, per_length] = unsafe { grown(self.expansion, at.rows, ends) };
+        per_length
     }
 
     /// Lanes without a whole bond.
@@ -275,6 +299,19 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             self.law.settle(pass, &site, sum, point);
         }
     }
+}
+
+/// ε and `1/(1 + ε)` of bonds, ε the mean of both ends. Laws see `(ξ + η)/(1 + ε) = ξ + (η − ε ξ)/(1 + ε)`.
+///
+/// # Safety
+/// A number for each of the slots.
+#[inline(always)]
+pub unsafe fn grown<L: Lane, S: Slots>(expansion: &[f64], own: S, ends: S) -> [L; 2] {
+    let column = expansion.as_ptr();
+    // SAFETY: the caller's promise
+    let both = unsafe { own.one::<L>(column) + ends.one::<L>(column) };
+    let strain = L::splat(0.5) * both;
+    [strain, L::splat(1.0).div(strain + L::splat(1.0))]
 }
 
 /// `bond` from its other end.

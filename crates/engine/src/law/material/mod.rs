@@ -10,14 +10,16 @@ pub mod non_ordinary;
 pub mod numbers;
 pub mod softening;
 pub mod tensor;
+pub mod thermoelastic;
 pub mod viscoelastic;
 
 use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
 use crate::spec::Parameters;
-pub use non_ordinary::NonOrdinary;
+pub use non_ordinary::{BondAssociated, NonOrdinary};
 pub use numbers::{Numbers, Sink, Source};
+pub use thermoelastic::Thermoelastic;
 
 /// All that come with the engine, a line each.
 pub fn each(kinds: &mut impl Kinds) {
@@ -25,10 +27,9 @@ pub fn each(kinds: &mut impl Kinds) {
     kinds.law_or_smaller::<viscoelastic::Viscoelastic, viscoelastic::Viscoelastic<1>>(
         viscoelastic::one_branch,
     );
-    kinds.solid::<NonOrdinary<non_ordinary::correspondence::Correspondence>>();
-    kinds.solid::<NonOrdinary<non_ordinary::hypoelastic::Hypoelastic>>();
-    kinds.solid::<NonOrdinary<non_ordinary::hypoelastic_plastic::HypoelasticPlastic>>();
+    non_ordinary::each(kinds);
     kinds.law::<softening::Softening>();
+    kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
 }
 
 /// Who wants to see all of them ([`each`]).
@@ -51,6 +52,15 @@ pub trait Kinds {
     fn solid<M>(&mut self)
     where
         M: Shelved + Material<2> + Material<3>;
+
+    /// One that another takes the place of where that fits the parameters of all materials.
+    fn solid_or<M, O>(&mut self, _fits: fn(&Parameters) -> bool)
+    where
+        M: Shelved + Material<2> + Material<3>,
+        O: Shelved + Material<2> + Material<3>,
+    {
+        self.solid::<M>();
+    }
 }
 
 /// A bond as a law sees it from one of its ends.
@@ -63,7 +73,7 @@ pub struct Bond<N, const D: usize> {
     /// |ξ| and its inverse.
     pub length: N,
     pub inv_length: N,
-    /// Influence function ω(|ξ|).
+    /// Influence function ω(|ξ|); 0 of a bond that is not whole.
     pub omega: N,
     /// `(|ξ+η| − |ξ|)/|ξ|`, without cancellation.
     pub stretch: N,
@@ -241,6 +251,10 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const POTENTIAL: bool = true;
     /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?
     const FORM_OF_WHOLE: bool = false;
+    /// Are bonds stiffer the shorter they are? Then steps that are stable in the reference need not be later.
+    const STIFFENS: bool = false;
+    /// Does a point remember the sum of what its bonds do ([`Material::gathered`])?
+    const GATHERS: bool = false;
 
     /// Names of what the law remembers and makes.
     fn columns(&self) -> Columns {
@@ -320,6 +334,18 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         _memory: &mut Self::Memory<N>,
     ) -> N {
         N::constant(0.0)
+    }
+
+    /// What the point remembers of a bond's memory at the end of a step; times `ν V_j`, and all bonds together, it is the `past` that
+    /// [`Material::remember`] is given then.
+    #[inline(always)]
+    fn gathered<N: Number>(
+        &self,
+        _bond: &Bond<N, D>,
+        _end: &End<Self::Constants<N>, Self::Point<N>, Self::Memory<N>>,
+        _memory: &Self::Memory<N>,
+    ) -> Self::Past<N> {
+        <Self::Past<N> as Numbers<N>>::constant(0.0)
     }
 
     /// The point's memory at the end of a step; returns what that dissipated (energy / volume), to second order in the step.

@@ -76,7 +76,8 @@ pub(crate) fn stiffness(p: &Parameters) -> Result<PmbStiffness, String> {
     }
 }
 
-fn of_stiffness(stiffness: PmbStiffness) -> Parameters {
+/// The parameters that say it.
+pub(crate) fn of_stiffness(stiffness: PmbStiffness) -> Parameters {
     Parameters::numbers(&[match stiffness {
         PmbStiffness::Young(young) => ("young", young),
         PmbStiffness::Bulk(bulk) => ("bulk", bulk),

@@ -25,6 +25,15 @@ pub(super) fn toughness<const D: usize>(
     let s00 = match fracture.criterion {
         Criterion::Stretch(s) => s,
         Criterion::Energy(energy) => {
+            if let LawSpec::Named(law) = &m.law
+                && !law.isotropic
+            {
+                return Err(BuildError::unsupported(
+                    path,
+                    format!("a bond of the law {} has another energy in every direction: a fracture energy gives no critical stretch", law.name),
+                )
+                .help("give critical_stretch instead"));
+            }
             let energy = shelf.brittle_energy(&m.law, energy);
             let bonds = |stiffness| {
                 let c = micromodulus(D, spec.plane, stiffness, moments);

@@ -195,6 +195,7 @@ impl<const D: usize> Model<D> {
 
     /// The state before any load: displacements as they are, forces of bonds alone.
     pub(super) fn unloaded(&mut self) {
+        self.start_transfers();
         self.v.iter_mut().for_each(|c| c.fill(0.0));
         self.refresh_images();
         if self.is_linear() {
@@ -211,6 +212,8 @@ impl<const D: usize> Model<D> {
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.
     pub(super) fn increment(&mut self) -> Result<(), RunError> {
+        self.spread(self.time(), self.dt)?;
+        self.pay(0.5, 0.0);
         let Some(mut state) = self.statics.take() else {
             return Ok(());
         };
@@ -225,6 +228,7 @@ impl<const D: usize> Model<D> {
         let result = self.settle_increment(&mut state);
         if let Err(error) = result {
             self.step -= 1;
+            self.retreat_transfers();
             (self.u, self.f) = (u, f);
             let t = self.time();
             self.indenters.iter_mut().for_each(|i| i.place(t));
@@ -238,6 +242,7 @@ impl<const D: usize> Model<D> {
             indenter.account(before, &self.body, [&u, &self.u]);
         }
         self.account(&u, &f, &external);
+        self.pay(0.5, 0.0);
         Ok(())
     }
 

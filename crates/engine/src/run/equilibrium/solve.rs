@@ -88,7 +88,7 @@ impl<const D: usize> Model<D> {
 
     /// Does the reference carry no force, so that sweeps at tiny displacements are its tangent?
     pub(super) fn at_peace(&self) -> bool {
-        !matches!(self.constitutive.first().laws, Laws::Atoms(_))
+        !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
     }
 
     /// `A u = F` about the reference, with A's factors or by conjugate gradients.

@@ -136,6 +136,8 @@ impl<const D: usize> Model<D> {
 
     /// One step. On an error the state is that of the step before.
     pub(super) fn implicit_step(&mut self) -> Result<(), RunError> {
+        self.spread(self.time(), self.dt)?;
+        self.pay(0.5, 0.0);
         let Some(mut state) = self.implicit.take() else {
             return Ok(());
         };
@@ -153,6 +155,7 @@ impl<const D: usize> Model<D> {
         };
         if let Some(error) = error {
             (self.u, self.v) = (u, v);
+            self.retreat_transfers();
             self.step -= 1;
             self.forces_held();
             return Err(error);
@@ -170,6 +173,7 @@ impl<const D: usize> Model<D> {
         for c in &mut self.constraints {
             c.end(&self.body, &self.u, &self.f, t, dt);
         }
+        self.pay(0.5, 0.0);
         Ok(())
     }
 

@@ -1,8 +1,8 @@
 //! What is done to a body: contact, initial values, conditions, indenters.
 
-use super::Shape;
+use super::{Convection, Radiation, Shape, SpeciesExchange};
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Components, Number, Vector};
+use crate::deck::value::{At, Components, Number, Or, Vector, Written};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -19,9 +19,25 @@ pub struct Contact {
     /// Force / volume² / length; from the law when left out.
     #[schemars(extend("dimension" = Dim::CONTACT_STIFFNESS.name()))]
     pub stiffness: Option<Number>,
-    /// Coulomb friction between points that were never bonded; 0 when left out.
+    /// Coulomb friction between points that were never bonded, a number or an expression of t; 0 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
-    pub friction: Option<Number>,
+    pub friction: Option<At<Or<Written, Friction>>>,
+}
+
+/// Friction that falls from rest to sliding, `μ = kinetic + (static − kinetic) exp(−v/speed)` at a sliding speed v.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Coefficient of fast sliding, a number or an expression of t.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub kinetic: Number,
+    /// Coefficient at rest, a number or an expression of t; kinetic when left out.
+    #[serde(rename = "static")]
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub at_rest: Option<Number>,
+    /// Speed at which the difference is 1/e of that at rest; goes with static.
+    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
+    pub speed: Option<Number>,
 }
 
 /// Values at t = 0, expressions of x, y, z.
@@ -38,6 +54,12 @@ pub struct Initial {
     /// At t = 0, expressions of x, y, z.
     #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
     pub velocity: Option<Components>,
+    /// At t = 0, an expression of x, y, z; of [heat].
+    #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
+    pub temperature: Option<Number>,
+    /// At t = 0, an expression of x, y, z; of [species].
+    #[schemars(extend("dimension" = Dim::CONCENTRATION.name()))]
+    pub concentration: Option<Number>,
 }
 
 /// What is done to a set during the run, expressions of reference x, y, z and t.
@@ -60,12 +82,37 @@ pub struct Condition {
     /// Force / area.
     #[schemars(extend("dimension" = Dim::PRESSURE.name()))]
     pub traction: Option<Components>,
-    /// Area over which the traction is spread; one lattice face per point when left out.
+    /// Area of the surface of the set, for what comes through it (traction, fluxes, exchange) and is spread over its points by volume; one
+    /// lattice face per point when left out.
     #[schemars(extend("dimension" = Dim::AREA.name()))]
     pub area: Option<Number>,
     /// Viscous force density / velocity.
     #[schemars(extend("dimension" = Dim::DAMPING.name()))]
     pub damping: Option<Number>,
+    /// Temperature held there, an expression of x, y, z, t; of [heat], as those that follow.
+    #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
+    pub temperature: Option<Number>,
+    /// Heat into the body through the surface of the set, an expression of x, y, z, t.
+    #[schemars(extend("dimension" = Dim::HEAT_FLUX.name()))]
+    pub heat_flux: Option<Number>,
+    /// Heat made in the set, an expression of x, y, z, t.
+    #[schemars(extend("dimension" = Dim::HEAT_SOURCE.name()))]
+    pub heat_source: Option<Number>,
+    /// Exchange of heat through the surface of the set with what flows around it.
+    pub convection: Option<At<Convection>>,
+    /// Radiation through the surface of the set.
+    pub radiation: Option<At<Radiation>>,
+    /// Concentration held there, an expression of x, y, z, t; of [species], as those that follow.
+    #[schemars(extend("dimension" = Dim::CONCENTRATION.name()))]
+    pub concentration: Option<Number>,
+    /// Into the body through the surface of the set, an expression of x, y, z, t.
+    #[schemars(extend("dimension" = Dim::SPECIES_FLUX.name()))]
+    pub species_flux: Option<Number>,
+    /// Made in the set, an expression of x, y, z, t.
+    #[schemars(extend("dimension" = Dim::SPECIES_SOURCE.name()))]
+    pub species_source: Option<Number>,
+    /// Exchange through the surface of the set with what is around it.
+    pub species_exchange: Option<At<SpeciesExchange>>,
 }
 
 /// A rigid sphere; moved as its centre (an expression of t) says, or free when it has a mass.

@@ -17,6 +17,22 @@ pub struct BondFactor {
     pub crossing: Option<At<FlatShape>>,
 }
 
+/// Toughness that depends on place and time: one of stretch_factor, energy_factor, no_failure.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Toughness {
+    /// Points whose bonds are meant; all when left out. A bond breaks at the lower one of its ends' critical stretches.
+    pub set: Option<At<String>>,
+    /// Factor of the critical stretch, a number or an expression of x, y, z, t.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub stretch_factor: Option<Number>,
+    /// Factor of the fracture energy, a number or an expression of x, y, z, t: the critical stretch is multiplied with its root.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub energy_factor: Option<Number>,
+    /// true: bonds of these points never break, whatever their other ends bear.
+    pub no_failure: Option<At<bool>>,
+}
+
 /// One of segment, disk, polygon, point.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -103,6 +103,19 @@ names! {
         Verlet,
         /// Newmark's method: implicit, stable at any step.
         Newmark,
+        /// Points stand where they are; heat and species go on.
+        Still,
+    }
+    /// How what spreads goes on in time.
+    TransferName {
+        /// Forward Euler, in as many equal parts of a step as its own stable step asks for.
+        Explicit,
+        /// Backward Euler: first order in the step, stable at any.
+        Implicit,
+        /// Crank and Nicolson: second order in the step, stable at any; steps that are too long ring.
+        CrankNicolson,
+        /// At the end of every step what no longer changes.
+        Steady,
     }
     MeasureName {
         /// Force that constraints exert on the set, per axis.

@@ -17,6 +17,9 @@ pub struct Output {
     pub fields: Option<Vec<At<String>>>,
     /// VTU series for ParaView; true when left out.
     pub vtu: Option<bool>,
+    /// Exodus II file of this name (.e), in the folder of the results: all frames with their fields, for ParaView and the tools of
+    /// Sandia.
+    pub exodus: Option<At<String>>,
     /// Unbroken bonds as lines, too.
     #[serde(default)]
     pub bonds: bool,

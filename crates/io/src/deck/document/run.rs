@@ -20,7 +20,8 @@ pub struct Run {
     /// Run even if the step is above the stability limit.
     #[serde(default)]
     pub force_unstable: bool,
-    /// verlet when left out. newmark is implicit: stable at any step, which must be given, and without fracture and contact.
+    /// verlet when left out. newmark is implicit: stable at any step, which must be given, and without fracture and contact. still: no point
+    /// moves while heat or a species spreads.
     pub integrator: Option<At<IntegratorName>>,
     /// newmark: 1/4 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
@@ -56,8 +57,11 @@ pub struct Statics {
     pub method: Option<MethodName>,
     /// auto when left out: factors of small systems, conjugate gradients of large ones.
     pub solver: Option<SolverName>,
-    /// Increments of load while t goes from 0 to 1; 1 when left out, and 0 looks at modes only.
+    /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only.
     pub increments: Option<At<u64>>,
+    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out.
+    #[schemars(extend("dimension" = Dim::TIME.name()))]
+    pub duration: Option<Number>,
     /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub tolerance: Option<Number>,

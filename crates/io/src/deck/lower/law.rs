@@ -63,6 +63,7 @@ pub(super) fn read<'a>(
         name: name.clone(),
         parameters,
         linear: None,
+        isotropic: true,
     };
     Ok(ReadLaw {
         written,

@@ -3,6 +3,7 @@
 mod atoms;
 mod bodies;
 mod body;
+mod contact;
 pub(super) mod context;
 mod fields;
 mod interface;
@@ -15,6 +16,7 @@ mod probes;
 mod region;
 mod schedule;
 mod sets;
+mod transfer;
 mod warnings;
 
 pub(super) use atoms::boltzmann;
@@ -38,8 +40,8 @@ use context::{Context, Result};
 use peridyne::law::descriptor::Key;
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, BondedSpec, Calibration, Cloud, ContactSpec, ContactStiffness, FamilyChoice, Horizon,
-    Influence, MaterialSpec, Plane, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, BondedSpec, Calibration, Cloud, FamilyChoice, Horizon, Influence, MaterialSpec,
+    Plane, Spec, SurfaceFactors, SurfaceMethod,
 };
 use std::path::Path;
 
@@ -135,9 +137,9 @@ pub(super) fn lower(
     files: &Files,
 ) -> std::result::Result<Lowered, DeckError> {
     let units = units(document);
-    let time = match document.statics {
-        Some(_) => Dim::NUMBER,
-        None => Dim::TIME,
+    let time = match &document.statics {
+        Some(statics) if statics.value.duration.is_none() => Dim::NUMBER,
+        Some(_) | None => Dim::TIME,
     };
     let mut context = Context::new(source, units, time, &document.constants)?;
     measured_constants(&context, document)?;
@@ -175,15 +177,20 @@ pub(super) fn lower(
             ),
         ));
     }
-    let mut initial = Vec::new();
+    let (mut initial, mut starts) = (Vec::new(), Vec::new());
     for (index, at) in document.initial.iter().enumerate() {
-        initial.push(motion::initial(&context, index, at, &mut sets)?);
+        let made = motion::initial(&context, index, at, &mut sets)?;
+        transfer::initial(&context, &at.value, &made.set, &mut starts)?;
+        initial.push(made);
     }
     let (mut conditions, mut condition_entries) = (Vec::new(), Vec::new());
+    let mut exchanged = Vec::new();
     for (index, at) in document.condition.iter().enumerate() {
-        conditions.extend(motion::condition(&context, index, at, &mut sets)?);
+        let made = motion::condition(&context, index, at, &mut sets, &mut exchanged)?;
+        conditions.extend(made);
         condition_entries.resize(conditions.len(), index);
     }
+    let transfers = transfer::transfers(&context, document, &materials, starts, exchanged)?;
     let probes = document.probe.iter();
     let probes = probes
         .map(|at| probes::probe(&context, at, &sets))
@@ -240,14 +247,20 @@ pub(super) fn lower(
             .iter()
             .map(|b| motion::bond_factor(&context, b))
             .collect::<Result<_>>()?,
+        toughness: document
+            .toughness
+            .iter()
+            .map(|t| motion::toughness(&context, t, &sets))
+            .collect::<Result<_>>()?,
         precracks: document
             .precrack
             .iter()
             .map(|p| motion::precrack(&context, p))
             .collect::<Result<_>>()?,
-        contact: contact(&context, document, &materials)?,
+        contact: contact::contact(&context, document, &materials)?,
         initial,
         conditions,
+        transfers,
         indenters: document
             .indenter
             .iter()
@@ -453,52 +466,4 @@ fn measured_constants(context: &Context, document: &Document) -> Result<()> {
         ));
     }
     Ok(())
-}
-
-fn contact(
-    context: &Context,
-    document: &Document,
-    materials: &[MaterialSpec],
-) -> Result<Option<ContactSpec>> {
-    let standard = ContactSpec {
-        bonded: 0.9,
-        free: 1.35,
-        stiffness: ContactStiffness::Laws,
-        friction: 0.0,
-    };
-    match &document.contact {
-        Some(Or::Bare(false)) => Ok(None),
-        Some(Or::Bare(true)) => Ok(Some(standard)),
-        None => {
-            let touches = bodies::several(document);
-            let breaks = materials.iter().any(|m| m.fracture.is_some());
-            Ok((touches || breaks).then_some(standard))
-        }
-        Some(Or::Table(c)) => {
-            let get = |n: &Option<_>, or: f64, what: &str| {
-                n.as_ref()
-                    .map_or(Ok(or), |n| context.positive(n, Dim::NUMBER, what))
-            };
-            Ok(Some(ContactSpec {
-                bonded: get(
-                    &c.bonded,
-                    standard.bonded,
-                    "the fraction of the reference distance",
-                )?,
-                free: get(&c.free, standard.free, "the range")?,
-                stiffness: match &c.stiffness {
-                    Some(n) => ContactStiffness::Same(context.positive(
-                        n,
-                        Dim::CONTACT_STIFFNESS,
-                        "the stiffness",
-                    )?),
-                    None => ContactStiffness::Laws,
-                },
-                friction: match &c.friction {
-                    Some(n) => context.positive(n, Dim::NUMBER, "the friction coefficient")?,
-                    None => 0.0,
-                },
-            }))
-        }
-    }
 }

@@ -2,15 +2,17 @@
 
 use super::context::{Context, Result};
 use super::region::region;
+use super::transfer::{self, Said};
 use crate::deck::document::{
-    BondFactor, Condition, CrackName, FlatShape, Indenter, Initial, Precrack, Shape,
+    BondFactor, Condition, CrackName, FlatShape, Indenter, Initial, Precrack, Shape, Toughness,
 };
 use crate::deck::units::Dim;
 use crate::deck::value::At;
 use peridyne::expression::Expression;
 use peridyne::spec::{
     BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion,
-    IndenterSpec, InitialSpec, Members, PrecrackSpec, SetSpec,
+    IndenterSpec, InitialSpec, Members, PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec,
+    TransferCondition,
 };
 use std::ops::Range;
 
@@ -46,8 +48,15 @@ pub(super) fn initial(
     sets: &mut Vec<SetSpec>,
 ) -> Result<InitialSpec> {
     let written = &at.value;
-    if written.displacement.is_none() && written.velocity.is_none() {
-        return Err(context.error(&at.span, "an initial value needs displacement or velocity"));
+    if written.displacement.is_none()
+        && written.velocity.is_none()
+        && written.temperature.is_none()
+        && written.concentration.is_none()
+    {
+        return Err(context.error(
+            &at.span,
+            "an initial value needs one of displacement, velocity, temperature, concentration",
+        ));
     }
     let get = |c: &Option<_>, dim| {
         c.as_ref()
@@ -73,6 +82,7 @@ pub(super) fn condition(
     index: usize,
     at: &At<Condition>,
     sets: &mut Vec<SetSpec>,
+    exchanged: &mut Vec<Said<TransferCondition>>,
 ) -> Result<Vec<ConditionSpec>> {
     let c = &at.value;
     let set = target(
@@ -99,23 +109,29 @@ pub(super) fn condition(
             context.components(v, Dim::FORCE_DENSITY)?,
         ));
     }
-    match (&c.traction, &c.area) {
-        (Some(v), area) => kinds.push(ConditionKind::Traction {
+    let area = { c.area.as_ref() }
+        .map(|a| context.positive(a, Dim::AREA, "the area"))
+        .transpose()?;
+    if let Some(v) = &c.traction {
+        kinds.push(ConditionKind::Traction {
             value: context.components(v, Dim::PRESSURE)?,
-            area: area
-                .as_ref()
-                .map(|a| context.positive(a, Dim::AREA, "the area"))
-                .transpose()?,
-        }),
-        (None, Some(area)) => return Err(context.error(&area.span, "area belongs to a traction")),
-        (None, None) => {}
+            area,
+        });
+    } else if let Some(area) = &c.area
+        && !transfer::has_surface(c)
+    {
+        return Err(context.error(
+            &area.span,
+            "area belongs to a traction, a flux or an exchange",
+        ));
     }
+    let already = exchanged.len();
+    transfer::conditions(context, c, &set, area, exchanged)?;
     if let Some(v) = &c.damping {
         kinds.push(ConditionKind::Damping(context.expression(v, Dim::DAMPING)?));
     }
-    if kinds.is_empty() {
-        let message =
-            "a condition needs one of displacement, velocity, body_force, traction, damping";
+    if kinds.is_empty() && exchanged.len() == already {
+        let message = "a condition needs one of displacement, velocity, body_force, traction, damping, temperature, heat_flux, heat_source, convection, radiation, concentration, species_flux, species_source, species_exchange";
         return Err(context.error(&at.span, message));
     }
     Ok(kinds
@@ -196,6 +212,36 @@ pub(super) fn bond_factor(context: &Context, at: &At<BondFactor>) -> Result<Bond
         shape: flat_shape(context, &shape.span, "the shape to cross", &shape.value)?,
         factor,
     })
+}
+
+pub(super) fn toughness(
+    context: &Context,
+    at: &At<Toughness>,
+    sets: &[SetSpec],
+) -> Result<ToughnessSpec> {
+    let written = &at.value;
+    let set = match &written.set {
+        Some(set) => context.known_set(set, sets)?,
+        None => "all".to_string(),
+    };
+    let given = [
+        ("stretch_factor", written.stretch_factor.is_some()),
+        ("energy_factor", written.energy_factor.is_some()),
+        ("no_failure", written.no_failure.is_some()),
+    ];
+    context.one_of(&at.span, "the toughness", &given)?;
+    let factor = match (&written.stretch_factor, &written.energy_factor) {
+        (Some(n), _) => ToughnessFactor::Stretch(context.expression(n, Dim::NUMBER)?),
+        (_, Some(n)) => ToughnessFactor::Energy(context.expression(n, Dim::NUMBER)?),
+        (None, None) => match &written.no_failure {
+            Some(no) if !no.value => {
+                let message = "no_failure = false says nothing: leave this table out";
+                return Err(context.error(&no.span, message));
+            }
+            Some(_) | None => ToughnessFactor::NoFailure,
+        },
+    };
+    Ok(ToughnessSpec { set, factor })
 }
 
 /// What cuts bonds: a segment, disk, polygon or point.

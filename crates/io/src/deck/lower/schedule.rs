@@ -58,6 +58,10 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
     };
     let increments = written.increments.as_ref().map_or(1, |n| n.value);
     let modes = written.modes.as_ref().map_or(0, |n| n.value);
+    let end = match &written.duration {
+        Some(number) => context.positive(number, Dim::TIME, "the duration")?,
+        None => 1.0,
+    };
     if increments == 0 && modes == 0 {
         let span = written.increments.as_ref().map_or(0..0, |n| n.span.clone());
         return Err(context.error_with(
@@ -69,7 +73,7 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
     Ok(RunSpec {
         schedule: Schedule {
             steps: increments,
-            time_step: TimeStep::Fixed(1.0 / increments.max(1) as f64),
+            time_step: TimeStep::Fixed(end / increments.max(1) as f64),
             force_unstable: false,
             stepper: Stepper::Statics(peridyne::spec::Statics {
                 method,
@@ -94,9 +98,10 @@ fn solver(written: Option<SolverName>) -> Solver {
 
 /// What moves the points; keys of the implicit method belong to it alone.
 fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
-    let implicit = match run.integrator.as_ref().map(|i| i.value) {
-        None | Some(IntegratorName::Verlet) => false,
-        Some(IntegratorName::Newmark) => true,
+    let (implicit, other) = match run.integrator.as_ref().map(|i| i.value) {
+        None | Some(IntegratorName::Verlet) => (false, Stepper::Verlet),
+        Some(IntegratorName::Still) => (false, Stepper::Still),
+        Some(IntegratorName::Newmark) => (true, Stepper::Verlet),
     };
     let own = [
         ("beta", run.beta.as_ref().map(|n| &n.span)),
@@ -115,7 +120,7 @@ fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
         ));
     }
     if !implicit {
-        return Ok(Stepper::Verlet);
+        return Ok(other);
     }
     let number = |written: &Option<_>, or: f64, what: &str| match written {
         None => Ok(or),
@@ -281,9 +286,20 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         }
         name => name.as_ref().map(|n| n.value.clone().into()),
     };
+    if let Some(name) = &written.exodus {
+        let ends = [".e", ".exo", ".ex2"];
+        if !ends.iter().any(|end| name.value.ends_with(end)) {
+            return Err(context.error_with(
+                &name.span,
+                format!("an Exodus file is called .e or .exo, not {:?}", name.value),
+                "name it results.e",
+            ));
+        }
+    }
     let names = [
         ("dir", written.dir.as_ref()),
         ("dump", written.dump.as_ref().map(|n| &n.value)),
+        ("exodus", written.exodus.as_ref().map(|n| &n.value)),
         ("trajectory", written.trajectory.as_ref().map(|n| &n.value)),
         ("data", written.data.as_ref().map(|n| &n.value)),
     ];
@@ -307,6 +323,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         dir: written.dir.clone().map(Into::into),
         every: positive(&written.every, "every")?,
         vtu: written.vtu.unwrap_or(true),
+        exodus: written.exodus.as_ref().map(|n| n.value.clone().into()),
         bonds: written.bonds,
         linear_body: written.linear_body,
         dump: written

@@ -40,6 +40,16 @@ const EXAMPLES: &[(Dim, &str)] = &[
     (Dim::CONTACT_STIFFNESS, "1e26 N/m^7"),
     (Dim::INDENTER_STIFFNESS, "1e17 N/m^5"),
     (Dim::DAMPING, "1e6 kg/m^3/s"),
+    (Dim::CONDUCTIVITY, "45 W/m/K"),
+    (Dim::HEAT_CAPACITY, "460 J/kg/K"),
+    (Dim::HEAT_FLUX, "1e4 W/m^2"),
+    (Dim::HEAT_SOURCE, "1e6 W/m^3"),
+    (Dim::HEAT_TRANSFER, "25 W/m^2/K"),
+    (Dim::EXPANSION, "12e-6 K^-1"),
+    (Dim::DIFFUSIVITY, "1e-9 m^2/s"),
+    (Dim::CONCENTRATION, "100 mol/m^3"),
+    (Dim::SPECIES_FLUX, "1e-3 mol/m^2/s"),
+    (Dim::SPECIES_SOURCE, "1e-3 mol/m^3/s"),
 ];
 
 /// How one would write a quantity of this dimension, if it is a usual one.

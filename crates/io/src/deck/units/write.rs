@@ -62,6 +62,12 @@ const SI: &[(Dim, &str)] = &[
     (Dim::PRESSURE, "Pa"),
     (Dim::FRACTURE_ENERGY, "J/m^2"),
     (Dim::FORCE_DENSITY, "N/m^3"),
+    (Dim::CONDUCTIVITY, "W/m/K"),
+    (Dim::HEAT_CAPACITY, "J/kg/K"),
+    (Dim::HEAT_FLUX, "W/m^2"),
+    (Dim::HEAT_SOURCE, "W/m^3"),
+    (Dim::HEAT_TRANSFER, "W/m^2/K"),
+    (Dim::DIFFUSIVITY, "m^2/s"),
 ];
 
 impl UnitSystem {

@@ -16,6 +16,8 @@ pub enum About {
     Equilibrium,
     /// Points move and nothing breaks.
     Motion,
+    /// Nothing moves, and what this column is of spreads.
+    Spread(&'static str),
 }
 
 impl About {
@@ -25,6 +27,7 @@ impl About {
             About::Fracture => "damage",
             About::Equilibrium => "displacement",
             About::Motion => "velocity",
+            About::Spread(column) => column,
         }
     }
 
@@ -32,7 +35,7 @@ impl About {
     pub fn magnified(self) -> bool {
         match self {
             About::Equilibrium => true,
-            About::Fracture | About::Motion => false,
+            About::Fracture | About::Motion | About::Spread(_) => false,
         }
     }
 }

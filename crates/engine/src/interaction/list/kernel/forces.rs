@@ -16,6 +16,8 @@ pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub f: [Shared; D],
     pub next: Shared,
     pub toughness: &'a [Toughness],
+    /// Are there points whose bonds never break?
+    pub spares: bool,
     /// Material per slot; empty when there is one.
     pub material: &'a [u8],
     /// `None`: nothing breaks.
@@ -69,7 +71,11 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 let g = series.at(e);
                 let mut pull = v.law.pull(k, g, own, other).zero_if(dead);
                 if FULL {
-                    let breaks = j.critical.min(i.critical).lt(e);
+                    let limit = match self.spares {
+                        false => j.critical.min(i.critical),
+                        true => history::limit(j.critical, i.critical),
+                    };
+                    let breaks = limit.lt(e);
                     lowest = e.min(lowest);
                     if v.paired {
                         let [s00, alpha] = v.pairs.memory::<L>(&b.pair);

@@ -271,7 +271,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
     unsafe fn aside<L: Lane>(&self, at: &Points<L, D>, b: &Bond<D>, e: L, raw: L) -> L::Mask {
         // SAFETY: offsets stay inside the guards
         let other = unsafe { L::load(self.critical.as_ptr().add(b.to(at.i))) };
-        let breaks = other.min(at.critical).lt(e);
+        let breaks = history::limit(other, at.critical).lt(e);
         L::or(breaks, raw.lt(L::splat(b.contact_e)))
     }
 
@@ -340,8 +340,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     .zero_if(dead);
                 let mut pull = L::select(aside, own_pull, zero);
                 if let Some(motion) = self.motion {
-                    let limit = L::load(self.critical.as_ptr().add(j)).min(at.critical);
-                    let breaks = limit.lt(e);
+                    let limit = L::load(self.critical.as_ptr().add(j));
+                    let breaks = history::limit(limit, at.critical).lt(e);
                     let which = L::bits(breaks);
                     if which != 0 {
                         *bits &= !(which as u8);

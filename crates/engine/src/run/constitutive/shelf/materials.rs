@@ -40,9 +40,13 @@ type Binder<const D: usize> = fn(&Chosen, Place<D>) -> Bound<D>;
 pub(super) struct Materials {
     pub linear: fn(&Parameters) -> Result<LawSpec, String>,
     pub brittle_energy: fn(&Parameters, f64) -> f64,
+    /// [`Shelved::ISOTROPIC`]
+    pub isotropic: bool,
+    /// [`Shelved::ENDS`]
+    pub ends: bool,
     binders: Binders,
-    /// A smaller law, and whether it fits the parameters of a material.
-    smaller: Option<(fn(&Parameters) -> bool, Binders)>,
+    /// Another law, and whether it fits the parameters of a material.
+    other: Option<(fn(&Parameters) -> bool, Binders)>,
 }
 
 /// [`Binder`]s of one, two and three dimensions.
@@ -57,13 +61,10 @@ impl Materials {
         Materials::with::<M>(line)
     }
 
-    /// The same with a smaller law where that fits.
-    pub fn or_smaller<S>(self, fits: fn(&Parameters) -> bool) -> Materials
-    where
-        S: Shelved + Material<1> + Material<2> + Material<3>,
-    {
-        let smaller = Some((fits, Materials::of::<S>().binders));
-        Materials { smaller, ..self }
+    /// The same with another where that fits.
+    pub fn or(self, fits: fn(&Parameters) -> bool, other: Materials) -> Materials {
+        let other = Some((fits, other.binders));
+        Materials { other, ..self }
     }
 
     /// Of a law that means nothing on a line.
@@ -81,12 +82,14 @@ impl Materials {
         Materials {
             linear: M::linear,
             brittle_energy: M::brittle_energy,
+            isotropic: M::ISOTROPIC,
+            ends: M::ENDS,
             binders: [
                 line,
                 Arc::new(bind::<2, M> as Binder<2>),
                 Arc::new(bind::<3, M> as Binder<3>),
             ],
-            smaller: None,
+            other: None,
         }
     }
 }
@@ -182,8 +185,8 @@ impl Chosen {
                 let all = |fits: fn(&Parameters) -> bool| {
                     self.materials.iter().all(|made| fits(&made.parameters))
                 };
-                let binders = match &m.smaller {
-                    Some((fits, smaller)) if all(*fits) => smaller,
+                let binders = match &m.other {
+                    Some((fits, other)) if all(*fits) => other,
                     Some(_) | None => &m.binders,
                 };
                 binders.get(D - 1)

@@ -80,7 +80,7 @@ impl material::Kinds for Shelf {
         M: Shelved + Material<1> + Material<2> + Material<3>,
         S: Shelved + Material<1> + Material<2> + Material<3>,
     {
-        let runs = Materials::of::<M>().or_smaller::<S>(fits);
+        let runs = Materials::of::<M>().or(fits, Materials::of::<S>());
         self.put(M::descriptor(), Runs::Material(runs));
     }
 
@@ -89,6 +89,16 @@ impl material::Kinds for Shelf {
         M: Shelved + Material<2> + Material<3>,
     {
         self.put(M::descriptor(), Runs::Material(Materials::of_solid::<M>()));
+    }
+
+    fn solid_or<M, O>(&mut self, fits: fn(&Parameters) -> bool)
+    where
+        M: Shelved + Material<2> + Material<3>,
+        O: Shelved + Material<2> + Material<3>,
+    {
+        let other = Materials::of_solid::<O>();
+        let runs = Materials::of_solid::<M>().or(fits, other);
+        self.put(M::descriptor(), Runs::Material(runs));
     }
 }
 
@@ -271,6 +281,7 @@ impl Shelf {
                     name: name.clone(),
                     parameters,
                     linear: Some(Box::new(linear)),
+                    isotropic: material.isotropic,
                 })
             }
         };
@@ -295,6 +306,14 @@ impl Shelf {
                 Runs::Linear { parameters, .. } => Some((&e.descriptor, parameters(law)?)),
                 Runs::Material(_) | Runs::Atoms(_) => None,
             }),
+        }
+    }
+
+    /// Does a law have its critical stretch among its constants?
+    pub(crate) fn ends(&self, name: &str) -> bool {
+        match self.entry(name).map(|e| &e.runs) {
+            Some(Runs::Material(material)) => material.ends,
+            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
         }
     }
 

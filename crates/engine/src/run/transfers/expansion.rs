@@ -1,0 +1,161 @@
+//! Bodies that expand, and what that costs and heats.
+
+use super::state::Transfers;
+use crate::error::BuildError;
+use crate::law::material::Thermoelastic;
+use crate::law::solid::linear::of_stiffness;
+use crate::run::model::Model;
+use crate::spec::{LawSpec, Method, NamedLaw, Spec, Statics, Stepper, TransferSpec};
+
+/// Where a material expands, `pmb` is `thermoelastic`: its own kernels know no temperature. Were laws changed?
+pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
+    let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
+    if !spec.transfers.iter().any(expands) {
+        return false;
+    }
+    let mut changed = false;
+    for m in &mut spec.materials {
+        if let LawSpec::Pmb(stiffness) = m.law {
+            m.law = LawSpec::Named(NamedLaw {
+                name: Thermoelastic::NAME.into(),
+                parameters: of_stiffness(stiffness),
+                isotropic: true,
+                linear: None,
+            });
+            changed = true;
+        }
+    }
+    changed
+}
+
+impl<const D: usize> Model<D> {
+    /// Bodies that expand: can their bonds?
+    pub(super) fn make_expansion(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        for (n, t) in spec.transfers.iter().enumerate() {
+            let strains: Vec<f64> = t.materials.iter().map(|m| m.expansion).collect();
+            if strains.iter().any(|x| *x != 0.0) {
+                self.transfers.grown.push((n, t.reference, strains));
+            }
+        }
+        let Some((n, ..)) = self.transfers.grown.first() else {
+            return Ok(());
+        };
+        let name = spec.transfers[*n].quantity.name();
+        if let Stepper::Statics(Statics {
+            method: Method::Linear,
+            ..
+        }) = spec.schedule.stepper
+        {
+            return Err(BuildError::unsupported(
+                "statics.method",
+                "linear statics is about the reference, and a body that expands has left it",
+            )
+            .help("write method = \"newton\""));
+        }
+        self.transfers.strain = vec![0.0; self.body.len];
+        if !self.interaction.expand(&self.body, &self.transfers.strain) {
+            return Err(BuildError::unsupported(
+                name,
+                "the bonds of this law or body know no expansion: those of pmb in one body do, and laws such as elastic_plastic, viscoelastic, correspondence, softening",
+            )
+            .help("take one of these (for lps: elastic_plastic with a yield stress that is never reached), or leave expansion and swelling out"));
+        }
+        Ok(())
+    }
+
+    /// Do bodies expand?
+    pub(in crate::run) fn expands(&self) -> bool {
+        !self.transfers.grown.is_empty()
+    }
+
+    /// Bonds get the lengths that the values of now give them.
+    pub(super) fn expand(&mut self) {
+        if !self.expands() {
+            return;
+        }
+        self.transfers.past.clone_from(&self.transfers.strain);
+        let Transfers {
+            all,
+            place,
+            grown,
+            strain,
+            ..
+        } = &mut self.transfers;
+        let body = &self.body;
+        for &s in &body.slots {
+            let i = s as usize;
+            let of = |(n, reference, strains): &(usize, f64, Vec<f64>)| {
+                strains[body.material_of(i)] * (all[*n].values()[place[i] as usize] - reference)
+            };
+            strain[i] = grown.iter().map(of).sum();
+        }
+        body.fill_images(strain);
+        self.interaction.expand(body, strain);
+    }
+
+    /// What the last step's expansion changes of the energy of bonds at displacements a time before those of now, and so much of it:
+    /// work of whoever heats. Half at either end of a step, or all in its middle, is of second order in the step.
+    pub(in crate::run) fn pay(&mut self, part: f64, before: f64) {
+        if !self.expands() {
+            return;
+        }
+        let mut u = self.u.clone();
+        for a in 0..D {
+            for &s in &self.body.slots {
+                u[a][s as usize] -= before * self.v[a][s as usize];
+            }
+            self.body.fill_images(&mut u[a]);
+        }
+        let (body, transfers) = (&self.body, &mut self.transfers);
+        self.interaction.expand(body, &transfers.past);
+        let past = self.interaction.energy(body, &u)[0];
+        self.interaction.expand(body, &transfers.strain);
+        let price = part * (self.interaction.energy(body, &u)[0] - past);
+        transfers.price += price;
+        self.past_work[1] += price;
+    }
+
+    /// What deformation heats.
+    pub(super) fn make_heated(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let transfers = &spec.transfers;
+        let Some(n) = transfers.iter().position(|t| t.deformation) else {
+            return Ok(());
+        };
+        if spec.schedule.stepper != Stepper::Verlet {
+            return Err(BuildError::unsupported(
+                transfers[n].quantity.name(),
+                "heat of deformation belongs to motion in time by explicit steps",
+            )
+            .help("take integrator = \"verlet\", or leave deformation out"));
+        }
+        let strains = transfers[n].materials.iter().map(|m| m.expansion);
+        self.transfers.heated = Some((n, strains.collect()));
+        Ok(())
+    }
+
+    /// `−V tr σ` of every slot, where deformation heats.
+    pub(in crate::run) fn pressed(&mut self) -> Option<Vec<f64>> {
+        self.transfers.heated.as_ref()?;
+        self.refresh_images();
+        let all = self.virials_of_bonds();
+        Some(all.iter().map(|w| w[0] + w[1] + w[2]).collect())
+    }
+
+    /// Heat of the deformation since `−V tr σ` was this, at the temperatures of now.
+    pub(super) fn heat_by_deformation(&mut self, before: Option<Vec<f64>>) {
+        let (Some(before), Some(now)) = (before, self.pressed()) else {
+            return;
+        };
+        let Transfers {
+            all, place, heated, ..
+        } = &mut self.transfers;
+        let Some((n, strains)) = heated else { return };
+        let mut more = vec![0.0; self.body.points()];
+        for &s in &self.body.slots {
+            let i = s as usize;
+            let strain = strains[self.body.material_of(i)];
+            more[place[i] as usize] = strain * (now[i] - before[i]);
+        }
+        all[*n].give(|i, value| value * more[i]);
+    }
+}

@@ -1,0 +1,270 @@
+//! From a spec to what spreads.
+
+use super::state::TransferInfo;
+use crate::body::Body;
+use crate::error::BuildError;
+use crate::run::model::Model;
+use crate::space::Point;
+use crate::spec::{
+    Exchange, Quantity, Spec, TimeStep, TransferCondition, TransferKind, TransferMethod,
+    TransferSpec,
+};
+use crate::transfer::{Condition, Conduction, Rows, Transfer};
+
+/// Shares of the surface of a set that its points have: all of `area` by volume, or a face each.
+fn areas<const D: usize>(body: &Body<D>, slots: &[u32], area: Option<f64>) -> Vec<f64> {
+    let volume = |s: &u32| body.volume.at(*s as usize);
+    let Some(area) = area else {
+        let face = |s: &u32| volume(s) / body.spacing_at(*s as usize);
+        return slots.iter().map(face).collect();
+    };
+    let all: f64 = slots.iter().map(volume).sum();
+    slots.iter().map(|s| area * volume(s) / all).collect()
+}
+
+impl<const D: usize> Model<D> {
+    /// All that spreads, from a spec.
+    pub(in crate::run) fn make_transfers(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let transfers = &spec.transfers;
+        for (n, t) in transfers.iter().enumerate() {
+            if transfers[..n].iter().any(|o| o.quantity == t.quantity) {
+                let name = t.quantity.name();
+                return Err(BuildError::conflict(name, format!("there is {name} twice")));
+            }
+        }
+        if transfers.is_empty() {
+            return Ok(());
+        }
+        let mut slots = self.body.slots.clone();
+        slots.sort_unstable();
+        let mut place = vec![0; self.body.len];
+        for (n, s) in slots.iter().enumerate() {
+            place[*s as usize] = n as u32;
+        }
+        self.transfers.place = place;
+        for t in transfers {
+            let made = self.transfer(spec, t, &slots)?;
+            let info = self.told(spec, t, &made);
+            self.transfers.all.push(made);
+            self.info.transfers.push(info);
+        }
+        self.make_expansion(spec)?;
+        self.make_heated(spec)
+    }
+
+    /// Points stand still: how long a step is, and that nothing is asked to move.
+    pub(in crate::run) fn stand_for(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        self.stands = true;
+        let refused = |path: &str, what: &str| {
+            Err(
+                BuildError::conflict(path, format!("points stand still, and {what}")).help(
+                    "leave it out, or take integrator = \"verlet\", \"newmark\" or [statics]",
+                ),
+            )
+        };
+        if self.transfers.all.is_empty() {
+            return Err(BuildError::missing(
+                "schedule.integrator",
+                "points stand still and nothing spreads: there is nothing to do",
+            )
+            .help("add [heat] or [species], or take another integrator"));
+        }
+        if !spec.conditions.is_empty() {
+            return refused("conditions[0]", "this moves or loads them");
+        }
+        if !spec.indenters.is_empty() {
+            return refused("indenters[0]", "this pushes them");
+        }
+        let part = match spec.schedule.time_step {
+            TimeStep::Fixed(_) => return Ok(()),
+            TimeStep::Fraction(part) => part,
+            TimeStep::Auto => 1.0,
+        };
+        let mut dt = f64::INFINITY;
+        for (t, info) in self.transfers.all.iter().zip(&self.info.transfers) {
+            match t.method {
+                TransferMethod::Explicit { safety } => {
+                    dt = dt.min(part * safety * info.stable_step);
+                }
+                TransferMethod::Implicit { .. } | TransferMethod::Steady { .. } => {}
+            }
+        }
+        if !dt.is_finite() {
+            return Err(BuildError::missing(
+                "schedule.time_step",
+                "implicit and steady values have steps of any length: how long they are must be said",
+            )
+            .help(format!(
+                "write time_step as a number: what is here spreads over the body in about {:.1e}",
+                self.info.transfers[0].spread
+            )));
+        }
+        self.dt = dt;
+        self.info.time_step = dt;
+        Ok(())
+    }
+
+    fn transfer(
+        &self,
+        spec: &Spec,
+        t: &TransferSpec,
+        slots: &[u32],
+    ) -> Result<Transfer, BuildError> {
+        let name = t.quantity.name();
+        let (body, interaction) = (&self.body, self.interaction.as_ref());
+        if interaction.is_potential() || spec.micromoduli().is_some() {
+            return Err(BuildError::unsupported(
+                name,
+                "atoms and given micromoduli conduct nothing: their bonds are not those of a continuum",
+            )
+            .help("take a law of solids (pmb, lps, …)"));
+        }
+        let of = |slot: usize| &t.materials[body.material_of(slot)];
+        let rows = Rows::new(
+            body,
+            interaction,
+            &Conduction {
+                conductivity: &|slot| of(slot).conductivity,
+                weight: &|i, j, r| {
+                    let weight = |slot| self.constitutive.at(slot).0.weight(r);
+                    0.5 * (weight(i) + weight(j))
+                },
+                place: &self.transfers.place,
+            },
+            name,
+        )?;
+        let capacity = slots.iter().map(|s| {
+            let i = *s as usize;
+            let volume = body.volume.at(i);
+            match t.quantity {
+                Quantity::Heat => body.density.at(i) * of(i).capacity * volume,
+                Quantity::Species => volume,
+            }
+        });
+        let mut value = vec![t.reference; slots.len()];
+        for (set, e) in &t.initial {
+            let (places, points) = self.places(set, name)?;
+            for (i, x) in places.iter().zip(&points) {
+                value[*i as usize] = e.eval(x, 0.0);
+            }
+        }
+        if let Some(n) = value.iter().position(|v| !v.is_finite()) {
+            return Err(BuildError::invalid(
+                name,
+                format!(
+                    "the {} at the start is {} at {:?}",
+                    t.quantity.column(),
+                    value[n],
+                    &body.position(slots[n] as usize)[..D]
+                ),
+            ));
+        }
+        let conditions = t.conditions.iter().map(|c| self.condition(c, name));
+        let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
+        let made = Transfer::new(
+            t.quantity,
+            (t.method, t.across_broken),
+            rows,
+            capacity.collect(),
+            conditions,
+            value,
+        );
+        if let TransferMethod::Steady { .. } = t.method {
+            steady(&made)?;
+        }
+        Ok(made)
+    }
+
+    /// Places and reference positions of a set.
+    fn places(&self, set: &str, path: &str) -> Result<(Vec<u32>, Vec<Point>), BuildError> {
+        let found = self.slots_of(set, &self.sets);
+        let (slots, points) = found.map_err(|e| e.at(path))?;
+        let place = slots.iter().map(|s| self.transfers.place[*s as usize]);
+        Ok((place.collect(), points))
+    }
+
+    fn condition(&self, c: &TransferCondition, path: &str) -> Result<Condition, BuildError> {
+        let (places, points) = self.places(&c.set, path)?;
+        let slots = self.slots_of(&c.set, &self.sets)?.0;
+        let area = |area: &Option<f64>| areas(&self.body, &slots, *area);
+        Ok(match &c.kind {
+            TransferKind::Value(e) => Condition::held(e, places, points),
+            TransferKind::Flux { value, area: a } => {
+                Condition::power(value, area(a), places, points)
+            }
+            TransferKind::Source(e) => {
+                let volume = slots.iter().map(|s| self.body.volume.at(*s as usize));
+                Condition::power(e, volume.collect(), places, points)
+            }
+            TransferKind::Exchange { law, area: a } => match law {
+                Exchange::Convection {
+                    coefficient,
+                    ambient,
+                } => {
+                    let law = [coefficient, ambient];
+                    Condition::convection(law, area(a), places, points)
+                }
+                Exchange::Radiation {
+                    coefficient,
+                    ambient,
+                } => {
+                    let law = [coefficient, ambient];
+                    Condition::radiation(law, area(a), places, points)
+                }
+            },
+        })
+    }
+
+    fn told(&self, spec: &Spec, t: &TransferSpec, made: &Transfer) -> TransferInfo {
+        let each = t.materials.iter().zip(&spec.materials);
+        let diffusivity: Vec<f64> = each
+            .map(|(t_m, m)| match t.quantity {
+                Quantity::Heat => t_m.conductivity / (m.density * t_m.capacity),
+                Quantity::Species => t_m.conductivity,
+            })
+            .collect();
+        let extent = |a: usize| {
+            let along = self
+                .body
+                .slots
+                .iter()
+                .map(|s| self.body.position(*s as usize)[a]);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            });
+            high - low + self.body.spacing
+        };
+        let longest = (0..D).map(extent).fold(0.0, f64::max);
+        let least = diffusivity.iter().copied().fold(f64::INFINITY, f64::min);
+        TransferInfo {
+            quantity: t.quantity,
+            method: t.method,
+            stable_step: made.stable_step(0.0),
+            spread: longest * longest / least,
+            diffusivity,
+        }
+    }
+}
+
+/// Is every part held, or in exchange with something?
+fn steady(made: &Transfer) -> Result<(), BuildError> {
+    let parts = made.rows.parts();
+    let mut tied = vec![false; parts.len()];
+    let held = made.conditions.iter().flat_map(Condition::holds);
+    let exchanged = made.conditions.iter().flat_map(Condition::exchanges);
+    for i in held.chain(exchanged) {
+        tied[parts[*i as usize] as usize] = true;
+    }
+    let name = made.quantity.name();
+    match parts.iter().all(|p| tied[*p as usize]) {
+        true => Ok(()),
+        false => Err(BuildError::ill_posed(
+            name,
+            format!(
+                "a part of the body has no steady {}: nothing there holds it",
+                made.quantity.column()
+            ),
+        )
+        .help("hold it, or exchange with the surroundings, somewhere on every connected part; or take an implicit step in time")),
+    }
+}

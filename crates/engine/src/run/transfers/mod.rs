@@ -1,0 +1,140 @@
+//! What spreads through the bonds of a model: driven step by step beside the motion.
+
+mod expansion;
+mod make;
+pub(super) mod state;
+
+pub(super) use expansion::expanding;
+pub use state::TransferInfo;
+
+use super::Simulation;
+use super::model::Model;
+use crate::columns::{Declaration, Dimension, Shape};
+use crate::error::RunError;
+use crate::spec::Quantity;
+use crate::transfer::{Transfer, TransferAccount};
+
+impl Quantity {
+    /// What its column is.
+    fn declaration(self) -> Declaration {
+        match self {
+            Quantity::Heat => Declaration::of_points(
+                self.column(),
+                Shape::Scalar,
+                Dimension::TEMPERATURE,
+                "Temperature T that the bonds conduct: ρ c V_i dT_i/dt = Σ_j g_ij (T_j − T_i) + P_i (Bobaru & Duangpanya 2010).",
+            ),
+            Quantity::Species => Declaration::of_points(
+                self.column(),
+                Shape::Scalar,
+                Dimension::CONCENTRATION,
+                "Concentration of the species that the bonds conduct: V_i dc_i/dt = Σ_j g_ij (c_j − c_i) + P_i.",
+            ),
+        }
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// Values and accounts at the start of a run.
+    pub(super) fn start_transfers(&mut self) {
+        let t = self.time();
+        self.break_transfers();
+        for transfer in &mut self.transfers.all {
+            transfer.start(t);
+        }
+        self.expand();
+    }
+
+    /// Broken bonds stop conducting, where they broke since.
+    fn break_transfers(&mut self) {
+        self.transfers.seen = self.broken;
+        if self.transfers.all.is_empty() {
+            return;
+        }
+        let place = &self.transfers.place;
+        for t in self.transfers.all.iter_mut().filter(|t| !t.across_broken) {
+            t.rows
+                .break_bonds(&self.body, self.interaction.as_ref(), place);
+        }
+    }
+
+    /// What spreads in the step that begins at `t`.
+    ///
+    /// # Errors
+    /// Equations were not solved; all is as before.
+    pub(super) fn spread(&mut self, t: f64, dt: f64) -> Result<(), RunError> {
+        self.spread_after(t, dt, None)
+    }
+
+    /// The same of a step whose points have moved already, since `−V tr σ` was this.
+    pub(super) fn spread_after(
+        &mut self,
+        t: f64,
+        dt: f64,
+        pressed: Option<Vec<f64>>,
+    ) -> Result<(), RunError> {
+        self.transfers.all.iter_mut().for_each(Transfer::keep);
+        self.heat_by_deformation(pressed);
+        if self.transfers.seen != self.broken {
+            self.break_transfers();
+        }
+        for n in 0..self.transfers.all.len() {
+            if let Err(error) = self.transfers.all[n].advance(t, dt) {
+                self.transfers.all.iter_mut().for_each(Transfer::retreat);
+                return Err(RunError::Transfer {
+                    step: self.step + 1,
+                    quantity: self.transfers.all[n].quantity.name(),
+                    error,
+                });
+            }
+        }
+        self.expand();
+        self.transfers.price = 0.0;
+        Ok(())
+    }
+
+    /// Back to before the last step.
+    pub(super) fn retreat_transfers(&mut self) {
+        self.transfers.all.iter_mut().for_each(Transfer::retreat);
+        self.expand();
+        self.past_work[1] -= std::mem::take(&mut self.transfers.price);
+    }
+
+    pub(super) fn transfer_columns(&self) -> Vec<Declaration> {
+        let each = self.transfers.all.iter();
+        each.map(|t| t.quantity.declaration()).collect()
+    }
+
+    /// Values of a column, by point id.
+    pub(super) fn transferred(&self, name: &str) -> Option<Vec<f64>> {
+        let found = self
+            .transfers
+            .all
+            .iter()
+            .find(|t| t.quantity.column() == name)?;
+        let place = &self.transfers.place;
+        Some(self.by_id(|i| found.values()[place[i] as usize]))
+    }
+
+    /// Sets a column by point id; false: there is no such, or the number of values is another.
+    pub(super) fn set_transferred(&mut self, name: &str, values: &[f64]) -> bool {
+        let mut each = self.transfers.all.iter_mut();
+        let Some(found) = each.find(|t| t.quantity.column() == name) else {
+            return false;
+        };
+        if values.len() != self.body.points() {
+            return false;
+        }
+        let mut placed = vec![0.0; values.len()];
+        for (value, s) in values.iter().zip(&self.body.slots) {
+            placed[self.transfers.place[*s as usize] as usize] = *value;
+        }
+        found.set_values(&placed);
+        true
+    }
+
+    pub(super) fn transfer_accounts(&self) -> Vec<(Quantity, TransferAccount)> {
+        let each = self.transfers.all.iter();
+        each.map(|t| (t.quantity, t.account())).collect()
+    }
+}

@@ -1,0 +1,36 @@
+//! What a model keeps of what spreads.
+
+use crate::spec::{Quantity, TransferMethod};
+use crate::transfer::Transfer;
+
+/// What is told of a quantity that spreads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransferInfo {
+    pub quantity: Quantity,
+    pub method: TransferMethod,
+    /// Diffusivity `k/(ρ c)` per material (length² / time).
+    pub diffusivity: Vec<f64>,
+    /// The longest explicit step (time).
+    pub stable_step: f64,
+    /// Square of the body's longest extent over the least diffusivity (time).
+    pub spread: f64,
+}
+
+/// The transfers of a model.
+#[derive(Debug, Clone, Default)]
+pub(in crate::run) struct Transfers {
+    pub all: Vec<Transfer>,
+    /// Place of the point in a slot, in the order of slots.
+    pub(super) place: Vec<u32>,
+    /// Directed bonds broken when bonds were looked at last.
+    pub(super) seen: u64,
+    /// What expands: place of the transfer, its reference, and strain per value of each material.
+    pub(super) grown: Vec<(usize, f64, Vec<f64>)>,
+    /// Strain per slot now and before the last step; empty: nothing expands.
+    pub(super) strain: Vec<f64>,
+    pub(super) past: Vec<f64>,
+    /// Work of the last step's expansion.
+    pub(super) price: f64,
+    /// The transfer that deformation heats, by its place, and its strain per value of each material.
+    pub(super) heated: Option<(usize, Vec<f64>)>,
+}

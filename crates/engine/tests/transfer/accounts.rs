@@ -1,0 +1,232 @@
+//! Nothing is lost: contents and what came in, on lattices and clouds, of several materials, through whole and broken bonds.
+
+use crate::sample::*;
+use peridyne::spec::*;
+
+/// A plate of two materials, moved at random or not.
+fn plate(method: TransferMethod, cloud: bool) -> Spec {
+    let mut body = cells(2, 0.1, [0.0; 3], [2.0, 1.0, 0.0]);
+    if let (BodySpec::Lattice { perturb, .. }, true) = (&mut body, cloud) {
+        *perturb = Some(Perturbation {
+            amplitude: 0.02,
+            seed: 3,
+        });
+    }
+    let mut heat = heat(method);
+    heat.materials.push(TransferMaterial {
+        conductivity: 10.0,
+        capacity: 0.3,
+        expansion: 0.0,
+    });
+    heat.initial = vec![("all".into(), text("1 + sin(7*x + 3*y) * cos(11*y)"))];
+    let mut spec = still(2, body, 3, 2e-3, heat);
+    spec.sets = vec![beyond("first", 1.0, -1.0), beyond("second", 1.0, 1.0)];
+    spec.materials = ["first", "second"]
+        .map(|set| MaterialSpec {
+            name: set.into(),
+            set: set.into(),
+            ..spec.materials[0].clone()
+        })
+        .to_vec();
+    if cloud {
+        spec.horizon = Horizon::Length(0.3);
+    }
+    spec
+}
+
+#[test]
+fn a_free_body_keeps_its_heat() {
+    for method in [EXPLICIT, EULER, CRANK_NICOLSON] {
+        for cloud in [false, true] {
+            let mut sim = built(&plate(method, cloud));
+            run(&mut *sim, 50);
+            let account = sim.transfers()[0].1;
+            let off = account.content / account.initial - 1.0;
+            assert!(off.abs() < 1e-13, "{method:?}, cloud {cloud}: {off:e}");
+            let t = temperature(&mut *sim);
+            assert!(t.iter().all(|t| (0.0..2.0).contains(t)));
+        }
+    }
+}
+
+#[test]
+fn what_comes_in_is_what_is_there() {
+    for method in [EXPLICIT, EULER, CRANK_NICOLSON] {
+        for cloud in [false, true] {
+            let mut spec = plate(method, cloud);
+            let law = Exchange::Convection {
+                coefficient: text("3"),
+                ambient: text("4 + sin(20*t)"),
+            };
+            spec.sets.push(beyond("low", 0.2, -1.0));
+            spec.sets.push(beyond("high", 1.8, 1.0));
+            let value = text("5*y");
+            spec.transfers[0].conditions = vec![
+                on("all", TransferKind::Source(text("x*y*t"))),
+                on("high", TransferKind::Flux { value, area: None }),
+                on(
+                    "first",
+                    TransferKind::Exchange {
+                        law,
+                        area: Some(2.0),
+                    },
+                ),
+                on("low", TransferKind::Value(text("1 - t"))),
+            ];
+            let mut sim = built(&spec);
+            run(&mut *sim, 50);
+            let a = sim.transfers()[0].1;
+            let parts = [a.supplied, a.exchanged, a.held];
+            assert!(parts.iter().all(|p| p.abs() > 1e-3), "{a:?}");
+            let off = a.residual() / a.initial;
+            assert!(off.abs() < 2e-13, "{method:?}, cloud {cloud}: {off:e}");
+        }
+    }
+}
+
+/// Heat of a condition is that of its area: a flux over a layer of points, over the area that is said, and as a source.
+#[test]
+fn areas_are_those_of_the_surface() {
+    let supplied = |kind: TransferKind| {
+        let mut spec = plate(EXPLICIT, false);
+        spec.section = 0.25;
+        spec.sets.push(beyond("skin", 1.9, 1.0));
+        spec.transfers[0].conditions = vec![on("skin", kind)];
+        let mut sim = built(&spec);
+        run(&mut *sim, 10);
+        sim.transfers()[0].1.supplied
+    };
+    let value = text("3");
+    let flux = |area| TransferKind::Flux {
+        value: value.clone(),
+        area,
+    };
+    // 20 ms of 3 through an edge of 1 with a thickness of 0.25, and from 0.1 of it
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+    near(supplied(flux(None)), 3.0 * 0.25 * 0.02);
+    near(supplied(flux(Some(0.5))), 3.0 * 0.5 * 0.02);
+    near(
+        supplied(TransferKind::Source(value.clone())),
+        3.0 * 0.1 * 0.25 * 0.02,
+    );
+}
+
+/// Bonds that a crack cut conduct nothing, and the points at its faces are like those of any surface.
+#[test]
+fn broken_bonds_do_not_conduct() {
+    for (kind, law) in [
+        (CrackKind::Broken, SPRINGS),
+        (CrackKind::Absent, SPRINGS),
+        (
+            CrackKind::Absent,
+            LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 1.0)])),
+        ),
+    ] {
+        let mut heat = heat(EXPLICIT);
+        heat.across_broken = true;
+        heat.initial = vec![("all".into(), text("1")), ("second".into(), text("3"))];
+        let mut spec = still(1, cells(1, 0.1, [0.0; 3], [2.0; 3]), 3, 0.1, heat);
+        spec.sets = vec![beyond("second", 1.0, 1.0)];
+        spec.precracks = vec![PrecrackSpec {
+            shape: CrackShape::Point { x: 1.0 },
+            kind,
+        }];
+        spec.materials[0].law = law;
+        let mut sim = built(&spec);
+        let alone = sim.info().transfers[0].stable_step;
+        run(&mut *sim, 10);
+        let t = temperature(&mut *sim);
+        assert!(t.iter().all(|t| *t == 1.0 || *t == 3.0), "{kind:?}: {t:?}");
+        let half = still(1, cells(1, 0.1, [0.0; 3], [1.0; 3]), 3, 0.1, heat_of(&spec));
+        let half = built(&half).info().transfers[0].stable_step;
+        assert!(
+            (half / alone - 1.0).abs() < 1e-12,
+            "{kind:?}: {half} {alone}"
+        );
+    }
+}
+
+/// The same quantity without what is done to sets.
+fn heat_of(spec: &Spec) -> TransferSpec {
+    TransferSpec {
+        initial: vec![],
+        ..spec.transfers[0].clone()
+    }
+}
+
+/// A bond that breaks on the way stops conducting then, unless it is told to go on.
+#[test]
+fn bonds_that_break_stop_conducting() {
+    breaking(false);
+    breaking(true);
+}
+
+fn breaking(across: bool) {
+    let mut heat = heat(EXPLICIT);
+    heat.across_broken = across;
+    heat.initial = vec![("second".into(), text("1"))];
+    let body = cells(1, 1.0, [0.0; 3], [2.0; 3]);
+    let mut spec = still(1, body, 1, 0.01, heat);
+    spec.schedule.stepper = Stepper::Verlet;
+    spec.sets = vec![beyond("second", 1.0, 1.0), beyond("first", 1.0, -1.0)];
+    spec.materials[0].fracture = Some(FractureSpec {
+        criterion: Criterion::Stretch(0.1),
+        alpha: 0.0,
+    });
+    spec.conditions = vec![
+        ConditionSpec {
+            set: "first".into(),
+            kind: ConditionKind::Displacement([Some(text("0")), None, None]),
+        },
+        ConditionSpec {
+            set: "second".into(),
+            kind: ConditionKind::Displacement([Some(text("t")), None, None]),
+        },
+    ];
+    let mut sim = built(&spec);
+    let mut last = 0.0;
+    for _ in 0..30 {
+        let conducts = sim.broken() == 0 || across;
+        run(&mut *sim, 1);
+        let now = temperature(&mut *sim)[0];
+        assert_eq!(now > last, conducts, "step {}", sim.step_number());
+        last = now;
+    }
+    assert_eq!(sim.broken(), 2);
+}
+
+/// A steady state of a part that nothing holds is none, and says so.
+#[test]
+fn what_cannot_be_is_said() {
+    let refused = |change: &dyn Fn(&mut Spec)| {
+        let mut spec = plate(EXPLICIT, false);
+        change(&mut spec);
+        match peridyne::run::build(&spec, peridyne::run::Options::default()) {
+            Ok(_) => panic!("this can be built"),
+            Err(e) => (e.path.clone(), e.to_string()),
+        }
+    };
+    let of = |path: &str, part: &str, found: (String, String)| {
+        assert!(found.0 == path && found.1.contains(part), "{found:?}");
+    };
+    let steady = |spec: &mut Spec| spec.transfers[0].method = STEADY;
+    of("heat", "nothing there holds it", refused(&steady));
+    let auto = |spec: &mut Spec| {
+        spec.transfers[0].method = EULER;
+        spec.schedule.time_step = TimeStep::Auto;
+    };
+    of("schedule.time_step", "must be said", refused(&auto));
+    let nothing = |spec: &mut Spec| spec.transfers.clear();
+    of("schedule.integrator", "nothing spreads", refused(&nothing));
+    let twice = |spec: &mut Spec| spec.transfers.push(spec.transfers[0].clone());
+    of("heat", "heat twice", refused(&twice));
+    let hot = |spec: &mut Spec| spec.transfers[0].initial[0].1 = text("1/(x - x)");
+    of("heat", "the temperature at the start is", refused(&hot));
+    let moved = |spec: &mut Spec| {
+        spec.conditions = vec![ConditionSpec {
+            set: "all".into(),
+            kind: ConditionKind::Velocity([Some(text("1")), None, None]),
+        }];
+    };
+    of("conditions[0]", "points stand still", refused(&moved));
+}

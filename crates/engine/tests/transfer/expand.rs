@@ -1,0 +1,389 @@
+//! Bodies that expand: free ones without stress, held ones with that of Hooke's law, and what breaks.
+
+use crate::sample::*;
+use peridyne::error::BuildErrorKind;
+use peridyne::run::{Options, build};
+use peridyne::spec::*;
+use std::f64::consts::PI;
+
+fn law(name: &str, numbers: &[(&str, f64)]) -> LawSpec {
+    LawSpec::named(name, Parameters::numbers(numbers))
+}
+
+/// Laws that answer to bonds as the ends' temperature makes them.
+fn laws() -> Vec<LawSpec> {
+    let solid = [("young", 1.0), ("poisson", 0.3)];
+    vec![
+        LawSpec::Pmb(PmbStiffness::Young(1.0)),
+        law(
+            "elastic_plastic",
+            &[solid[0], solid[1], ("yield_stress", 1e6)],
+        ),
+        law("correspondence", &solid),
+    ]
+}
+
+/// Expansion of `alpha` per degree, temperatures as told.
+fn told(alpha: f64, value: &str) -> TransferSpec {
+    let mut heat = heat(EXPLICIT);
+    heat.reference = 20.0;
+    heat.materials[0].expansion = alpha;
+    heat.initial = vec![("all".into(), text(value))];
+    heat.conditions = vec![on("all", TransferKind::Value(text(value)))];
+    heat
+}
+
+fn block(d: usize, law: LawSpec, cloud: bool, heat: TransferSpec) -> Spec {
+    let mut body = cells(d, 1.0, [0.0; 3], [6.0, 5.0, 4.0]);
+    if let (BodySpec::Lattice { perturb, .. }, true) = (&mut body, cloud) {
+        *perturb = Some(Perturbation {
+            amplitude: 0.1,
+            seed: 5,
+        });
+    }
+    let mut spec = still(d, body, 2, 0.5, heat);
+    spec.plane = Plane::Strain;
+    spec.horizon = match cloud {
+        true => Horizon::Length(2.3),
+        false => Horizon::Ratio(2),
+    };
+    spec.influence = Influence::Inverse;
+    spec.materials[0].law = law;
+    spec
+}
+
+fn statics(spec: &mut Spec) {
+    spec.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Newton,
+        tolerance: 1e-12,
+        ..Statics::default()
+    });
+}
+
+/// As one homogeneous strain of all points, in equilibrium with nothing.
+#[test]
+fn a_free_body_expands_without_stress() {
+    for d in 2..=3 {
+        for law in laws() {
+            for cloud in [false, true] {
+                let spec = block(d, law.clone(), cloud, told(1e-3, "20 + 60"));
+                let mut sim = built(&spec);
+                let grown: f64 = 60.0 * 1e-3;
+                let x = sim.snapshot(&[], false).reference;
+                let far: Vec<_> = x.iter().map(|x| x.map(|c| grown * c)).collect();
+                sim.set_displacements(&far);
+                sim.start(true);
+                let energy = sim.ledger().unwrap().strain;
+                assert!(energy.abs() < 1e-26, "{d}-D {law:?} {cloud}: {energy:e}");
+                let f = sim.snapshot(&["force_density"], false);
+                let f = f.vectors("force_density").unwrap();
+                let most = f.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+                assert!(most < 1e-13, "{d}-D {law:?} {cloud}: {most:e}");
+            }
+        }
+    }
+}
+
+/// Newton's method finds that state, from rest.
+#[test]
+fn statics_finds_the_free_expansion() {
+    for law in laws() {
+        let mut spec = block(2, law.clone(), false, told(1e-3, "20 + 60*t"));
+        statics(&mut spec);
+        spec.sets = ["x", "y"]
+            .map(|axis| SetSpec {
+                name: axis.into(),
+                members: Members::Where(text(&format!("{axis} < 1"))),
+            })
+            .to_vec();
+        spec.conditions = (0..2)
+            .map(|a| {
+                let mut value = [const { None }; 3];
+                // the lowest rows glide where the expansion about the origin puts them
+                value[a] = Some(text("0.5*60e-3*t"));
+                ConditionSpec {
+                    set: ["x", "y"][a].into(),
+                    kind: ConditionKind::Displacement(value),
+                }
+            })
+            .collect();
+        let mut sim = built(&spec);
+        run(&mut *sim, 2);
+        let snapshot = sim.snapshot(&[], false);
+        let each = snapshot.reference.iter().zip(snapshot.displacement());
+        let off = each.map(|(x, u)| {
+            (0..2)
+                .map(|a| (u[a] - 0.06 * x[a]).abs())
+                .fold(0.0, f64::max)
+        });
+        let off = off.fold(0.0, f64::max);
+        assert!(off < 1e-10, "{law:?}: {off:e}");
+        let energy = sim.ledger().unwrap().strain;
+        assert!(energy.abs() < 1e-18, "{law:?}: {energy:e}");
+    }
+}
+
+/// A periodic bar cannot grow: its strain is `−ε/(1 + ε)` of what it would be, its energy `½ E` times the square of that and its
+/// stress `−E ε/(1 + ε)²`, which is −E ε for what metals do.
+#[test]
+fn a_held_bar_is_under_pressure() {
+    for grown in [1e-5, 0.02] {
+        let heat = told(grown / 60.0, "80");
+        let body = cells(1, 0.5, [0.0; 3], [10.0; 3]);
+        let mut spec = still(1, body, 3, 1.0, heat);
+        spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(7.0));
+        spec.section = 0.3;
+        spec.periodic[0] = Some(10.0);
+        let mut sim = built(&spec);
+        let volume = sim.info().volume;
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
+        let strain = grown / (1.0 + grown);
+        near(
+            sim.ledger().unwrap().strain,
+            volume * 0.5 * 7.0 * strain * strain,
+        );
+        near(
+            sim.virial()[0] / volume,
+            7.0 * grown / (1.0 + grown).powi(2),
+        );
+    }
+}
+
+/// Tangents are slopes of the forces, of bodies that are warm in places.
+#[test]
+fn tangents_know_the_temperature() {
+    for law in laws() {
+        for cloud in [false, true] {
+            let spec = block(
+                2,
+                law.clone(),
+                cloud,
+                told(1e-3, "20 + 30*sin(x) + 20*cos(y)"),
+            );
+            let mut sim = built(&spec);
+            let wave = |scale: f64, n: usize, a: usize| scale * ((3 * n + 2 * a) as f64).sin();
+            let of = |scale: f64, more: f64| -> Vec<[f64; 3]> {
+                let at = |n: usize, a: usize| wave(scale, n, a) + wave(more, 5 * n + 1, a);
+                (0..30).map(|n| [at(n, 0), at(n, 1), 0.0]).collect()
+            };
+            sim.set_displacements(&of(0.02, 0.0));
+            let AnyLinearBody::Two(body) = sim.linear_body() else {
+                panic!("two dimensions")
+            };
+            let small = 1e-6;
+            let [after, before] = [small, -small].map(|s| sim.forces_under(&of(0.02, s)));
+            let moved = of(0.0, small);
+            let (mut off, mut size) = (0.0f64, 0.0f64);
+            for i in 0..30 {
+                let (partners, blocks) = body.row(i);
+                for a in 0..2 {
+                    let slope = 0.5 * (after[i][a] - before[i][a]);
+                    let of_bond = |(j, c): (&u32, &[[f64; 2]; 2])| -> f64 {
+                        let j = *j as usize;
+                        (0..2).map(|b| c[a][b] * (moved[j][b] - moved[i][b])).sum()
+                    };
+                    let sum: f64 = partners.iter().zip(blocks).map(of_bond).sum();
+                    off = off.max((slope - sum).abs());
+                    size = size.max(slope.abs());
+                }
+            }
+            assert!(off < 1e-7 * size, "{law:?} {cloud}: {off:e} of {size:e}");
+        }
+    }
+}
+
+/// A warm end shakes a bar: the balance of energy, with the work of heating, closes with the square of the step.
+#[test]
+fn heating_is_work() {
+    let missing = |parts: u64| {
+        let mut heat = heat(EXPLICIT);
+        heat.materials[0].expansion = 0.01;
+        heat.conditions = vec![on("hot", TransferKind::Source(text("sin(t)^2")))];
+        let mut spec = still(
+            1,
+            cells(1, 0.5, [0.0; 3], [10.0; 3]),
+            3,
+            0.08 / parts as f64,
+            heat,
+        );
+        spec.schedule.stepper = Stepper::Verlet;
+        spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(1.0));
+        spec.sets = vec![beyond("hot", 2.0, -1.0)];
+        let mut sim = built(&spec);
+        run(&mut *sim, 100 * parts);
+        let ledger = sim.ledger().unwrap();
+        assert!(ledger.kinetic > 1e-6 && ledger.strain > 1e-6, "{ledger:?}");
+        assert!(ledger.work_conditions > 1e-5, "{ledger:?}");
+        (ledger.residual() / ledger.work_conditions).abs()
+    };
+    let errors = [1, 2, 4].map(missing);
+    let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();
+    assert!(orders.iter().all(|o| *o > 1.8), "{errors:?} {orders:?}");
+}
+
+/// What is stretched cools: a bar that nothing heats follows `dT = −T α dσ/(ρ c)`, so `T = T0 exp(−α E ε/(ρ c))` (Thomson 1857), up to
+/// products of strains.
+#[test]
+fn what_is_stretched_cools() {
+    let (alpha, young, stretch) = (1e-4, 40.0, 1e-3);
+    let middle = |parts: u64| {
+        let mut heat = heat(EXPLICIT);
+        heat.reference = 300.0;
+        heat.deformation = true;
+        heat.materials[0].expansion = alpha;
+        heat.materials[0].conductivity = 1e-9;
+        let body = cells(1, 1.0, [0.0; 3], [40.0; 3]);
+        let mut spec = still(1, body, 3, 0.1 / parts as f64, heat);
+        spec.schedule.stepper = Stepper::Verlet;
+        spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(young));
+        let pulled = format!("{stretch} * x * min(1, t)");
+        spec.conditions = vec![ConditionSpec {
+            set: "all".into(),
+            kind: ConditionKind::Displacement([Some(text(&pulled)), None, None]),
+        }];
+        let mut sim = built(&spec);
+        run(&mut *sim, 10 * parts);
+        let account = sim.transfers()[0].1;
+        assert!(account.made < 0.0 && account.residual().abs() < 1e-12 * account.initial);
+        temperature(&mut *sim)[20]
+    };
+    let exact = 300.0 * f64::exp(-alpha * young * stretch);
+    let cooled = 300.0 - exact;
+    let found = middle(1);
+    assert!(
+        cooled > 1e-3 && ((found - exact) / cooled).abs() < 2e-3,
+        "{found} {exact}"
+    );
+    assert!(((middle(4) - exact) / cooled).abs() < 2e-3);
+}
+
+/// Two points that are held while they cool: their bond breaks when what is left of its length at rest has been stretched by s00.
+#[test]
+fn cold_bonds_break() {
+    let mut spec = still(
+        1,
+        cells(1, 1.0, [0.0; 3], [2.0; 3]),
+        1,
+        1e-3,
+        told(0.01, "20 - 10*t"),
+    );
+    spec.schedule.stepper = Stepper::Verlet;
+    spec.materials[0].fracture = Some(FractureSpec {
+        criterion: Criterion::Stretch(0.05),
+        alpha: 0.0,
+    });
+    spec.conditions = vec![ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::Displacement([Some(text("0")), None, None]),
+    }];
+    let mut sim = built(&spec);
+    while sim.broken() == 0 && sim.time() < 1.0 {
+        run(&mut *sim, 1);
+    }
+    // 1/(1 − 0.1 t) = 1.05
+    let exact = (1.0 - 1.0 / 1.05) / 0.1;
+    assert!(
+        (sim.time() - exact).abs() < 1.1e-3,
+        "{} {exact}",
+        sim.time()
+    );
+}
+
+/// A bar that soaks up a species from both ends swells by what it soaked up: `M/M∞ = 1 − Σ 8/k² exp(−k² D t/L²)`, k = (2n+1)π (Crank 1975,
+/// (4.18)). Beyond the ends the series of its concentration (4.17) goes on.
+#[test]
+fn a_bar_swells_by_what_it_soaks_up() {
+    let wave = |n: u32| f64::from(2 * n + 1) * PI;
+    let uptake = |t: f64| {
+        let term = |n: u32| 8.0 / wave(n).powi(2) * (-wave(n).powi(2) * t).exp();
+        1.0 - (0..50).map(term).sum::<f64>()
+    };
+    let (swelling, soaked, [start, end]) = (0.03, 2.0, [0.02, 0.1]);
+    let series = (0..8).map(|n| {
+        let k = wave(n);
+        format!(
+            " - {:e}*sin({k:e}*x)*exp(-{:e}*(t + {start}))",
+            4.0 * soaked / k,
+            k * k
+        )
+    });
+    let series = format!("{soaked}{}", series.collect::<String>());
+    let error = |cells_of: usize| {
+        let h = 1.0 / cells_of as f64;
+        let mut species = heat(CRANK_NICOLSON);
+        species.quantity = Quantity::Species;
+        species.materials[0].expansion = swelling;
+        species.initial = vec![("all".into(), text(&series))];
+        species.conditions = vec![on("beyond", TransferKind::Value(text(&series)))];
+        // points on the ends themselves, and two horizons beyond them
+        let body = cells(1, h, [-2.5 * h; 3], [1.0 + 2.5 * h; 3]);
+        let mut spec = still(1, body, 1, (end - start) / 400.0, species);
+        if let BodySpec::Lattice { origin, .. } = &mut spec.body {
+            *origin = [0.0; 3];
+        }
+        spec.materials[0].law = LawSpec::Pmb(PmbStiffness::Young(1.0));
+        statics(&mut spec);
+        spec.sets = vec![
+            SetSpec {
+                name: "beyond".into(),
+                members: Members::Where(text(&format!("abs(x - 0.5) > {}", 0.5 - 0.5 * h))),
+            },
+            SetSpec {
+                name: "left".into(),
+                members: Members::Where(text(&format!("abs(x) < {}", 0.5 * h))),
+            },
+        ];
+        spec.conditions = vec![ConditionSpec {
+            set: "left".into(),
+            kind: ConditionKind::Displacement([Some(text("0")), None, None]),
+        }];
+        let mut sim = built(&spec);
+        run(&mut *sim, 400);
+        let snapshot = sim.snapshot(&[], false);
+        let place = snapshot
+            .reference
+            .iter()
+            .position(|x| (x[0] - 1.0).abs() < 0.1 * h);
+        let longer = snapshot.displacement()[place.unwrap()][0];
+        let energy = sim.ledger().unwrap().strain;
+        assert!(
+            energy.abs() < 1e-15,
+            "a chain is without stress: {energy:e}"
+        );
+        (longer / (swelling * soaked) - uptake(end)).abs()
+    };
+    let errors = [20, 40, 80].map(error);
+    let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();
+    assert!(
+        orders.iter().all(|o| (o - 2.0).abs() < 0.2),
+        "{errors:?} {orders:?}"
+    );
+    assert!(errors[2] < 1e-4, "{errors:?}");
+}
+
+/// What cannot expand says so.
+#[test]
+fn laws_without_temperature_refuse() {
+    let refused = |law: LawSpec, change: &dyn Fn(&mut Spec)| {
+        let mut spec = block(2, law, false, told(1e-3, "30"));
+        change(&mut spec);
+        build(&spec, Options::default()).map(|_| ()).unwrap_err()
+    };
+    let lps = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.3,
+    });
+    let error = refused(lps, &|_| {});
+    assert_eq!(error.kind, BuildErrorKind::Unsupported);
+    assert!(
+        error.path == "heat" && error.message.contains("know no expansion"),
+        "{error:?}"
+    );
+    assert!(error.help.unwrap().contains("elastic_plastic"));
+    let pmb = LawSpec::Pmb(PmbStiffness::Young(1.0));
+    let error = refused(pmb, &|spec| {
+        spec.schedule.stepper = Stepper::Statics(Statics::default());
+        spec.schedule.time_step = TimeStep::Fixed(1.0);
+    });
+    assert!(error.path == "statics.method" && error.help.unwrap().contains("newton"));
+}

@@ -1,0 +1,8 @@
+//! Heat and species through bonds, against closed forms.
+
+mod accounts;
+mod bars;
+mod expand;
+mod modes;
+mod repeat;
+mod sample;

@@ -1,0 +1,421 @@
+//! Decks of Peridigm (YAML, XML) and PeriLab (YAML) as decks of peridyne: what has a counterpart is written, everything else is named
+//! with its line.
+//!
+//! Points, blocks and node sets become an Exodus mesh beside the deck, whatever they came from: what the numbers of a node set mean
+//! depends on the program. Numbers stay as they are: such decks have no units, and neither has the new one (`units = "none"`).
+
+mod conditions;
+mod laws;
+mod points;
+mod solver;
+mod syntax;
+mod tree;
+
+use std::path::{Path, PathBuf};
+
+use crate::read::ReadError;
+use crate::write::WriteError;
+use crate::write::exodus::write_mesh;
+use points::Points;
+pub use tree::Unmapped;
+use tree::{Entry, Value};
+
+/// A deck that was converted.
+#[derive(Debug)]
+pub struct Converted {
+    /// The new deck.
+    pub text: String,
+    /// What was not mapped, in the order of the file.
+    pub unmapped: Vec<Unmapped>,
+    /// What was mapped and is not quite the same.
+    pub remarks: Vec<String>,
+    points: Points,
+    title: String,
+}
+
+impl Converted {
+    /// Writes the mesh that the deck names.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn write_mesh(&self, path: &Path) -> Result<(), WriteError> {
+        write_mesh(
+            path,
+            &self.points.layout(&self.title),
+            &self.points.position,
+        )
+    }
+
+    pub fn points(&self) -> usize {
+        self.points.position.len()
+    }
+}
+
+/// A text of TOML.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.into()).to_string()
+}
+
+/// A key of TOML.
+fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    match !name.is_empty() && name.chars().all(bare) {
+        true => name.into(),
+        false => quoted(name),
+    }
+}
+
+/// Which program a deck is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Program {
+    Peridigm,
+    PeriLab,
+}
+
+/// A deck at `path` as one that will lie beside its mesh `mesh`.
+///
+/// # Errors
+/// The deck or its mesh cannot be read, is no deck of these programs, or has nothing a body could be made of.
+pub fn convert(path: &Path, mesh: &str) -> Result<Converted, ReadError> {
+    let whole = |message: String| ReadError::file(path, message);
+    let (text, name) = crate::read::text_of(path)?;
+    let root = syntax::tree(&text).map_err(|(line, message)| ReadError {
+        file: name.clone(),
+        line: Some(line),
+        message,
+    })?;
+    let program = match root.key.as_str() {
+        "PeriLab" => Program::PeriLab,
+        _ => Program::Peridigm,
+    };
+    let discretization = root.list("Discretization").ok_or_else(|| {
+        whole("it has no list Discretization: it is no deck of Peridigm or PeriLab".into())
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let points = points::points(discretization, folder).map_err(whole)?;
+    let title = path
+        .file_stem()
+        .map_or("deck".into(), |s| s.to_string_lossy());
+    let mut converter = Converter {
+        program,
+        root: &root,
+        folder: folder.to_path_buf(),
+        remarks: vec![],
+        points,
+    };
+    let body = converter.deck(&title, mesh).map_err(whole)?;
+    let unmapped = root.unmapped();
+    let mut text = format!(
+        "# {} of {}, by peridyne convert\n",
+        path.file_name()
+            .map_or(title.clone(), |n| n.to_string_lossy()),
+        match program {
+            Program::Peridigm => "Peridigm",
+            Program::PeriLab => "PeriLab",
+        }
+    );
+    if !unmapped.is_empty() {
+        text += "# Not mapped:\n";
+    }
+    for u in &unmapped {
+        text += &format!(
+            "#   line {}: {}: {}\n",
+            u.line,
+            one_line(&u.entry),
+            one_line(&u.why)
+        );
+    }
+    for remark in &converter.remarks {
+        text += &format!("# Note: {}\n", one_line(remark));
+    }
+    Ok(Converted {
+        text: text + &body,
+        unmapped,
+        remarks: converter.remarks,
+        title: title.into_owned(),
+        points: converter.points,
+    })
+}
+
+/// For comments: a line break would end them.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+struct Converter<'a> {
+    program: Program,
+    root: &'a Entry,
+    folder: PathBuf,
+    points: Points,
+    remarks: Vec<String>,
+}
+
+/// The influence function; there 1, or an expression of the length zeta.
+fn influence(discretization: &Entry) -> &'static str {
+    let given = discretization.text("Influence Function").unwrap_or("One");
+    match &*given.to_lowercase().replace(' ', "") {
+        "one" | "1" | "1.0" => "constant",
+        "1/zeta" | "1.0/zeta" => "inverse",
+        _ => {
+            discretization.refuse_entry(
+                "Influence Function",
+                "it is none of constant, inverse, conical, gaussian, cubic_spline as they are here: constant in place of it",
+            );
+            "constant"
+        }
+    }
+}
+
+/// A block of the deck: its set, and the list that describes it.
+struct Block<'a> {
+    name: String,
+    entry: &'a Entry,
+}
+
+impl<'a> Converter<'a> {
+    fn deck(&mut self, title: &str, mesh: &str) -> Result<String, String> {
+        self.root.idle(&["Verbose"]);
+        let root = self.root;
+        let discretization = root.list("Discretization");
+        let given = root.list("Boundary Conditions");
+        let sets = discretization.and_then(|d| d.list("Node Sets"));
+        for list in given.into_iter().chain(sets) {
+            for entry in list.all() {
+                if let (Value::Text(_), Some(text)) = (&entry.value, entry.own()) {
+                    self.points.add_set(&entry.key, text, &self.folder)?;
+                }
+            }
+        }
+        self.remarks.append(&mut self.points.notes);
+        if let Some(d) = discretization {
+            d.idle(&["Distribution Type", "Store Exodus Mesh"]);
+            d.refuse_entry(
+                "Omit Bonds Between Blocks",
+                "give blocks bodies of their own: [[body]]",
+            );
+            d.refuse_entry("NeighborhoodType", "families are balls");
+        }
+        let grid = discretization.is_some_and(|d| d.list("TensorProduct3DMeshGenerator").is_some());
+        let ball = discretization.and_then(|d| d.text("NeighborhoodType"));
+        let ball = ball.is_some_and(|t| t.eq_ignore_ascii_case("Spherical"));
+        if grid && !ball {
+            self.remarks.push("on a grid of Peridigm without NeighborhoodType Spherical the family is a box of cells; here it is a ball of the horizon".into());
+        }
+        let blocks = self.blocks()?;
+        let horizon = self.horizon(&blocks)?;
+        let solver = solver::solver(root, self.program, &mut self.remarks)?;
+        let (materials, plane, breaks) = self.materials(&blocks, solver.damage);
+        if materials.is_empty() {
+            let mut whys: Vec<String> = root.unmapped().into_iter().map(|u| u.why).collect();
+            // what nobody asked for yet says nothing
+            whys.retain(|why| !why.contains("counterpart"));
+            whys.dedup();
+            return Err(format!(
+                "no block has a material that can be mapped: {}",
+                whys.join("; ")
+            ));
+        }
+        let dimension = match plane {
+            Some(_) => 2,
+            None => self.points.dimension,
+        };
+        let mut out = format!("title = {}\nunits = \"none\"\n", quoted(title));
+        if dimension == 2 {
+            out += "dimension = 2\n";
+            out += &format!("plane = \"{}\"\n", plane.unwrap_or("strain"));
+        }
+        out += &format!("horizon = {horizon:?}\n");
+        let influence = discretization.map_or("constant", influence);
+        out += &format!("influence = \"{influence}\"\n");
+        out += "volume_scaling = false\ncalibration = \"continuum\"\n";
+        if breaks {
+            out += "contact = false\n";
+        }
+        out += &format!("body = {{ file = {} }}\n", quoted(mesh));
+        out += &materials;
+        if let Some(filters) = discretization.and_then(|d| d.list("Bond Filters")) {
+            out += &conditions::filters(filters, dimension);
+        }
+        let mut names: Vec<String> = self.points.names.values().cloned().collect();
+        let sets = self
+            .points
+            .sets
+            .iter()
+            .filter(|(_, points)| !points.is_empty());
+        names.extend(sets.map(|(name, _)| name.clone()));
+        if let Some(given) = given {
+            out += &conditions::conditions(given, &names, solver.clock, dimension);
+        }
+        let mut labels = vec![];
+        if let Some(all) = root.list("Compute Class Parameters") {
+            let (probes, named) = conditions::probes(all, &names, &mut self.remarks);
+            out += &probes;
+            labels = named;
+        }
+        out += &solver.text;
+        out += &solver::output(root, &solver, &labels, &mut self.remarks);
+        if let Some(contact) = root.list("Contact") {
+            contact.refuse("contact acts between bodies and where bonds broke, with a stiffness of its own: `contact`, `[[body]]`");
+        }
+        Ok(out)
+    }
+
+    /// Blocks of the mesh with their lists.
+    fn blocks(&self) -> Result<Vec<Block<'a>>, String> {
+        let lists = self.root.list("Blocks").ok_or("it has no list Blocks")?;
+        let mut blocks: Vec<Block> = vec![];
+        let mut default = None;
+        for entry in lists.lists() {
+            match self.program {
+                Program::Peridigm => {
+                    for name in entry.text("Block Names").unwrap_or("").split_whitespace() {
+                        match name.eq_ignore_ascii_case("default") {
+                            true => default = Some(entry),
+                            false => blocks.push(Block {
+                                name: name.into(),
+                                entry,
+                            }),
+                        }
+                    }
+                }
+                Program::PeriLab => {
+                    let id = entry.number("Block ID").map(|id| id as i32);
+                    let named = id.and_then(|id| self.points.names.get(&id));
+                    blocks.push(Block {
+                        name: named.unwrap_or(&entry.key).clone(),
+                        entry,
+                    });
+                }
+            }
+        }
+        if let Some(entry) = default {
+            for name in self.points.names.values() {
+                if blocks.iter().all(|b| b.name != *name) {
+                    blocks.push(Block {
+                        name: name.clone(),
+                        entry,
+                    });
+                }
+            }
+        }
+        blocks.retain(|b| {
+            let there = self.points.names.values().any(|n| *n == b.name);
+            if !there {
+                b.entry.refuse(&format!("the mesh has no block {}", b.name));
+            }
+            there
+        });
+        let without = self.points.names.values();
+        let without: Vec<&str> = { without.map(String::as_str) }
+            .filter(|n| blocks.iter().all(|b| b.name != **n))
+            .collect();
+        match without.is_empty() {
+            true => Ok(blocks),
+            false => Err(format!(
+                "blocks {} of the mesh are in no list of Blocks",
+                without.join(", ")
+            )),
+        }
+    }
+
+    /// The horizon of all blocks.
+    fn horizon(&mut self, blocks: &[Block]) -> Result<f64, String> {
+        let given = self
+            .root
+            .list("Discretization")
+            .and_then(|d| d.number("Horizon"));
+        let mut horizon = given;
+        for block in blocks {
+            let Some(own) = block.entry.number("Horizon") else {
+                continue;
+            };
+            match horizon {
+                None => horizon = Some(own),
+                Some(first) if first == own => {}
+                Some(first) => block.entry.refuse_entry(
+                    "Horizon",
+                    &format!("a body has one horizon, that of the first block, {first:?}: give blocks bodies of their own, [[body]]"),
+                ),
+            }
+        }
+        horizon.ok_or_else(|| "no block has a Horizon that is a number".into())
+    }
+
+    /// Tables of the materials of all blocks, the plane they are in, and whether any can break.
+    fn materials(
+        &mut self,
+        blocks: &[Block],
+        damage: bool,
+    ) -> (String, Option<&'static str>, bool) {
+        let models = self.root.list("Models");
+        let root = self.root;
+        let named = |list: &str| {
+            models
+                .and_then(|m| m.list(list))
+                .or_else(|| root.list(list))
+        };
+        let [materials, fractures] = match self.program {
+            Program::Peridigm => ["Materials", "Damage Models"].map(named),
+            Program::PeriLab => ["Material Models", "Damage Models"].map(named),
+        };
+        let key_of = match self.program {
+            Program::Peridigm => "Material",
+            Program::PeriLab => "Material Model",
+        };
+        let (mut out, mut plane, mut breaks) = (String::new(), None, false);
+        for block in blocks {
+            let name = block.entry.text(key_of).unwrap_or("");
+            let Some(material) = materials.and_then(|all| all.list(name)) else {
+                block
+                    .entry
+                    .refuse(&format!("there is no material \"{name}\""));
+                continue;
+            };
+            let Some(law) = laws::law(material) else {
+                continue;
+            };
+            plane = plane.or(law.plane);
+            let density = material
+                .number("Density")
+                .or_else(|| block.entry.number("Density"));
+            let Some(density) = density else {
+                material.refuse("it has no Density");
+                continue;
+            };
+            out += &match blocks.len() {
+                1 => "\n[material]\n".to_string(),
+                _ => format!(
+                    "\n[material.{}]\nset = {}\n",
+                    key(&block.name),
+                    quoted(&block.name)
+                ),
+            };
+            out += &format!("density = {density:?}\nlaw = {}\n", law.text);
+            let Some(model) = block.entry.text("Damage Model") else {
+                continue;
+            };
+            let list = fractures.and_then(|all| all.list(model));
+            match list {
+                Some(list) if !damage => {
+                    list.refuse("the solver has no Damage Models: true, so nothing breaks");
+                }
+                Some(list) => {
+                    if let Some(fracture) = laws::fracture(list, &mut self.remarks) {
+                        breaks = true;
+                        out += &format!("fracture = {fracture}\n");
+                    }
+                }
+                None => block
+                    .entry
+                    .refuse_entry("Damage Model", "there is no such damage model"),
+            }
+        }
+        // one remark for a model of several blocks
+        let mut seen = std::collections::BTreeSet::new();
+        self.remarks.retain(|r| seen.insert(r.clone()));
+        (out, plane, breaks)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,98 @@
+//! Contact between points without a bond, and its friction.
+
+use super::bodies;
+use super::context::{Context, Result};
+use crate::deck::document::{Document, Friction};
+use crate::deck::units::Dim;
+use crate::deck::value::{At, Number, Or, Written};
+use peridyne::spec::{AtRest, ContactSpec, ContactStiffness, FrictionSpec, MaterialSpec};
+
+pub fn contact(
+    context: &Context,
+    document: &Document,
+    materials: &[MaterialSpec],
+) -> Result<Option<ContactSpec>> {
+    let standard = ContactSpec {
+        bonded: 0.9,
+        free: 1.35,
+        stiffness: ContactStiffness::Laws,
+        friction: None,
+    };
+    match &document.contact {
+        Some(Or::Bare(false)) => Ok(None),
+        Some(Or::Bare(true)) => Ok(Some(standard)),
+        None => {
+            let touches = bodies::several(document);
+            let breaks = materials.iter().any(|m| m.fracture.is_some());
+            Ok((touches || breaks).then_some(standard))
+        }
+        Some(Or::Table(c)) => {
+            let get = |n: &Option<_>, or: f64, what: &str| {
+                n.as_ref()
+                    .map_or(Ok(or), |n| context.positive(n, Dim::NUMBER, what))
+            };
+            Ok(Some(ContactSpec {
+                bonded: get(
+                    &c.bonded,
+                    standard.bonded,
+                    "the fraction of the reference distance",
+                )?,
+                free: get(&c.free, standard.free, "the range")?,
+                stiffness: match &c.stiffness {
+                    Some(n) => ContactStiffness::Same(context.positive(
+                        n,
+                        Dim::CONTACT_STIFFNESS,
+                        "the stiffness",
+                    )?),
+                    None => ContactStiffness::Laws,
+                },
+                friction: c
+                    .friction
+                    .as_ref()
+                    .map(|f| friction(context, f))
+                    .transpose()?,
+            }))
+        }
+    }
+}
+
+fn friction(context: &Context, written: &At<Or<Written, Friction>>) -> Result<FrictionSpec> {
+    let coefficient = |n: &Number| {
+        let expression = context.expression(n, Dim::NUMBER)?;
+        match expression.as_constant() {
+            Some(_) => context.positive(n, Dim::NUMBER, "the friction coefficient")?,
+            None => 0.0,
+        };
+        Ok(expression)
+    };
+    match &written.value {
+        Or::Bare(value) => Ok(FrictionSpec {
+            kinetic: coefficient(&At {
+                value: value.clone(),
+                span: written.span.clone(),
+            })?,
+            at_rest: None,
+        }),
+        Or::Table(f) => {
+            let at_rest = match (&f.at_rest, &f.speed) {
+                (Some(n), Some(v)) => Some(AtRest {
+                    coefficient: coefficient(n)?,
+                    speed: context.positive(
+                        v,
+                        Dim::VELOCITY,
+                        "the speed over which friction falls",
+                    )?,
+                }),
+                (None, None) => None,
+                (Some(n), None) | (None, Some(n)) => {
+                    let message = "static and speed go together: at the speed the difference from kinetic is 1/e of that at rest";
+                    return Err(context.error(&n.span, message));
+                }
+            };
+            Ok(FrictionSpec {
+                kinetic: coefficient(&f.kinetic)?,
+                at_rest,
+            })
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! A row of the history: what is measured of the whole body at one time.
+
+use peridyne::observe::Ledger;
+use peridyne::run::Simulation;
+
+use super::Plan;
+use crate::deck::UnitSystem;
+use crate::write::history::{
+    Column, ledger_columns, ledger_values, transfer_columns, transfer_values,
+};
+
+/// Columns of a row, the first is time.
+pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
+    let mut columns = vec![Column::new("time", &plan.time_unit)];
+    columns.extend(ledger_columns(&plan.energy_unit));
+    columns.push(Column::new("broken_directed_bonds", ""));
+    if sim.solved().is_some() {
+        columns.push(Column::new("iterations", ""));
+        columns.push(Column::new("solver_residual", ""));
+    }
+    for (quantity, _) in sim.transfers() {
+        columns.extend(transfer_columns(quantity, &plan.energy_unit));
+    }
+    if let Some(atoms) = &plan.atoms {
+        columns.push(Column::new("temperature", &atoms.temperature_unit));
+        columns.push(Column::new("pressure", &atoms.pressure_unit));
+    }
+    columns.extend(sim.probe_columns().into_iter().map(|c| {
+        let unit = match (c.rooted, c.moment, plan.units) {
+            (true, _, units) => units.root_unit(c.dimension),
+            (false, true, UnitSystem::Si) => "N m".into(),
+            (false, _, units) => units.unit(c.dimension),
+        };
+        Column::new(c.name, &unit)
+    }));
+    columns
+}
+
+/// Their values now.
+pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec<f64> {
+    let mut row = vec![sim.time()];
+    row.extend(ledger_values(ledger));
+    row.push(sim.broken() as f64);
+    if let Some(solved) = sim.solved() {
+        row.extend([solved.iterations as f64, solved.residual]);
+    }
+    for (_, account) in sim.transfers() {
+        row.extend(transfer_values(&account));
+    }
+    if let Some(atoms) = &plan.atoms {
+        row.extend(atoms.thermo(sim, ledger.kinetic));
+    }
+    row.extend(sim.measure());
+    row
+}

@@ -1,0 +1,302 @@
+//! Exodus II meshes, in netCDF classic, 64-bit offset or CDF-5: blocks are groups of cells, node sets, side sets and element sets
+//! are sets.
+//!
+//! Format: Schoof and Yarberry, "EXODUS II: a finite element data model", SAND92-2137; names of variables as the library writes
+//! them. A block of SPHERE elements is points with volumes, the second attribute as Peridigm and Sierra have it. A side of an element
+//! is the element. Results that a file has besides are not read.
+
+use super::cell::{Cell, Kind};
+use super::lines::Lines;
+use super::mesh::{Group, Mesh};
+use super::{Points, ReadError, Sourced, whole};
+use crate::netcdf::Reader;
+
+/// What an element type makes.
+enum Shape {
+    Cell(Kind),
+    /// A shell, which makes no body.
+    Surface(Kind),
+}
+
+/// Element types by their letters, and cells by how many nodes they have at least; corners come first in all of them.
+fn shape(name: &str, nodes: u64) -> Option<Shape> {
+    let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let flat = match nodes {
+        3 | 6 | 7 => Kind::Triangle,
+        4 | 5 | 8 | 9 => Kind::Quad,
+        _ => Kind::Vertex,
+    };
+    let kind = match letters.to_uppercase().as_str() {
+        "SPHERE" | "CIRCLE" => Kind::Sphere,
+        "TRUSS" | "BAR" | "BEAM" | "EDGE" | "ROD" => Kind::Line,
+        "TRI" | "TRIANGLE" => Kind::Triangle,
+        "QUAD" => Kind::Quad,
+        "SHELL" | "TRISHELL" if flat != Kind::Vertex => return Some(Shape::Surface(flat)),
+        "TET" | "TETRA" => Kind::Tetra,
+        "PYRAMID" | "PYRA" => Kind::Pyramid,
+        "WEDGE" => Kind::Prism,
+        "HEX" | "HEXA" => Kind::Hexa,
+        _ => return None,
+    };
+    (nodes >= kind.corners() as u64).then_some(Shape::Cell(kind))
+}
+
+const KNOWN: &str =
+    "SPHERE, TRI, QUAD, TETRA, PYRAMID, WEDGE, HEX, with TRUSS, BEAM and SHELL beside them";
+
+/// Points of an Exodus II mesh.
+///
+/// # Errors
+/// The file is cut short, of netCDF-4, no mesh, has element types that make no points, cells without volume, or nodes that do not
+/// exist.
+pub fn parse_exodus(bytes: &[u8], name: &str) -> Result<Points, ReadError> {
+    whole(read(bytes, name, false)?, name)
+}
+
+/// The same where a set of nodes holds every cell that has one of them, as in Peridigm.
+///
+/// # Errors
+/// Those of [`parse_exodus`].
+pub fn parse_touching(bytes: &[u8], name: &str) -> Result<Points, ReadError> {
+    whole(read(bytes, name, true)?, name)
+}
+
+fn read(bytes: &[u8], name: &str, touching: bool) -> Result<Sourced, ReadError> {
+    let lines = Lines::binary(name);
+    let error = |message: String| lines.error(message);
+    let reader = Reader::new(bytes).map_err(error)?;
+    let mut file = Exodus {
+        reader,
+        mesh: Mesh {
+            distinct: true,
+            touching,
+            ..Mesh::default()
+        },
+        shells: None,
+    };
+    file.nodes().map_err(error)?;
+    file.blocks().map_err(error)?;
+    file.sets().map_err(error)?;
+    let body = file.mesh.cells.iter().map(|c| c.kind.dimension()).max();
+    if let (Some(block), Some(2)) = (&file.shells, body) {
+        return Err(error(format!(
+            "block {block} has shells: a body is made of solid, plane or SPHERE elements"
+        )));
+    }
+    file.mesh.points(&lines)
+}
+
+struct Exodus<'a> {
+    reader: Reader<'a>,
+    mesh: Mesh,
+    /// A block of shells.
+    shells: Option<String>,
+}
+
+/// An entity of a kind (a block, a set): its number in the names of variables, its id and its name.
+struct Entity {
+    number: usize,
+    id: i64,
+    name: String,
+}
+
+impl Exodus<'_> {
+    fn nodes(&mut self) -> Result<(), String> {
+        let axes = ["coordx", "coordy", "coordz"];
+        let mut columns: Vec<Vec<f64>> = vec![];
+        match self.reader.floats("coord")? {
+            // as old files have it
+            Some(all) => {
+                let axes = self
+                    .reader
+                    .header
+                    .length("num_dim")
+                    .unwrap_or(3)
+                    .clamp(1, 3);
+                let each = all.len() / axes as usize;
+                columns.extend(all.chunks_exact(each.max(1)).map(<[f64]>::to_vec));
+            }
+            None => {
+                for axis in axes {
+                    match self.reader.floats(axis)? {
+                        Some(column) => columns.push(column),
+                        None => break,
+                    }
+                }
+            }
+        }
+        let count = columns.first().map_or(0, Vec::len);
+        if count == 0 {
+            return Err("it has no nodes (coordx): it is no Exodus mesh".into());
+        }
+        if columns.iter().any(|c| c.len() != count) {
+            return Err("coordx, coordy and coordz have different lengths".into());
+        }
+        for node in 0..count {
+            let mut x = [0.0; 3];
+            for (c, column) in x.iter_mut().zip(&columns) {
+                *c = column[node];
+            }
+            if x.iter().any(|c| !c.is_finite()) {
+                return Err(format!("node {} is at {x:?}", node + 1));
+            }
+            self.mesh.nodes.insert(node as u64 + 1, x);
+        }
+        Ok(())
+    }
+
+    /// All of a kind: variables with ids, how many are there and names; `word` begins the name of what has none.
+    fn entities(&self, prefix: &str, dimension: &str, word: &str) -> Result<Vec<Entity>, String> {
+        let header = &self.reader.header;
+        let mut ids = self.reader.wholes(&format!("{prefix}_prop1"))?;
+        if ids.is_none()
+            && let Some(count) = header.length(dimension)
+        {
+            // each has variables of its own in the header
+            let count = count.min(header.variables.len() as u64);
+            ids = Some((1..=count as i64).collect());
+        }
+        let there = self.reader.wholes(&format!("{prefix}_status"))?;
+        let names = self.reader.texts(&format!("{prefix}_names"))?;
+        let names = names.unwrap_or_default();
+        let mut all: Vec<Entity> = vec![];
+        for (n, id) in ids.unwrap_or_default().into_iter().enumerate() {
+            let there = there.as_ref().and_then(|t| t.get(n));
+            let name = names.get(n).filter(|name| !name.is_empty());
+            let name = name.map_or_else(|| format!("{word}_{id}"), Clone::clone);
+            if there != Some(&0) {
+                let number = n + 1;
+                all.push(Entity { number, id, name });
+            }
+        }
+        Ok(all)
+    }
+
+    fn blocks(&mut self) -> Result<(), String> {
+        for block in self.entities("eb", "num_el_blk", "block")? {
+            self.block(&block)?;
+        }
+        if self.mesh.cells.is_empty() {
+            return Err("it has no elements: no block has any".into());
+        }
+        Ok(())
+    }
+
+    fn block(&mut self, block: &Entity) -> Result<(), String> {
+        let Entity { number, id, name } = block;
+        let variable = format!("connect{number}");
+        let Some(nodes) = self.reader.wholes(&variable)? else {
+            return Err(format!("block {name} has no elements ({variable})"));
+        };
+        let header = &self.reader.header;
+        let of = header.find(&variable);
+        let kind = of.and_then(|v| v.text("elem_type")).unwrap_or("");
+        let shape_of = of.map_or(vec![], |v| header.shape(v));
+        let [_, each] = shape_of[..] else {
+            return Err(format!("{variable} should be a table: elements, nodes"));
+        };
+        let shape = shape(kind, each).ok_or_else(|| {
+            format!(
+                "block {name}: elements {kind:?} of {each} nodes are not read; known are {KNOWN}"
+            )
+        })?;
+        let kind = match shape {
+            Shape::Cell(kind) => kind,
+            Shape::Surface(kind) => {
+                self.shells.get_or_insert(name.clone());
+                kind
+            }
+        };
+        let mark = i32::try_from(*id).map_err(|_| format!("block {name} has the number {id}"))?;
+        let group = self.mesh.groups.len();
+        self.mesh.groups.push(Group {
+            number: mark,
+            dimension: kind.dimension(),
+            name: Some(name.clone()),
+        });
+        let mut volumes = match kind {
+            Kind::Sphere => self.volumes(block)?,
+            _ => vec![],
+        }
+        .into_iter();
+        for nodes in nodes.chunks_exact(each as usize) {
+            let element = self.mesh.cells.len() + 1;
+            let volume = volumes.next();
+            if let Some(volume) = volume.filter(|v| !(*v > 0.0 && v.is_finite())) {
+                return Err(format!(
+                    "element {element} of block {name} has the volume {volume}"
+                ));
+            }
+            let corners = nodes[..kind.corners()].iter();
+            // what is negative is no node, and said so where nodes are looked for
+            let corners = corners.map(|n| u64::try_from(*n).unwrap_or(0));
+            self.mesh.cells.push(Cell {
+                kind,
+                id: element as u64,
+                nodes: corners.collect(),
+                groups: vec![group],
+                line: None,
+                volume,
+            });
+        }
+        Ok(())
+    }
+
+    /// Volumes of spheres: the attribute of that name, else the second of two.
+    fn volumes(&self, block: &Entity) -> Result<Vec<f64>, String> {
+        let Entity { number, name, .. } = block;
+        let attributes = self.reader.floats(&format!("attrib{number}"))?;
+        let names = self.reader.texts(&format!("attrib_name{number}"))?;
+        let header = &self.reader.header;
+        let table = header.find(&format!("attrib{number}"));
+        let width = table.and_then(|v| header.shape(v).get(1).copied());
+        let width = width.unwrap_or(1) as usize;
+        let named = names.unwrap_or_default();
+        let named = named.iter().position(|n| n.eq_ignore_ascii_case("volume"));
+        let column = named.or((width >= 2).then_some(1)).filter(|c| *c < width);
+        let elements = header.find(&format!("connect{number}"));
+        let count = elements.map_or(0, |v| header.shape(v)[0]);
+        match (attributes, column) {
+            (Some(all), Some(column)) if all.len() as u64 == count * width as u64 => {
+                Ok(all.into_iter().skip(column).step_by(width).collect())
+            }
+            _ => Err(format!(
+                "block {name} has SPHERE elements without volumes: give them the attributes radius and volume, or one called volume"
+            )),
+        }
+    }
+
+    fn sets(&mut self) -> Result<(), String> {
+        for set in self.entities("ns", "num_node_sets", "nodelist")? {
+            let nodes = self.reader.wholes(&format!("node_ns{}", set.number))?;
+            let nodes = nodes.unwrap_or_default().into_iter();
+            let nodes = nodes.map(|n| u64::try_from(n).unwrap_or(0)).collect();
+            self.mesh.node_sets.push((set.name, nodes));
+        }
+        for (prefix, dimension, word, variable) in [
+            ("ss", "num_side_sets", "surface", "elem_ss"),
+            ("els", "num_elem_sets", "elemlist", "elem_els"),
+        ] {
+            for set in self.entities(prefix, dimension, word)? {
+                let elements = self.reader.wholes(&format!("{variable}{}", set.number))?;
+                let mut cells = vec![];
+                for e in elements.unwrap_or_default() {
+                    // every element is a cell
+                    let place = usize::try_from(e).ok().and_then(|e| e.checked_sub(1));
+                    let cell = place.filter(|c| *c < self.mesh.cells.len());
+                    cells.push(cell.ok_or_else(|| {
+                        format!(
+                            "set {} refers to element {e}, which does not exist",
+                            set.name
+                        )
+                    })?);
+                }
+                self.mesh.cell_sets.push((set.name, cells));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,188 @@
+use super::*;
+use crate::netcdf::Reader;
+use crate::read::exodus::parse_exodus;
+use crate::write::fields::tests::{put, small, with};
+use peridyne::observe::Values;
+
+fn layout() -> Layout {
+    Layout {
+        title: "three points".into(),
+        blocks: vec![("glass".into(), vec![0, 2]), ("steel".into(), vec![1])],
+        sets: vec![("left".into(), vec![1, 2])],
+        volume: vec![0.5, 0.25, 1.0],
+        globals: vec!["step".into(), "kinetic_energy".into()],
+    }
+}
+
+fn rich() -> Snapshot {
+    let mut s = small();
+    let rows = vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3];
+    put(&mut s, "stress", Values::Symmetric(rows));
+    s
+}
+
+fn later() -> Snapshot {
+    Snapshot {
+        step: 12,
+        time: 2e-7,
+        ..with(rich(), "damage", Values::Scalars(vec![0.5; 3]))
+    }
+}
+
+fn written(path: &Path) -> Vec<u8> {
+    let mut file = Exodus::create(path, &layout(), &rich()).unwrap();
+    file.push(&rich(), &[7.0, 1.5]).unwrap();
+    file.push(&later(), &[12.0, 2.5]).unwrap();
+    file.finish().unwrap();
+    std::fs::read(path).unwrap()
+}
+
+/// A nodal variable in a frame.
+fn nodal(bytes: &[u8], name: &str, frame: u64) -> Vec<f64> {
+    let reader = Reader::new(bytes).unwrap();
+    let names = reader.texts("name_nod_var").unwrap().unwrap();
+    let at = names.iter().position(|n| n == name).expect(name) + 1;
+    let values = reader.record(&format!("vals_nod_var{at}"), frame);
+    values.unwrap().unwrap()
+}
+
+#[test]
+fn frames_come_back() {
+    let dir = tempfile::tempdir().unwrap();
+    let bytes = written(&dir.path().join("a.e"));
+    let reader = Reader::new(&bytes).unwrap();
+    assert_eq!(reader.header.records, 2);
+    assert_eq!(reader.record("time_whole", 0), Ok(Some(vec![1.5e-7])));
+    assert_eq!(reader.record("time_whole", 1), Ok(Some(vec![2e-7])));
+    assert_eq!(reader.record("vals_glo_var", 1), Ok(Some(vec![12.0, 2.5])));
+    let s = rich();
+    for (a, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let column: Vec<f64> = s.displacement().iter().map(|u| u[a]).collect();
+        assert_eq!(nodal(&bytes, &format!("displ_{axis}"), 0), column);
+        let reference: Vec<f64> = s.reference.iter().map(|x| x[a]).collect();
+        let coordinates = reader.floats(&format!("coord{axis}"));
+        assert_eq!(coordinates.unwrap().unwrap(), reference);
+    }
+    assert_eq!(nodal(&bytes, "damage", 0), [0.0, 0.25, 1.0]);
+    assert_eq!(nodal(&bytes, "damage", 1), [0.5; 3]);
+    assert_eq!(nodal(&bytes, "mark", 1), [-1.0, 0.0, 4.0]);
+    assert_eq!(nodal(&bytes, "fragment", 1), [0.0, 0.0, 1.0]);
+    assert_eq!(nodal(&bytes, "stress_xz", 0), [5.0; 3]);
+    let map = reader.wholes("elem_num_map");
+    assert_eq!(map, Ok(Some(vec![1, 3, 2])));
+}
+
+#[test]
+fn the_mesh_of_a_result_is_a_body_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let points = parse_exodus(&written(&dir.path().join("a.e")), "a.e").unwrap();
+    let s = small();
+    let order = [0, 2, 1].map(|i: usize| s.reference[i]);
+    assert_eq!(points.cloud.position, order);
+    assert_eq!(points.cloud.volume, [0.5, 1.0, 0.25]);
+    assert_eq!(points.cloud.mark, [1, 1, 2]);
+    let sets: Vec<(&str, &[u32])> = { points.cloud.sets.iter() }
+        .map(|(n, s)| (&**n, &**s))
+        .collect();
+    let wanted: [(&str, &[u32]); 3] = [("glass", &[0, 1]), ("steel", &[2]), ("left", &[1, 2])];
+    assert_eq!(sets, wanted);
+}
+
+#[test]
+fn a_frame_that_was_cut_off_is_not_counted_and_is_written_over() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.e");
+    let whole = written(&path);
+    let mut file = Exodus::create(&path, &layout(), &rich()).unwrap();
+    assert_eq!(
+        Reader::new(&std::fs::read(&path).unwrap())
+            .unwrap()
+            .header
+            .records,
+        0
+    );
+    file.push(&rich(), &[7.0, 1.5]).unwrap();
+    // a run that was killed in the next frame
+    let end = file.start + file.record;
+    let mut half = &file.file;
+    half.seek(SeekFrom::Start(end)).unwrap();
+    half.write_all(&[7; 40]).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    assert_eq!(Reader::new(&bytes).unwrap().header.records, 1);
+    assert_eq!(nodal(&bytes, "damage", 0), [0.0, 0.25, 1.0]);
+    file.push(&later(), &[12.0, 2.5]).unwrap();
+    // the same step again is the same frame
+    file.push(&later(), &[12.0, 2.5]).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), whole);
+}
+
+#[test]
+fn a_frame_that_fails_leaves_those_before() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.e");
+    let mut file = Exodus::create(&path, &layout(), &rich()).unwrap();
+    file.push(&rich(), &[7.0, 1.5]).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    let told = |e: WriteError| e.to_string();
+    let other = Snapshot {
+        step: 12,
+        ..small()
+    };
+    let text = told(file.push(&other, &[12.0, 2.5]).unwrap_err());
+    assert!(text.contains("other fields than the first"), "{text}");
+    let text = told(file.push(&later(), &[12.0]).unwrap_err());
+    assert!(text.contains("a.e"), "{text}");
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_with_path_and_reason() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut file = Exodus::create(&dir.path().join("a.e"), &layout(), &rich()).unwrap();
+    file.file = File::options().write(true).open("/dev/full").unwrap();
+    let text = file.push(&rich(), &[7.0, 1.5]).unwrap_err().to_string();
+    assert!(
+        text.contains("a.e") && text.contains("No space left"),
+        "{text}"
+    );
+}
+
+#[test]
+fn layouts_of_other_points_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.e");
+    let wrong: [fn(&mut Layout); 4] = [
+        |l| l.blocks[0].1.push(1),
+        |l| l.blocks.truncate(1),
+        |l| l.sets[0].1.push(3),
+        |l| l.volume.truncate(2),
+    ];
+    for change in wrong {
+        let mut layout = layout();
+        change(&mut layout);
+        assert!(Exodus::create(&path, &layout, &rich()).is_err());
+        assert!(!path.exists());
+    }
+}
+
+#[test]
+fn long_names_and_titles_fit() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.e");
+    let mut layout = layout();
+    layout.title = "ä".repeat(60);
+    layout.sets[0].0 = "a".repeat(70);
+    Exodus::create(&path, &layout, &rich()).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let reader = Reader::new(&bytes).unwrap();
+    assert_eq!(reader.texts("ns_names"), Ok(Some(vec!["a".repeat(70)])));
+    let title = reader.header.attributes.iter().find(|a| a.0 == "title");
+    assert_eq!(title.unwrap().1, Attribute::Text("ä".repeat(40)));
+    let width = reader
+        .header
+        .attributes
+        .iter()
+        .find(|a| a.0 == "maximum_name_length");
+    assert_eq!(width.unwrap().1, Attribute::Ints(vec![70]));
+}
