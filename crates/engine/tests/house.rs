@@ -369,7 +369,12 @@ struct Listed(Vec<String>);
 
 impl Listed {
     fn put(&mut self, name: &str, of: &str) {
-        let own = of.split('<').next().unwrap().rsplit("::").next().unwrap();
+        // a law of bonds or of gradients is the path inside what makes a material of it
+        let law = of
+            .split(['<', ',', '>'])
+            .filter(|p| p.contains("::"))
+            .next_back();
+        let own = law.unwrap().rsplit("::").next().unwrap();
         self.0.extend([name.to_string(), own.to_string()]);
     }
 }
