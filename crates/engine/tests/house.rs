@@ -370,10 +370,7 @@ struct Listed(Vec<String>);
 impl Listed {
     fn put(&mut self, name: &str, of: &str) {
         // a law of bonds or of gradients is the path inside what makes a material of it
-        let law = of
-            .split(['<', ',', '>'])
-            .filter(|p| p.contains("::"))
-            .next_back();
+        let law = of.rsplit(['<', ',', '>']).find(|p| p.contains("::"));
         let own = law.unwrap().rsplit("::").next().unwrap();
         self.0.extend([name.to_string(), own.to_string()]);
     }
