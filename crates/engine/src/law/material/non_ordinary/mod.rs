@@ -28,7 +28,7 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
     type Constants<N: Number>: Numbers<N>;
     /// What a point remembers.
     type Past<N: Number>: Numbers<N>;
-    /// [`Material::POTENTIAL`]
+    /// [`Material::POTENTIAL`](super::Material::POTENTIAL)
     const POTENTIAL: bool = true;
     /// Does its control soften?
     const SOFTENS: bool = false;
@@ -38,7 +38,7 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         vec![]
     }
 
-    /// [`Material::failure`]
+    /// [`Material::failure`](super::Material::failure)
     fn failure(&self) -> Option<usize> {
         None
     }
