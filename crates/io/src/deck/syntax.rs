@@ -3,6 +3,7 @@
 use super::error::{DeckError, nearest};
 use super::source::Source;
 use std::ops::Range;
+use toml::de::{DeTable, DeValue};
 
 const WHOLE: &str = "expected a whole number from 0";
 
@@ -35,6 +36,10 @@ pub(super) fn mistake(source: &Source, span: Option<Range<usize>>, message: &str
     }
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let known = || quoted.iter().skip(1).copied();
+    let span = match message.strip_prefix("unknown field `").and(quoted.first()) {
+        Some(name) => span.map(|table| key_of(source, &table, name).unwrap_or(table)),
+        None => span,
+    };
     let (message, help) =
         if let Some(name) = message.strip_prefix("unknown field `").and(quoted.first()) {
             (
@@ -79,6 +84,24 @@ pub(super) fn mistake(source: &Source, span: Option<Range<usize>>, message: &str
             (message.trim().replace('\n', ", "), None)
         };
     source.error(span, message, help)
+}
+
+/// Where the key `name` of the table at `span` is written: laws are read by their descriptors, which tell of the whole table.
+fn key_of(source: &Source, span: &Range<usize>, name: &str) -> Option<Range<usize>> {
+    fn within(table: &DeTable, span: &Range<usize>, name: &str) -> Option<Range<usize>> {
+        table.values().find_map(|value| match value.get_ref() {
+            DeValue::Table(inner) if value.span() == *span => {
+                inner.get_key_value(name).map(|(key, _)| key.span())
+            }
+            DeValue::Table(inner) => within(inner, span, name),
+            DeValue::Array(items) => items.iter().find_map(|item| match item.get_ref() {
+                DeValue::Table(inner) => within(inner, span, name),
+                _ => None,
+            }),
+            _ => None,
+        })
+    }
+    within(source.tree().ok()?.get_ref(), span, name)
 }
 
 /// `1e4` and `100.0` without exponent and point.
