@@ -12,6 +12,7 @@ use peridyne::error::{BuildError, size};
 use peridyne::expression::Expression;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
+use peridyne::space::rigid::RigidShape;
 use peridyne::spec::{BodySpec, IndenterMotion, Schedule, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::FieldsPlan;
@@ -298,9 +299,11 @@ fn counts_load(schedule: &Schedule) -> bool {
 /// Where indenters are that are moved, until `end`.
 fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
     const PARTS: u32 = 100;
-    let moved = deck.spec.indenters.iter().filter_map(|i| match &i.motion {
-        IndenterMotion::Kinematic(center) => Some((i.radius, center)),
-        IndenterMotion::Free { .. } => None,
+    let moved = { deck.spec.indenters.iter() }.filter_map(|i| match (&i.shape, &i.motion) {
+        (RigidShape::Sphere { radius }, IndenterMotion::Kinematic(center)) => {
+            Some((*radius, center))
+        }
+        (_, IndenterMotion::Kinematic(_) | IndenterMotion::Free(_)) => None,
     });
     let ball = |(radius, center): (f64, &[Expression; 3])| {
         let at = |k: u32| {

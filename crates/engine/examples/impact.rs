@@ -81,11 +81,11 @@ fn main() {
         }),
         initial: vec![],
         conditions: vec![],
-        indenters: vec![IndenterSpec {
-            stiffness: 1e17,
-            radius: 0.005,
-            motion: IndenterMotion::Kinematic([e("0"), e("0.0051-100*t"), e("0")]),
-        }],
+        indenters: vec![IndenterSpec::sphere(
+            1e17,
+            0.005,
+            IndenterMotion::Kinematic([e("0"), e("0.0051-100*t"), e("0")]),
+        )],
         transfers: vec![],
         family: FamilyChoice::Auto,
         schedule: Schedule {

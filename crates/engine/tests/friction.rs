@@ -1,5 +1,8 @@
 //! Coulomb friction: sliding blocks, momentum, what is dissipated, and Peridigm's stored numbers.
 
+#[path = "friction/rigid.rs"]
+mod rigid;
+
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
@@ -7,7 +10,7 @@ use peridyne::space::region::Region;
 use peridyne::spec::*;
 use std::f64::consts::PI;
 
-fn text(e: &str) -> Option<Expression> {
+pub(crate) fn text(e: &str) -> Option<Expression> {
     Some(Expression::parse(e, &[]).unwrap())
 }
 
@@ -29,7 +32,7 @@ fn sets(names: &[&str]) -> Vec<SetSpec> {
     names.iter().map(within).collect()
 }
 
-fn square(spacing: f64, low: [f64; 3], high: [f64; 3]) -> BodySpec {
+pub(crate) fn square(spacing: f64, low: [f64; 3], high: [f64; 3]) -> BodySpec {
     BodySpec::Lattice {
         kind: LatticeKind::Square,
         spacing,

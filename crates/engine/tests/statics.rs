@@ -435,15 +435,15 @@ fn a_driven_indenter_pushes_from_where_it_is_told() {
     let stiffness = -1e-3 / end(&mut *solved(&pushed));
     let mut spec = with(&spec, Method::Relaxation, Solver::Auto, 1e-9);
     spec.schedule.steps = 4;
-    spec.indenters.push(IndenterSpec {
-        stiffness: 0.5,
-        radius: 5.0,
-        motion: IndenterMotion::Kinematic([
+    spec.indenters.push(IndenterSpec::sphere(
+        0.5,
+        5.0,
+        IndenterMotion::Kinematic([
             text("15 - 0.1*t").unwrap(),
             number(0.0).unwrap(),
             number(0.0).unwrap(),
         ]),
-    });
+    ));
     let mut sim = solved(&spec);
     let u = end(&mut *sim);
     // the time is 4 at the end

@@ -82,7 +82,7 @@ impl<const D: usize> Driven<D> {
                     center,
                     radius,
                 },
-            ) if i.form() == (*form, *push) => i.drive(*stiffness, *center, *radius),
+            ) if i.form() == Some((*form, *push)) => i.drive(*stiffness, *center, *radius),
             (Driven::Load(l), drive) => match (&mut l.kind, drive) {
                 // the values of every step: nothing is allocated
                 (LoadKind::Replace(p), Drive::Replace(values)) => p.give(*values),
@@ -118,7 +118,7 @@ impl<const D: usize> Driven<D> {
         dt: f64,
     ) {
         match self {
-            Driven::Indenter(i) => i.add(body, u, v, f, dt),
+            Driven::Indenter(i) => i.add(body, [u, v], f, t, [dt; 2]),
             Driven::Load(l) => l.add(body, [u, v], f, t, dt),
         }
     }

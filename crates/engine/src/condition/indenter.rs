@@ -1,24 +1,20 @@
-//! Rigid spheres, cylinders and planes that push points: force density `K g²` along the normal where the gap g between
-//! point and surface is negative (LAMMPS's `fix indent`; sandia2010 ch. 3, The Projectile).
+//! Rigid bodies that push points: force density `K g²` along the normal where the gap g between point and surface is negative
+//! (LAMMPS's `fix indent`; sandia2010 ch. 3, The Projectile).
+//!
+//! A surface may rub: `μ K g²` against the sliding of the point on it, by the law of [`FrictionSpec`], and never more than what takes half
+//! of that within one step (as between equal points, [`crate::interaction::friction`]). It may pull what is near ([`CohesionSpec`]): the traction acts on the
+//! face of a point, so the force density is that over its spacing. What points feel the body feels with the other sign, at the place of the
+//! point: momentum and angular momentum of both together stay as they are.
 
 use super::reaction::Reaction;
+use super::rigid::{Kept, Rigid, cross, times, transposed_times};
 use crate::body::{Body, Field};
-use crate::expression::Expression;
-use crate::spec::{IndenterMotion, IndenterSpec};
+use crate::interaction::friction::Coefficients;
+use crate::space::Point;
+use crate::space::rigid::RigidShape;
+use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
 
-#[derive(Debug, Clone)]
-enum Motion {
-    Kinematic([Expression; 3]),
-    Free {
-        mass: f64,
-        velocity: [f64; 3],
-        force: [f64; 3],
-    },
-    /// Where the centre is next, set from outside.
-    Driven([f64; 3]),
-}
-
-/// The surface of an indenter.
+/// The surface of an indenter along the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// About a centre.
@@ -27,6 +23,15 @@ pub enum Form {
     Cylinder(usize),
     /// Across this axis, through the centre.
     Plane(usize),
+}
+
+/// The surface of an indenter.
+#[derive(Debug, Clone)]
+enum Surface {
+    /// Along the axes, whatever the body's own.
+    Aligned(Form, Push),
+    /// Turns with the body.
+    Turned(RigidShape),
 }
 
 /// Which way an indenter pushes.
@@ -84,84 +89,120 @@ impl Push {
     }
 }
 
+/// A point near a surface.
+#[derive(Debug, Clone, Copy)]
+struct Near<const D: usize> {
+    /// From the centre, and how long that is across a form along the axes (1 of others).
+    arm: [f64; D],
+    r: f64,
+    /// Negative where it is pushed.
+    gap: f64,
+    /// Along which it is pushed out, of length 1.
+    normal: [f64; D],
+}
+
+/// A point touched at the last evaluation.
+#[derive(Debug, Clone, Copy)]
+struct Touched<const D: usize> {
+    slot: u32,
+    near: Near<D>,
+    /// Force density along the normal that presses.
+    pressed: f64,
+}
+
 #[derive(Debug, Clone)]
 pub struct Indenter<const D: usize> {
+    pub name: String,
     stiffness: f64,
-    form: Form,
-    push: Push,
+    surface: Surface,
     radius: f64,
-    motion: Motion,
-    pub center: [f64; 3],
+    friction: Option<FrictionSpec>,
+    cohesion: Option<CohesionSpec>,
+    pub rigid: Rigid<D>,
     /// Points it can touch; `None`: all.
     members: Option<Vec<u32>>,
     /// Points touched last time, with the force density on them.
     touched: Vec<(u32, [f64; D])>,
+    /// The same as they are rubbed.
+    rubbed: Vec<Touched<D>>,
+    /// Force densities of friction alone, in the order of those that are touched.
+    rubs: Vec<[f64; D]>,
     /// Points that can be touched before anything moved by `slack`.
     candidates: Vec<u32>,
     slack: f64,
     /// Work done on the body (energy).
     pub work: f64,
+    /// What friction took (energy).
+    pub dissipated: f64,
     pub reaction: Reaction,
+    /// Of points on the rigid body (force), and about its centre (force · length).
+    pub force: Point,
+    pub torque: Point,
+    /// The most that contact adds to `M⁻¹K` (1 / time²).
+    stiff: f64,
+    kept: Option<(Kept, f64, f64)>,
 }
 
 impl<const D: usize> Indenter<D> {
     pub fn new(spec: &IndenterSpec) -> Self {
-        let (motion, center) = match &spec.motion {
-            IndenterMotion::Kinematic(c) => (
-                Motion::Kinematic(c.clone()),
-                std::array::from_fn(|a| c[a].eval(&[0.0; 3], 0.0)),
-            ),
-            IndenterMotion::Free {
-                mass,
-                center,
-                velocity,
-            } => (
-                Motion::Free {
-                    mass: *mass,
-                    velocity: *velocity,
-                    force: [0.0; 3],
-                },
-                *center,
-            ),
+        let (surface, radius) = match (&spec.shape, &spec.cohesion) {
+            // as it always was, to the last bit
+            (RigidShape::Sphere { radius }, None) => {
+                (Surface::Aligned(Form::Sphere, Push::Out), *radius)
+            }
+            (shape, _) => {
+                let mut shape = shape.clone();
+                if let RigidShape::Box { half } = &mut shape {
+                    half[D..].fill(f64::INFINITY);
+                }
+                (Surface::Turned(shape), 0.0)
+            }
         };
-        let form = (Form::Sphere, Push::Out);
-        Self::with(spec.stiffness, form, spec.radius, motion, center)
+        Indenter {
+            name: spec.name.clone(),
+            friction: spec.friction.clone(),
+            cohesion: spec.cohesion,
+            ..Self::with(spec.stiffness, surface, radius, Rigid::new(spec))
+        }
     }
 
     /// A surface whose values come from outside, touching the points in `members`; a plane has the radius 0.
     pub fn driven(
         stiffness: f64,
-        form: (Form, Push),
+        (form, push): (Form, Push),
         center: [f64; 3],
         radius: f64,
         members: Vec<u32>,
     ) -> Self {
+        let surface = Surface::Aligned(form, push);
         Indenter {
             members: Some(members),
-            ..Self::with(stiffness, form, radius, Motion::Driven(center), center)
+            ..Self::with(stiffness, surface, radius, Rigid::steered(center))
         }
     }
 
-    fn with(
-        stiffness: f64,
-        (form, push): (Form, Push),
-        radius: f64,
-        motion: Motion,
-        center: [f64; 3],
-    ) -> Self {
+    fn with(stiffness: f64, surface: Surface, radius: f64, rigid: Rigid<D>) -> Self {
         Indenter {
+            name: String::new(),
             stiffness,
-            form,
-            push,
+            surface,
             radius,
-            motion,
-            center,
+            friction: None,
+            cohesion: None,
+            rigid,
             members: None,
             touched: vec![],
+            rubbed: vec![],
+            rubs: vec![],
             candidates: vec![],
             slack: 0.0,
             work: 0.0,
+            dissipated: 0.0,
             reaction: Reaction::default(),
+            force: [0.0; 3],
+            torque: [0.0; 3],
+            stiff: 0.0,
+            kept: None,
         }
     }
 
@@ -170,12 +211,15 @@ impl<const D: usize> Indenter<D> {
         self.slack -= (radius - self.radius).abs();
         self.stiffness = stiffness;
         self.radius = radius;
-        self.motion = Motion::Driven(center);
+        self.rigid.steer(center);
     }
 
-    /// Its form and which way it pushes.
-    pub fn form(&self) -> (Form, Push) {
-        (self.form, self.push)
+    /// Its form and which way it pushes, of one that is driven.
+    pub fn form(&self) -> Option<(Form, Push)> {
+        match self.surface {
+            Surface::Aligned(form, push) => Some((form, push)),
+            Surface::Turned(_) => None,
+        }
     }
 
     /// Points have the slots that `keep` holds for only, from now on.
@@ -184,122 +228,348 @@ impl<const D: usize> Indenter<D> {
             members.retain(|s| keep(*s));
         }
         self.touched.retain(|(s, _)| keep(*s));
+        self.rubbed.clear();
+        self.rubs.clear();
         self.look_again();
+    }
+
+    /// Where a point is beside the surface; `None`: further away than `most` for sure.
+    fn near(&self, body: &Body<D>, u: &Field<D>, i: usize, most: f64) -> Option<Near<D>> {
+        let center = &self.rigid.center;
+        match &self.surface {
+            Surface::Aligned(form, push) => {
+                let (arm, r) = form.offset(center, body, u, i);
+                let normal = match form {
+                    // a point in the centre has no direction
+                    Form::Sphere | Form::Cylinder(_) if r == 0.0 => [0.0; D],
+                    Form::Sphere => arm.map(|c| c / r),
+                    Form::Cylinder(axis) => {
+                        std::array::from_fn(|a| if a == *axis { 0.0 } else { arm[a] / r })
+                    }
+                    Form::Plane(axis) => {
+                        std::array::from_fn(|a| if a == *axis { 1.0 } else { 0.0 })
+                    }
+                };
+                Some(Near {
+                    arm,
+                    r,
+                    gap: push.gap(r, self.radius),
+                    normal: match push {
+                        Push::Out => normal,
+                        Push::In => normal.map(|c| -c),
+                    },
+                })
+            }
+            Surface::Turned(shape) => {
+                let x = body.position(i);
+                let plane = matches!(shape, RigidShape::Plane { .. });
+                let arm: [f64; D] = std::array::from_fn(|a| {
+                    let d = x[a] + u[a][i] - center[a];
+                    match body.period[a] {
+                        Some(p) if !plane => d - p * (d / p).round(),
+                        Some(_) | None => d,
+                    }
+                });
+                let square: f64 = arm.iter().map(|c| c * c).sum();
+                let far = shape.reach(D) + most;
+                if square > far * far {
+                    return None;
+                }
+                let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
+                let (gap, normal) = shape.distance(&transposed_times(&self.rigid.axes, &full));
+                let normal = times(&self.rigid.axes, &normal);
+                Some(Near {
+                    arm,
+                    r: 1.0,
+                    gap,
+                    normal: std::array::from_fn(|a| normal[a]),
+                })
+            }
+        }
+    }
+
+    /// The gap below which the surface does something.
+    fn range(&self) -> f64 {
+        self.cohesion.as_ref().map_or(0.0, CohesionSpec::range)
     }
 
     /// Move to the end of a step and account for half of the old force's work. `moved` bounds the path of any point.
     pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, t: f64, dt: f64, moved: f64) {
+        self.kept = Some((self.rigid.keep(), self.work, self.dissipated));
         for (s, f) in &self.touched {
             let i = *s as usize;
             self.work += 0.5 * dt * body.volume.at(i) * (0..D).map(|a| f[a] * v[a][i]).sum::<f64>();
         }
-        let before = self.center;
-        match &mut self.motion {
-            Motion::Kinematic(c) => self.center = std::array::from_fn(|a| c[a].eval(&[0.0; 3], t)),
-            Motion::Driven(next) => self.center = *next,
-            Motion::Free {
-                mass,
-                velocity,
-                force,
-            } => {
-                for a in 0..D {
-                    velocity[a] += 0.5 * dt * force[a] / *mass;
-                    self.center[a] += dt * velocity[a];
-                }
-            }
+        self.rigid.kick(dt);
+        self.rub_away(body, v, dt);
+        let path = self.rigid.advance(t, dt);
+        self.slack -= moved + path.way;
+        if let Surface::Turned(shape) = &self.surface
+            && path.angle > 0.0
+        {
+            // what turns comes no nearer than its furthest place goes; a plane has none
+            self.slack -= path.angle * shape.reach(D);
         }
-        let path = (0..3)
-            .map(|a| (self.center[a] - before[a]).powi(2))
-            .sum::<f64>()
-            .sqrt();
-        self.slack -= moved + path;
     }
 
-    /// Add the force density at the current positions to `f`; `dt` is 0 at the start of a run.
-    pub fn add(&mut self, body: &Body<D>, u: &Field<D>, v: &Field<D>, f: &mut Field<D>, dt: f64) {
-        if let Motion::Driven(next) = self.motion {
-            self.center = next;
+    /// Back to before the last [`Indenter::begin`].
+    pub fn retreat(&mut self) {
+        if let Some((rigid, work, dissipated)) = self.kept.take() {
+            self.rigid.retreat(&rigid);
+            (self.work, self.dissipated) = (work, dissipated);
+            self.look_again();
         }
-        let (form, push) = (self.form, self.push);
-        let (center, radius) = (self.center, self.radius);
-        let offset = |i: usize| form.offset(&center, body, u, i);
-        let gap = |r: f64| push.gap(r, radius);
-        if self.slack <= 0.0 {
-            // two spacings: a fast indenter looks around every few dozen steps
-            self.slack = 2.0 * body.spacing;
-            self.candidates.clear();
-            let all = self.members.as_ref().unwrap_or(&body.slots);
-            self.candidates.extend(
-                all.iter()
-                    .filter(|&&s| gap(offset(s as usize).1) < self.slack),
-            );
+    }
+
+    /// Adds the force density at the current positions to `f`; `dt` is the step that ends, 0 at the start of a run, `step` that which begins, `t` the
+    /// time.
+    pub fn add(
+        &mut self,
+        body: &Body<D>,
+        [u, v]: [&Field<D>; 2],
+        f: &mut Field<D>,
+        t: f64,
+        [dt, step]: [f64; 2],
+    ) {
+        self.rigid.arrive();
+        if dt == 0.0 {
+            self.rigid.look_ahead(t, step);
         }
+        self.look_around(body, u);
         self.touched.clear();
-        let mut total = [0.0; 3];
+        self.rubbed.clear();
+        self.rubs.clear();
+        (self.force, self.torque, self.stiff) = ([0.0; 3], [0.0; 3], 0.0);
         let mut reaction = Reaction::default();
-        for &s in &self.candidates {
+        let (range, mut mobile) = (self.range(), 0.0);
+        let candidates = std::mem::take(&mut self.candidates);
+        for &s in &candidates {
             let i = s as usize;
-            let (d, r) = offset(i);
-            let gap = gap(r);
-            if gap >= 0.0 || (r == 0.0 && !matches!(form, Form::Plane(_))) {
+            let Some(near) = self.near(body, u, i, range) else {
+                continue;
+            };
+            let Near {
+                arm,
+                r,
+                gap,
+                normal,
+            } = near;
+            if gap >= range || r == 0.0 {
                 continue;
             }
-            let strength = match push {
-                Push::Out => self.stiffness * gap * gap,
-                Push::In => -self.stiffness * gap * gap,
-            };
-            let force: [f64; D] = std::array::from_fn(|a| match form {
-                Form::Sphere => strength / r * d[a],
-                Form::Cylinder(axis) if a == axis => 0.0,
-                Form::Cylinder(_) => strength / r * d[a],
-                Form::Plane(axis) if a == axis => strength,
-                Form::Plane(_) => 0.0,
-            });
             let volume = body.volume.at(i);
-            reaction.energy += self.stiffness / 3.0 * (-gap).powi(3);
+            // force density along the normal, its slope, and the energy density
+            let (along, slope, energy) = match gap < 0.0 {
+                true => {
+                    let deep = self.stiffness * gap * gap;
+                    let energy = self.stiffness / 3.0 * (-gap).powi(3);
+                    (
+                        deep,
+                        -2.0 * self.stiffness * gap,
+                        energy - self.adhesion(body, i),
+                    )
+                }
+                false => self.pull(body, i, gap),
+            };
+            let force: [f64; D] = match &self.surface {
+                // as it always was, to the last bit
+                Surface::Aligned(form, push) => self.aligned(*form, *push, &near),
+                Surface::Turned(_) => normal.map(|c| along * c),
+            };
+            reaction.energy += energy;
             for a in 0..D {
                 reaction.force[a] -= force[a];
                 f[a][i] += force[a];
-                total[a] -= force[a] * volume;
                 self.work += 0.5 * dt * volume * force[a] * v[a][i];
             }
+            self.bear(&arm, &force, volume);
+            let square: f64 = arm.iter().map(|c| c * c).sum();
+            mobile += slope * volume * self.rigid.mobility(square);
+            self.stiff = self.stiff.max(slope / body.density.at(i));
             self.touched.push((s, force));
-        }
-        self.reaction = reaction;
-        if let Motion::Free {
-            mass,
-            velocity,
-            force,
-        } = &mut self.motion
-        {
-            *force = total;
-            for a in 0..D {
-                velocity[a] += 0.5 * dt * force[a] / *mass;
+            if self.friction.is_some() {
+                self.rubbed.push(Touched {
+                    slot: s,
+                    near,
+                    pressed: if gap < 0.0 { along } else { 0.0 },
+                });
             }
+        }
+        self.candidates = candidates;
+        self.stiff += mobile;
+        self.reaction = reaction;
+        if let Some(law) = &self.friction {
+            let now = Coefficients::new(law, t);
+            self.rub(body, v, f, now, [dt, step]);
+        }
+        self.rigid.push(self.force, self.torque, t, dt);
+    }
+
+    /// Looks for the points that may be touched soon.
+    fn look_around(&mut self, body: &Body<D>, u: &Field<D>) {
+        // what turns without an end is looked at in every step
+        let endless = matches!(self.surface, Surface::Turned(RigidShape::Plane { .. }));
+        if self.slack > 0.0 && !(endless && self.rigid.turns()) {
+            return;
+        }
+        // two spacings: a fast indenter looks around every few dozen steps
+        self.slack = 2.0 * body.spacing;
+        let most = self.slack + self.range();
+        let mut candidates = std::mem::take(&mut self.candidates);
+        candidates.clear();
+        let all = self.members.as_ref().unwrap_or(&body.slots);
+        let close = |s: &&u32| {
+            let near = self.near(body, u, **s as usize, most);
+            near.is_some_and(|n| n.gap < most)
+        };
+        candidates.extend(all.iter().filter(close));
+        self.candidates = candidates;
+    }
+
+    /// Force density of a surface along the axes.
+    fn aligned(&self, form: Form, push: Push, near: &Near<D>) -> [f64; D] {
+        let Near { arm, r, gap, .. } = *near;
+        let strength = match push {
+            Push::Out => self.stiffness * gap * gap,
+            Push::In => -self.stiffness * gap * gap,
+        };
+        std::array::from_fn(|a| match form {
+            Form::Sphere => strength / r * arm[a],
+            Form::Cylinder(axis) if a == axis => 0.0,
+            Form::Cylinder(_) => strength / r * arm[a],
+            Form::Plane(axis) if a == axis => strength,
+            Form::Plane(_) => 0.0,
+        })
+    }
+
+    /// Energy density that cohesion holds below that of a point out of its range where the point touches: w/h of a point of spacing h.
+    fn adhesion(&self, body: &Body<D>, i: usize) -> f64 {
+        let of = |c: &CohesionSpec| c.energy / body.spacing_at(i);
+        self.cohesion.as_ref().map_or(0.0, of)
+    }
+
+    /// What pulls a point at a gap within the range: force density, its greatest slope, and the energy density.
+    fn pull(&self, body: &Body<D>, i: usize, gap: f64) -> (f64, f64, f64) {
+        let Some(cohesion) = &self.cohesion else {
+            return (0.0, 0.0, 0.0);
+        };
+        let (h, range) = (body.spacing_at(i), cohesion.range());
+        let s = gap / range;
+        let pull = 27.0 / 4.0 * cohesion.strength * s * (1.0 - s) * (1.0 - s);
+        // 12 ∫ s (1 − s)² ds from s on, and w in all
+        let left = (1.0 - s).powi(3) * (1.0 + 3.0 * s);
+        let slope = 27.0 / 4.0 * cohesion.strength / range;
+        (-pull / h, slope / h, -cohesion.energy * left / h)
+    }
+
+    /// The body feels what it does to a point.
+    fn bear(&mut self, arm: &[f64; D], force: &[f64; D], volume: f64) {
+        let full =
+            |x: &[f64; D]| -> Point { std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0)) };
+        let turn = cross(&full(arm), &full(force));
+        for a in 0..D {
+            self.force[a] -= force[a] * volume;
+        }
+        for a in 0..3 {
+            self.torque[a] -= turn[a] * volume;
+        }
+    }
+
+    /// Sliding of a point on the surface: along it, of the surface against the point.
+    fn sliding(&self, v: &Field<D>, touched: &Touched<D>) -> [f64; D] {
+        let Near { arm, normal, .. } = &touched.near;
+        let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
+        let (of, i) = (self.rigid.velocity_at(&full), touched.slot as usize);
+        let w: [f64; D] = std::array::from_fn(|a| of[a] - v[a][i]);
+        let across: f64 = (0..D).map(|a| w[a] * normal[a]).sum();
+        std::array::from_fn(|a| w[a] - across * normal[a])
+    }
+
+    /// Friction on all that are touched: every one of z loses half of its sliding in one step at most, though all push the body the same way.
+    /// Half, as between equal points, leaves steps stable up to `ω Δt = √3`; all of it would only up to √2.
+    fn rub(
+        &mut self,
+        body: &Body<D>,
+        v: &Field<D>,
+        f: &mut Field<D>,
+        now: Coefficients,
+        [dt, step]: [f64; 2],
+    ) {
+        let rubbed = std::mem::take(&mut self.rubbed);
+        let pressed = rubbed.iter().filter(|t| t.pressed > 0.0);
+        let square = |t: &Touched<D>| t.near.arm.iter().map(|c| c * c).sum::<f64>();
+        let (z, far) = pressed.fold((0.0, 0.0), |(z, far): (f64, f64), t| {
+            (z + 1.0, far.max(square(t)))
+        });
+        let mobility = z * self.rigid.mobility(far);
+        for (n, touched) in rubbed.iter().enumerate() {
+            let i = touched.slot as usize;
+            let w = self.sliding(v, touched);
+            let speed = w.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let volume = body.volume.at(i);
+            let mass = body.density.at(i) * volume;
+            let most = 0.5 * speed / (step * (1.0 / mass + mobility)) / volume;
+            let force = (now.at(speed) * touched.pressed).min(most);
+            let force = match speed > 0.0 && force > 0.0 {
+                true => w.map(|c| force * c / speed),
+                false => [0.0; D],
+            };
+            for a in 0..D {
+                self.reaction.force[a] -= force[a];
+                f[a][i] += force[a];
+                self.work += 0.5 * dt * volume * force[a] * v[a][i];
+                self.touched[n].1[a] += force[a];
+            }
+            self.bear(&touched.near.arm, &force, volume);
+            self.rubs.push(force);
+        }
+        self.rubbed = rubbed;
+        self.rub_away(body, v, dt);
+    }
+
+    /// Half of what friction takes within a step, with the velocities of its middle.
+    fn rub_away(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
+        for (touched, force) in self.rubbed.iter().zip(&self.rubs) {
+            let w = self.sliding(v, touched);
+            let power: f64 = (0..D).map(|a| force[a] * w[a]).sum();
+            self.dissipated += 0.5 * dt * power * body.volume.at(touched.slot as usize);
+        }
+    }
+
+    /// The eigenvalue of `M⁻¹K` that a step must meet with this contact, of a body whose bonds alone have `bonds` (1 / time²): points at a surface
+    /// have half a family. Contact counts four times: a blow is short, and its steps are half of those that are stable. 0: nothing touches.
+    pub fn stiffened(&self, bonds: f64) -> f64 {
+        match self.stiff > 0.0 {
+            true => 0.5 * bonds + 4.0 * self.stiff,
+            false => 0.0,
         }
     }
 
     /// Where it is at this time, in statics; what is near is looked for again.
     pub fn place(&mut self, t: f64) {
-        if let Motion::Kinematic(c) = &self.motion {
-            self.center = std::array::from_fn(|a| c[a].eval(&[0.0; 3], t));
+        if self.rigid.place(t) {
             self.slack = 0.0;
         }
     }
 
-    /// Adds what it resists with at each point that it pushes (force / length), 2 K |g| V, to sums by slot.
+    /// Adds what it resists with at each point that it pushes or pulls (force / length) to sums by slot.
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
         for &s in self.members.as_ref().unwrap_or(&body.slots) {
             let i = s as usize;
-            let (_, r) = self.form.offset(&self.center, body, u, i);
-            let deep = -self.push.gap(r, self.radius);
-            sum[i] += 2.0 * self.stiffness * deep.max(0.0) * body.volume.at(i);
+            let Some(near) = self.near(body, u, i, self.range()) else {
+                continue;
+            };
+            let mut slope = 2.0 * self.stiffness * (-near.gap).max(0.0);
+            if near.gap >= 0.0 && near.gap < self.range() {
+                slope = self.pull(body, i, near.gap).1;
+            }
+            sum[i] += slope * body.volume.at(i);
         }
     }
 
     /// Does it move by the forces on it?
     pub fn is_free(&self) -> bool {
-        matches!(self.motion, Motion::Free { .. })
+        self.rigid.is_free()
     }
 
     /// The points that it pushes, with the force densities on them.
@@ -313,16 +583,6 @@ impl<const D: usize> Indenter<D> {
             let i = *s as usize;
             let path = (0..D).map(|a| f[a] * (u[1][a][i] - u[0][a][i]));
             self.work += 0.5 * body.volume.at(i) * path.sum::<f64>();
-        }
-    }
-
-    /// Kinetic energy of an indenter with mass.
-    pub fn kinetic(&self) -> f64 {
-        match &self.motion {
-            Motion::Kinematic(_) | Motion::Driven(_) => 0.0,
-            Motion::Free { mass, velocity, .. } => {
-                0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>()
-            }
         }
     }
 

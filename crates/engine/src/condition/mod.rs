@@ -1,4 +1,4 @@
-//! What the world does to a body: loads that add force, constraints that prescribe motion, rigid indenters.
+//! What the world does to a body: loads that add force, constraints that prescribe motion, rigid bodies (indenters).
 //! Each keeps the account of its own work.
 
 pub mod carried;
@@ -9,6 +9,7 @@ pub mod indenter;
 pub mod load;
 pub mod own;
 pub mod reaction;
+pub mod rigid;
 pub(crate) mod still;
 pub mod toughness;
 

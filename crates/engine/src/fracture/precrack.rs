@@ -1,12 +1,13 @@
-//! Pre-cracks: flat shapes, and whether a bond crosses one.
+//! Pre-cracks: flat shapes and surfaces of triangles, and whether a bond crosses one.
 //!
 //! A crack has a normal: left of the segment from its first to its second end, the normal of the disk, the direction
 //! around which the corners of the polygon turn counter-clockwise, +x for a point. A bond crosses the crack if its
 //! ends lie on different sides of the crack's plane and it meets the plane inside the shape, rim included. A point on
 //! the plane belongs to the side the normal points to, so a crack through a lattice plane cuts every bond across it
-//! exactly once, and none within it. "On" means within 1e-9 of the bond's length: round-off decides nothing.
+//! exactly once, and none within it. A surface is crossed where one of its triangles is, each a polygon of its own. "On" means within 1e-9 of the bond's length: round-off decides nothing.
 
 use crate::error::BuildError;
+use crate::space::triangles::{Tree, Triangles};
 use crate::spec::CrackShape;
 
 /// Fraction of a bond's length that counts as nothing.
@@ -36,6 +37,11 @@ enum Outline<const D: usize> {
     Segment { along: [f64; D], length: f64 },
     /// Around `point`.
     Disk { radius: f64 },
+    /// Polygons side by side, and which of them are near.
+    Surface {
+        triangles: Vec<Crack<D>>,
+        tree: Tree,
+    },
     /// Corners and the two axes that they are projected on.
     Polygon {
         corners: Vec<[f64; 2]>,
@@ -60,6 +66,7 @@ impl<const D: usize> Crack<D> {
             } => [center.as_slice(), normal, &[*radius]].concat(),
             CrackShape::Polygon { corners } => corners.concat(),
             CrackShape::Point { x } => vec![*x],
+            CrackShape::Surface(triangles) => triangles.corner.concat(),
         };
         if numbers.iter().any(|x| !x.is_finite()) {
             return fail(format!(
@@ -68,7 +75,7 @@ impl<const D: usize> Crack<D> {
         }
         let fits = match shape {
             CrackShape::Segment { .. } => D == 2 || D == 3,
-            CrackShape::Disk { .. } | CrackShape::Polygon { .. } => D == 3,
+            CrackShape::Disk { .. } | CrackShape::Polygon { .. } | CrackShape::Surface(_) => D == 3,
             CrackShape::Point { .. } => D == 1,
         };
         if !fits {
@@ -77,11 +84,12 @@ impl<const D: usize> Crack<D> {
                 CrackShape::Disk { .. } => "disk",
                 CrackShape::Polygon { .. } => "polygon",
                 CrackShape::Point { .. } => "point",
+                CrackShape::Surface(_) => "surface of triangles",
             };
             let instead = [
                 "a point x",
                 "a segment",
-                "a segment (extruded along z), a disk or a polygon",
+                "a segment (extruded along z), a disk, a polygon or a surface of triangles",
             ];
             return Err(BuildError::conflict(
                 "precracks",
@@ -89,8 +97,12 @@ impl<const D: usize> Crack<D> {
             )
             .help(format!("use {}", instead[D.clamp(1, 3) - 1])));
         }
+        if let CrackShape::Surface(all) = shape {
+            return Crack::surface(all, period);
+        }
         let cut = |x: &[f64; 3]| -> [f64; D] { std::array::from_fn(|a| x[a]) };
         let (point, normal, outline, low, high) = match shape {
+            CrackShape::Surface(_) => unreachable!("made above"),
             CrackShape::Point { x } => {
                 let x = cut(&[*x, 0.0, 0.0]);
                 (x, cut(&[1.0, 0.0, 0.0]), Outline::Whole, x, x)
@@ -186,25 +198,39 @@ impl<const D: usize> Crack<D> {
                 )
             }
         };
-        let mut shifts = vec![[0.0; D]];
-        for a in 0..D {
-            if let Some(p) = period[a] {
-                for k in 0..shifts.len() {
-                    for s in [-p, p] {
-                        let mut shift = shifts[k];
-                        shift[a] += s;
-                        shifts.push(shift);
-                    }
-                }
-            }
-        }
         Ok(Crack {
             point,
             normal,
             low,
             high,
             outline,
-            shifts,
+            shifts: shifts(period),
+        })
+    }
+
+    /// One of many triangles.
+    fn surface(all: &Triangles, period: [Option<f64>; D]) -> Result<Self, BuildError> {
+        let of = |n: usize| {
+            let corners = all.corners(n).to_vec();
+            Crack::new(&CrackShape::Polygon { corners }, [None; D])
+                .map_err(|e| BuildError::invalid("precracks", format!("triangle {}: {e}", n + 1)))
+        };
+        let triangles = (0..all.face.len())
+            .map(of)
+            .collect::<Result<Vec<Self>, _>>()?;
+        let bound = |pick: fn(f64, f64) -> f64, side: fn(&Self) -> &[f64; D], from: f64| {
+            std::array::from_fn(|a| triangles.iter().map(|c| side(c)[a]).fold(from, pick))
+        };
+        Ok(Crack {
+            point: [0.0; D],
+            normal: [0.0; D],
+            low: bound(f64::min, |c| &c.low, f64::INFINITY),
+            high: bound(f64::max, |c| &c.high, f64::NEG_INFINITY),
+            outline: Outline::Surface {
+                tree: Tree::new(all.face.len(), |n| all.corners(n)),
+                triangles,
+            },
+            shifts: shifts(period),
         })
     }
 
@@ -227,6 +253,13 @@ impl<const D: usize> Crack<D> {
                 return false;
             }
         }
+        if let Outline::Surface { triangles, tree } = &self.outline {
+            let bound = |pick: fn(f64, f64) -> f64, by: f64| -> [f64; 3] {
+                std::array::from_fn(|k| if k < D { pick(a[k], b[k]) + by } else { 0.0 })
+            };
+            let (low, high) = (bound(f64::min, -tiny), bound(f64::max, tiny));
+            return tree.any(&low, &high, &mut |n| triangles[n].crosses_once(a, b));
+        }
         let (da, db) = (
             dot(&sub(a, &self.point), &self.normal),
             dot(&sub(b, &self.point), &self.normal),
@@ -243,7 +276,7 @@ impl<const D: usize> Crack<D> {
         let t = d0 / (d0 - d1);
         let x: [f64; D] = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
         match &self.outline {
-            Outline::Whole => true,
+            Outline::Whole | Outline::Surface { .. } => true,
             Outline::Segment { along, length } => {
                 let s = dot(&sub(&x, &self.point), along);
                 s >= -tiny && s <= length + tiny
@@ -291,6 +324,23 @@ fn area(corners: &[[f64; 3]]) -> [f64; 3] {
         }
     }
     n
+}
+
+/// Where a crack recurs: every sum of a period back, none, or on, along each axis; first none.
+fn shifts<const D: usize>(period: [Option<f64>; D]) -> Vec<[f64; D]> {
+    let mut shifts = vec![[0.0; D]];
+    for a in 0..D {
+        if let Some(p) = period[a] {
+            for k in 0..shifts.len() {
+                for s in [-p, p] {
+                    let mut shift = shifts[k];
+                    shift[a] += s;
+                    shifts.push(shift);
+                }
+            }
+        }
+    }
+    shifts
 }
 
 fn unit(v: [f64; 3]) -> Option<[f64; 3]> {

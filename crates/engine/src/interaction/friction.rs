@@ -16,8 +16,7 @@ use crate::spec::FrictionSpec;
 #[derive(Debug, Clone)]
 pub struct Friction<const D: usize> {
     law: FrictionSpec,
-    /// μ_k and μ_s − μ_k now (–), and 1/v_c.
-    now: [f64; 3],
+    now: Coefficients,
     /// Force density of the last evaluation.
     force: Field<D>,
     /// `[slots]`: with how many a point is in touch.
@@ -26,16 +25,41 @@ pub struct Friction<const D: usize> {
     pub work: f64,
 }
 
-/// μ_k and μ_s − μ_k at a time, and 1/v_c. What is below 0 counts as 0.
-fn coefficients(law: &FrictionSpec, t: f64) -> [f64; 3] {
-    let at = |e: &Expression| match e.eval(&[0.0; 3], t) {
-        x if x < 0.0 => 0.0,
-        x => x,
-    };
-    let kinetic = at(&law.kinetic);
-    match &law.at_rest {
-        None => [kinetic, 0.0, 0.0],
-        Some(rest) => [kinetic, at(&rest.coefficient) - kinetic, 1.0 / rest.speed],
+/// Coefficients of a law at a time; what is below 0 counts as 0.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Coefficients {
+    /// μ_k
+    kinetic: f64,
+    /// μ_s − μ_k
+    more: f64,
+    /// 1/v_c
+    slowness: f64,
+}
+
+impl Coefficients {
+    pub fn new(law: &FrictionSpec, t: f64) -> Coefficients {
+        let at = |e: &Expression| match e.eval(&[0.0; 3], t) {
+            x if x < 0.0 => 0.0,
+            x => x,
+        };
+        let kinetic = at(&law.kinetic);
+        let (more, slowness) = match &law.at_rest {
+            None => (0.0, 0.0),
+            Some(rest) => (at(&rest.coefficient) - kinetic, 1.0 / rest.speed),
+        };
+        Coefficients {
+            kinetic,
+            more,
+            slowness,
+        }
+    }
+
+    /// μ at a sliding speed.
+    pub fn at(&self, speed: f64) -> f64 {
+        match self.more {
+            0.0 => self.kinetic,
+            more => self.kinetic + more * (-speed * self.slowness).exp(),
+        }
     }
 }
 
@@ -43,7 +67,7 @@ impl<const D: usize> Friction<D> {
     pub fn new(law: FrictionSpec, body: &Body<D>) -> Self {
         Friction {
             law,
-            now: [0.0; 3],
+            now: Coefficients::default(),
             force: zeros(body.len),
             partners: vec![0; body.len],
             work: 0.0,
@@ -66,7 +90,7 @@ impl<const D: usize> Friction<D> {
         t: f64,
         [dt, step]: [f64; 2],
     ) {
-        self.now = coefficients(&self.law, t);
+        self.now = Coefficients::new(&self.law, t);
         self.partners.fill(0);
         contact.each_contact(u, |touch| {
             self.partners[touch.i] += 1;
@@ -113,12 +137,7 @@ impl<const D: usize> Friction<D> {
         let z = self.partners[i].max(self.partners[j]);
         let most = mi * mj / (mi + mj) * speed / (f64::from(z) * step);
         let normal = touch.stiffness * (touch.d - r) * body.volume.at(i) * body.volume.at(j);
-        let [kinetic, more, slowness] = self.now;
-        let coefficient = match more {
-            0.0 => kinetic,
-            more => kinetic + more * (-speed * slowness).exp(),
-        };
-        let force = (coefficient * normal).min(most);
+        let force = (self.now.at(speed) * normal).min(most);
         Some(w.map(|c| force * c / speed))
     }
 

@@ -14,7 +14,7 @@ use super::sets::{assign_materials, initial, sets};
 use super::time_step::{Limits, time_step};
 use super::transfers::state::Transfers;
 use super::{Info, Simulation, Steered};
-use super::{bonds, precracks, surface, transfers};
+use super::{bonds, indenters, precracks, surface, transfers};
 use super::{contact, gaps};
 use crate::body::zeros;
 use crate::condition::carried::Carried;
@@ -298,6 +298,7 @@ pub fn build_in<const D: usize>(
     model.info.bytes = model.bytes();
     model.check_fields(spec.fields.as_deref().unwrap_or_default())?;
     let sets = std::mem::take(&mut model.sets);
+    indenters::check(spec, &model.body)?;
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.toughness = model.toughness_of(spec, shelf, &sets)?;
     model.sets = sets;

@@ -10,7 +10,7 @@ use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
 use crate::interaction::{PairTable, Repulsion};
 use crate::space::AXES;
-use crate::spec::{ContactStiffness, Spec};
+use crate::spec::{ContactStiffness, FrictionSpec, Spec};
 
 /// Points of one material in one body.
 struct Kind {
@@ -184,7 +184,16 @@ pub(super) fn friction<const D: usize>(
     let Some(law) = spec.contact.as_ref().and_then(|c| c.friction.as_ref()) else {
         return Ok(None);
     };
-    let path = "contact.friction";
+    check_friction::<D>(law, spec, "contact.friction")?;
+    Ok(Some(Friction::new(law.clone(), body)))
+}
+
+/// Coefficients that depend on t alone and do not begin below 0, of a body that moves and has something to rub along.
+pub(super) fn check_friction<const D: usize>(
+    law: &FrictionSpec,
+    spec: &Spec,
+    path: &str,
+) -> Result<(), BuildError> {
     let mut all = vec![&law.kinetic];
     all.extend(law.at_rest.iter().map(|r| &r.coefficient));
     for coefficient in all {
@@ -218,5 +227,5 @@ pub(super) fn friction<const D: usize>(
         return Err(BuildError::unsupported(path, message)
             .help("leave friction out, or take [run] instead of [statics]"));
     }
-    Ok(Some(Friction::new(law.clone(), body)))
+    Ok(())
 }

@@ -18,6 +18,7 @@ mod feasible;
 mod free;
 mod gaps;
 mod implicit;
+mod indenters;
 mod interfaces;
 mod model;
 mod motion;

@@ -92,7 +92,8 @@ impl<const D: usize> Model<D> {
             }
         }
         for indenter in &mut self.indenters {
-            indenter.add(&self.body, &self.u, &self.v, &mut self.f, dt);
+            let state = [&self.u, &self.v];
+            indenter.add(&self.body, state, &mut self.f, t, [dt, self.dt]);
         }
         for load in &mut self.loads {
             load.add(&self.body, [&self.u, &self.v], &mut self.f, t, dt);
@@ -193,7 +194,18 @@ impl<const D: usize> Model<D> {
         self.refresh_images();
         let shortest = self.interaction.shortest(&self.body, &self.u);
         let most = fraction.max(HELD);
-        (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32
+        let parts = (fraction / (most * shortest)).ceil().clamp(1.0, PARTS) as u32;
+        parts.max(self.parts_of_indenters(fraction))
+    }
+
+    /// In how many parts what touches rigid bodies asks for: the deeper a point is below a surface, the stiffer it is held.
+    fn parts_of_indenters(&self, fraction: f64) -> u32 {
+        let bonds = (2.0 * fraction / self.dt).powi(2);
+        let stiffest = self.indenters.iter().map(|i| i.stiffened(bonds));
+        let lambda = stiffest.fold(0.0, f64::max);
+        (0.5 * self.dt * lambda.sqrt() / HELD)
+            .ceil()
+            .clamp(1.0, PARTS) as u32
     }
 
     /// One more step, or part of one.
@@ -296,6 +308,7 @@ impl<const D: usize> Model<D> {
         if let Some(fault) = self.fault {
             let error = self.explained(fault);
             self.retreat_transfers();
+            self.indenters.iter_mut().for_each(Indenter::retreat);
             self.step_back();
             return Err(error);
         }

@@ -1,9 +1,11 @@
-//! Space: lattices and regions. Everything here is three numbers wide; unused axes are 0.
+//! Space: lattices, regions, rigid shapes and surfaces of triangles. Everything here is three numbers wide; unused axes are 0.
 
 pub mod fill;
 pub mod lattice;
 pub mod membership;
 pub mod region;
+pub mod rigid;
+pub mod triangles;
 
 /// A point or vector of physical space; unused axes are 0.
 pub type Point = [f64; 3];

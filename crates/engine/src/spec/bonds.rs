@@ -1,6 +1,7 @@
 //! What is done to bonds before the run: factors of their stiffness, pre-cracks; and contact between points without one.
 
 use crate::expression::Expression;
+use crate::space::triangles::Triangles;
 
 /// A factor of the stiffness of bonds: heterogeneous bodies, weak planes.
 #[derive(Debug, Clone)]
@@ -45,7 +46,7 @@ pub enum CrackKind {
     Broken,
 }
 
-/// Flat shapes that cut bonds crossing them.
+/// Shapes that cut bonds crossing them: flat ones, and surfaces of triangles.
 #[derive(Debug, Clone)]
 pub enum CrackShape {
     /// Segment between two points (2-D; in 3-D extruded along z without end).
@@ -60,6 +61,8 @@ pub enum CrackShape {
     Polygon { corners: Vec<[f64; 3]> },
     /// Point on a chain (1-D).
     Point { x: f64 },
+    /// Surface of triangles, open or closed (3-D).
+    Surface(std::sync::Arc<Triangles>),
 }
 
 /// Short-range repulsion (`lammps-peri` item 10): force density `stiffness V_j (r − d)`,

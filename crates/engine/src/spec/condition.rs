@@ -46,24 +46,3 @@ pub enum ConditionKind {
     /// The force of this name on the shelf that the model is built with.
     Own(String),
 }
-
-/// A rigid sphere that pushes points out with force density `K (r − R)²` (`lammps-peri` item 13).
-#[derive(Debug, Clone)]
-pub struct IndenterSpec {
-    /// Stiffness K (force density / length²).
-    pub stiffness: f64,
-    pub radius: f64,
-    pub motion: IndenterMotion,
-}
-
-#[derive(Debug, Clone)]
-pub enum IndenterMotion {
-    /// Centre as a function of t (x, y, z in the expressions are 0).
-    Kinematic([Expression; 3]),
-    /// A body with mass, start and initial velocity.
-    Free {
-        mass: f64,
-        center: [f64; 3],
-        velocity: [f64; 3],
-    },
-}

@@ -10,6 +10,7 @@ mod bonds;
 mod carriers;
 mod condition;
 mod family;
+mod indenter;
 mod interface;
 mod law;
 mod linear_body;
@@ -27,10 +28,9 @@ pub use bonds::{
     PrecrackSpec, ToughnessFactor, ToughnessSpec,
 };
 pub use carriers::Carriers;
-pub use condition::{
-    ConditionKind, ConditionSpec, IndenterMotion, IndenterSpec, InitialSpec, ThermalSpec,
-};
+pub use condition::{ConditionKind, ConditionSpec, InitialSpec, ThermalSpec};
 pub use family::{Calibration, FamilyChoice, Horizon, Influence};
+pub use indenter::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 pub use interface::InterfaceSpec;
 pub use law::{
     Criterion, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw, PairSpec,
@@ -39,7 +39,7 @@ pub use law::{
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
-pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
+pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
 pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};

@@ -25,6 +25,11 @@ pub enum Measure {
     Over { fold: Fold, of: String, part: Part },
     /// A column at the point of the set that is nearest to a place in the reference (of equal ones the first).
     Value { at: Point, of: String, part: Part },
+    /// Of a rigid body by its name; `None`: all of it.
+    Indenter {
+        indenter: String,
+        of: Option<RigidQuantity>,
+    },
     /// J-integral around a crack tip in two dimensions, and the stress intensity `K = √(J E′)`.
     Contour(ContourSpec),
 }
@@ -36,6 +41,58 @@ pub struct ContourSpec {
     pub high: [f64; 2],
     /// Where the crack grows to; a unit vector.
     pub direction: [f64; 2],
+}
+
+/// What a rigid body has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RigidQuantity {
+    /// Of points on it (force).
+    Force,
+    /// Of these forces about its centre (force · length).
+    Torque,
+    Center,
+    Velocity,
+    /// Axis times angle, from 0 to π.
+    Turn,
+    /// Angular velocity (1 / time).
+    Spin,
+    /// Kinetic energy, and what its friction took.
+    Energy,
+}
+
+impl RigidQuantity {
+    pub const ALL: [RigidQuantity; 7] = [
+        RigidQuantity::Force,
+        RigidQuantity::Torque,
+        RigidQuantity::Center,
+        RigidQuantity::Velocity,
+        RigidQuantity::Turn,
+        RigidQuantity::Spin,
+        RigidQuantity::Energy,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            RigidQuantity::Force => "force",
+            RigidQuantity::Torque => "torque",
+            RigidQuantity::Center => "center",
+            RigidQuantity::Velocity => "velocity",
+            RigidQuantity::Turn => "turn",
+            RigidQuantity::Spin => "spin",
+            RigidQuantity::Energy => "energy",
+        }
+    }
+
+    /// Does it go around axes?
+    pub fn is_turn(self) -> bool {
+        match self {
+            RigidQuantity::Torque | RigidQuantity::Turn | RigidQuantity::Spin => true,
+            RigidQuantity::Force
+            | RigidQuantity::Center
+            | RigidQuantity::Velocity
+            | RigidQuantity::Energy => false,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

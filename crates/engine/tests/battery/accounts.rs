@@ -275,15 +275,15 @@ fn a_thrown_mass_gives_what_it_loses() {
             let mut spec = Case::of(name, place).spec();
             let (mass, v0) = (0.02, -0.4);
             let top = (place.cells[1] as f64 - 1.0) * H;
-            spec.indenters = vec![IndenterSpec {
-                stiffness: 40.0,
-                radius: 1.5 * H,
-                motion: IndenterMotion::Free {
+            spec.indenters = vec![IndenterSpec::sphere(
+                40.0,
+                1.5 * H,
+                IndenterMotion::Free(FreeSpec::new(
                     mass,
-                    center: [1.3, top + 1.55 * H, 0.4],
-                    velocity: [0.0, v0, 0.0],
-                },
-            }];
+                    [1.3, top + 1.55 * H, 0.4],
+                    [0.0, v0, 0.0],
+                )),
+            )];
             spec.schedule.time_step = TimeStep::Fixed(0.01);
             let mut sim = made(&spec);
             sim.start(true);

@@ -40,11 +40,11 @@ fn busy(name: &str, kind: LatticeKind, family: FamilyChoice) -> Spec {
         1 => ("-0.8+0.1*t".to_string(), "0.2"),
         _ => (format!("{}", 0.5 * H * place.cells[0] as f64), "-0.9+0.5*t"),
     };
-    spec.indenters = vec![IndenterSpec {
-        stiffness: 100.0,
-        radius: 2.0 * H,
-        motion: IndenterMotion::Kinematic([e(&x), e(y), e("0.3")]),
-    }];
+    spec.indenters = vec![IndenterSpec::sphere(
+        100.0,
+        2.0 * H,
+        IndenterMotion::Kinematic([e(&x), e(y), e("0.3")]),
+    )];
     spec.conditions = vec![
         ConditionSpec {
             set: "all".into(),

@@ -136,11 +136,11 @@ fn a_run_that_begins_is_not_unstable() {
             continue;
         }
         let mut spec = case.spec();
-        spec.indenters = vec![IndenterSpec {
-            stiffness: 10.0,
-            radius: H,
-            motion: IndenterMotion::Kinematic([e("-0.6+0.3*t"), e("0"), e("0")]),
-        }];
+        spec.indenters = vec![IndenterSpec::sphere(
+            10.0,
+            H,
+            IndenterMotion::Kinematic([e("-0.6+0.3*t"), e("0"), e("0")]),
+        )];
         let mut sim = made(&spec);
         sim.start(true);
         // it touches in the first steps; rubber that it has gone through is stiffer than its step allows

@@ -4,8 +4,10 @@ use super::{Off, cells, grid, hold, internal_forces, model, nearest, off, set, s
 use peridyne::expression::Expression;
 use peridyne::run::Simulation;
 use peridyne::space::Point;
+use peridyne::space::triangles::Triangles;
 use peridyne::spec::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 fn lps(bulk: f64, shear: f64) -> LawSpec {
     LawSpec::Lps(Moduli::from_bulk_shear(bulk, shear))
@@ -367,4 +369,53 @@ pub fn wave_in_bar() -> Vec<Off> {
         off("velocity", worst(speeds), 1e-8),
         off("dilatation", worst(volumes), 5e-13),
     ]
+}
+
+/// A cube whose bonds across a surface of a thousand triangles are broken from the start; one corner is pulled.
+pub fn initial_damage() -> Vec<Off> {
+    let rows = |what: &str| stored(&format!("InitialDamage{what}"));
+    // x slowest, z fastest and downwards
+    let at: Vec<Point> = (0..1000usize)
+        .map(|n| [n / 100, n / 10 % 10, 9 - n % 10].map(|k| 0.2 * k as f64 - 0.9))
+        .collect();
+    let mut spec = cells(&at, 0.008, 2200.0, 0.603, lps(14.9e9, 8.94e9));
+    let corners: Vec<Point> = { rows(", corners").into_iter() }
+        .map(|x| [x[0], x[1], x[2]])
+        .collect();
+    let triangles: Vec<[Point; 3]> = { rows(", triangles").into_iter() }
+        .map(|t| [t[0], t[1], t[2]].map(|c| corners[c as usize]))
+        .collect();
+    let surface = Triangles::new(&triangles).unwrap();
+    spec.precracks = vec![PrecrackSpec {
+        shape: CrackShape::Surface(Arc::new(surface)),
+        kind: CrackKind::Broken,
+    }];
+    set(&mut spec, "pulled", &at, |x| x.iter().all(|c| *c < -0.05));
+    set(&mut spec, "held", &at, |x| x.iter().all(|c| *c > 0.25));
+    let pull = format!("-0.05*(cos({PI} + t*{PI}/1.0e-2) + 1)");
+    hold(&mut spec, "pulled", [&pull, &pull, &pull]);
+    hold(&mut spec, "held", ["0", "0", "0"]);
+    spec.schedule.time_step = TimeStep::Fixed(2e-5);
+    let mut sim = model(&spec);
+    sim.start(true);
+    let bonds: Vec<f64> = rows(", bonds").concat();
+    let damage = sim.scalars("damage");
+    let stored = bonds.chunks_exact(2).map(|b| b[1] / b[0]);
+    let mut all = vec![off("damage", worst(damage.into_iter().zip(stored)), 5.8e-7)];
+    let places = rows("");
+    for (what, column) in [("displacement at 0.005", 1), ("displacement at 0.009", 4)] {
+        let steps = [250, 450][column / 4];
+        while sim.step_number() < steps {
+            sim.step().unwrap();
+        }
+        let u = sim.displacements();
+        let pairs = places.iter().flat_map(|row| {
+            let own = u[row[0] as usize];
+            (0..3)
+                .map(move |a| (own[a], row[column + a]))
+                .collect::<Vec<_>>()
+        });
+        all.push(off(what, worst(pairs), 1.0363799e-7));
+    }
+    all
 }

@@ -1,13 +1,15 @@
 //! What was understood, in words.
 
-use super::units::{Dim, UnitSystem};
+use super::units::{Dim, UnitSystem, short};
 use peridyne::law::descriptor::Value;
 use peridyne::run::Shelf;
 use peridyne::space::region::Region;
+use peridyne::space::rigid::RigidShape;
 use peridyne::spec::{
     Acting, BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion,
     LawSpec, MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, PotentialSpec,
-    ProbeSpec, Release, Spec, Stepper, TimeStep, ToughnessFactor, TransferMethod, TransferSpec,
+    ProbeSpec, Release, RigidQuantity, Spec, Stepper, TimeStep, ToughnessFactor, TransferMethod,
+    TransferSpec,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -195,13 +197,23 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                     .collect();
                 format!("moved along ({})", center.join(", "))
             }
-            IndenterMotion::Free { mass, .. } => {
-                format!("free with {}", units.write(*mass, Dim::MASS))
+            IndenterMotion::Free(free) => {
+                format!("free with {}", units.write(free.mass, Dim::MASS))
             }
         };
+        let name = match indenter.name.is_empty() {
+            true => String::new(),
+            false => format!("{}: ", indenter.name),
+        };
+        let friction = { indenter.friction.as_ref() }.map_or(String::new(), |f| {
+            format!(", friction {}", f.kinetic.source())
+        });
+        let cohesion = { indenter.cohesion.as_ref() }.map_or(String::new(), |c| {
+            format!(", sticky up to {}", units.write(c.range(), Dim::LENGTH))
+        });
         lines.push(format!(
-            "indenter   sphere of radius {}, {motion}",
-            units.write(indenter.radius, Dim::LENGTH)
+            "indenter   {name}{}, {motion}{friction}{cohesion}",
+            rigid(&indenter.shape, units, spec.dimension)
         ));
     }
     lines.extend(spec.transfers.iter().map(spreading));
@@ -333,10 +345,49 @@ fn measured(measure: &Measure, set: &str, units: UnitSystem, dimension: usize) -
                 place(at)
             )
         }
+        Measure::Indenter { indenter, of } => format!(
+            "{} of the indenter {indenter}",
+            of.map_or("all", RigidQuantity::name)
+        ),
         Measure::Contour(c) => format!(
             "J and K by the rectangle {} to {}",
             place(&c.low),
             place(&c.high)
+        ),
+    }
+}
+
+fn rigid(shape: &RigidShape, units: UnitSystem, dimension: usize) -> String {
+    let length = |x: f64| units.write(x, Dim::LENGTH);
+    let place = |x: &[f64]| {
+        let each = x.iter().take(dimension).map(|x| length(*x));
+        each.collect::<Vec<_>>().join(", ")
+    };
+    match shape {
+        RigidShape::Sphere { radius } => format!("sphere of radius {}", length(*radius)),
+        RigidShape::Box { half } => {
+            let edges: Vec<String> = { half.iter().take(dimension) }
+                .map(|h| length(2.0 * h))
+                .collect();
+            format!("box of {}", edges.join(" by "))
+        }
+        RigidShape::Cylinder { radius, half, .. } => format!(
+            "cylinder of radius {} and length {}",
+            length(*radius),
+            length(2.0 * half)
+        ),
+        RigidShape::Plane { normal } => {
+            let normal = normal.iter().take(dimension).map(|n| short(*n));
+            format!(
+                "plane of normal ({})",
+                normal.collect::<Vec<_>>().join(", ")
+            )
+        }
+        RigidShape::Solid(solid) => format!(
+            "surface of {} triangles, volume {}, centroid ({})",
+            solid.triangles().face.len(),
+            units.write(solid.volume(), Dim::VOLUME),
+            place(&solid.centroid())
         ),
     }
 }

@@ -3,6 +3,7 @@
 mod condition;
 mod crack;
 mod fields;
+mod indenter;
 mod law;
 mod molecules;
 mod names;
@@ -14,9 +15,10 @@ mod transfer;
 mod units;
 use super::units::Dim;
 use super::value::{At, Named, Number, Or, Vector, Written};
-pub use condition::{Condition, Contact, Friction, Indenter, Initial};
+pub use condition::{Condition, Contact, Friction, Initial};
 pub use crack::{BondFactor, FlatShape, Precrack, Toughness};
 pub use fields::{Centre, Fields};
+pub use indenter::{Indenter, Rigid, Rotation};
 pub use law::{Given, Law};
 pub use molecules::Molecules;
 pub use names::*;
@@ -124,7 +126,7 @@ pub struct Document {
     /// What is held, moved, pushed, damped, heated or cooled during the run.
     #[serde(default)]
     pub condition: Vec<At<Condition>>,
-    /// Rigid spheres, driven or free.
+    /// Rigid bodies (spheres, boxes, cylinders, planes, surfaces of triangles), driven or free.
     #[serde(default)]
     pub indenter: Vec<At<Indenter>>,
     /// Measurements over time: columns of history.csv.

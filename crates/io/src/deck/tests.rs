@@ -1,4 +1,5 @@
 use super::*;
+use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
 use proptest::prelude::*;
 
@@ -66,7 +67,10 @@ fn a_deck_becomes_a_spec() {
     let velocity = spec.initial[0].velocity[1].as_ref().unwrap();
     assert_eq!(velocity.eval(&[0.02, 0.0, 0.0], 0.0), -100.0);
     assert!(spec.initial[0].velocity[0].is_none());
-    assert_eq!(spec.indenters[0].radius, 0.005);
+    let RigidShape::Sphere { radius } = spec.indenters[0].shape else {
+        panic!()
+    };
+    assert_eq!(radius, 0.005);
     let IndenterMotion::Kinematic(center) = &spec.indenters[0].motion else {
         panic!()
     };

@@ -1,5 +1,5 @@
 //! Files in: point clouds (plain text, Abaqus `.inp`, gmsh `.msh`, Exodus II `.g`, LAMMPS `.data`), atoms
-//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), and tables and constants of
+//! ([`extxyz`], [`dump`], [`data`]), linear bodies (`.npz`), surfaces of triangles ([`stl`]), and tables and constants of
 //! potentials ([`eam`], [`entries`]).
 //!
 //! A mesh becomes one point per cell, at its centroid, with its volume. Only cells of the highest dimension count; what
@@ -21,6 +21,7 @@ mod linear;
 mod lines;
 mod mesh;
 pub mod molecules;
+pub mod stl;
 mod stream;
 mod text;
 pub mod vtu;

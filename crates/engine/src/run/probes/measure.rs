@@ -92,6 +92,9 @@ impl<const D: usize> Model<D> {
                 let (parts, columns) = self.parts(of, part, path, &column)?;
                 (Kind::Over(Fold::Sum, of.clone(), parts), columns)
             }
+            Measure::Indenter { indenter, of } => {
+                self.rigid_probe(&spec.name, indenter, *of, path)?
+            }
             Measure::Contour(contour) => {
                 let contour = self.contour_of(contour, path)?;
                 let columns = vec![
@@ -193,7 +196,7 @@ impl<const D: usize> Model<D> {
             let of: &[&str] = match &probe.kind {
                 Kind::Over(_, of, _) => &[of.as_str()],
                 Kind::Energy => &ENERGIES,
-                Kind::Contour(_) | Kind::Reaction | Kind::Moment(_) => &[],
+                Kind::Contour(_) | Kind::Reaction | Kind::Moment(_) | Kind::Rigid(..) => &[],
             };
             wanted.extend(
                 of.iter()
@@ -229,6 +232,7 @@ impl<const D: usize> Model<D> {
                     }));
                 }
                 Kind::Contour(contour) => values.extend(self.integral(contour)),
+                Kind::Rigid(n, of) => values.extend(self.rigid_values(*n, of)),
             }
         }
         self.probes = probes;

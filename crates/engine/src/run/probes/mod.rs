@@ -3,4 +3,5 @@
 mod contour;
 mod measure;
 mod rectangle;
+mod rigid;
 pub(super) mod state;

@@ -3,7 +3,7 @@
 use super::rectangle::Contour;
 use crate::observe::ProbeColumn;
 use crate::space::Point;
-use crate::spec::Fold;
+use crate::spec::{Fold, RigidQuantity};
 
 /// A probe that knows its points.
 pub(in crate::run) struct Probe {
@@ -20,4 +20,6 @@ pub(super) enum Kind {
     /// Components by number; `None`: the magnitude.
     Over(Fold, String, Vec<Option<usize>>),
     Contour(Box<Contour>),
+    /// Of the rigid body of this number.
+    Rigid(usize, Vec<RigidQuantity>),
 }

@@ -1,8 +1,8 @@
-//! What is done to a body: contact, initial values, conditions, indenters.
+//! What is done to a body: contact, initial values, conditions.
 
 use super::{Convection, Radiation, Shape, SpeciesExchange};
 use crate::deck::units::Dim;
-use crate::deck::value::{At, Components, Number, Or, Vector, Written};
+use crate::deck::value::{At, Components, Number, Or, Written};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -113,25 +113,4 @@ pub struct Condition {
     pub species_source: Option<Number>,
     /// Exchange through the surface of the set with what is around it.
     pub species_exchange: Option<At<SpeciesExchange>>,
-}
-
-/// A rigid sphere; moved as its centre (an expression of t) says, or free when it has a mass.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Indenter {
-    /// Force density / length².
-    #[schemars(extend("dimension" = Dim::INDENTER_STIFFNESS.name()))]
-    pub stiffness: Number,
-    /// Radius.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub radius: Number,
-    /// Its centre: of a driven one expressions of t, of a free one where it begins.
-    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
-    pub center: Vector,
-    /// Of a free one at the start; of a driven one always. 0 when left out.
-    #[schemars(extend("dimension" = Dim::VELOCITY.name()))]
-    pub velocity: Option<Vector>,
-    /// With a mass it moves by the forces on it; without one it is driven.
-    #[schemars(extend("dimension" = Dim::MASS.name()))]
-    pub mass: Option<Number>,
 }

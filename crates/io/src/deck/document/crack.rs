@@ -49,7 +49,7 @@ pub struct FlatShape {
     pub point: Option<Number>,
 }
 
-/// One of segment, disk, polygon, point.
+/// One of segment, disk, polygon, point, stl.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Precrack {
@@ -63,6 +63,8 @@ pub struct Precrack {
     /// 1-D.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub point: Option<Number>,
+    /// A surface of triangles, open or closed; 3-D.
+    pub stl: Option<At<Stl>>,
     /// absent (never there; when left out) or broken (counted as damage).
     pub kind: Option<CrackName>,
 }
@@ -90,4 +92,15 @@ pub struct Disk {
     /// Radius.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub radius: Number,
+}
+
+/// Triangles of a file.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stl {
+    /// A binary or text file, relative to the deck.
+    pub file: At<String>,
+    /// What 1 in the file is; the deck's unit of length when left out.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub unit: Option<Number>,
 }

@@ -134,6 +134,8 @@ names! {
         Sum,
         /// A field at the point of the set that is nearest to a place.
         Value,
+        /// Force on a rigid body, torque, centre, velocity, turn, spin, kinetic energy and what its friction took.
+        Indenter,
         /// J-integral and stress intensity K of a crack tip (2-D statics), by a rectangle around it.
         Contour,
     }
@@ -157,6 +159,7 @@ impl MeasureName {
             MeasureName::Max => "max",
             MeasureName::Sum => "sum",
             MeasureName::Value => "value",
+            MeasureName::Indenter => "indenter",
             MeasureName::Contour => "contour",
         }
     }

@@ -107,10 +107,13 @@ pub struct Probe {
     pub set: Option<At<String>>,
     /// What is measured.
     pub measure: At<MeasureName>,
-    /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value.
+    /// Field that is measured (`peridyne laws` lists them); of mean, min, max, sum and value. Of an indenter one of force, torque, center, velocity,
+    /// turn, spin, energy; all when left out.
     pub of: Option<At<String>>,
     /// x, xy, … or magnitude; all components when left out.
     pub component: Option<At<String>>,
+    /// Name of an [[indenter]]; of the measure of that name.
+    pub indenter: Option<At<String>>,
     /// Fixed point of a moment.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub about: Option<Vector>,

@@ -56,7 +56,10 @@ pub fn contact(
     }
 }
 
-fn friction(context: &Context, written: &At<Or<Written, Friction>>) -> Result<FrictionSpec> {
+pub(super) fn friction(
+    context: &Context,
+    written: &At<Or<Written, Friction>>,
+) -> Result<FrictionSpec> {
     let coefficient = |n: &Number| {
         let expression = context.expression(n, Dim::NUMBER)?;
         match expression.as_constant() {

@@ -6,6 +6,7 @@ mod body;
 mod contact;
 pub(super) mod context;
 mod fields;
+mod indenter;
 mod interface;
 mod law;
 mod material;
@@ -31,7 +32,7 @@ use super::document::{
 use super::error::DeckError;
 use super::source::Source;
 use super::units::{Constants, Dim, UnitSystem, short};
-use super::value::{At, Or, Written};
+use super::value::{At, Number, Or, Written};
 use crate::continuum::plan::FieldsSpec;
 use crate::read::eam::{self, EamFile};
 use crate::read::entries::Entry;
@@ -39,6 +40,7 @@ use crate::read::{Frame, Points};
 use context::{Context, Result};
 use peridyne::law::descriptor::Key;
 use peridyne::run::Shelf;
+use peridyne::space::triangles::Triangles;
 use peridyne::spec::{
     BodySpec, BondedSpec, Calibration, Cloud, FamilyChoice, Horizon, Influence, MaterialSpec,
     Plane, Spec, SurfaceFactors, SurfaceMethod,
@@ -105,6 +107,21 @@ impl Files<'_> {
         let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
         let read = crate::read::entries::entries(&self.folder.join(&file.value), &names);
         read.map_err(|e| context.error(&file.span, e.to_string()))
+    }
+
+    /// Triangles of a surface.
+    fn stl(
+        &self,
+        context: &Context,
+        file: &At<String>,
+        unit: &Option<Number>,
+    ) -> Result<Triangles> {
+        let unit = match unit {
+            Some(unit) => context.positive(unit, Dim::LENGTH, "the unit of the file")?,
+            None => context.units.plain_factor(Dim::LENGTH),
+        };
+        crate::read::stl::stl(&self.folder.join(&file.value), unit)
+            .map_err(|e| context.error(&file.span, e.to_string()))
     }
 
     /// Tables of several elements, a file each, as one model.
@@ -255,7 +272,7 @@ pub(super) fn lower(
         precracks: document
             .precrack
             .iter()
-            .map(|p| motion::precrack(&context, p))
+            .map(|p| motion::precrack(&context, p, files))
             .collect::<Result<_>>()?,
         contact: contact::contact(&context, document, &materials)?,
         initial,
@@ -264,7 +281,7 @@ pub(super) fn lower(
         indenters: document
             .indenter
             .iter()
-            .map(|i| motion::indenter(&context, i))
+            .map(|i| indenter::indenter(&context, i, section, files))
             .collect::<Result<_>>()?,
         family: match document.family {
             Some(FamilyName::Stencil) => FamilyChoice::Stencil,

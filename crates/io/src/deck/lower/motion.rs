@@ -1,20 +1,20 @@
-//! Initial values, conditions, indenters, pre-cracks.
+//! Initial values, conditions, pre-cracks.
 
+use super::Files;
 use super::context::{Context, Result};
 use super::region::region;
 use super::transfer::{self, Said};
 use crate::deck::document::{
-    BondFactor, Condition, CrackName, FlatShape, Indenter, Initial, Precrack, Shape, Toughness,
+    BondFactor, Condition, CrackName, FlatShape, Initial, Precrack, Shape, Toughness,
 };
 use crate::deck::units::Dim;
 use crate::deck::value::At;
-use peridyne::expression::Expression;
 use peridyne::spec::{
-    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, IndenterMotion,
-    IndenterSpec, InitialSpec, Members, PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec,
-    TransferCondition,
+    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, InitialSpec, Members,
+    PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec, TransferCondition,
 };
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The set that is meant: a named one, one made of a region here, or all.
 fn target(
@@ -143,45 +143,11 @@ pub(super) fn condition(
         .collect())
 }
 
-pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterSpec> {
-    let i = &at.value;
-    let motion = match &i.mass {
-        Some(mass) => IndenterMotion::Free {
-            mass: context.positive(mass, Dim::MASS, "the mass")?,
-            center: context.finite_vector(&i.center, Dim::LENGTH)?,
-            velocity: i
-                .velocity
-                .as_ref()
-                .map_or(Ok([0.0; 3]), |v| context.finite_vector(v, Dim::VELOCITY))?,
-        },
-        None => {
-            let mut center = context.expressions(&i.center, Dim::LENGTH)?;
-            if let Some(velocity) = &i.velocity {
-                let speed = context.finite_vector(velocity, Dim::VELOCITY)?;
-                for (a, c) in center.iter_mut().enumerate() {
-                    let Some(start) = c.as_constant() else {
-                        return Err(context.error(
-                            &velocity.span,
-                            "the centre moves already by its expression: drop one of them",
-                        ));
-                    };
-                    if speed[a] != 0.0 {
-                        *c = Expression::parse(&format!("{start:e} + {:e}*t", speed[a]), &[])
-                            .map_err(|e| context.error(&velocity.span, e.message))?;
-                    }
-                }
-            }
-            IndenterMotion::Kinematic(center)
-        }
-    };
-    Ok(IndenterSpec {
-        stiffness: context.positive(&i.stiffness, Dim::INDENTER_STIFFNESS, "the stiffness")?,
-        radius: context.positive(&i.radius, Dim::LENGTH, "the radius")?,
-        motion,
-    })
-}
-
-pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackSpec> {
+pub(super) fn precrack(
+    context: &Context,
+    at: &At<Precrack>,
+    files: &Files,
+) -> Result<PrecrackSpec> {
     let p = &at.value;
     let shape = FlatShape {
         segment: p.segment.clone(),
@@ -193,7 +159,32 @@ pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackS
         Some(CrackName::Broken) => CrackKind::Broken,
         Some(CrackName::Absent) | None => CrackKind::Absent,
     };
-    let shape = flat_shape(context, &at.span, "a precrack", &shape)?;
+    let flat = shape.segment.is_some()
+        || shape.disk.is_some()
+        || shape.polygon.is_some()
+        || shape.point.is_some();
+    let shape = match (&p.stl, flat) {
+        (Some(stl), true) => {
+            let message = "a precrack has stl and another shape: give one of them";
+            return Err(context.error(&stl.span, message));
+        }
+        (Some(stl), false) => {
+            if context.dimension != 3 {
+                let message = format!(
+                    "a surface of triangles does not cut a body in {}-D",
+                    context.dimension
+                );
+                return Err(context.error(&stl.span, message));
+            }
+            let surface = files.stl(context, &stl.value.file, &stl.value.unit)?;
+            CrackShape::Surface(Arc::new(surface))
+        }
+        (None, true) => flat_shape(context, &at.span, "a precrack", &shape)?,
+        (None, false) => {
+            let message = "a precrack needs one of segment, disk, polygon, point, stl";
+            return Err(context.error(&at.span, message));
+        }
+    };
     Ok(PrecrackSpec { shape, kind })
 }
 

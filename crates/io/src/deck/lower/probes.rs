@@ -2,9 +2,10 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{MeasureName, Probe};
+use crate::deck::error::nearest;
 use crate::deck::units::Dim;
 use crate::deck::value::At;
-use peridyne::spec::{ContourSpec, Fold, Measure, Part, ProbeSpec, SetSpec};
+use peridyne::spec::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity, SetSpec};
 
 /// Keys that not all measures have, and which of them a measure needs and may have.
 fn keys(measure: MeasureName) -> (&'static [&'static str], &'static [&'static str]) {
@@ -15,6 +16,7 @@ fn keys(measure: MeasureName) -> (&'static [&'static str], &'static [&'static st
             (&["of"], &["component"])
         }
         MeasureName::Value => (&["of", "at"], &["component"]),
+        MeasureName::Indenter => (&["indenter"], &["of"]),
         MeasureName::Contour => (&["corners"], &["direction"]),
     }
 }
@@ -34,6 +36,7 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
     let given = [
         ("of", written.of.as_ref().map(|k| &k.span)),
         ("component", written.component.as_ref().map(|k| &k.span)),
+        ("indenter", written.indenter.as_ref().map(|k| &k.span)),
         ("about", written.about.as_ref().map(|k| &k.span)),
         ("at", written.at.as_ref().map(|k| &k.span)),
         ("corners", written.corners.as_ref().map(|k| &k.span)),
@@ -64,6 +67,10 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
             "a contour goes through all points of its rectangle",
             "remove `set`",
         ));
+    }
+    if let (MeasureName::Indenter, Some(set)) = (measure, &written.set) {
+        let message = "an indenter is measured whole, whatever points it touches";
+        return Err(context.error_with(&set.span, message, "remove `set`"));
     }
     let set = match &written.set {
         None => "all".into(),
@@ -102,6 +109,10 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
             of,
             part,
         },
+        MeasureName::Indenter => Measure::Indenter {
+            indenter: { written.indenter.as_ref() }.map_or(String::new(), |n| n.value.clone()),
+            of: rigid(context, written)?,
+        },
         MeasureName::Contour => Measure::Contour(contour(context, written)?),
     };
     Ok(ProbeSpec {
@@ -111,11 +122,30 @@ pub(super) fn probe(context: &Context, at: &At<Probe>, sets: &[SetSpec]) -> Resu
     })
 }
 
+/// What of a rigid body; `None`: all.
+fn rigid(context: &Context, written: &Probe) -> Result<Option<RigidQuantity>> {
+    let Some(of) = &written.of else {
+        return Ok(None);
+    };
+    let all = RigidQuantity::ALL;
+    if let Some(found) = all.iter().find(|q| q.name() == of.value) {
+        return Ok(Some(*found));
+    }
+    let names = all.map(RigidQuantity::name);
+    let help = match nearest(&of.value, names) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None => format!("an indenter has {}", names.join(", ")),
+    };
+    let message = format!("an indenter has no `{}`", of.value);
+    Err(context.error_with(&of.span, message, help))
+}
+
 /// What to write for a key.
 fn example(key: &str) -> &'static str {
     match key {
         "of" => "write for example of = \"displacement\"; `peridyne laws` lists the fields",
         "about" => "write for example about = [0, 0, 0]",
+        "indenter" => "write the name of an [[indenter]]: indenter = \"punch\"",
         "at" => "write for example at = [\"5 mm\", 0, 0]: the nearest point counts",
         _ => {
             "write two opposite corners of a rectangle around the tip: corners = [[\"10 mm\", \"-5 mm\"], [\"20 mm\", \"5 mm\"]]"

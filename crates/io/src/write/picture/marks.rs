@@ -1,9 +1,13 @@
 //! What is drawn over a body: cracks, indenters, supports and loads.
 
+use peridyne::condition::rigid::Rigid;
 use peridyne::expression::Expression;
 use peridyne::run::Simulation;
 use peridyne::space::Point;
-use peridyne::spec::{ConditionKind, CrackShape, IndenterMotion, Spec};
+use peridyne::space::rigid::RigidShape;
+use peridyne::space::triangles::Triangles;
+use peridyne::spec::{ConditionKind, CrackShape, IndenterMotion, IndenterSpec, Spec};
+use std::collections::HashMap;
 
 use super::image::{Color, Image};
 use super::view::{Camera, Frame};
@@ -23,30 +27,15 @@ const ARROW: f64 = 34.0;
 const SIZE: f64 = 9.0;
 
 /// Things in the reference configuration (lengths).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Marks {
     /// Corners of pre-cracks.
     cracks: Vec<Vec<Point>>,
-    /// Centres as functions of t, radii.
-    spheres: Vec<([Expression; 3], f64)>,
+    /// Rigid bodies whose place is known at every time, and lines along the axes of their shapes.
+    rigid: Vec<(IndenterSpec, Vec<[Point; 2]>)>,
     supports: Vec<Point>,
     /// Where, and where to; the length says nothing.
     loads: Vec<(Point, Point)>,
-}
-
-impl PartialEq for Marks {
-    fn eq(&self, other: &Marks) -> bool {
-        let centres = |m: &Marks| -> Vec<([String; 3], f64)> {
-            let text = |(c, r): &([Expression; 3], f64)| {
-                (std::array::from_fn(|a| c[a].source().to_string()), *r)
-            };
-            m.spheres.iter().map(text).collect()
-        };
-        self.cracks == other.cracks
-            && self.supports == other.supports
-            && self.loads == other.loads
-            && centres(self) == centres(other)
-    }
 }
 
 impl Marks {
@@ -57,8 +46,9 @@ impl Marks {
             marks.cracks.extend(corners(&crack.shape));
         }
         for indenter in &spec.indenters {
-            if let IndenterMotion::Kinematic(center) = &indenter.motion {
-                marks.spheres.push((center.clone(), indenter.radius));
+            if let IndenterMotion::Kinematic(_) = &indenter.motion {
+                let lines = outline(&indenter.shape, spec.dimension);
+                marks.rigid.push((indenter.clone(), lines));
             }
         }
         let reference = sim.vectors("reference");
@@ -109,6 +99,90 @@ impl Marks {
     }
 }
 
+/// Edges of a rigid shape along its own axes; none of a sphere, and of a plane, which has no end.
+fn outline(shape: &RigidShape, dimension: usize) -> Vec<[Point; 2]> {
+    match shape {
+        RigidShape::Sphere { .. } | RigidShape::Plane { .. } => vec![],
+        RigidShape::Box { half } => {
+            let corner = |n: usize| -> Point {
+                std::array::from_fn(|a| match (n >> a & 1, a < dimension) {
+                    (_, false) => 0.0,
+                    (1, _) => half[a],
+                    _ => -half[a],
+                })
+            };
+            let edge = |n: usize, a: usize| [corner(n), corner(n | 1 << a)];
+            let all = (0..1 << dimension).flat_map(|n: usize| (0..dimension).map(move |a| (n, a)));
+            all.filter(|(n, a)| n >> a & 1 == 0)
+                .map(|(n, a)| edge(n, a))
+                .collect()
+        }
+        RigidShape::Cylinder { radius, half, axis } => rims(*radius, *half, axis),
+        RigidShape::Solid(solid) => creases(solid.triangles()),
+    }
+}
+
+/// Both ends of a cylinder, and lines between them.
+fn rims(radius: f64, half: f64, axis: &Point) -> Vec<[Point; 2]> {
+    const SIDES: usize = 48;
+    let least = (1..3).fold(0, |m, a| if axis[a].abs() < axis[m].abs() { a } else { m });
+    let mut e = [0.0; 3];
+    e[least] = 1.0;
+    let p = unit(&cross(axis, &e));
+    let q = cross(axis, &p);
+    let at = |n: usize, end: f64| -> Point {
+        let (sine, cosine) = (std::f64::consts::TAU * n as f64 / SIDES as f64).sin_cos();
+        std::array::from_fn(|a| radius * (cosine * p[a] + sine * q[a]) + end * axis[a])
+    };
+    let around = |end: f64| (0..SIDES).map(move |n| (n, end));
+    let mut lines: Vec<[Point; 2]> = { around(-half).chain(around(half)) }
+        .map(|(n, end)| [at(n, end), at(n + 1, end)])
+        .collect();
+    lines.extend(
+        (0..SIDES)
+            .step_by(SIDES / 4)
+            .map(|n| [at(n, -half), at(n, half)]),
+    );
+    lines
+}
+
+/// Edges between triangles that meet at more than 30°.
+fn creases(triangles: &Triangles) -> Vec<[Point; 2]> {
+    let normal = |n: usize| {
+        let [a, b, c] = triangles.corners(n);
+        let way = |x: &Point| -> Point { std::array::from_fn(|k| x[k] - a[k]) };
+        unit(&cross(&way(&b), &way(&c)))
+    };
+    let mut met: HashMap<(u32, u32), usize> = HashMap::new();
+    let mut lines = vec![];
+    for (n, face) in triangles.face.iter().enumerate() {
+        for k in 0..3 {
+            let (from, to) = (face[k], face[(k + 1) % 3]);
+            let Some(other) = met.insert((from.min(to), from.max(to)), n) else {
+                continue;
+            };
+            let (p, q) = (normal(n), normal(other));
+            if (0..3).map(|a| p[a] * q[a]).sum::<f64>() < 30f64.to_radians().cos() {
+                lines.push([from, to].map(|c| triangles.corner[c as usize]));
+            }
+        }
+    }
+    lines
+}
+
+fn cross(a: &Point, b: &Point) -> Point {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn unit(a: &Point) -> Point {
+    let size = a.iter().map(|c| c * c).sum::<f64>().sqrt();
+    a.map(|c| c / size)
+}
+
 /// Corners of a crack that has some.
 fn corners(shape: &CrackShape) -> Option<Vec<Point>> {
     match shape {
@@ -120,7 +194,7 @@ fn corners(shape: &CrackShape) -> Option<Vec<Point>> {
             all.extend(corners.first().copied());
             Some(all)
         }
-        CrackShape::Disk { .. } | CrackShape::Point { .. } => None,
+        CrackShape::Disk { .. } | CrackShape::Point { .. } | CrackShape::Surface(_) => None,
     }
 }
 
@@ -177,9 +251,21 @@ impl View<'_> {
 
 /// Draws over a view what there is at this time.
 pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
-    for (center, radius) in &marks.spheres {
-        let at = view.place(std::array::from_fn(|a| center[a].eval(&[0.0; 3], time)));
-        circle(image, at, radius * view.scale, INDENTER);
+    for (indenter, lines) in &marks.rigid {
+        let mut body = Rigid::<3>::new(indenter);
+        body.place(time);
+        if let RigidShape::Sphere { radius } = indenter.shape {
+            circle(
+                image,
+                view.place(body.center),
+                radius * view.scale,
+                INDENTER,
+            );
+        }
+        for line in lines {
+            let [from, to] = line.each_ref().map(|x| view.place(body.in_space(x)));
+            image.line(from, to, 2.5, INDENTER);
+        }
     }
     if !view.flat {
         return;

@@ -1,0 +1,163 @@
+//! What rigid bodies must be before they touch anything.
+
+use super::contact::check_friction;
+use crate::body::Body;
+use crate::error::BuildError;
+use crate::law::material::tensor;
+use crate::space::rigid::RigidShape;
+use crate::spec::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, Spec};
+
+/// Refuses rigid bodies that are none in this dimension, or of numbers without meaning.
+pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
+    let mut names: Vec<&str> = vec![];
+    for (n, indenter) in spec.indenters.iter().enumerate() {
+        let path = format!("indenters[{n}]");
+        let name = indenter.name.as_str();
+        if !name.is_empty() && names.contains(&name) {
+            let message = format!("two indenters are called `{name}`");
+            return Err(BuildError::conflict(format!("{path}.name"), message));
+        }
+        names.push(name);
+        one::<D>(indenter, spec, &path)?;
+        recurs(indenter, body, &path)?;
+        if let Some(cohesion) = &indenter.cohesion {
+            sticks(cohesion, body, &path)?;
+        }
+    }
+    Ok(())
+}
+
+fn one<const D: usize>(indenter: &IndenterSpec, spec: &Spec, path: &str) -> Result<(), BuildError> {
+    let shape = &indenter.shape;
+    if !shape.fits(D) {
+        let shapes = ["sphere or plane", "sphere (a disk), box or plane", ""][D.clamp(1, 3) - 1];
+        let message = format!("a rigid {} is nothing in {D} dimensions", shape.name());
+        return Err(BuildError::unsupported(format!("{path}.shape"), message)
+            .help(format!("take a {shapes}")));
+    }
+    let sizes = match shape {
+        RigidShape::Sphere { radius } => vec![*radius],
+        RigidShape::Box { half } => half[..D].to_vec(),
+        RigidShape::Cylinder { radius, half, .. } => vec![*radius, *half],
+        RigidShape::Plane { .. } | RigidShape::Solid(_) => vec![],
+    };
+    let positive = |x: f64| x > 0.0 && x.is_finite();
+    if let Some(size) = sizes.iter().find(|x| !positive(**x)) {
+        let message = format!(
+            "a size of the rigid {} is {size}, expected a positive length",
+            shape.name()
+        );
+        return Err(BuildError::invalid(format!("{path}.shape"), message));
+    }
+    if !positive(indenter.stiffness) {
+        let message = format!(
+            "the stiffness is {}, expected a positive number",
+            indenter.stiffness
+        );
+        return Err(BuildError::invalid(format!("{path}.stiffness"), message));
+    }
+    if let Some(turn) = &indenter.turn
+        && (D == 1 || (D == 2 && turn.axis[..2] != [0.0; 2]))
+    {
+        let message = "a body in a plane turns about z, one on a line not at all";
+        return Err(BuildError::unsupported(format!("{path}.rotation"), message));
+    }
+    if let Some(friction) = &indenter.friction {
+        check_friction::<D>(friction, spec, &format!("{path}.friction"))?;
+    }
+    match &indenter.motion {
+        IndenterMotion::Kinematic(_) => Ok(()),
+        IndenterMotion::Free(free) => free_one::<D>(free, shape, path),
+    }
+}
+
+fn free_one<const D: usize>(
+    free: &FreeSpec,
+    shape: &RigidShape,
+    path: &str,
+) -> Result<(), BuildError> {
+    if matches!(shape, RigidShape::Plane { .. }) {
+        let message = "a plane has no end and no mass: it is driven, or held";
+        return Err(BuildError::unsupported(format!("{path}.mass"), message)
+            .help("leave mass out, or take a box"));
+    }
+    if !(free.mass > 0.0 && free.mass.is_finite()) {
+        let message = format!("the mass is {}, expected a positive number", free.mass);
+        return Err(BuildError::invalid(format!("{path}.mass"), message));
+    }
+    let Some(inertia) = free.inertia else {
+        return Ok(());
+    };
+    let size = inertia.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    let twisted =
+        (0..3).any(|a| (0..a).any(|b| (inertia[a][b] - inertia[b][a]).abs() > 1e-12 * size));
+    let moments = match D {
+        3 => tensor::eigen::<3>(inertia).0.to_vec(),
+        _ => vec![inertia[2][2]],
+    };
+    // no mass lies further from one axis than from both others together
+    let sum: f64 = moments.iter().sum();
+    let wrong = moments.iter().any(|i| !(*i > 0.0 && i.is_finite()))
+        || (D == 3 && moments.iter().any(|i| 2.0 * i > sum * (1.0 + 1e-12)));
+    if twisted || wrong {
+        let message = format!(
+            "the principal moments of inertia are {moments:?}: a body has positive ones, of a symmetric tensor, each at most the sum of the other two"
+        );
+        return Err(BuildError::invalid(format!("{path}.inertia"), message));
+    }
+    Ok(())
+}
+
+/// The image whose centre is nearest is the nearest one of a sphere, of other shapes only where they are smaller than half a period.
+fn recurs<const D: usize>(
+    indenter: &IndenterSpec,
+    body: &Body<D>,
+    path: &str,
+) -> Result<(), BuildError> {
+    let reach = match &indenter.shape {
+        RigidShape::Sphere { .. } | RigidShape::Plane { .. } => return Ok(()),
+        shape => shape.reach(D),
+    };
+    match body.period.iter().flatten().find(|p| 2.0 * reach > **p) {
+        None => Ok(()),
+        Some(period) => Err(BuildError::conflict(
+            format!("{path}.shape"),
+            format!(
+                "the rigid {} reaches {reach:e} from its centre, more than half of the period {period:e}: it would meet its own image",
+                indenter.shape.name()
+            ),
+        )),
+    }
+}
+
+/// Cohesion that reaches the layers below the surface of a body would do more than its work of adhesion.
+fn sticks<const D: usize>(
+    cohesion: &CohesionSpec,
+    body: &Body<D>,
+    path: &str,
+) -> Result<(), BuildError> {
+    let path = format!("{path}.cohesion");
+    let spacings = body.slots.iter().map(|s| body.spacing_at(*s as usize));
+    let least = spacings.fold(f64::INFINITY, f64::min);
+    let range = cohesion.range();
+    if !(range > 0.0 && range.is_finite()) {
+        let message = format!(
+            "cohesion of the energy {} and the strength {} has no range",
+            cohesion.energy, cohesion.strength
+        );
+        return Err(BuildError::invalid(path, message));
+    }
+    if range > least {
+        return Err(BuildError::conflict(
+            path,
+            format!(
+                "cohesion reaches 16 energy/(9 strength) = {range:e}, more than the spacing {least:e}: it would pull the points below the surface, too"
+            ),
+        )
+        .help(format!(
+            "write a strength of at least {:e}, or a larger spacing",
+            16.0 / 9.0 * cohesion.energy / least
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,104 @@
+//! What is measured of rigid bodies.
+
+use super::state::Kind;
+use crate::columns::{Dimension, Shape};
+use crate::condition::indenter::Indenter;
+use crate::error::BuildError;
+use crate::observe::ProbeColumn;
+use crate::run::model::Model;
+use crate::spec::RigidQuantity;
+
+impl RigidQuantity {
+    /// Names of what it consists of in D dimensions: components, or energies.
+    fn parts<const D: usize>(self) -> &'static [&'static str] {
+        let axes = Shape::Vector.components();
+        match (self, D) {
+            (RigidQuantity::Energy, _) => &["kinetic", "dissipated"],
+            (of, 1) if of.is_turn() => &[],
+            (of, 2) if of.is_turn() => &axes[2..3],
+            (of, _) if of.is_turn() => axes,
+            _ => &axes[..D],
+        }
+    }
+
+    fn column(self, name: String) -> ProbeColumn {
+        let dimension = match self {
+            RigidQuantity::Force => Dimension::FORCE,
+            RigidQuantity::Torque | RigidQuantity::Energy => Dimension::ENERGY,
+            RigidQuantity::Center => Dimension::LENGTH,
+            RigidQuantity::Velocity => Dimension::VELOCITY,
+            RigidQuantity::Turn => Dimension::NUMBER,
+            RigidQuantity::Spin => Dimension::FREQUENCY,
+        };
+        let column = ProbeColumn::new(name, dimension);
+        match self {
+            // no energy, though it has the dimension of one
+            RigidQuantity::Torque => column.moment(),
+            _ => column,
+        }
+    }
+
+    /// Its numbers, in the order of its parts.
+    fn of<const D: usize>(self, indenter: &Indenter<D>) -> Vec<f64> {
+        let rigid = &indenter.rigid;
+        let vector = match self {
+            RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated],
+            RigidQuantity::Force => indenter.force,
+            RigidQuantity::Torque => indenter.torque,
+            RigidQuantity::Center => rigid.center,
+            RigidQuantity::Velocity => rigid.velocity,
+            RigidQuantity::Turn => rigid.turn(),
+            RigidQuantity::Spin => rigid.turning,
+        };
+        let count = self.parts::<D>().len();
+        match (self.is_turn(), count) {
+            (true, 1) => vec![vector[2]],
+            _ => vector[..count].to_vec(),
+        }
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// A probe of the rigid body of this name.
+    ///
+    /// # Errors
+    /// There is none.
+    pub(super) fn rigid_probe(
+        &self,
+        probe: &str,
+        indenter: &str,
+        of: Option<RigidQuantity>,
+        path: &str,
+    ) -> Result<(Kind, Vec<ProbeColumn>), BuildError> {
+        let found = self.indenters.iter().position(|i| i.name == indenter);
+        let Some(n) = found.filter(|_| !indenter.is_empty()) else {
+            let named = self.indenters.iter().filter(|i| !i.name.is_empty());
+            let names: Vec<&str> = named.map(|i| i.name.as_str()).collect();
+            let message = format!("there is no indenter `{indenter}`");
+            let help = match names.is_empty() {
+                true => "give the [[indenter]] a name: name = \"punch\"".into(),
+                false => format!("known are {}", names.join(", ")),
+            };
+            let error = BuildError::unknown(format!("{path}.indenter"), indenter, message);
+            return Err(error.help(help));
+        };
+        let of = of.map_or(RigidQuantity::ALL.to_vec(), |of| vec![of]);
+        let each = |of: &RigidQuantity| {
+            let of = *of;
+            let parts = of.parts::<D>().iter();
+            parts.map(move |part| of.column(format!("{probe}_{}_{part}", of.name())))
+        };
+        let columns = of.iter().flat_map(each).collect();
+        Ok((Kind::Rigid(n, of), columns))
+    }
+
+    pub(super) fn rigid_values(&self, indenter: usize, of: &[RigidQuantity]) -> Vec<f64> {
+        let found = self.indenters.get(indenter);
+        // conditions that were replaced since took the body away
+        let value = |q: &RigidQuantity| match found {
+            Some(indenter) => q.of(indenter),
+            None => vec![f64::NAN; q.parts::<D>().len()],
+        };
+        of.iter().flat_map(value).collect()
+    }
+}

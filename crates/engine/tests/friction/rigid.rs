@@ -1,0 +1,485 @@
+//! Rigid bodies: sliding by Coulomb's law, momentum and energy of what bounces and tumbles, pulling off.
+
+use super::{square, text};
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::Point;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::space::rigid::RigidShape;
+use peridyne::space::triangles::{Solid, Triangles};
+use peridyne::spec::*;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+fn made(spec: &Spec) -> Box<dyn Simulation> {
+    let mut sim = build(spec, Options::default()).unwrap();
+    sim.start(true);
+    sim
+}
+
+fn run(sim: &mut dyn Simulation, steps: usize) {
+    (0..steps).for_each(|_| sim.step().unwrap());
+}
+
+fn probe(spec: &mut Spec, indenter: &str) {
+    spec.probes.push(ProbeSpec {
+        name: "p".into(),
+        set: "all".into(),
+        measure: Measure::Indenter {
+            indenter: indenter.into(),
+            of: None,
+        },
+    });
+}
+
+/// Numbers of the probe by the name of their column.
+fn seen(sim: &mut dyn Simulation, what: &str) -> Vec<f64> {
+    let columns = sim.probe_columns();
+    let values = sim.measure();
+    let of = columns.iter().zip(values);
+    let found = of.filter(|(c, _)| c.name.starts_with(&format!("p_{what}_")));
+    let found: Vec<f64> = found.map(|(_, v)| v).collect();
+    assert!(!found.is_empty(), "{what}");
+    found
+}
+
+fn constants(x: [f64; 3]) -> [peridyne::expression::Expression; 3] {
+    x.map(peridyne::expression::Expression::constant)
+}
+
+fn mass_and_momentum(sim: &mut dyn Simulation) -> (f64, Point) {
+    let (volume, density) = (sim.scalars("volume"), sim.scalars("density"));
+    let (mut mass, mut sum) = (0.0, [0.0; 3]);
+    for (i, v) in sim.velocities().iter().enumerate() {
+        let m = volume[i] * density[i];
+        mass += m;
+        for a in 0..3 {
+            sum[a] += m * v[a];
+        }
+    }
+    (mass, sum)
+}
+
+/// A block of points on a rigid incline: seen along it, gravity is (g sin α, −g cos α).
+fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
+    let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
+    let mut spec = Spec::new(2, square(1.0, [0.0; 3], [5.0, 2.0, 0.0]), 1.0, law);
+    spec.horizon = Horizon::Length(2.5);
+    let pull = |g: f64| text(&format!("{g}"));
+    spec.conditions = vec![ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::BodyForce([pull(0.01 * tangent), pull(-0.01), None]),
+    }];
+    // the lowest points are as deep as their columns press them: K g² = 3 · 0.01
+    let shape = RigidShape::Box {
+        half: [3.0, 400.0, 1.0],
+    };
+    let depth = (0.03f64 / 20.0).sqrt();
+    let center = [0.0, depth - 3.0, 0.0];
+    let mut plane = IndenterSpec::new(20.0, shape, IndenterMotion::Kinematic(constants(center)));
+    // an edge of 800 lies along x
+    plane.turn = Some(TurnSpec {
+        axis: [0.0, 0.0, 1.0],
+        angle: text("pi/2").unwrap(),
+    });
+    plane.name = "plane".into();
+    plane.friction = Some(friction);
+    spec.indenters = vec![plane];
+    probe(&mut spec, "plane");
+    spec
+}
+
+#[test]
+fn a_block_slides_down_an_incline_by_coulombs_law() {
+    let (mu, tangent) = (0.3, 0.8);
+    let mut sim = made(&on_an_incline(FrictionSpec::constant(mu), tangent));
+    // friction has its size from the first step on where sliding is faster than what it stops in one
+    let velocity = vec![[0.5, 0.0, 0.0]; sim.velocities().len()];
+    sim.set_velocities(&velocity);
+    sim.start(true);
+    let (mass, before) = mass_and_momentum(sim.as_mut());
+    run(sim.as_mut(), 2000);
+    let (_, after) = mass_and_momentum(sim.as_mut());
+    let time = sim.time();
+    let weight = mass * 0.01;
+    // what friction took in all, and what pressed in all
+    let rubbed = before[0] + tangent * weight * time - after[0];
+    let pressed = after[1] - before[1] + weight * time;
+    assert!(
+        pressed > 0.9 * weight * time && time > 50.0,
+        "{pressed} {time}"
+    );
+    let off = (rubbed / (mu * pressed) - 1.0).abs();
+    // and so a = g (sin α − μ cos α), but for how fast the block still bounces
+    let speed = (after[0] - before[0]) / mass;
+    let exact = 0.01 * (tangent - mu) * time;
+    println!(
+        "friction over μ N − 1: {off:.1e}; speed over the closed form − 1: {:.1e}",
+        speed / exact - 1.0
+    );
+    assert!(off < 1e-12, "{off}");
+    assert!((speed / exact - 1.0).abs() < 5e-3, "{speed} {exact}");
+    // what friction took is the work of the plane on the block but for the push along the normal, which comes back
+    let [_, dissipated] = seen(sim.as_mut(), "energy")[..] else {
+        panic!()
+    };
+    let l = sim.ledger().unwrap();
+    assert!(l.residual().abs() < 1e-6 * dissipated, "{l:?}");
+    assert!(
+        (l.work_indenter + dissipated).abs() < 1e-2 * dissipated,
+        "{l:?} {dissipated}"
+    );
+}
+
+#[test]
+fn a_block_below_the_angle_of_friction_stays() {
+    let mut sim = made(&on_an_incline(FrictionSpec::constant(0.9), 0.3));
+    run(sim.as_mut(), 2000);
+    let (mass, p) = mass_and_momentum(sim.as_mut());
+    // without friction it would have 0.3 g t
+    let free = 0.003 * sim.time();
+    assert!((p[0] / mass).abs() < 0.02 * free, "{} {free}", p[0] / mass);
+}
+
+/// A cube of springs, and a rigid body thrown at one of its corners.
+fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f64) -> Spec {
+    let cube = BodySpec::Lattice {
+        kind: LatticeKind::Cubic,
+        spacing: 1.0,
+        origin: [0.0; 3],
+        region: Region::Block {
+            low: [0.0; 3],
+            high: [5.0, 5.0, 2.0],
+        },
+        perturb: None,
+    };
+    let law = LawSpec::Pmb(PmbStiffness::Young(20.0));
+    let mut spec = Spec::new(3, cube, 1.0, law);
+    spec.horizon = Horizon::Ratio(2);
+    let mut free = FreeSpec::new(30.0, [2.2, 2.6, 5.1], [0.05, 0.1, -0.3]);
+    free.spin = [0.03, -0.04, 0.1];
+    let mut body = IndenterSpec::new(8.0, shape, IndenterMotion::Free(free));
+    body.turn = Some(TurnSpec {
+        axis: [0.6, 0.0, 0.8],
+        angle: text("0.7").unwrap(),
+    });
+    body.name = "box".into();
+    body.friction = friction;
+    spec.indenters = vec![body];
+    spec.schedule.time_step = TimeStep::Fixed(dt);
+    probe(&mut spec, "box");
+    spec
+}
+
+const HALF: Point = [1.0, 1.5, 2.0];
+
+/// Of points and the rigid box together: momentum, angular momentum about the origin.
+fn of_both(sim: &mut dyn Simulation) -> ([f64; 6], f64) {
+    let cross = |a: &[f64], b: &[f64]| -> Point {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let (volume, density) = (sim.scalars("volume"), sim.scalars("density"));
+    let (x, v) = (sim.vectors("position"), sim.velocities());
+    let [c, w, turn, spin] = ["center", "velocity", "turn", "spin"].map(|q| seen(sim, q));
+    let mass = 30.0;
+    let mut sum = [0.0; 6];
+    let mut size = 0.0;
+    let mut add = |m: f64, x: &[f64], v: &[f64]| {
+        let l = cross(x, v);
+        for a in 0..3 {
+            sum[a] += m * v[a];
+            sum[3 + a] += m * l[a];
+            size += (m * l[a]).abs();
+        }
+    };
+    for i in 0..x.len() {
+        add(volume[i] * density[i], &x[i], &v[i]);
+    }
+    add(mass, &c, &w);
+    // L = R I Rᵀ ω, R by Rodrigues' formula
+    let angle = turn.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let n: Vec<f64> = turn.iter().map(|c| c / angle).collect();
+    let rotated = |x: &[f64], angle: f64| -> Point {
+        let (s, c) = angle.sin_cos();
+        let (around, along) = (cross(&n, x), (0..3).map(|a| n[a] * x[a]).sum::<f64>());
+        std::array::from_fn(|a| c * x[a] + s * around[a] + (1.0 - c) * along * n[a])
+    };
+    let mut about = rotated(&spin, -angle);
+    for (a, l) in about.iter_mut().enumerate() {
+        let (p, q) = (HALF[(a + 1) % 3], HALF[(a + 2) % 3]);
+        *l *= mass * (p * p + q * q) / 3.0;
+    }
+    let about = rotated(&about, angle);
+    for a in 0..3 {
+        sum[3 + a] += about[a];
+    }
+    (sum, size)
+}
+
+fn box_of_triangles() -> RigidShape {
+    let at = |n: usize| -> Point {
+        std::array::from_fn(|a| if n >> a & 1 == 1 { HALF[a] } else { -HALF[a] })
+    };
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let halves = |f: &[usize; 4]| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]];
+    let all: Vec<[Point; 3]> = faces.iter().flat_map(halves).map(|t| t.map(at)).collect();
+    let solid = Solid::new(Triangles::new(&all).unwrap()).unwrap();
+    RigidShape::Solid(Arc::new(solid))
+}
+
+#[test]
+fn a_tumbling_box_keeps_what_both_have_and_loses_what_friction_takes() {
+    for friction in [None, Some(FrictionSpec::constant(0.4))] {
+        for (dt, steps) in [(0.02, 1000), (0.01, 2000)] {
+            let spec = tumbling(RigidShape::Box { half: HALF }, friction.clone(), dt);
+            let mut sim = made(&spec);
+            let (before, _) = of_both(sim.as_mut());
+            let energy = |sim: &mut dyn Simulation| {
+                let l = sim.ledger().unwrap();
+                let rigid = seen(sim, "energy");
+                l.kinetic + l.strain + rigid[0] + rigid[1]
+            };
+            let start = energy(sim.as_mut());
+            run(sim.as_mut(), steps);
+            let (after, size) = of_both(sim.as_mut());
+            assert_eq!(seen(sim.as_mut(), "force"), [0.0; 3], "it has left");
+            let moved = seen(sim.as_mut(), "velocity")[2];
+            assert!(moved > -0.2, "it was turned back: {moved}");
+            for (a, b) in before.iter().zip(after) {
+                assert!((a - b).abs() < 1e-12 * size, "{before:?} {after:?}");
+            }
+            let (lost, end) = (seen(sim.as_mut(), "energy")[1], energy(sim.as_mut()));
+            assert_eq!(lost > 1e-3 * start, friction.is_some(), "{lost}");
+            // the nearest face of a box changes from place to place, and forces turn there: no order, and a bound set after the fact
+            assert!((end / start - 1.0).abs() < 5e-3, "{start} {end}");
+            let l = sim.ledger().unwrap();
+            assert!(l.residual().abs() < 1e-3 * l.work_indenter.abs(), "{l:?}");
+        }
+    }
+}
+
+#[test]
+fn a_rubbing_ball_keeps_energy_at_second_order() {
+    for friction in [None, Some(FrictionSpec::constant(0.4))] {
+        let off = |dt: f64, steps: usize| {
+            let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction.clone(), dt);
+            let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+                panic!()
+            };
+            (free.center, free.velocity) = ([2.2, 2.6, 4.6], [0.15, 0.1, -0.3]);
+            free.spin = [0.03, -0.4, 0.1];
+            let mut sim = made(&spec);
+            let energy = |sim: &mut dyn Simulation| {
+                let l = sim.ledger().unwrap();
+                let rigid = seen(sim, "energy");
+                l.kinetic + l.strain + rigid[0] + rigid[1]
+            };
+            let start = energy(sim.as_mut());
+            run(sim.as_mut(), steps);
+            assert_eq!(seen(sim.as_mut(), "force"), [0.0; 3], "it has left");
+            assert_eq!(
+                seen(sim.as_mut(), "energy")[1] > 0.1 * start,
+                friction.is_some()
+            );
+            (energy(sim.as_mut()) / start - 1.0).abs()
+        };
+        let (coarse, fine) = (off(0.04, 500), off(0.02, 1000));
+        println!(
+            "friction {}: energy of all {coarse:.1e} {fine:.1e}",
+            friction.is_some()
+        );
+        assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    }
+}
+
+#[test]
+fn a_box_of_triangles_tumbles_as_the_box() {
+    let end = |shape: RigidShape| {
+        let mut sim = made(&tumbling(shape, Some(FrictionSpec::constant(0.4)), 0.02));
+        run(sim.as_mut(), 500);
+        ["center", "turn", "spin"]
+            .map(|q| seen(sim.as_mut(), q))
+            .concat()
+    };
+    let (exact, made) = (end(RigidShape::Box { half: HALF }), end(box_of_triangles()));
+    for (a, b) in exact.iter().zip(&made) {
+        assert!((a - b).abs() < 1e-9, "{exact:?} {made:?}");
+    }
+}
+
+#[test]
+fn what_touches_hard_is_stepped_in_parts() {
+    let mut spec = tumbling(RigidShape::Box { half: HALF }, None, 0.02);
+    spec.schedule.time_step = TimeStep::Auto;
+    spec.indenters[0].stiffness = 4000.0;
+    let mut sim = made(&spec);
+    while sim.time() < 20.0 {
+        sim.step().unwrap();
+    }
+    let l = sim.ledger().unwrap();
+    println!(
+        "parts {}, residual over work {:.1e}",
+        sim.info().parts,
+        l.residual() / l.work_indenter
+    );
+    assert!(sim.info().parts > 1);
+    // stable, not exact: a hard blow makes waves of which eight tenths of the stable step know little; a bound set after the fact
+    assert!(l.residual().abs() < 0.2 * l.work_indenter.abs(), "{l:?}");
+}
+
+/// A held layer of points of spacing 1 below z = 0.
+fn layer(edge: f64, body: IndenterSpec) -> Spec {
+    let plate = BodySpec::Lattice {
+        kind: LatticeKind::Cubic,
+        spacing: 1.0,
+        origin: [0.0; 3],
+        region: Region::Block {
+            low: [-edge, -edge, 0.0],
+            high: [edge, edge, 0.0],
+        },
+        perturb: None,
+    };
+    let mut spec = Spec::new(3, plate, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    spec.horizon = Horizon::Length(1.5);
+    spec.conditions = vec![ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::Displacement([text("0"), text("0"), text("0")]),
+    }];
+    spec.schedule.time_step = TimeStep::Fixed(0.005);
+    spec.indenters = vec![IndenterSpec {
+        name: "head".into(),
+        ..body
+    }];
+    probe(&mut spec, "head");
+    spec
+}
+
+#[test]
+fn pulling_a_flat_face_off_takes_the_work_of_adhesion() {
+    let cohesion = CohesionSpec {
+        energy: 0.9,
+        strength: 2.0,
+    };
+    assert!((cohesion.range() - 0.8).abs() < 1e-15);
+    let rises = |z: &str| {
+        IndenterMotion::Kinematic([text("0").unwrap(), text("0").unwrap(), text(z).unwrap()])
+    };
+    // solid above: its normal points down once it is turned
+    let normal = [0.0, 0.0, 1.0];
+    let mut plane = IndenterSpec::new(10.0, RigidShape::Plane { normal }, rises("t"));
+    plane.turn = Some(TurnSpec {
+        axis: [1.0, 0.0, 0.0],
+        angle: text("pi").unwrap(),
+    });
+    plane.cohesion = Some(cohesion);
+    let mut sim = made(&layer(3.0, plane));
+    let (mut work, mut most, mut before) = (0.0, 0.0f64, seen(sim.as_mut(), "force")[2]);
+    for _ in 0..200 {
+        run(sim.as_mut(), 1);
+        let now = seen(sim.as_mut(), "force")[2];
+        work -= 0.5 * 0.005 * (before + now);
+        most = most.max(-now);
+        before = now;
+    }
+    let area = 49.0;
+    assert!((work / (0.9 * area) - 1.0).abs() < 1e-4, "{}", work / area);
+    assert!((most / (2.0 * area) - 1.0).abs() < 1e-4, "{}", most / area);
+    assert_eq!(before, 0.0);
+}
+
+#[test]
+fn a_sphere_is_pulled_off_by_bradleys_force() {
+    let (radius, w) = (400.0, 0.9);
+    let motion = IndenterMotion::Kinematic([
+        text("0.3").unwrap(),
+        text("0.2").unwrap(),
+        text("400 - 0.05 + 0.5*t").unwrap(),
+    ]);
+    let mut ball = IndenterSpec::sphere(1e-3, radius, motion);
+    ball.cohesion = Some(CohesionSpec {
+        energy: w,
+        strength: 2.0,
+    });
+    let mut sim = made(&layer(32.0, ball));
+    let mut most = 0.0f64;
+    for _ in 0..200 {
+        run(sim.as_mut(), 1);
+        most = most.max(-seen(sim.as_mut(), "force")[2]);
+    }
+    let exact = 2.0 * PI * radius * w;
+    println!("pull-off force over 2πRw − 1: {:.1e}", most / exact - 1.0);
+    assert!((most / exact - 1.0).abs() < 1e-2, "{}", most / exact);
+}
+
+#[test]
+fn what_rigid_bodies_cannot_be_is_refused() {
+    let refused = |change: &dyn Fn(&mut Spec), said: &str| {
+        let mut spec = tumbling(RigidShape::Box { half: HALF }, None, 0.02);
+        change(&mut spec);
+        let error = build(&spec, Options::default())
+            .err()
+            .map(|e| e.to_string());
+        assert!(
+            error.as_ref().is_some_and(|e| e.contains(said)),
+            "{said}: {error:?}"
+        );
+    };
+    refused(
+        &|s| {
+            s.indenters[0].shape = RigidShape::Plane {
+                normal: [0.0, 0.0, 1.0],
+            }
+        },
+        "a plane has no end",
+    );
+    refused(
+        &|s| {
+            s.probes[0].measure = Measure::Indenter {
+                indenter: "ball".into(),
+                of: None,
+            }
+        },
+        "no indenter `ball`",
+    );
+    refused(
+        &|s| s.indenters.push(s.indenters[0].clone()),
+        "two indenters",
+    );
+    refused(
+        &|s| {
+            if let IndenterMotion::Free(free) = &mut s.indenters[0].motion {
+                free.inertia = Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0]]);
+            }
+        },
+        "principal moments",
+    );
+    refused(
+        &|s| {
+            s.periodic = [Some(6.0), None, None];
+            s.indenters[0].shape = RigidShape::Box {
+                half: [1.0, 1.5, 4.0],
+            };
+        },
+        "more than half of the period",
+    );
+    refused(
+        &|s| {
+            s.indenters[0].cohesion = Some(CohesionSpec {
+                energy: 1.0,
+                strength: 1.0,
+            })
+        },
+        "more than the spacing",
+    );
+}

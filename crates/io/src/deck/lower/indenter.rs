@@ -1,0 +1,307 @@
+//! Rigid bodies that push points.
+
+use super::Files;
+use super::contact::friction;
+use super::context::{Context, Result};
+use crate::deck::document::{Indenter, Rigid, Rotation};
+use crate::deck::units::Dim;
+use crate::deck::value::{At, Number, Vector};
+use peridyne::expression::Expression;
+use peridyne::space::Point;
+use peridyne::space::rigid::RigidShape;
+use peridyne::space::triangles::Solid;
+use peridyne::spec::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
+use std::sync::Arc;
+
+pub(super) fn indenter(
+    context: &Context,
+    at: &At<Indenter>,
+    section: f64,
+    files: &Files,
+) -> Result<IndenterSpec> {
+    let i = &at.value;
+    let given = [("radius", i.radius.is_some()), ("shape", i.shape.is_some())];
+    context.one_of(&at.span, "an indenter", &given)?;
+    let shape = match (&i.radius, &i.shape) {
+        (Some(radius), _) => RigidShape::Sphere {
+            radius: context.positive(radius, Dim::LENGTH, "the radius")?,
+        },
+        (None, Some(shape)) => rigid(context, shape, files)?,
+        (None, None) => unreachable!("one of them is given"),
+    };
+    let center = center(context, at, &shape)?;
+    let motion = match mass(context, i, &shape, section)? {
+        Some(mass) => IndenterMotion::Free(free(context, i, mass, &center)?),
+        None => {
+            for (key, span) in of_free(i) {
+                if let Some(span) = span {
+                    let message = format!("{key} belongs to a free indenter, this one is driven");
+                    let help = "give it a mass or a density, or leave this out";
+                    return Err(context.error_with(&span, message, help));
+                }
+            }
+            IndenterMotion::Kinematic(driven(context, i, center)?)
+        }
+    };
+    Ok(IndenterSpec {
+        name: i.name.as_ref().map_or(String::new(), |n| n.value.clone()),
+        stiffness: context.positive(&i.stiffness, Dim::INDENTER_STIFFNESS, "the stiffness")?,
+        shape,
+        turn: i.rotation.as_ref().map(|r| turn(context, r)).transpose()?,
+        motion,
+        friction: i
+            .friction
+            .as_ref()
+            .map(|f| friction(context, f))
+            .transpose()?,
+        cohesion: match &i.cohesion {
+            None => None,
+            Some(c) => Some(CohesionSpec {
+                energy: context.positive(
+                    &c.value.energy,
+                    Dim::FRACTURE_ENERGY,
+                    "the work of adhesion",
+                )?,
+                strength: context.positive(&c.value.strength, Dim::PRESSURE, "the strength")?,
+            }),
+        },
+    })
+}
+
+/// A direction of length 1.
+fn direction(context: &Context, vector: &Vector) -> Result<Point> {
+    let way = context.finite_vector(vector, Dim::NUMBER)?;
+    let size = way.iter().map(|c| c * c).sum::<f64>().sqrt();
+    match size > 0.0 {
+        true => Ok(way.map(|c| c / size)),
+        false => Err(context.error(&vector.span, "this is no direction")),
+    }
+}
+
+fn rigid(context: &Context, at: &At<Rigid>, files: &Files) -> Result<RigidShape> {
+    let only = |shape: RigidShape| match shape.fits(context.dimension) {
+        true => Ok(shape),
+        false => {
+            let message = format!(
+                "a rigid {} is nothing in {}-D",
+                shape.name(),
+                context.dimension
+            );
+            let help = "in 2-D there are sphere (a disk), box and plane, in 1-D sphere and plane";
+            Err(context.error_with(&at.span, message, help))
+        }
+    };
+    let length = |n: &Number, what: &str| context.positive(n, Dim::LENGTH, what);
+    Ok(match &at.value {
+        Rigid::Sphere { radius } => RigidShape::Sphere {
+            radius: length(radius, "the radius")?,
+        },
+        Rigid::Box { size } => {
+            let edges = context.finite_vector(size, Dim::LENGTH)?;
+            if edges[..context.dimension].iter().any(|e| *e <= 0.0) {
+                return Err(context.error(&size.span, "the edges of a box must be positive"));
+            }
+            only(RigidShape::Box {
+                half: edges.map(|e| 0.5 * e),
+            })?
+        }
+        Rigid::Cylinder {
+            radius,
+            length: long,
+            axis,
+        } => {
+            let radius = length(radius, "the radius")?;
+            let half = 0.5 * length(long, "the length")?;
+            // before its axis is looked at
+            let axis_z = [0.0, 0.0, 1.0];
+            only(RigidShape::Cylinder {
+                radius,
+                half,
+                axis: axis_z,
+            })?;
+            RigidShape::Cylinder {
+                radius,
+                half,
+                axis: { axis.as_ref() }.map_or(Ok(axis_z), |a| direction(context, a))?,
+            }
+        }
+        Rigid::Plane { normal } => RigidShape::Plane {
+            normal: direction(context, normal)?,
+        },
+        Rigid::Stl { file, unit } => {
+            let triangles = files.stl(context, file, unit)?;
+            let solid = Solid::new(triangles)
+                .map_err(|e| context.error(&file.span, format!("{}: {e}", file.value)))?;
+            only(RigidShape::Solid(Arc::new(solid)))?
+        }
+    })
+}
+
+/// Expressions of the centre.
+fn center(context: &Context, at: &At<Indenter>, shape: &RigidShape) -> Result<[Expression; 3]> {
+    match (&at.value.center, shape) {
+        (Some(center), _) => context.expressions(center, Dim::LENGTH),
+        (None, RigidShape::Solid(solid)) => Ok(solid.centroid().map(Expression::constant)),
+        (None, _) => Err(context.error_with(
+            &at.span,
+            "an indenter needs a center",
+            "center = [0, \"5 mm\", 0]",
+        )),
+    }
+}
+
+fn mass(context: &Context, i: &Indenter, shape: &RigidShape, section: f64) -> Result<Option<f64>> {
+    match (&i.mass, &i.density) {
+        (Some(_), Some(density)) => Err(context.error(
+            &density.span,
+            "an indenter has mass and density: give one of them",
+        )),
+        (Some(mass), None) => Ok(Some(context.positive(mass, Dim::MASS, "the mass")?)),
+        (None, Some(density)) => {
+            let of = context.positive(density, Dim::DENSITY, "the density")?;
+            let volume = shape.volume(context.dimension) * section;
+            if !volume.is_finite() {
+                let message = "a plane has no end: it has no mass, and is driven";
+                return Err(context.error(&density.span, message));
+            }
+            Ok(Some(of * volume))
+        }
+        (None, None) => Ok(None),
+    }
+}
+
+/// Keys of free bodies alone.
+fn of_free(i: &Indenter) -> [(&'static str, Option<std::ops::Range<usize>>); 5] {
+    let span = |v: &Option<Vector>| v.as_ref().map(|v| v.span.clone());
+    [
+        ("inertia", i.inertia.as_ref().map(|n| n.span.clone())),
+        ("spin", span(&i.spin)),
+        ("force", span(&i.force)),
+        ("torque", span(&i.torque)),
+        ("gravity", span(&i.gravity)),
+    ]
+}
+
+fn free(context: &Context, i: &Indenter, mass: f64, center: &[Expression; 3]) -> Result<FreeSpec> {
+    let mut start = [0.0; 3];
+    for (x, e) in start.iter_mut().zip(center) {
+        let Some(c) = e.as_constant().filter(|c| c.is_finite()) else {
+            let span = i.center.as_ref().map_or(0..0, |c| c.span.clone());
+            return Err(context.error(
+                &span,
+                "a free indenter begins at a place: its center is made of finite numbers",
+            ));
+        };
+        *x = c;
+    }
+    let velocity = { i.velocity.as_ref() }
+        .map_or(Ok([0.0; 3]), |v| context.finite_vector(v, Dim::VELOCITY))?;
+    let mut free = FreeSpec::new(mass, start, velocity);
+    if let Some(inertia) = &i.inertia {
+        free.inertia = Some(tensor(context, inertia)?);
+    }
+    if let Some(spin) = &i.spin {
+        for (x, e) in free
+            .spin
+            .iter_mut()
+            .zip(about(context, spin, Dim::FREQUENCY)?)
+        {
+            let Some(c) = e.as_constant().filter(|c| c.is_finite()) else {
+                return Err(context.error(
+                    &spin.span,
+                    "the spin at the start is made of finite numbers",
+                ));
+            };
+            *x = c;
+        }
+    }
+    if let Some(force) = &i.force {
+        free.force = context.expressions(force, Dim::FORCE)?;
+    }
+    if let Some(gravity) = &i.gravity {
+        free.gravity = context.expressions(gravity, Dim::ACCELERATION)?;
+    }
+    if let Some(torque) = &i.torque {
+        free.torque = about(context, torque, Dim::ENERGY)?;
+    }
+    Ok(free)
+}
+
+/// What goes around axes: three numbers, in 2-D that around z.
+fn about(context: &Context, vector: &Vector, dim: Dim) -> Result<[Expression; 3]> {
+    match (&vector.value.0[..], context.dimension) {
+        ([one], 2) => {
+            let zero = || Expression::constant(0.0);
+            let number = At {
+                value: one.value.clone(),
+                span: vector.span.clone(),
+            };
+            Ok([zero(), zero(), context.expression(&number, dim)?])
+        }
+        (_, 2) => Err(context.error(
+            &vector.span,
+            "in 2-D a body turns about z: expected one number",
+        )),
+        (_, 1) => Err(context.error(&vector.span, "on a line nothing turns")),
+        _ => context.expressions(vector, dim),
+    }
+}
+
+/// A symmetric tensor by its components.
+fn tensor(context: &Context, at: &At<Vec<Number>>) -> Result<[Point; 3]> {
+    let dim = Dim::MASS * Dim::AREA;
+    let numbers = at.value.iter().map(|n| context.finite(n, dim));
+    let numbers = numbers.collect::<Result<Vec<f64>>>()?;
+    let off = |n: usize| numbers.get(n).copied().unwrap_or(0.0);
+    match (numbers.len(), context.dimension) {
+        (1, 2) => Ok([[0.0; 3], [0.0; 3], [0.0, 0.0, numbers[0]]]),
+        (3 | 6, 3) => Ok([
+            [numbers[0], off(3), off(4)],
+            [off(3), numbers[1], off(5)],
+            [off(4), off(5), numbers[2]],
+        ]),
+        (n, d) => {
+            let expected = ["nothing", "one number", "three numbers, or six"][d.clamp(1, 3) - 1];
+            let message = format!("the inertia has {n} numbers, expected {expected} in {d}-D");
+            Err(context.error(&at.span, message))
+        }
+    }
+}
+
+/// The centre of a driven one, which a velocity may move.
+fn driven(context: &Context, i: &Indenter, mut center: [Expression; 3]) -> Result<[Expression; 3]> {
+    if let Some(velocity) = &i.velocity {
+        let speed = context.finite_vector(velocity, Dim::VELOCITY)?;
+        for (a, c) in center.iter_mut().enumerate() {
+            let Some(start) = c.as_constant() else {
+                return Err(context.error(
+                    &velocity.span,
+                    "the centre moves already by its expression: drop one of them",
+                ));
+            };
+            if speed[a] != 0.0 {
+                *c = Expression::parse(&format!("{start:e} + {:e}*t", speed[a]), &[])
+                    .map_err(|e| context.error(&velocity.span, e.message))?;
+            }
+        }
+    }
+    Ok(center)
+}
+
+fn turn(context: &Context, at: &At<Rotation>) -> Result<TurnSpec> {
+    let z = [0.0, 0.0, 1.0];
+    let axis = match (&at.value.axis, context.dimension) {
+        (_, 1) => return Err(context.error(&at.span, "on a line nothing turns")),
+        (Some(axis), 2) => {
+            return Err(context.error(&axis.span, "in 2-D a body turns about z: leave axis out"));
+        }
+        (Some(axis), _) => direction(context, axis)?,
+        (None, _) => z,
+    };
+    let angle = context.expression(&at.value.angle, Dim::NUMBER)?;
+    if angle.depends_on_position() {
+        let message = "the angle depends on the place, expected an expression of t";
+        return Err(context.error(&at.value.angle.span, message));
+    }
+    Ok(TurnSpec { axis, angle })
+}
