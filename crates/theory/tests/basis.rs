@@ -15,7 +15,7 @@ use peridyne::spec::*;
 use peridyne_theory::crystal::Atom;
 use peridyne_theory::crystal::Crystal;
 use peridyne_theory::dispersion::hermitian::{Matrix, eigen};
-use peridyne_theory::upscale::{Rule, crystal, upscale};
+use peridyne_theory::upscale::{self, Rule};
 
 const CELLS: usize = 4;
 
@@ -288,10 +288,10 @@ fn a_chain_of_two_kinds_on_fixed_neighbours() {
     let nothing = PotentialSpec::of(NoPotential);
     let (m, big, k) = (1.3, 4.1, 0.7 * STIFFNESS);
     let spec = diatomic([m, big], [nothing.clone(), nothing], argon(0.7, 1.0));
-    let (crystal, reference) = crystal::<1>(&spec).unwrap();
+    let (crystal, reference) = upscale::crystal::<1>(&spec).unwrap();
     assert!((reference.unwrap().energy + 0.7).abs() < 1e-12);
     assert_eq!(crystal.basis.len(), 2);
-    for wave in [0.0, 0.1, 0.7, 1.2, 1.5] {
+    for wave in [0.0f64, 0.1, 0.7, 1.2, 1.5] {
         let sum = k * (1.0 / m + 1.0 / big);
         let root = (sum * sum - 2.0 * k * k / (m * big) * (1.0 - (2.0 * wave).cos())).sqrt();
         for (found, exact) in crystal.squares([wave]).iter().zip([sum - root, sum + root]) {
@@ -307,7 +307,7 @@ fn a_chain_of_two_kinds_on_fixed_neighbours() {
         [argon(0.3, 2.1), argon(0.5, 1.9)],
         argon(0.7, 1.0),
     );
-    let (crystal, _) = crystal::<1>(&spec).unwrap();
+    let (crystal, _) = upscale::crystal::<1>(&spec).unwrap();
     assert_eq!(crystal.bonds.len(), 8);
     let options = Options {
         trust_time_step: true,
@@ -339,19 +339,42 @@ fn a_chain_of_two_kinds_on_fixed_neighbours() {
             assert!((x - y).abs() < 1e-8 * y.abs().max(1.0), "{wave}: {x} {y}");
         }
     }
-    // the same model at twice the spacing has half the frequencies at half the wave vector
-    let (coarse, rule) = upscale(&spec, 2).unwrap();
+    // kinds by an expression do not lie there as they lie here
+    let refused = upscale::upscale(&spec, 2).unwrap_err();
+    assert_eq!(refused, upscale::UpscaleError::OtherArrangement);
+}
+
+/// The coarse model of fixed neighbours has half the frequencies at half the wave vector.
+#[test]
+fn fixed_neighbours_of_two_kinds_have_a_coarse_model() {
+    let mut spec = diatomic(
+        [1.3, 4.1],
+        [argon(0.3, 1.1), argon(0.5, 0.9)],
+        argon(0.7, 1.0),
+    );
+    let cells = Region::Block {
+        low: [-0.1; 3],
+        high: [7.9; 3],
+    };
+    spec.dimension = 3;
+    spec.body = BodySpec::lattice(LatticeKind::Bcc, 1.0, cells);
+    spec.periodic = [Some(8.0); 3];
+    spec.horizon = Horizon::Length(1.2);
+    for (n, set) in spec.sets.iter_mut().enumerate() {
+        set.members = Members::Basis(vec![n]);
+    }
+    let (fine, _) = upscale::crystal::<3>(&spec).unwrap();
+    // eight unlike and six like neighbours of both
+    assert_eq!(fine.bonds.len(), 28);
+    let (coarse, rule) = upscale::upscale(&spec, 2).unwrap();
     assert_eq!((rule, coarse.family), (Rule::Shells, FamilyChoice::Stencil));
-    let (large, _) = crystal::<1>(&coarse).unwrap();
-    for wave in [0.2, 0.9] {
-        for (x, y) in crystal
-            .squares([wave])
-            .iter()
-            .zip(large.squares([0.5 * wave]))
-        {
+    let (large, _) = upscale::crystal::<3>(&coarse).unwrap();
+    for wave in [[0.2, 0.0, 0.0], [0.9, 0.4, 2.1]] {
+        let half = large.squares(wave.map(|k| 0.5 * k));
+        for (x, y) in fine.squares(wave).iter().zip(half) {
             assert!(
                 (0.25 * x - y).abs() < 1e-10 * x.abs().max(1.0),
-                "{wave}: {x} {y}"
+                "{wave:?}: {x} {y}"
             );
         }
     }

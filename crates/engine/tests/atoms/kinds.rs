@@ -501,12 +501,12 @@ fn fixed_neighbours_of_several_kinds() {
             sim.set_displacements(&u);
             sim.start(true);
         }
-        let of = |sim: &dyn Simulation| {
+        let of = |sim: &mut dyn Simulation| {
             let mut all = sim.vectors("force_density");
             all.push([sim.ledger().unwrap().strain, 0.0, 0.0]);
             all
         };
-        let (a, b) = (of(a.as_ref()), of(b.as_ref()));
+        let (a, b) = (of(a.as_mut()), of(b.as_mut()));
         let most = b.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
         for (x, y) in a.iter().flatten().zip(b.iter().flatten()) {
             assert!((x - y).abs() < 1e-12 * most, "{name}: {x} {y}");
