@@ -266,6 +266,11 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "what pmb becomes where bodies expand",
     ),
     (
+        "ThermoelasticSolid",
+        "engine/src/run/transfers/expansion.rs",
+        "what lps becomes where bodies expand",
+    ),
+    (
         "elastic_plastic",
         "lammps/src/model/types.rs",
         "the law of LAMMPS's peri/eps",

@@ -457,6 +457,7 @@ fn constants(law: &LawSpec, units: UnitSystem) -> String {
             (_, Parameter::Number(x)) => super::units::short(*x),
             (_, Parameter::List(list)) => format!("{list:?}"),
             (_, Parameter::Rows(rows)) => format!("{rows:?}"),
+            (_, Parameter::Formula(formula)) => formula.source().into(),
             (_, Parameter::Table(_)) => "tables".into(),
         };
         said += &format!(", {} = {value}", key.replace('_', " "));
