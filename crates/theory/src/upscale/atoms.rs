@@ -39,7 +39,7 @@ impl<const D: usize> Atoms<D> {
         };
         let given = Shelf::standard().given(spec);
         Ok(Atoms {
-            given: given.map_err(|e| CrystalError::Potential(e.message))?,
+            given: given.map_err(|e| CrystalError::Potential(e.message.into()))?,
             cell: found.cell,
             atoms: found.sites.iter().map(atom).collect(),
         })

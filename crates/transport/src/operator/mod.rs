@@ -154,7 +154,7 @@ impl Operator {
                 let [low, high] = self.extremes(&[], 0.0);
                 let told = a.flux.evaluable(low, high, "advection.flux");
                 told.map_err(|mut e| {
-                    e.message += " in the collars";
+                    e.message.add(" in the collars");
                     e
                 })
             }
