@@ -266,11 +266,15 @@ impl Told<'_> {
             }
         };
         let dumps: Vec<String> = record.dumps.iter().map(inside).collect();
+        // fixes say what acts, and the report has the title
+        let own = |l: &&str| *l != self.name && !l.starts_with("acting ");
+        let understood = model.understood().lines().filter(own);
+        let understood = understood.map(|l| format!("{l}\n"));
         let columns = { record.fields.iter() }.map(|(h, f)| (h.clone(), f.to_string()));
         Setting {
             command: self.command.clone(),
             deck_text: self.text.to_string(),
-            understood: model.understood().to_string(),
+            understood: understood.collect(),
             sources: model.sources().to_vec(),
             units: UnitNames {
                 length: length.into(),

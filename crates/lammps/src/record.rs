@@ -97,8 +97,9 @@ mod tests {
     fn runs_that_go_on_are_one_table_and_others_begin_anew() {
         let mut record = Record::default();
         let columns = || vec!["Temp".to_string()];
-        [(0, 1.0), (10, 2.0), (10, 3.0), (20, 4.0)]
-            .map(|(step, value)| record.line(columns(), row(step, value)));
+        for (step, value) in [(0, 1.0), (10, 2.0), (10, 3.0), (20, 4.0)] {
+            record.line(columns(), row(step, value));
+        }
         let values: Vec<f64> = record.rows.iter().map(|r| r.values[0]).collect();
         assert_eq!(values, [1.0, 3.0, 4.0]);
         record.line(columns(), row(0, 5.0));
