@@ -20,7 +20,6 @@ use peridyne::spec::{Criterion, Moduli, Spec};
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
-use peridyne_lammps::Units;
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
 use peridyne_theory::nominal::nominal_moduli;
 use peridyne_theory::patch_test::{PatchTest, patch_test};
@@ -105,16 +104,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             let (prepared, setup) = script::prepare(input)?;
             let subject = Subject {
                 spec: prepared.spec,
-                units: match setup.units {
-                    Units::Si => UnitSystem::Si,
-                    Units::Lj => UnitSystem::Lj,
-                    Units::Real
-                    | Units::Metal
-                    | Units::Cgs
-                    | Units::Electron
-                    | Units::Micro
-                    | Units::Nano => UnitSystem::None,
-                },
+                units: setup.units.system(),
                 script: true,
                 sim: prepared.simulation,
                 steps: setup.steps,

@@ -109,8 +109,13 @@ pub fn command(input: &Input) -> String {
     };
     let sets = input.set.iter();
     let sets = sets.map(|(key, value)| format!(" --set {}", word(&format!("{key}={value}"))));
+    let vars = input.var.iter();
+    let vars = vars.map(|(name, value)| format!(" --var {}", word(&format!("{name}={value}"))));
     let file = word(&input.file.to_string_lossy());
-    format!("peridyne run {file}{}", sets.collect::<String>())
+    format!(
+        "peridyne run {file}{}",
+        sets.chain(vars).collect::<String>()
+    )
 }
 
 pub fn simd(input: &Input) -> Result<Option<Simd>, Failure> {
@@ -225,7 +230,7 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         text += &format!("\npre-cracks cut {} directed bonds", whole(i.cut));
     }
     for w in &i.warnings {
-        text += &format!("\nwarning: {w}");
+        text += &format!("\nwarning: {}", units.tell(w));
     }
     text
 }

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Folders of the engine, from the ground up; those of one line do not know each other.
 const FLOORS: &[&[&str]] = &[
+    &["quantity"],
     &["error"],
     &["execute"],
     &["space", "columns", "expression"],

@@ -298,6 +298,10 @@ impl<const D: usize> Indenter<D> {
     }
 
     /// Does it move by the forces on it?
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     pub fn is_free(&self) -> bool {
         matches!(self.motion, Motion::Free { .. })
     }

@@ -3,6 +3,7 @@
 
 use crate::columns::Dimension;
 use crate::law::solid::eam_like::Solid;
+use crate::quantity::rounded;
 use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
 use std::borrow::Cow;
 
@@ -269,8 +270,13 @@ pub fn moduli(parameters: &Parameters) -> Result<Moduli, String> {
     let stable = made.young > 0.0 && made.poisson > -1.0 && made.poisson < 0.5;
     if !stable {
         return Err(format!(
-            "Young's modulus {:e} and Poisson's ratio {} are those of no stable solid: E > 0, −1 < ν < ½",
-            made.young, made.poisson
+            "{} Young's modulus and Poisson's ratio {} are those of no stable solid: E > 0, −1 < ν < ½",
+            if made.young > 0.0 {
+                "a positive"
+            } else {
+                "no positive"
+            },
+            rounded(made.poisson, 6)
         ));
     }
     Ok(made)

@@ -22,6 +22,8 @@ use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
+use crate::message;
+use crate::quantity::{Dimension, Warnings, rounded};
 use crate::spec::{BodySpec, Horizon, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
@@ -71,7 +73,7 @@ pub fn build_in<const D: usize>(
     let spec = &resolved;
     consistent(spec)?;
     let simd = options.simd.unwrap_or_else(Simd::detect);
-    let mut warnings = vec![];
+    let mut warnings = Warnings::default();
     let (mut parts, mut body) = parts::<D>(spec)?;
     let potentials = shelf.potentials(spec)?;
     if let Some(potentials) = &potentials
@@ -125,9 +127,11 @@ pub fn build_in<const D: usize>(
         } else {
             "directed bonds"
         };
-        warnings.push(format!(
-            "{near_horizon} {what} end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances"
-        ));
+        warnings.push(message![
+            format!("{near_horizon} {what} end within round-off of the horizon "),
+            Dimension::LENGTH.of(horizon),
+            ": a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances",
+        ]);
     }
     if spec.potential().is_none() && spec.micromoduli().is_none() {
         warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
@@ -137,14 +141,14 @@ pub fn build_in<const D: usize>(
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {
         warnings.push(
-            "friction acts between points that were never bonded: the faces of a crack slide on each other without it"
-                .into(),
+            "friction acts between points that were never bonded: the faces of a crack slide on each other without it",
         );
     }
     let asymmetry = interaction.asymmetry();
     if asymmetry > SYMMETRIC {
         warnings.push(format!(
-            "action is not reaction in this body (asymmetry {asymmetry:.1e}): it has no energy, what is printed as strain energy is that of its symmetric part, and neither energy nor momentum need balance"
+            "action is not reaction in this body (asymmetry {}): it has no energy, what is printed as strain energy is that of its symmetric part, and neither energy nor momentum need balance",
+            rounded(asymmetry, 2)
         ));
     }
     let directed_bonds = interaction.directed_bonds();
@@ -152,15 +156,16 @@ pub fn build_in<const D: usize>(
     if directed_bonds == 0 && body.points() > 1 && bonded && body.points() > body.pieces().len() {
         return Err(BuildError::empty(
             "horizon",
-            format!(
-                "no two of the {} points are within the horizon {horizon:e}",
-                body.points()
-            ),
+            message![
+                format!("no two of the {} points are within the horizon ", body.points()),
+                Dimension::LENGTH.of(horizon),
+            ],
         )
-        .help(format!(
-            "the spacing is {:e}: a horizon of three spacings is usual; points that only touch are a body with bonded = false",
-            body.spacing
-        )));
+        .help(message![
+            "the spacing is ",
+            Dimension::LENGTH.of(body.spacing),
+            ": a horizon of three spacings is usual; points that only touch are a body with bonded = false",
+        ]));
     }
     let repulsion = contact::repulsion(spec, &parts, &constitutive, &body)?;
     let range = |a: usize, b: usize| repulsion.as_ref().map_or(0.0, |r| r.range(a, b));

@@ -48,6 +48,7 @@ use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, Values};
+use crate::quantity::Warnings;
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, Influence, Quantity, Stepper};
 use crate::statics::Solved;
@@ -99,7 +100,7 @@ pub struct Info {
     /// Bytes held by the model.
     pub bytes: usize,
     pub simd: &'static str,
-    pub warnings: Vec<String>,
+    pub warnings: Warnings,
 }
 
 /// The shortest distance between two bodies in the reference.
@@ -199,6 +200,8 @@ pub trait Simulation: Steered + Examined + Send {
     fn set_velocities(&mut self, v: &[Point]);
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
+    /// Centres and radii of the indenters of the specification, as they are now.
+    fn indenters(&self) -> Vec<(Point, f64)>;
     /// What came in of every quantity that spreads since the start, and what is there.
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)>;
     /// What the solver did in the last increment; `None`: steps are steps in time.

@@ -286,6 +286,12 @@ impl<const D: usize> Simulation for Model<D> {
         named.map(|(_, ids)| ids.clone())
     }
 
+    fn indenters(&self) -> Vec<(Point, f64)> {
+        { self.indenters.iter() }
+            .map(|i| (i.center, i.radius()))
+            .collect()
+    }
+
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
         self.transfer_accounts()
     }

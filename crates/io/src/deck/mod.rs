@@ -108,6 +108,8 @@ pub struct PictureSpec {
     pub scale: Option<f64>,
     /// Plain numbers of the deck.
     pub range: Option<[f64; 2]>,
+    /// A vector field.
+    pub arrows: Option<String>,
     pub film: bool,
 }
 
@@ -248,8 +250,8 @@ impl Deck {
     pub fn explain(&self, error: &BuildError) -> DeckError {
         self.source.error(
             self.locate(&error.path),
-            error.message.clone(),
-            error.help.clone(),
+            self.units.tell(&error.message),
+            error.help.as_ref().map(|h| self.units.tell(h)),
         )
     }
 

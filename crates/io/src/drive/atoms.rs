@@ -80,6 +80,7 @@ impl AtomsPlan {
             kind,
             velocity: Some(sim.velocities()),
             force: Some(force.collect()),
+            columns: vec![],
             energy: Some(
                 sim.scalars("energy_density")
                     .iter()

@@ -40,7 +40,7 @@ impl<const D: usize> Atoms<D> {
             mass: spec.materials[*kind].density * volume,
         };
         let given = Shelf::standard().given(spec);
-        let given = given.map_err(|e| CrystalError::Potential(e.message))?;
+        let given = given.map_err(|e| CrystalError::Potential(e.message.into()))?;
         let atoms: Vec<Atom<D>> = found.sites.iter().map(atom).collect();
         let fixed = match current(spec) {
             true => None,

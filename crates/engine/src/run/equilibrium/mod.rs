@@ -16,6 +16,7 @@ use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::law::descriptor::Memory;
+use crate::quantity::rounded;
 use crate::run::Simulation;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
@@ -152,7 +153,10 @@ impl<const D: usize> Model<D> {
             if let Some((path, wrong, help)) = wrong {
                 return Err(BuildError::unsupported(
                     path,
-                    format!("{wrong}, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
+                    format!(
+                        "{wrong}, and action is not reaction in this one (asymmetry {})",
+                        rounded(asymmetry, 2)
+                    ),
                 )
                 .help(help));
             }
@@ -187,7 +191,7 @@ impl<const D: usize> Model<D> {
         let row = (families * self.info.family.1).min(points) + 1.0;
         memory::afford(
             "statics.solver",
-            &format!("the equations of {points:.2e} points"),
+            &format!("the equations of {} points", rounded(points, 3)),
             points * row * (8 * D * D + 4) as f64,
             "leave solver out, or write solver = \"cg\", which needs no matrix; a shorter horizon makes shorter rows",
         )

@@ -16,6 +16,7 @@ use super::model::Model;
 use crate::condition::driven::Driven;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
+use crate::quantity::rounded;
 use crate::spec::{Newmark, Solver, Spec};
 use crate::statics::{self, Support};
 
@@ -91,7 +92,7 @@ impl<const D: usize> Model<D> {
         if asymmetry > statics::SYMMETRIC && options.solver == Solver::ConjugateGradients {
             return Err(BuildError::unsupported(
                 "schedule.solver",
-                format!("conjugate gradients need a symmetric body, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
+                format!("conjugate gradients need a symmetric body, and action is not reaction in this one (asymmetry {})", rounded(asymmetry, 2)),
             )
             .help("write solver = \"direct\""));
         }

@@ -356,6 +356,7 @@ fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
         component: text(&p.component),
         scale: scale.transpose()?,
         range: p.range.as_ref().map(|r| r.value),
+        arrows: text(&p.arrows),
         film: p.film,
     })
 }

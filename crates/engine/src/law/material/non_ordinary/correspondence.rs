@@ -292,8 +292,8 @@ impl Shelved for Correspondence {
                 return Err((
                     n,
                     format!(
-                        "`second_invariant` is {second:e}, expected at most half the shear modulus, {:e}: C₁₀ would be negative",
-                        0.5 * moduli.shear()
+                        "`second_invariant` is {:.3} of the shear modulus, expected at most half of it: C₁₀ would be negative",
+                        second / moduli.shear()
                     ),
                 ));
             }
