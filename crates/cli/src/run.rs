@@ -97,9 +97,14 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
-    plan.indenters = indenters(deck, steps as f64 * sim.info().time_step);
+    plan.indenters = indenters(deck, (steps - plan.increments) as f64 * sim.info().time_step);
     say(&format!(
-        "threads   {threads}\nrunning {steps} steps, results in {}",
+        "threads   {threads}\nrunning {}{} steps, results in {}",
+        match plan.increments {
+            0 => String::new(),
+            n => format!("{n} increments of load, then "),
+        },
+        steps - plan.increments,
         plan.dir.display()
     ));
     let statics = counts_load(&deck.spec.schedule);
@@ -147,6 +152,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     let steps = deck.steps(info.time_step);
     let amount = Amount {
         steps,
+        increments: deck.increments(),
         every: output.every,
         history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
@@ -214,7 +220,7 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
     let end = if counts_load(&deck.spec.schedule) {
         1.0
     } else {
-        deck.steps(step) as f64 * step
+        (deck.steps(step) - deck.increments()) as f64 * step
     };
     let marks = Marks::of(&deck.spec, sim, end);
     let columns = sim.columns();

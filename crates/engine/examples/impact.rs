@@ -88,6 +88,7 @@ fn main() {
         }],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        preload: None,
         schedule: Schedule {
             steps,
             time_step: TimeStep::Fixed(1e-7),

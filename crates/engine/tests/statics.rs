@@ -1,5 +1,8 @@
 //! Equilibrium and vibration against closed forms, and one method against the others.
 
+#[path = "statics/preload.rs"]
+mod preload;
+
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;

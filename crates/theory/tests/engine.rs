@@ -107,6 +107,7 @@ fn case(
         indenters: vec![],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        preload: None,
         schedule: Schedule {
             steps: 0,
             time_step: TimeStep::Fraction(0.5),

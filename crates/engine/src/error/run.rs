@@ -48,6 +48,17 @@ pub enum RunError {
         position: Option<[f64; 3]>,
         error: SolveError,
     },
+    #[error("after {step} increments of statics: motion asks for a displacement of {asked:.6e} along {axis} at ({:.6e}, {:.6e}, {:.6e}), where statics left it at {found:.6e}: prescribe a velocity of 0 to hold a point where it is", position[0], position[1], position[2])]
+    Jump {
+        step: u64,
+        /// In the reference.
+        position: [f64; 3],
+        axis: &'static str,
+        asked: f64,
+        found: f64,
+    },
+    #[error("after {step} increments of statics, which knew no contact, {pairs} pairs of points touch: write method = \"relaxation\" under [statics], or contact = false")]
+    Touching { step: u64, pairs: usize },
     #[error("step {step}: the factor of the toughness is {value} at ({:.6e}, {:.6e}, {:.6e}), expected a positive number", position[0], position[1], position[2])]
     Toughness {
         step: u64,

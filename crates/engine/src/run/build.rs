@@ -276,6 +276,8 @@ pub fn build_in<const D: usize>(
         initial_energy: None,
         fault: None,
         statics: None,
+        preload: None,
+        loaded: None,
         implicit: None,
         stands: false,
         transfers: Transfers::default(),
@@ -300,7 +302,6 @@ pub fn build_in<const D: usize>(
     let sets = std::mem::take(&mut model.sets);
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.toughness = model.toughness_of(spec, shelf, &sets)?;
-    model.sets = sets;
     // how long a run of a given duration is, its caller knows
     let steps = match spec.schedule.steps {
         0 => 1000,
@@ -320,6 +321,10 @@ pub fn build_in<const D: usize>(
             model.statics = Some(StaticState::new(statics));
         }
     }
+    if let Some(preload) = &spec.preload {
+        model.prepare_preload(preload, &sets)?;
+    }
+    model.sets = sets;
     model.probes = model.probes_of(&spec.probes)?;
     Ok(model)
 }

@@ -6,6 +6,7 @@ use crate::execute::memory;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::space::ball_volume;
+use super::preload;
 use crate::spec::{LawSpec, Spec, Stepper};
 
 /// Steppers and instruction sets that there are not.
@@ -15,6 +16,9 @@ pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError
             "pairs",
             "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
         ));
+    }
+    if let Some(preload) = &spec.preload {
+        preload::possible(spec, preload)?;
     }
     if let Some(simd) = simd
         && !Simd::available().contains(&simd)

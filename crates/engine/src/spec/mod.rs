@@ -14,6 +14,7 @@ mod interface;
 mod law;
 mod linear_body;
 mod potential;
+mod preload;
 mod probe;
 mod schedule;
 mod surface;
@@ -39,6 +40,7 @@ pub use law::{
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
+pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
 pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
@@ -107,6 +109,8 @@ pub struct Spec {
     pub transfers: Vec<TransferSpec>,
     /// Which family enumerates the bonds; `Auto` takes the stencil for lattice bodies, the list otherwise.
     pub family: FamilyChoice,
+    /// Statics that the motion of the schedule begins from.
+    pub preload: Option<PreloadSpec>,
     pub schedule: Schedule,
     /// Columns of points that the caller will ask for, by name; a name that does not exist is an error. `None`: what is usual.
     pub fields: Option<Vec<String>>,
@@ -156,6 +160,7 @@ impl Spec {
             indenters: vec![],
             transfers: vec![],
             family: FamilyChoice::Auto,
+            preload: None,
             schedule: Schedule {
                 steps: 0,
                 time_step: TimeStep::Auto,

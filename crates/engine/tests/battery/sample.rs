@@ -427,6 +427,7 @@ impl Case {
             indenters: vec![],
             transfers: vec![],
             family: FamilyChoice::Auto,
+            preload: None,
             schedule: Schedule {
                 steps: 0,
                 time_step: TimeStep::Fraction(0.5),

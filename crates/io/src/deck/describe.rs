@@ -7,7 +7,7 @@ use peridyne::space::region::Region;
 use peridyne::spec::{
     Acting, BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion,
     LawSpec, MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, PotentialSpec,
-    ProbeSpec, Release, Spec, Stepper, TimeStep, ToughnessFactor, TransferMethod, TransferSpec,
+    ProbeSpec, Release, Spec, Statics, Stepper, TimeStep, ToughnessFactor, TransferMethod, TransferSpec,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -219,16 +219,21 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         ));
     }
     if let Some(statics) = &spec.schedule.statics() {
-        let method = match statics.method {
-            Method::Linear => "linear equations about the reference",
-            Method::Newton => "Newton's method",
-            Method::Relaxation => "adaptive dynamic relaxation",
-        };
-        lines.push(format!(
-            "statics    {} increments of load, {method}, tolerance {:e}",
-            spec.schedule.steps, statics.tolerance
-        ));
+        lines.push(equilibrium(statics, spec.schedule.steps));
         return lines.join("\n");
+    }
+    if let Some(preload) = &spec.preload {
+        lines.push(format!(
+            "{}, under {} conditions",
+            equilibrium(&preload.statics, preload.increments),
+            preload.conditions.len()
+        ));
+        if !preload.cuts.is_empty() {
+            lines.push(format!(
+                "cut        {} cracks, when motion begins",
+                preload.cuts.len()
+            ));
+        }
     }
     let step = match spec.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
@@ -255,6 +260,19 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     };
     lines.push(format!("run        {steps} of {step}{how}"));
     lines.join("\n")
+}
+
+/// Increments of load and how each finds its equilibrium.
+fn equilibrium(statics: &Statics, increments: u64) -> String {
+    let method = match statics.method {
+        Method::Linear => "linear equations about the reference",
+        Method::Newton => "Newton's method",
+        Method::Relaxation => "adaptive dynamic relaxation",
+    };
+    format!(
+        "statics    {increments} increments of load, {method}, tolerance {:e}",
+        statics.tolerance
+    )
 }
 
 /// What spreads, and how.

@@ -133,9 +133,9 @@ pub struct Document {
     /// Continuum fields of the running model: density, momentum, stress, heat flux.
     #[serde(default)]
     pub fields: Vec<At<Fields>>,
-    /// Motion in time; instead of statics.
+    /// Motion in time; instead of statics, or from the last equilibrium of [statics] on.
     pub run: Option<At<Run>>,
-    /// Equilibrium under conditions that grow with t; instead of run.
+    /// Equilibrium under conditions that grow with t; instead of run, or before it.
     pub statics: Option<At<Statics>>,
     /// Files of the results.
     #[serde(default)]

@@ -38,7 +38,7 @@ pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
 
 /// Their values now.
 pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec<f64> {
-    let mut row = vec![sim.time()];
+    let mut row = vec![sim.clock()];
     row.extend(ledger_values(ledger));
     row.push(sim.broken() as f64);
     if let Some(solved) = sim.solved() {

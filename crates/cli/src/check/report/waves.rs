@@ -16,6 +16,19 @@ fn lasts(found: &Findings) -> String {
     )
 }
 
+fn equilibrium(out: &mut String, name: &str, method: Method, increments: u64) {
+    let how = match method {
+        Method::Linear => "linear about the reference",
+        Method::Newton => "by Newton's method",
+        Method::Relaxation => "by relaxation, which finds its own step",
+    };
+    row(
+        out,
+        name,
+        format!("{} increments of load, {how}", whole(increments)),
+    );
+}
+
 pub(super) fn waves(found: &Findings) -> String {
     let (info, units) = (found.sim.info(), found.units);
     let mut out = String::from("Waves and step\n");
@@ -71,17 +84,11 @@ pub(super) fn waves(found: &Findings) -> String {
         );
     }
     if let Some(statics) = found.spec.schedule.statics() {
-        let how = match statics.method {
-            Method::Linear => "linear about the reference",
-            Method::Newton => "by Newton's method",
-            Method::Relaxation => "by relaxation, which finds its own step",
-        };
-        row(
-            &mut out,
-            "equilibrium",
-            format!("{} increments of load, {how}", whole(found.steps)),
-        );
+        equilibrium(&mut out, "equilibrium", statics.method, found.steps);
         return out;
+    }
+    if let Some(preload) = &found.spec.preload {
+        equilibrium(&mut out, "before motion", preload.statics.method, found.increments);
     }
     if let Stepper::Newmark(n) = found.spec.schedule.stepper {
         row(

@@ -9,6 +9,7 @@ use self::state::StaticState;
 use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
+use crate::condition::constraint::Constraint;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
@@ -29,9 +30,13 @@ const ROUNDS: usize = 10_000;
 impl<const D: usize> Model<D> {
     /// Which components the conditions leave free.
     pub(super) fn support(&self) -> Support<D> {
+        self.support_of(&self.constraints)
+    }
+
+    fn support_of(&self, constraints: &[Constraint<D>]) -> Support<D> {
         let id = self.ids();
         let mut support = Support::none(self.body.points());
-        for c in &self.constraints {
+        for c in constraints {
             for (slot, held) in c.holds() {
                 for a in (0..D).filter(|a| held[*a]) {
                     support.free[id[slot] as usize][a] = false;
@@ -318,12 +323,15 @@ impl<const D: usize> Model<D> {
         self.past_work[1] += work;
     }
 
-    /// The lowest modes of vibration about the state of now.
+    /// The lowest modes of vibration about the state of now; of a body that was loaded those of the motion that follows.
     ///
     /// # Errors
     /// Those of the factorisation.
     pub(super) fn lowest_modes(&mut self, count: usize) -> Result<Vec<Mode<D>>, SolveError> {
-        let support = self.support();
+        let support = match self.preload.as_ref().filter(|_| self.is_loaded()) {
+            Some(waits) => self.support_of(&waits.constraints),
+            None => self.support(),
+        };
         let body = self.linear_now();
         modes::lowest(&body, &support, count)
     }

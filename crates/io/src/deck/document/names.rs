@@ -98,6 +98,13 @@ names! {
         Neighbours,
     }
     /// How a motion goes on in time.
+    /// Of a deck with [statics] and [run].
+    StageName {
+        /// While the body is loaded.
+        Statics,
+        /// From its last equilibrium on.
+        Motion,
+    }
     IntegratorName {
         /// Velocity Verlet: explicit, stable below a limit of the step.
         Verlet,

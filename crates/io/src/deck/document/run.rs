@@ -53,13 +53,14 @@ pub enum ReleaseName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
-    /// linear (about the reference) when left out; newton for large deformation, relaxation for contact.
+    /// linear (about the reference) when left out, newton before [run]; newton for large deformation, relaxation for contact.
     pub method: Option<MethodName>,
     /// auto when left out: factors of small systems, conjugate gradients of large ones.
     pub solver: Option<SolverName>,
     /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only.
     pub increments: Option<At<u64>>,
-    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out.
+    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out. Before [run] the
+    /// stage is as long in records, which count time from the beginning of motion; when left out an increment is as long as a step.
     #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub duration: Option<Number>,
     /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
@@ -67,7 +68,7 @@ pub struct Statics {
     pub tolerance: Option<Number>,
     /// Iterations of conjugate gradients or of relaxation; 100,000 when left out.
     pub iterations: Option<At<usize>>,
-    /// So many lowest modes of vibration about the last state; modes.csv and modes.pvd.
+    /// So many lowest modes of vibration about the last state, before [run] those of the motion that follows; modes.csv and modes.pvd.
     pub modes: Option<At<usize>>,
     /// All cores when left out; results do not depend on it.
     pub threads: Option<At<usize>>,

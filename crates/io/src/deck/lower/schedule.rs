@@ -22,29 +22,62 @@ pub(super) struct RunSpec {
     pub duration: Option<f64>,
     /// Modes of vibration asked for.
     pub modes: usize,
+    /// Statics before motion.
+    pub preload: Option<Before>,
+}
+
+/// Statics before motion.
+pub(super) struct Before {
+    pub statics: peridyne::spec::Statics,
+    pub increments: u64,
+    pub duration: Option<f64>,
 }
 
 pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec> {
     match (&document.run, &document.statics) {
         (Some(run), None) => motion(context, run),
-        (None, Some(written)) => statics(context, written),
-        (Some(_), Some(written)) => Err(context.error_with(
-            &written.span,
-            "the deck has [run] and [statics]: motion in time, or equilibrium",
-            "remove one of them",
-        )),
+        (None, Some(written)) => statics(context, written, Method::Linear),
+        (Some(run), Some(written)) => {
+            let before = statics(context, written, Method::Newton)?;
+            let Some(options) = before.schedule.statics() else {
+                return Ok(before);
+            };
+            if before.schedule.steps == 0 {
+                let zero = &written.value.increments;
+                let span = zero.as_ref().map_or(&written.span, |n| &n.span);
+                return Err(context.error_with(
+                    span,
+                    "motion begins in equilibrium, and no increment leads to one",
+                    "write increments = 1 or more, or leave [statics] out",
+                ));
+            }
+            let duration = written.value.duration.as_ref();
+            let duration = duration.map(|d| context.positive(d, Dim::TIME, "the duration"));
+            let then = motion(context, run)?;
+            Ok(RunSpec {
+                modes: before.modes,
+                threads: then.threads.or(before.threads),
+                preload: Some(Before {
+                    statics: options,
+                    increments: before.schedule.steps,
+                    duration: duration.transpose()?,
+                }),
+                ..then
+            })
+        }
         (None, None) => Err(context.error_with(
             &(0..0),
             "the deck does not say what to do",
-            "add [run] with steps or a duration, or [statics] for equilibrium",
+            "add [run] with steps or a duration, or [statics] for equilibrium, or both: motion from an equilibrium",
         )),
     }
 }
 
-fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
+fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<RunSpec> {
     let written = &written.value;
     let method = match written.method {
-        None | Some(MethodName::Linear) => Method::Linear,
+        None => usual,
+        Some(MethodName::Linear) => Method::Linear,
         Some(MethodName::Newton) => Method::Newton,
         Some(MethodName::Relaxation) => Method::Relaxation,
     };
@@ -85,6 +118,7 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
         threads: threads(context, &written.threads)?,
         duration: None,
         modes,
+        preload: None,
     })
 }
 
@@ -224,6 +258,7 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
         threads: threads(context, &written.threads)?,
         duration,
         modes: 0,
+        preload: None,
     })
 }
 
