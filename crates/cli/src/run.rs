@@ -97,7 +97,10 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
-    plan.indenters = indenters(deck, (steps - plan.increments) as f64 * sim.info().time_step);
+    plan.indenters = indenters(
+        deck,
+        (steps - plan.increments) as f64 * sim.info().time_step,
+    );
     say(&format!(
         "threads   {threads}\nrunning {}{} steps, results in {}",
         match plan.increments {

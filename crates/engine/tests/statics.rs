@@ -2,6 +2,8 @@
 
 #[path = "statics/preload.rs"]
 mod preload;
+#[path = "statics/sequence.rs"]
+mod sequence;
 
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};

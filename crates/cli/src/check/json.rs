@@ -53,6 +53,7 @@ pub fn write(found: &Findings) -> String {
         "time_step": found.spec.schedule.statics().is_none().then_some(info.time_step),
         "integrator": match info.stepper {
             Stepper::Verlet => Some("verlet"),
+            Stepper::Newmark(n) if n.alpha != 0.0 => Some("hht"),
             Stepper::Newmark(_) => Some("newmark"),
             Stepper::Still => Some("still"),
             Stepper::Statics(_) => None,

@@ -57,7 +57,9 @@ pub enum RunError {
         asked: f64,
         found: f64,
     },
-    #[error("after {step} increments of statics, which knew no contact, {pairs} pairs of points touch: write method = \"relaxation\" under [statics], or contact = false")]
+    #[error(
+        "after {step} increments of statics, which knew no contact, {pairs} pairs of points touch: write method = \"relaxation\" under [statics], or contact = false"
+    )]
     Touching { step: u64, pairs: usize },
     #[error("step {step}: the factor of the toughness is {value} at ({:.6e}, {:.6e}, {:.6e}), expected a positive number", position[0], position[1], position[2])]
     Toughness {
@@ -102,6 +104,7 @@ fn shorter(error: &SolveError) -> &'static str {
         | SolveError::StillBreaking { .. }
         | SolveError::Contact
         | SolveError::NoTangent { .. }
+        | SolveError::NothingBreaks
         | SolveError::NotFinite
         | SolveError::Stopped => "",
     }

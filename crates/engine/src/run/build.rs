@@ -14,7 +14,7 @@ use super::sets::{assign_materials, initial, sets};
 use super::time_step::{Limits, time_step};
 use super::transfers::state::Transfers;
 use super::{Info, Simulation, Steered};
-use super::{bonds, precracks, surface, transfers};
+use super::{bonds, own_horizons, precracks, surface, transfers};
 use super::{contact, gaps};
 use crate::body::zeros;
 use crate::condition::carried::Carried;
@@ -22,7 +22,7 @@ use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
-use crate::spec::{BodySpec, Horizon, Spec, Stepper, TimeStep};
+use crate::spec::{BodySpec, Control, Horizon, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// How to build, as opposed to what.
@@ -85,7 +85,7 @@ pub fn build_in<const D: usize>(
         .reduce(f64::max)
         .unwrap_or(parts[0].horizon);
     // within a body all pairs nearer than this are a family
-    let least_horizon = bonded_horizons().fold(horizon, f64::min);
+    let mut least_horizon = bonded_horizons().fold(horizon, f64::min);
     for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
         let own = body.pieces().get(n).map_or(&body, |p| &p.body);
         let atoms = current_neighbours(spec);
@@ -98,6 +98,11 @@ pub fn build_in<const D: usize>(
     let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
     assign_materials(spec, &mut body, &sets)?;
     own_densities(spec, &mut body);
+    own_horizons::give(spec, &mut body, horizon)?;
+    if !body.horizon.is_empty() {
+        let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
+        least_horizon = own.fold(least_horizon, f64::min);
+    }
     let by_length = |p: &&Part| matches!(p.spec.horizon, Horizon::Length(_));
     let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
     let ends: u64 = ends.map(|s| s.near_horizon as u64).sum();
@@ -273,6 +278,7 @@ pub fn build_in<const D: usize>(
         broken: 0,
         released: 0.0,
         past_work: [0.0; 3],
+        numerical: 0.0,
         initial_energy: None,
         fault: None,
         statics: None,
@@ -312,11 +318,24 @@ pub fn build_in<const D: usize>(
         Stepper::Verlet | Stepper::Still => {}
         Stepper::Newmark(newmark) => {
             model.check_implicit(newmark, spec)?;
-            model.implicit = Some(Implicit::new(newmark));
+            let mut implicit = Implicit::new(newmark);
+            implicit.breaks = spec.materials.iter().any(|m| m.fracture.is_some())
+                || spec.interfaces.iter().any(|i| i.fracture.is_some());
+            let reach = model.info.horizon / model.info.spacing;
+            if implicit.breaks && dt > reach * limits.bond {
+                model.info.warnings.push(format!(
+                    "bonds break at the end of a step: a crack grows by no more than a horizon in each, and a wave goes further than that in {dt:.3e}; where cracks run, steps of {:.3e} follow them",
+                    reach * limits.bond
+                ));
+            }
+            model.implicit = Some(implicit);
         }
         Stepper::Statics(statics) => {
             if spec.schedule.steps > 0 {
                 model.check_statics(statics)?;
+                if statics.control == Control::Breaking {
+                    model.check_sequence(statics, spec)?;
+                }
             }
             model.statics = Some(StaticState::new(statics));
         }

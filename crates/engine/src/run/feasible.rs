@@ -1,12 +1,12 @@
 //! Can a spec be built at all? What is looked at before anything is made.
 
+use super::preload;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::memory;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::space::ball_volume;
-use super::preload;
 use crate::spec::{LawSpec, Spec, Stepper};
 
 /// Steppers and instruction sets that there are not.

@@ -22,6 +22,7 @@ mod interfaces;
 mod model;
 mod motion;
 mod observation;
+mod own_horizons;
 mod parts;
 mod precracks;
 mod preload;

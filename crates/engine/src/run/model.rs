@@ -100,6 +100,8 @@ pub struct Model<const D: usize> {
     pub(super) released: f64,
     /// Work of conditions that were replaced since.
     pub(super) past_work: [f64; 3],
+    /// Taken by the implicit method (energy).
+    pub(super) numerical: f64,
     pub(super) initial_energy: Option<f64>,
     /// The last forces mean nothing.
     pub(super) fault: Option<Fault>,

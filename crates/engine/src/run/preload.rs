@@ -14,7 +14,7 @@ use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
-use crate::spec::{CrackKind, Method, PreloadSpec, Spec, Stepper};
+use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Stepper};
 use crate::statics::Solved;
 
 /// Distances (spacings) that are round-off.
@@ -53,7 +53,10 @@ pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildEr
     if !(preload.end() > 0.0 && preload.end().is_finite()) {
         return Err(BuildError::invalid(
             "preload.duration",
-            format!("the stage of statics lasts {}, expected a positive number", preload.end()),
+            format!(
+                "the stage of statics lasts {}, expected a positive number",
+                preload.end()
+            ),
         ));
     }
     match spec.schedule.stepper {
@@ -91,6 +94,13 @@ impl<const D: usize> Model<D> {
         sets: &[(String, Vec<u32>)],
     ) -> Result<(), BuildError> {
         let statics = preload.statics;
+        if statics.control != Control::Load {
+            return Err(BuildError::unsupported(
+                "preload.statics.control",
+                "statics that breaks bond after bond ends where a bond breaks, not where motion could begin",
+            )
+            .help("leave control out"));
+        }
         let linear = |l: &Laws| matches!(l, Laws::Springs(_) | Laws::Micromoduli(_));
         if statics.method == Method::Linear && !self.constitutive.all().all(|m| linear(&m.laws)) {
             return Err(BuildError::unsupported(
@@ -198,6 +208,15 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// Time of a frame, which only grows: where t is a factor that may fall, the number of the equilibrium.
+    pub(super) fn frame_time(&self) -> f64 {
+        let falls = |s: &StaticState<D>| s.options.control == Control::Breaking;
+        match self.statics.as_ref().is_some_and(falls) {
+            true => self.step as f64,
+            false => self.shown_time(),
+        }
+    }
+
     /// From the last equilibrium to motion: what waited takes the place of what loaded the body. On an error nothing is changed.
     pub(super) fn set_in_motion(&mut self) -> Result<(), RunError> {
         let Some(mut waits) = self.preload.take() else {
@@ -227,11 +246,11 @@ impl<const D: usize> Model<D> {
         if !waits.cuts.is_empty() {
             let held: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
             for crack in &waits.cuts {
-                self.info.cut += self.interaction.cut(
-                    &self.body,
-                    CrackKind::Broken,
-                    &|from, to| crack.crosses(&from, &to),
-                );
+                self.info.cut +=
+                    self.interaction
+                        .cut(&self.body, CrackKind::Broken, &|from, to| {
+                            crack.crosses(&from, &to)
+                        });
             }
             let kept: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
             self.released += held - kept;

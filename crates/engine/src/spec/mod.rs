@@ -20,6 +20,7 @@ mod schedule;
 mod surface;
 mod transfer;
 
+use crate::expression::Expression;
 pub use atoms::{Acting, ActingSpec, Mixing};
 pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
 pub use bonded::{BondedSpec, BondedTerm, Form};
@@ -42,7 +43,7 @@ pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
 pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec};
-pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
+pub use schedule::{Control, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};
 pub use transfer::{
@@ -82,6 +83,8 @@ pub struct Spec {
     /// When a bond past its critical stretch lets go.
     pub release: Release,
     pub horizon: Horizon,
+    /// Horizon of each point of a cloud (length), an expression of x, y, z, at most `horizon`; `None`: all have that.
+    pub own_horizon: Option<Expression>,
     /// Scale the partner's volume linearly where its cell straddles the horizon (`lammps-peri` item 3).
     pub volume_scaling: bool,
     /// Calibrate stiffness constants to the discrete bulk family, or use the continuum integrals.
@@ -144,6 +147,7 @@ impl Spec {
             toughness: vec![],
             release: Release::AtOnce,
             horizon: Horizon::Ratio(1),
+            own_horizon: None,
             volume_scaling: false,
             calibration: Calibration::Discrete,
             influence: Influence::Constant,

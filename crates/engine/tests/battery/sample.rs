@@ -428,6 +428,7 @@ impl Case {
             transfers: vec![],
             family: FamilyChoice::Auto,
             preload: None,
+            own_horizon: None,
             schedule: Schedule {
                 steps: 0,
                 time_step: TimeStep::Fraction(0.5),

@@ -104,12 +104,20 @@ fn a_bar_that_is_let_go_vibrates_with_the_energy_of_its_load() {
 #[test]
 fn a_string_sounds_as_its_tension_says() {
     let n = 40;
-    let mut spec = block([f64::from(n), 0.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Micromodulus(1.0)));
+    let mut spec = block(
+        [f64::from(n), 0.0, 0.0],
+        2,
+        LawSpec::Pmb(PmbStiffness::Micromodulus(1.0)),
+    );
     hold(&mut spec, "low", [number(0.0), number(0.0), None]);
     let low = spec.conditions.clone();
     let stretch = 0.02;
     let end = stretch * f64::from(n);
-    hold(&mut spec, "high", [text(&format!("{end}*t")), number(0.0), None]);
+    hold(
+        &mut spec,
+        "high",
+        [text(&format!("{end}*t")), number(0.0), None],
+    );
     // nothing resists across a row without tension
     hold(&mut spec, "all", [None, number(0.0), None]);
     then(&mut spec, 2, Stepper::Verlet, 0.1);
@@ -240,7 +248,10 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
     jump.conditions.clear();
     hold(&mut jump, "low", [number(0.1), None, None]);
     let jump = said(&jump);
-    assert!(jump.message.contains("begins with a displacement of 1e-1"), "{jump:?}");
+    assert!(
+        jump.message.contains("begins with a displacement of 1e-1"),
+        "{jump:?}"
+    );
     // where statics leaves a point nobody knows before
     let mut jump = spec.clone();
     hold(&mut jump, "all", [None, number(0.0), None]);

@@ -85,6 +85,10 @@ pub struct Document {
     /// Not needed by atoms that talk to their current neighbours.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
+    /// Horizon of each point, an expression of x, y, z, at most `horizon` (dual horizon): pmb on clouds, with family = "list" of lattices, too;
+    /// with calibration = "continuum" and volume_scaling = false.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub own_horizon: Option<Number>,
     /// constant for pmb and inverse for lps when left out.
     pub influence: Option<InfluenceName>,
     /// Scale the partner's volume where its cell straddles the horizon; true when left out.

@@ -4,7 +4,7 @@ use super::row;
 use crate::check::Findings;
 use crate::numbers::whole;
 use peridyne::spec::{Criterion, Method, Stepper};
-use peridyne_io::deck::Dim;
+use peridyne_io::deck::{Dim, rounded};
 
 /// How long a run is.
 fn lasts(found: &Findings) -> String {
@@ -88,16 +88,28 @@ pub(super) fn waves(found: &Findings) -> String {
         return out;
     }
     if let Some(preload) = &found.spec.preload {
-        equilibrium(&mut out, "before motion", preload.statics.method, found.increments);
+        equilibrium(
+            &mut out,
+            "before motion",
+            preload.statics.method,
+            found.increments,
+        );
     }
     if let Stepper::Newmark(n) = found.spec.schedule.stepper {
         row(
             &mut out,
             "integrator",
-            format!(
-                "implicit, Newmark's method with beta = {}, gamma = {}",
-                n.beta, n.gamma
-            ),
+            match n.alpha != 0.0 {
+                true => format!(
+                    "implicit, the method of Hilber, Hughes and Taylor with alpha = {}: what is fast keeps {} of itself in a step",
+                    n.alpha,
+                    rounded((1.0 + n.alpha) / (1.0 - n.alpha), 3)
+                ),
+                false => format!(
+                    "implicit, Newmark's method with beta = {}, gamma = {}",
+                    n.beta, n.gamma
+                ),
+            },
         );
         let ratio = info.time_step / info.stable_step;
         row(

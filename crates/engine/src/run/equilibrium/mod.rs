@@ -1,6 +1,7 @@
 //! Statics of a model: every step is an increment of load, and ends in equilibrium.
 
 mod linear;
+mod sequence;
 mod solve;
 pub(super) mod state;
 pub(super) mod tried;
@@ -230,6 +231,9 @@ impl<const D: usize> Model<D> {
         };
         let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
         self.step += 1;
+        if Self::breaks_in_turn(state.options) {
+            return self.break_next(state, u, f);
+        }
         let result = self.settle_increment(&mut state);
         if let Err(error) = result {
             self.step -= 1;
@@ -249,6 +253,30 @@ impl<const D: usize> Model<D> {
         self.account(&u, &f, &external);
         self.pay(0.5, 0.0);
         Ok(())
+    }
+
+    /// An increment that ends where the next bonds break.
+    fn break_next(
+        &mut self,
+        mut state: StaticState<D>,
+        u: Field<D>,
+        f: Field<D>,
+    ) -> Result<(), RunError> {
+        let origin = self.origin;
+        match self.settle_sequence(&mut state) {
+            Ok(solved) => {
+                state.solved = solved;
+                self.statics = Some(state);
+                Ok(())
+            }
+            Err(error) => {
+                self.step -= 1;
+                (self.u, self.f, self.origin) = (u, f, origin);
+                self.refresh_images();
+                self.statics = Some(state);
+                Err(self.unsolved(error))
+            }
+        }
     }
 
     pub(super) fn unsolved(&self, error: SolveError) -> RunError {
@@ -279,6 +307,7 @@ impl<const D: usize> Model<D> {
                 c.place(&mut self.u, t);
             }
             self.indenters.iter_mut().for_each(|i| i.place(t));
+            self.look_again();
             let before = self.broken;
             let solved = match state.options.method {
                 Method::Linear => self.settle_linear(state, &support)?,

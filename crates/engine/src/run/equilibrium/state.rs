@@ -1,5 +1,6 @@
 //! What statics keeps between increments.
 
+use super::sequence::Sequence;
 use crate::spec::{LinearBody, Statics};
 use crate::statics::{Direct, Solved};
 
@@ -7,6 +8,8 @@ pub(in crate::run) struct StaticState<const D: usize> {
     pub options: Statics,
     /// The linear body about the reference and its factors, as long as no bond broke.
     pub(super) factors: Option<(LinearBody<D>, Direct<D>)>,
+    /// Where bonds break in turn: which are next.
+    pub(super) sequence: Option<Sequence<D>>,
     /// Of the operator about the reference, once looked at.
     pub(super) asymmetry: Option<f64>,
     /// Of the last increment.
@@ -18,6 +21,7 @@ impl<const D: usize> StaticState<D> {
         StaticState {
             options,
             factors: None,
+            sequence: None,
             asymmetry: None,
             solved: Solved::default(),
         }

@@ -38,14 +38,14 @@ use crate::read::eam::{self, EamFile};
 use crate::read::entries::Entry;
 use crate::read::{Frame, Points};
 use context::{Context, Result};
-pub(super) use stage::Entries;
-use stage::{Staged, Stages};
 use peridyne::law::descriptor::Key;
 use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, BondedSpec, Calibration, Cloud, FamilyChoice, Horizon, Influence, MaterialSpec,
     Plane, PreloadSpec, Spec, SurfaceFactors, SurfaceMethod,
 };
+pub(super) use stage::Entries;
+use stage::{Staged, Stages};
 use std::path::Path;
 
 /// How files named in a deck are read.
@@ -209,7 +209,11 @@ pub(super) fn lower(
     for (index, at) in document.precrack.iter().enumerate() {
         let late = stages.named(&context, &at.value.stage)? == Some(StageName::Motion);
         let made = motion::precrack(&context, at, late)?;
-        let when = if late { StageName::Motion } else { StageName::Statics };
+        let when = if late {
+            StageName::Motion
+        } else {
+            StageName::Statics
+        };
         precracks.put(Some(when), true, index, vec![made]);
     }
     let transfers = transfer::transfers(&context, document, &materials, starts, exchanged)?;
@@ -244,6 +248,11 @@ pub(super) fn lower(
                 ));
             }
         },
+        own_horizon: document
+            .own_horizon
+            .as_ref()
+            .map(|e| context.expression(e, Dim::LENGTH))
+            .transpose()?,
         bonded: atoms::molecules(&context, document, files)?,
         thermal: document
             .thermal

@@ -182,11 +182,7 @@ pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterS
 }
 
 /// One that is `late` cuts a body that is loaded.
-pub(super) fn precrack(
-    context: &Context,
-    at: &At<Precrack>,
-    late: bool,
-) -> Result<PrecrackSpec> {
+pub(super) fn precrack(context: &Context, at: &At<Precrack>, late: bool) -> Result<PrecrackSpec> {
     let p = &at.value;
     let shape = FlatShape {
         segment: p.segment.clone(),

@@ -139,13 +139,22 @@ impl Entries {
             None => (false, path),
         };
         let lists = [
-            ("conditions[", "conditions", &self.conditions[usize::from(!before)]),
-            ("indenters[", "indenters", &self.indenters[usize::from(!before)]),
+            (
+                "conditions[",
+                "conditions",
+                &self.conditions[usize::from(!before)],
+            ),
+            (
+                "indenters[",
+                "indenters",
+                &self.indenters[usize::from(!before)],
+            ),
             ("precracks[", "precracks", &self.precracks[0]),
             ("cuts[", "precracks", &self.precracks[1]),
         ];
         for (prefix, name, entries) in lists {
-            if let Some((number, rest)) = rest.strip_prefix(prefix).and_then(|r| r.split_once(']')) {
+            if let Some((number, rest)) = rest.strip_prefix(prefix).and_then(|r| r.split_once(']'))
+            {
                 let entry = entries.get(number.parse::<usize>().ok()?)?;
                 return Some(format!("{name}[{entry}]{rest}"));
             }
