@@ -155,7 +155,6 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     let steps = deck.steps(info.time_step);
     let amount = Amount {
         steps,
-        increments: deck.increments(),
         every: output.every,
         history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
@@ -368,6 +367,7 @@ fn plan(
         report: output.report,
         allow_outside,
         steps,
+        increments: deck.increments(),
         every: output.every,
         modes: deck.modes,
         linear_body: output.linear_body,

@@ -3,7 +3,7 @@
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
-use super::preload::Preload;
+use super::preload::state::Preload;
 use super::probes::state::Probe;
 use super::transfers::state::Transfers;
 use super::{Info, Simulation};

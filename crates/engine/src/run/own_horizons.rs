@@ -4,8 +4,8 @@ use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::spec::{Calibration, Criterion, Influence, LawSpec, Spec, Stepper};
 
-/// Horizons are met inclusively.
-const INCLUSIVE: f64 = 1.0 + 1e-9;
+/// What is longer by this part is so by round-off.
+const ROUND_OFF: f64 = 1.0 + 1e-9;
 
 fn possible(spec: &Spec) -> Result<(), BuildError> {
     let refused = |path: &str, message: &str, help: &str| {
@@ -25,11 +25,11 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
             "leave influence out",
         );
     }
-    if spec.volume_scaling {
+    if !spec.volume_scaling {
         return refused(
             "volume_scaling",
-            "volumes do not fade at horizons of points",
-            "write volume_scaling = false",
+            "volumes fade at the horizon of a point: else its stiffness jumps wherever that passes another point",
+            "leave volume_scaling out",
         );
     }
     if spec.calibration != Calibration::Continuum {
@@ -95,7 +95,7 @@ pub(super) fn give<const D: usize>(
     for &s in &body.slots {
         let x = body.position(s as usize);
         let horizon = expression.eval(&x, 0.0);
-        if !(horizon > 0.0 && horizon <= longest * INCLUSIVE) {
+        if !(horizon > 0.0 && horizon <= longest * ROUND_OFF) {
             return Err(BuildError::invalid(
                 "own_horizon",
                 format!(
@@ -105,7 +105,7 @@ pub(super) fn give<const D: usize>(
             )
             .help("horizon is the longest of all"));
         }
-        own[s as usize] = horizon * INCLUSIVE;
+        own[s as usize] = horizon;
     }
     body.horizon = own;
     Ok(())

@@ -26,6 +26,7 @@ fn solid(size: &[f64], longest: f64, own: Option<&str>) -> Spec {
     spec.horizon = Horizon::Length(longest);
     spec.family = FamilyChoice::List;
     spec.calibration = Calibration::Continuum;
+    spec.volume_scaling = true;
     spec.own_horizon = own.and_then(text);
     spec
 }
@@ -54,18 +55,17 @@ const GRADED: &str = "2.05 + 1.5*clamp((x-3)/6, 0, 1)";
 
 #[test]
 fn alike_horizons_are_those_of_the_body() {
-    for size in [&[20.0][..], &[9.0, 8.0], &[6.0, 5.0, 5.0]] {
-        let (mut one, mut own) = (
-            started(&solid(size, 2.5, None)),
-            started(&solid(size, 2.5, Some("2.5"))),
-        );
+    // no pair is further apart than the horizon by less than half a spacing
+    for (size, horizon, own) in [(&[20.0][..], 2.45, "2.45"), (&[9.0, 8.0], 2.3, "2.3")] {
+        let mut one = started(&solid(size, horizon, None));
+        let mut own = started(&solid(size, horizon, Some(own)));
         assert_eq!(one.info().directed_bonds, own.info().directed_bonds);
         let u = bent(one.as_mut());
         let (f, g) = (one.forces_under(&u), own.forces_under(&u));
         let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
         for (f, g) in f.iter().zip(&g) {
             for a in 0..3 {
-                assert!((f[a] - g[a]).abs() < 1e-8 * most, "{f:?} {g:?}");
+                assert!((f[a] - g[a]).abs() < 1e-12 * most, "{f:?} {g:?}");
             }
         }
     }
@@ -109,7 +109,7 @@ fn unlike_horizons_keep_momentum_and_energy() {
             worst
         };
         let (coarse, fine) = (off(0.2), off(0.1));
-        assert!(coarse < 1e-2, "{coarse}");
+        assert!(coarse < 5e-2, "{coarse}");
         assert!(fine < 0.35 * coarse, "{coarse} {fine}");
     }
 }
@@ -203,7 +203,7 @@ fn what_knows_one_horizon_is_refused() {
     assert_eq!(said(&|s| s.own_horizon = text("x-1")), "own_horizon");
     assert_eq!(said(&|s| s.own_horizon = text("2+t")), "own_horizon");
     assert_eq!(said(&|s| s.family = FamilyChoice::Auto), "own_horizon");
-    assert_eq!(said(&|s| s.volume_scaling = true), "volume_scaling");
+    assert_eq!(said(&|s| s.volume_scaling = false), "volume_scaling");
     assert_eq!(
         said(&|s| s.calibration = Calibration::Discrete),
         "calibration"

@@ -16,7 +16,11 @@ fn breaking(spec: &mut Spec, critical: f64, equilibria: u64) {
 
 #[test]
 fn a_chain_bears_the_critical_stretch_of_all_its_springs() {
-    let mut spec = block([20.0, 0.0, 0.0], 1, SPRINGS);
+    let mut spec = block(
+        [20.0, 0.0, 0.0],
+        1,
+        LawSpec::Pmb(PmbStiffness::Micromodulus(1.0)),
+    );
     hold(&mut spec, "low", [number(0.0), None, None]);
     hold(&mut spec, "high", [text("3*t"), None, None]);
     breaking(&mut spec, 0.01, 1);

@@ -86,7 +86,7 @@ pub struct Document {
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
     /// Horizon of each point, an expression of x, y, z, at most `horizon` (dual horizon): pmb on clouds, with family = "list" of lattices, too;
-    /// with calibration = "continuum" and volume_scaling = false.
+    /// with calibration = "continuum".
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub own_horizon: Option<Number>,
     /// constant for pmb and inverse for lps when left out.

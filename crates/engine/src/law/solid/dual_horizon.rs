@@ -2,15 +2,19 @@
 //! Numer. Methods Eng. 108, 1451–1476, eq. 13–16).
 //!
 //! A point pulls at those within its own horizon, and is pulled at by those in whose horizon it is (its dual horizon): force density on i
-//! `Σ_j ½ (c_i [r0 ≤ δ_i] + c_j [r0 ≤ δ_j]) V_j s (ξ+η)/|ξ+η|`. Either half is action and reaction, so momentum and angular momentum stay;
-//! with the micropotential `½ (…) s² r0` so does energy. Where all horizons are alike it is [`BondBased`](super::bond_based::BondBased).
+//! `Σ_j ½ (c_i ν_i + c_j ν_j) V_j s (ξ+η)/|ξ+η|`, with `ν = clamp(½ + (δ − r0)/h, 0, 1)` the part of a cell of width h that is within δ, so
+//! that nothing jumps where a horizon passes a point. Either half is action and reaction, so momentum and angular momentum stay; with the
+//! micropotential `½ (…) s² r0` so does energy.
 
 use crate::execute::lane::Lane;
 use crate::law::Law;
 
-/// Micromodulus (field 0) and horizon (field 1) per point.
+/// Micromodulus (field 0) and `½ + δ/h` (field 1) per point.
 #[derive(Debug, Clone, Copy)]
-pub struct DualHorizon;
+pub struct DualHorizon {
+    /// `1/h` (1 / length).
+    pub rate: f64,
+}
 
 impl Law for DualHorizon {
     const SHARES: bool = false;
@@ -22,8 +26,11 @@ impl Law for DualHorizon {
     }
     #[inline(always)]
     fn between_ends<L: Lane>(self, k: L, r0: L, i: [L; 2], j: [L; 2]) -> L {
-        let zero = L::splat(0.0);
-        let half = |end: [L; 2]| L::select(end[1].lt(r0), zero, end[0]);
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let half = |end: [L; 2]| {
+            let part = r0.fma(L::splat(-self.rate), end[1]).min(one).max(zero);
+            end[0] * part
+        };
         L::splat(0.5) * (half(i) + half(j)) * k
     }
     #[inline(always)]

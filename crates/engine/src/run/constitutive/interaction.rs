@@ -228,14 +228,21 @@ impl ConstitutiveModel {
         repulsion: Option<Repulsion>,
     ) -> Result<Box<dyn Interaction<D>>, BuildError> {
         let own = |i: usize| body.horizon[i];
+        let half = 0.5 * self.spacing;
         let constants = (0..body.len).map(|i| match own(i) > 0.0 {
-            true => [c * (self.horizon / own(i)).powi(D as i32 + 1), own(i)],
+            true => [
+                c * (self.horizon / own(i)).powi(D as i32 + 1),
+                0.5 + own(i) / self.spacing,
+            ],
             false => [0.0; 2],
         });
+        let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
         Ok(Box::new(ListInteraction::new(ListParts {
             body,
-            list: HorizonList::within(body, self.reach(), |i, j| own(i).max(own(j)))?,
-            law: DualHorizon,
+            list: HorizonList::within(body, self.horizon + half, reach)?,
+            law: DualHorizon {
+                rate: self.spacing.recip(),
+            },
             weight: BondWeight::new(self.influence, self.horizon, None),
             point_constants: PointConstants::PerPoint(constants.collect()),
             toughness,

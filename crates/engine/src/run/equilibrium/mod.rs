@@ -211,9 +211,31 @@ impl<const D: usize> Model<D> {
             self.interaction
                 .forces(body, u, &mut self.f, Sweep::Hold, None);
         }
+        self.learn_strength();
         // energy that came in from outside counts as initial
         let now = self.energy_now();
         self.initial_energy = Some(ledger_base(&now));
+    }
+
+    /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
+    pub(super) fn learn_strength(&mut self) {
+        let rest = match self.is_linear() {
+            true => self.body.at_rest(),
+            false => self.u.clone(),
+        };
+        let still = zeros(self.body.len);
+        let mut f = zeros(self.body.len);
+        let sweep = Sweep::Evolve {
+            v: &still,
+            steps: [0.0; 2],
+            release: self.release,
+        };
+        let tally = self
+            .interaction
+            .forces(&self.body, &rest, &mut f, sweep, None);
+        self.broken += tally.broken;
+        self.released += tally.released;
+        self.past_work[0] += tally.dissipated;
     }
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.

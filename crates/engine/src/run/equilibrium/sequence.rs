@@ -11,11 +11,11 @@
 //! two ends; then the body is elastic. So the trapezoidal rule over both parts is exact, and the energy that is released is that which the
 //! bond held.
 
-use super::state::StaticState;
+use super::state::{Critical, Sequence, StaticState};
 use crate::body::{Field, zeros};
 use crate::error::{BuildError, SolveError};
 use crate::interaction::bond::critical_stretch;
-use crate::interaction::{BondState, Sweep, history};
+use crate::interaction::{BondState, history};
 use crate::run::model::Model;
 use crate::spec::{Control, CrackKind, Method, Spec, Statics};
 use crate::statics::Solved;
@@ -27,36 +27,11 @@ const AT_REST: f64 = 1e-12;
 /// Deviation from proportional loads that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// A bond at its critical stretch.
-#[derive(Debug, Clone, Copy)]
-struct Critical<const D: usize> {
-    i: usize,
-    j: usize,
-    xi: [f64; D],
-    stretch: f64,
-}
-
-impl<const D: usize> Critical<D> {
-    fn stretched(&self, u: &Field<D>) -> f64 {
-        stretch(self.i, self.j, &self.xi, u)
-    }
-}
-
 /// Linear stretch of a bond.
 fn stretch<const D: usize>(i: usize, j: usize, xi: &[f64; D], u: &Field<D>) -> f64 {
     let square: f64 = xi.iter().map(|c| c * c).sum();
     let longer: f64 = (0..D).map(|a| (u[a][j] - u[a][i]) * xi[a]).sum();
     longer / square
-}
-
-/// What the last equilibrium left to be done.
-pub(in crate::run) struct Sequence<const D: usize> {
-    /// Bonds that break next.
-    next: Vec<Critical<D>>,
-    /// Forces of bonds at that equilibrium (force density).
-    f: Field<D>,
-    /// Its factor.
-    factor: f64,
 }
 
 impl<const D: usize> Model<D> {
@@ -112,16 +87,7 @@ impl<const D: usize> Model<D> {
                 "leave t out of it",
             );
         }
-        // points know what they bear once they were asked at rest
-        let (rest, still) = (self.body.at_rest(), zeros(self.body.len));
-        let mut f = zeros(self.body.len);
-        let sweep = Sweep::Evolve {
-            v: &still,
-            steps: [0.0; 2],
-            release: self.release,
-        };
-        self.interaction
-            .forces(&self.body, &rest, &mut f, sweep, None);
+        self.learn_strength();
         if !self
             .criticals()
             .iter()
@@ -310,7 +276,10 @@ impl<const D: usize> Model<D> {
         let mut work = 0.0;
         let mut from = 0.0;
         if let Some(last) = last {
-            let each = last.next.iter().map(|b| b.stretch / b.stretched(&self.u));
+            let each = last
+                .next
+                .iter()
+                .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &self.u));
             let mean = each.sum::<f64>() / last.next.len() as f64;
             // where the ends of a bond come nearer to each other under the load without it, it lets go at the load that it had
             from = match mean > 0.0 && mean.is_finite() {

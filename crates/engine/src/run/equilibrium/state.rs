@@ -1,6 +1,6 @@
 //! What statics keeps between increments.
 
-use super::sequence::Sequence;
+use crate::body::Field;
 use crate::spec::{LinearBody, Statics};
 use crate::statics::{Direct, Solved};
 
@@ -32,4 +32,23 @@ impl<const D: usize> StaticState<D> {
         self.factors = None;
         self.asymmetry = None;
     }
+}
+
+/// A bond at its critical stretch.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::run) struct Critical<const D: usize> {
+    pub i: usize,
+    pub j: usize,
+    pub xi: [f64; D],
+    pub stretch: f64,
+}
+
+/// What the last equilibrium left to be done.
+pub(in crate::run) struct Sequence<const D: usize> {
+    /// Bonds that break next.
+    pub next: Vec<Critical<D>>,
+    /// Forces of bonds at that equilibrium (force density).
+    pub f: Field<D>,
+    /// Its factor.
+    pub factor: f64,
 }

@@ -1,42 +1,22 @@
 //! Statics before motion: increments of load under conditions of their own, and the passage from the last equilibrium to motion. The
 //! ledger goes on through it: what loads and reactions did in statics is the strain energy that motion begins with.
 
+pub(super) mod state;
+
+use self::state::Preload;
 use super::Simulation;
 use super::constitutive::Laws;
 use super::equilibrium::state::StaticState;
-use super::implicit::state::Implicit;
 use super::model::Model;
-use crate::body::Field;
 use crate::condition::constraint::Constraint;
 use crate::condition::indenter::Indenter;
-use crate::condition::load::Load;
 use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
-use crate::interaction::contact::Contact;
-use crate::interaction::friction::Friction;
 use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Stepper};
 use crate::statics::Solved;
 
 /// Distances (spacings) that are round-off.
 const NEAR: f64 = 1e-9;
-
-/// What waits for the motion while a body is loaded.
-pub(super) struct Preload<const D: usize> {
-    pub increments: u64,
-    /// What records show of an increment (time), all before t = 0.
-    shown: f64,
-    loads: Vec<Load<D>>,
-    pub constraints: Vec<Constraint<D>>,
-    indenters: Vec<Indenter<D>>,
-    /// Where Newton's method does not know it.
-    contact: Option<Contact<D>>,
-    friction: Option<Friction<D>>,
-    velocity: Field<D>,
-    /// Of motion.
-    pub dt: f64,
-    implicit: Option<Implicit<D>>,
-    cuts: Vec<Crack<D>>,
-}
 
 /// What cannot begin in equilibrium.
 pub(super) fn possible(spec: &Spec, preload: &PreloadSpec) -> Result<(), BuildError> {
