@@ -6,6 +6,7 @@ use super::clouds::{own_densities, own_velocities};
 use super::constitutive::Shelf;
 use super::equilibrium::state::StaticState;
 use super::feasible::{consistent, enough_memory, possible};
+use super::implicit;
 use super::implicit::state::Implicit;
 use super::model::Model;
 use super::parts::{Part, parts};
@@ -318,17 +319,16 @@ pub fn build_in<const D: usize>(
         Stepper::Verlet | Stepper::Still => {}
         Stepper::Newmark(newmark) => {
             model.check_implicit(newmark, spec)?;
-            let mut implicit = Implicit::new(newmark);
-            implicit.breaks = spec.materials.iter().any(|m| m.fracture.is_some())
-                || spec.interfaces.iter().any(|i| i.fracture.is_some());
+            let mut made = Implicit::new(newmark);
+            made.breaks = implicit::breaks(spec);
             let reach = model.info.horizon / model.info.spacing;
-            if implicit.breaks && dt > reach * limits.bond {
+            if made.breaks && dt > reach * limits.bond {
                 model.info.warnings.push(format!(
                     "bonds break at the end of a step: a crack grows by no more than a horizon in each, and a wave goes further than that in {dt:.3e}; where cracks run, steps of {:.3e} follow them",
                     reach * limits.bond
                 ));
             }
-            model.implicit = Some(implicit);
+            model.implicit = Some(made);
         }
         Stepper::Statics(statics) => {
             if spec.schedule.steps > 0 {

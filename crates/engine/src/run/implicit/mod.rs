@@ -28,6 +28,12 @@ use crate::error::{BuildError, RunError, SolveError};
 use crate::spec::{Newmark, Release, Solver, Spec};
 use crate::statics::{self, Support};
 
+/// Can bonds break?
+pub(super) fn breaks(spec: &Spec) -> bool {
+    spec.materials.iter().any(|m| m.fracture.is_some())
+        || spec.interfaces.iter().any(|i| i.fracture.is_some())
+}
+
 /// Loads of the spec and those from outside.
 fn loads<'a, const D: usize>(
     own: &'a [Load<D>],
@@ -74,9 +80,7 @@ impl<const D: usize> Model<D> {
         }
         let explicit = "integrator = \"verlet\" knows it; or leave it out";
         self.knows_no_time("schedule.integrator")?;
-        let breaks = spec.materials.iter().any(|m| m.fracture.is_some())
-            || spec.interfaces.iter().any(|i| i.fracture.is_some());
-        if breaks && spec.release == Release::AfterForce {
+        if breaks(spec) && spec.release == Release::AfterForce {
             return Err(BuildError::unsupported(
                 "materials[0].fracture",
                 "bonds that pull once more after they broke have no place in an implicit step",
