@@ -23,8 +23,6 @@ mod hertz;
 mod kalthoff;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
-#[path = "snap-back/mod.rs"]
-mod snap_back;
 mod spall;
 #[path = "sphere-on-plate/mod.rs"]
 mod sphere_on_plate;
@@ -52,7 +50,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &kalthoff::Kalthoff,
         &three_point_bend::ThreePointBend,
         &double_cantilever::DoubleCantilever,
-        &snap_back::SnapBack,
         &vibrating_plate::VibratingPlate,
         &hertz::Hertz,
         &fibre_composite::FibreComposite,

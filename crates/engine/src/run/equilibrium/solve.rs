@@ -30,8 +30,6 @@ const LONGEST_STEP: f64 = 0.1;
 const HALVINGS: usize = 12;
 /// Factors of an earlier state serve as long as a step with them leaves no more than this part of the residual.
 const SERVES: f64 = 0.1;
-/// How often masses are doubled in the equations of an implicit step whose tangent gives energy back.
-const HEAVIER: usize = 8;
 /// Residual at which conjugate gradients end within a Newton step.
 const ROUGH: f64 = 1e-4;
 /// Largest stretch up to which a linear solution is taken without a warning.
@@ -257,18 +255,7 @@ impl<const D: usize> Model<D> {
                         if let Some(inertia) = inertia {
                             inertia.load(&mut body, &self.pushed());
                         }
-                        let mut made = Direct::new(&body, support, shift);
-                        let mut heavier = 0;
-                        while inertia.is_some()
-                            && heavier < HEAVIER
-                            && matches!(made, Err(SolveError::Indefinite { .. }))
-                        {
-                            // steps are shorter then, and where they lead to is the same
-                            body.density.iter_mut().for_each(|rho| *rho *= 2.0);
-                            heavier += 1;
-                            made = Direct::new(&body, support, shift);
-                        }
-                        let factors = match made {
+                        let factors = match Direct::new(&body, support, shift) {
                             Err(SolveError::Indefinite { .. })
                                 if !self.at_peace() && inertia.is_none() =>
                             {
