@@ -82,7 +82,7 @@ fn it_is_of_second_order_and_takes_little_of_what_is_slow() {
     for alpha in [-0.1, -0.3] {
         let mut errors = vec![];
         for steps in [200u32, 400, 800] {
-            let (duration, omega) = (20.0, 2.0 * (3.0 * PI / 40.0).sin());
+            let (duration, omega) = (17.0, 2.0 * (3.0 * PI / 40.0).sin());
             let mut spec = block([19.0, 0.0, 0.0], 1, SPRINGS, 1);
             start(&mut spec, "0.01*cos(3*pi*(x+0.5)/20)", ["0", "0"]);
             spec.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));
