@@ -154,6 +154,19 @@ pub fn remarks(deck: &Deck, time_step: f64) -> String {
         .collect()
 }
 
+/// Decks of two stages, and points with horizons of their own, which `verb` does not know.
+pub fn is_plain(deck: &Deck, verb: &str) -> Result<(), Failure> {
+    let what = match (&deck.spec.preload, &deck.spec.own_horizon) {
+        (Some(_), _) => "a deck of [run] or of [statics], and this one has both",
+        (_, Some(_)) => "one horizon, and the points of this deck have their own (own_horizon)",
+        (None, None) => return Ok(()),
+    };
+    Err(Failure::input(format!(
+        "{}: {verb} takes {what}",
+        deck.file()
+    )))
+}
+
 /// How fast something spreads, and what its steps are beside those of the run.
 fn spreads(t: &TransferInfo, step: f64, units: UnitSystem) -> String {
     let all = t.diffusivity.iter();

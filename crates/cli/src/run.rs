@@ -97,7 +97,7 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
-    let end = steps as f64 * sim.info().time_step;
+    let end = (steps - plan.increments) as f64 * sim.info().time_step;
     plan.indenters = indenters(deck, end);
     let until = if counts_load(&deck.spec.schedule) {
         1.0
@@ -107,7 +107,12 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let marks = Marks::of(&deck.spec, sim.as_mut(), until);
     plan.marks = MarkNotes::of(&marks, deck.units);
     say(&format!(
-        "threads   {threads}\nrunning {steps} steps, results in {}",
+        "threads   {threads}\nrunning {}{} steps, results in {}",
+        match plan.increments {
+            0 => String::new(),
+            n => format!("{n} increments of load, then "),
+        },
+        steps - plan.increments,
         plan.dir.display()
     ));
     let statics = counts_load(&deck.spec.schedule);
@@ -222,7 +227,7 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
     let end = if counts_load(&deck.spec.schedule) {
         1.0
     } else {
-        deck.steps(step) as f64 * step
+        (deck.steps(step) - deck.increments()) as f64 * step
     };
     let marks = Marks::of(&deck.spec, sim, end);
     let columns = sim.columns();
@@ -389,6 +394,7 @@ fn plan(
         report: output.report,
         allow_outside,
         steps,
+        increments: deck.increments(),
         every: output.every,
         modes: deck.modes,
         linear_body: output.linear_body,

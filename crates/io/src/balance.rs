@@ -59,7 +59,8 @@ impl BalanceWatch {
         self.most = self.most.max(given);
         let lost = !begins && residual > LOST * self.most;
         self.gone = std::mem::replace(&mut self.lost, lost) && lost;
-        let held = ledger.kinetic + ledger.strain + ledger.contact + ledger.released;
+        let held =
+            ledger.kinetic + ledger.strain + ledger.contact + ledger.released + ledger.numerical;
         self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
         if !std::mem::replace(&mut self.begun, true) {
             return None;

@@ -54,6 +54,8 @@ pub struct Plan {
     /// May files that the deck names lie outside `dir`?
     pub allow_outside: bool,
     pub steps: u64,
+    /// Of these, increments of statics before motion.
+    pub increments: u64,
     /// Steps between frames; `None`: first and last.
     pub every: Option<u64>,
     /// Steps between rows of `history.csv`.
@@ -279,8 +281,12 @@ pub fn drive(
             ended = progress.ended();
         }
         let last = n == plan.steps || ended.is_some();
-        let frame = n == 0 || plan.every.is_some_and(|e| n % e == 0);
-        let rows = (n % plan.history == 0 || last) && told != Some(sim.step_number());
+        // steps of motion count from its beginning; every increment before it is told
+        let loads = n < plan.increments;
+        let moved = n.saturating_sub(plan.increments);
+        let every = |e: u64| !loads && moved % e == 0;
+        let frame = n == 0 || n == plan.increments || plan.every.is_some_and(every);
+        let rows = (loads || every(plan.history) || last) && told != Some(sim.step_number());
         if rows || frame {
             follow(&mut indenters, sim);
         }
@@ -297,13 +303,13 @@ pub fn drive(
         if let Some((step, row)) = row.as_ref().filter(|_| rows) {
             history.push(*step, row)?;
             told = Some(*step);
-            progress.row(*step, sim.time(), &ledger, sim.broken());
+            progress.row(*step, sim.clock(), &ledger, sim.broken());
             if let Some(jump) = balance.row(*step, &ledger) {
                 let jump = plan.units.tell(&jump);
                 progress.warning(&jump);
                 warnings.push(jump);
             }
-            let explicit = matches!(sim.info().stepper, Stepper::Verlet);
+            let explicit = matches!(sim.info().stepper, Stepper::Verlet) && !loads;
             stopped = balance
                 .gone(sim.step_number(), &ledger, sim.info())
                 .filter(|_| explicit);
@@ -331,6 +337,10 @@ pub fn drive(
             if let (Some(exodus), Some((_, row))) = (&mut exodus, &row) {
                 exodus.push(&snapshot, row)?;
             }
+        }
+        if plan.modes > 0 && plan.increments > 0 && n == plan.increments {
+            let loaded = plan.look(sim);
+            write_modes(sim, plan, &loaded)?;
         }
         if last {
             break;
@@ -383,7 +393,7 @@ pub fn drive(
     {
         write_data(&plan.dir.join(name), &atoms.last(sim))?;
     }
-    if plan.modes > 0 && stopped.is_none() && ended.is_none() {
+    if plan.modes > 0 && plan.increments == 0 && stopped.is_none() && ended.is_none() {
         write_modes(sim, plan, &snapshot)?;
     }
     if plan.linear_body {

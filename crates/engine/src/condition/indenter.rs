@@ -279,6 +279,11 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
+    /// No point has gone further than `path` (length) since the last call.
+    pub fn moved(&mut self, path: f64) {
+        self.slack -= path;
+    }
+
     /// Where it is at this time, in statics; what is near is looked for again.
     pub fn place(&mut self, t: f64) {
         if let Motion::Kinematic(c) = &self.motion {

@@ -89,6 +89,14 @@ impl BuildError {
         self.help = Some(help.into());
         self
     }
+    /// The same of what is called so within `whole`.
+    pub fn within(mut self, whole: &str) -> Self {
+        self.path = match self.path.is_empty() {
+            true => whole.to_string(),
+            false => format!("{whole}.{}", self.path),
+        };
+        self
+    }
     /// The same of another entry.
     pub fn at(mut self, path: impl Into<String>) -> Self {
         self.path = path.into();

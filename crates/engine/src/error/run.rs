@@ -41,6 +41,18 @@ pub enum RunError {
         position: Option<[f64; 3]>,
         error: SolveError,
     },
+    Jump {
+        step: u64,
+        /// In the reference.
+        position: [f64; 3],
+        axis: &'static str,
+        asked: f64,
+        found: f64,
+    },
+    Touching {
+        step: u64,
+        pairs: usize,
+    },
     Toughness {
         step: u64,
         position: [f64; 3],
@@ -126,6 +138,25 @@ impl RunError {
                 somewhere(position),
                 shorter(error),
             ],
+            RunError::Jump {
+                step,
+                position,
+                axis,
+                asked,
+                found,
+            } => message![
+                format!("after {step} increments of statics: motion asks for a displacement of "),
+                length(*asked),
+                format!(" along {axis} at "),
+                place(position),
+                ", where statics left it at ",
+                length(*found),
+                ": prescribe a velocity of 0 to hold a point where it is",
+            ],
+            RunError::Touching { step, pairs } => format!(
+                "after {step} increments of statics, which knew no contact, {pairs} pairs of points touch: write method = \"relaxation\" under [statics], or contact = false"
+            )
+            .into(),
             RunError::Toughness {
                 step,
                 position,
@@ -190,6 +221,7 @@ fn shorter(error: &SolveError) -> &'static str {
         | SolveError::StillBreaking { .. }
         | SolveError::Contact
         | SolveError::NoTangent { .. }
+        | SolveError::NothingBreaks
         | SolveError::NotFinite
         | SolveError::Stopped => "",
     }

@@ -1,5 +1,6 @@
 //! Can a spec be built at all? What is looked at before anything is made.
 
+use super::preload;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::memory;
@@ -17,6 +18,9 @@ pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError
             "pairs",
             "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
         ));
+    }
+    if let Some(preload) = &spec.preload {
+        preload::possible(spec, preload)?;
     }
     if let Some(simd) = simd
         && !Simd::available().contains(&simd)

@@ -22,8 +22,10 @@ mod interfaces;
 mod model;
 mod motion;
 mod observation;
+mod own_horizons;
 mod parts;
 mod precracks;
+mod preload;
 mod probe;
 mod probes;
 mod record;
@@ -176,7 +178,10 @@ pub trait Simulation: Steered + Examined + Send {
     /// [`SolveError::Stopped`], and the state is that of the increment before.
     fn stop_when(&mut self, stop: fn() -> bool);
     fn step_number(&self) -> u64;
+    /// What t is: counted from the start of a stage.
     fn time(&self) -> f64;
+    /// Time as records show it: motion begins at 0, statics before it lies at times below.
+    fn clock(&self) -> f64;
     /// Energies now; an error if the balance shows that the run has gone unstable.
     fn ledger(&mut self) -> Result<Ledger, RunError>;
     /// Everything that points and bonds have a value of: observables, and what laws declare.

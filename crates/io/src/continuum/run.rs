@@ -202,7 +202,7 @@ impl One {
         let origin = Origin {
             index: self.collected.frames(),
             step: Some(sim.step_number()),
-            time: Some(sim.time()),
+            time: Some(sim.clock()),
             cell: &self.cell,
             grid: grid.is_some(),
             force: None,

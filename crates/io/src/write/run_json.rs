@@ -185,6 +185,9 @@ pub struct EnergyReport {
     pub contact: f64,
     pub released: f64,
     pub dissipated: f64,
+    /// Taken by an implicit method.
+    #[serde(default)]
+    pub numerical: f64,
     pub work_conditions: f64,
     pub work_indenter: f64,
     pub initial: f64,
@@ -199,6 +202,7 @@ impl From<&Ledger> for EnergyReport {
             contact: l.contact,
             released: l.released,
             dissipated: l.dissipated,
+            numerical: l.numerical,
             work_conditions: l.work_conditions,
             work_indenter: l.work_indenter,
             initial: l.initial,

@@ -97,6 +97,11 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// From here on `t` is that of another stage.
+    pub fn set_time(&mut self, time: Dim) {
+        self.time = time;
+    }
+
     pub fn error(&self, span: &Range<usize>, message: impl Into<String>) -> DeckError {
         self.source.error(Some(span.clone()), message, None)
     }

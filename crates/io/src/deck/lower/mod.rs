@@ -16,6 +16,7 @@ mod probes;
 mod region;
 mod schedule;
 mod sets;
+mod stage;
 mod transfer;
 mod warnings;
 
@@ -25,7 +26,7 @@ pub(super) use schedule::{MANY_STEPS, steps};
 
 use super::OutputSpec;
 use super::document::{
-    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName,
+    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName, StageName,
     SurfaceName, UnitName, Units,
 };
 use super::error::DeckError;
@@ -41,8 +42,10 @@ use peridyne::law::descriptor::Key;
 use peridyne::run::Shelf;
 use peridyne::spec::{
     BodySpec, BondedSpec, Calibration, Cloud, FamilyChoice, Horizon, Influence, MaterialSpec,
-    Plane, Spec, SurfaceFactors, SurfaceMethod,
+    Plane, PreloadSpec, Spec, SurfaceFactors, SurfaceMethod,
 };
+pub(super) use stage::Entries;
+use stage::{Staged, Stages};
 use std::path::Path;
 
 /// How files named in a deck are read.
@@ -128,7 +131,7 @@ pub(super) struct Lowered {
     pub modes: usize,
     pub warnings: Vec<String>,
     pub notes: Vec<String>,
-    pub condition_entries: Vec<usize>,
+    pub entries: Entries,
 }
 
 pub(super) fn lower(
@@ -137,11 +140,8 @@ pub(super) fn lower(
     files: &Files,
 ) -> std::result::Result<Lowered, DeckError> {
     let units = units(document);
-    let time = match &document.statics {
-        Some(statics) if statics.value.duration.is_none() => Dim::NUMBER,
-        Some(_) | None => Dim::TIME,
-    };
-    let mut context = Context::new(source, units, time, &document.constants)?;
+    let stages = Stages::of(document);
+    let mut context = Context::new(source, units, stages.time(None), &document.constants)?;
     measured_constants(&context, document)?;
     let mut body = bodies::bodies(&mut context, document, files)?;
     bodies::check(&context, document)?;
@@ -183,12 +183,38 @@ pub(super) fn lower(
         transfer::initial(&context, &at.value, &made.set, &mut starts)?;
         initial.push(made);
     }
-    let (mut conditions, mut condition_entries) = (Vec::new(), Vec::new());
+    let mut conditions = Staged::default();
     let mut exchanged = Vec::new();
     for (index, at) in document.condition.iter().enumerate() {
+        let stage = stages.named(&context, &at.value.stage)?;
+        context.set_time(stages.time(stage));
         let made = motion::condition(&context, index, at, &mut sets, &mut exchanged)?;
-        conditions.extend(made);
-        condition_entries.resize(conditions.len(), index);
+        if stages.both && stage.is_none() && made.iter().any(stage::of_time) {
+            return Err(stages.whose(&context, &at.span));
+        }
+        conditions.put(stage, stages.both, index, made);
+    }
+    let mut indenters = Staged::default();
+    for (index, at) in document.indenter.iter().enumerate() {
+        let stage = stages.named(&context, &at.value.stage)?;
+        context.set_time(stages.time(stage));
+        let made = motion::indenter(&context, at)?;
+        if stages.both && stage.is_none() && stage::moves(&made) {
+            return Err(stages.whose(&context, &at.span));
+        }
+        indenters.put(stage, stages.both, index, vec![made]);
+    }
+    context.set_time(stages.time(None));
+    let mut precracks = Staged::default();
+    for (index, at) in document.precrack.iter().enumerate() {
+        let late = stages.named(&context, &at.value.stage)? == Some(StageName::Motion);
+        let made = motion::precrack(&context, at, late)?;
+        let when = if late {
+            StageName::Motion
+        } else {
+            StageName::Statics
+        };
+        precracks.put(Some(when), true, index, vec![made]);
     }
     let transfers = transfer::transfers(&context, document, &materials, starts, exchanged)?;
     let probes = document.probe.iter();
@@ -222,6 +248,11 @@ pub(super) fn lower(
                 ));
             }
         },
+        own_horizon: document
+            .own_horizon
+            .as_ref()
+            .map(|e| context.expression(e, Dim::LENGTH))
+            .transpose()?,
         bonded: atoms::molecules(&context, document, files)?,
         thermal: document
             .thermal
@@ -252,20 +283,20 @@ pub(super) fn lower(
             .iter()
             .map(|t| motion::toughness(&context, t, &sets))
             .collect::<Result<_>>()?,
-        precracks: document
-            .precrack
-            .iter()
-            .map(|p| motion::precrack(&context, p))
-            .collect::<Result<_>>()?,
+        precracks: precracks.before,
         contact: contact::contact(&context, document, &materials)?,
         initial,
-        conditions,
+        preload: run.preload.map(|p| PreloadSpec {
+            statics: p.statics,
+            increments: p.increments,
+            duration: p.duration,
+            conditions: conditions.before,
+            indenters: indenters.before,
+            cuts: precracks.then,
+        }),
+        conditions: conditions.then,
         transfers,
-        indenters: document
-            .indenter
-            .iter()
-            .map(|i| motion::indenter(&context, i))
-            .collect::<Result<_>>()?,
+        indenters: indenters.then,
         family: match document.family {
             Some(FamilyName::Stencil) => FamilyChoice::Stencil,
             Some(FamilyName::List) => FamilyChoice::List,
@@ -296,7 +327,11 @@ pub(super) fn lower(
         modes: run.modes,
         warnings: warnings::warnings(&context, document),
         notes: context.notes,
-        condition_entries,
+        entries: Entries {
+            conditions: conditions.entries,
+            indenters: indenters.entries,
+            precracks: precracks.entries,
+        },
     })
 }
 

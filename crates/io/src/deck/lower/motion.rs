@@ -181,7 +181,8 @@ pub(super) fn indenter(context: &Context, at: &At<Indenter>) -> Result<IndenterS
     })
 }
 
-pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackSpec> {
+/// One that is `late` cuts a body that is loaded.
+pub(super) fn precrack(context: &Context, at: &At<Precrack>, late: bool) -> Result<PrecrackSpec> {
     let p = &at.value;
     let shape = FlatShape {
         segment: p.segment.clone(),
@@ -191,6 +192,7 @@ pub(super) fn precrack(context: &Context, at: &At<Precrack>) -> Result<PrecrackS
     };
     let kind = match p.kind {
         Some(CrackName::Broken) => CrackKind::Broken,
+        None if late => CrackKind::Broken,
         Some(CrackName::Absent) | None => CrackKind::Absent,
     };
     let shape = flat_shape(context, &at.span, "a precrack", &shape)?;
