@@ -206,8 +206,9 @@ impl<const D: usize> Model<D> {
         for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
             indenter.account(before, body, [&u, now]);
         }
+        let end = self.time();
         for c in &mut self.constraints {
-            c.end(&self.body, &self.u, &self.f, t, dt);
+            c.end(&self.body, &self.u, &self.f, end, dt);
         }
         self.numerical += self.taken([&u, &v, &f], &state.held);
         if state.breaks {
