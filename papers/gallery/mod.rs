@@ -6,6 +6,7 @@ mod bench;
 mod bar_interface;
 #[path = "bar-wave/mod.rs"]
 mod bar_wave;
+mod bimetal;
 mod branching;
 #[path = "brazilian-disk/mod.rs"]
 mod brazilian_disk;
@@ -32,6 +33,8 @@ mod taylor_bar;
 mod thin_film;
 #[path = "three-point-bend/mod.rs"]
 mod three_point_bend;
+#[path = "touching-bars/mod.rs"]
+mod touching_bars;
 #[path = "vibrating-plate/mod.rs"]
 mod vibrating_plate;
 
@@ -58,5 +61,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &fragmenting_cylinder::FragmentingCylinder,
         &taylor_bar::TaylorBar,
         &creep::Creep,
+        &touching_bars::TouchingBars,
+        &bimetal::Bimetal,
     ]
 }

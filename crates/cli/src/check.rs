@@ -20,7 +20,6 @@ use peridyne::spec::{Criterion, Moduli, Spec};
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
-use peridyne_lammps::Units;
 use peridyne_theory::fracture::{Body, energy_per_stretch_squared};
 use peridyne_theory::nominal::nominal_moduli;
 use peridyne_theory::patch_test::{PatchTest, patch_test};
@@ -61,11 +60,21 @@ struct Findings<'a> {
     /// `None`: the body is too large for one.
     patch: Option<PatchTest>,
     materials: Vec<Material>,
+    /// Of motion, or increments of statics alone.
     steps: u64,
+    /// Of statics before motion.
+    increments: u64,
     trial: Trial,
     threads: usize,
     /// Continuum fields that the deck asks for.
     fields: Vec<continuum::Found>,
+}
+
+impl Findings<'_> {
+    /// Seconds of statics before motion.
+    fn load(&self) -> f64 {
+        { self.trial.seconds_per_increment }.map_or(0.0, |s| s * self.increments as f64)
+    }
 }
 
 /// One material beside what the deck asked for.
@@ -84,6 +93,8 @@ struct Material {
 struct Trial {
     steps: u64,
     seconds_per_step: Option<f64>,
+    /// Of statics before motion.
+    seconds_per_increment: Option<f64>,
     /// Why the trial ended early.
     failed: Option<String>,
 }
@@ -95,6 +106,7 @@ struct Subject {
     script: bool,
     sim: Box<dyn Simulation>,
     steps: u64,
+    increments: u64,
     fields: Option<FieldsPlan>,
 }
 
@@ -105,19 +117,11 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             let (prepared, setup) = script::prepare(input)?;
             let subject = Subject {
                 spec: prepared.spec,
-                units: match setup.units {
-                    Units::Si => UnitSystem::Si,
-                    Units::Lj => UnitSystem::Lj,
-                    Units::Real
-                    | Units::Metal
-                    | Units::Cgs
-                    | Units::Electron
-                    | Units::Micro
-                    | Units::Nano => UnitSystem::None,
-                },
+                units: setup.units.system(),
                 script: true,
                 sim: prepared.simulation,
                 steps: setup.steps,
+                increments: 0,
                 fields: None,
             };
             report(arguments, subject, threads)
@@ -143,7 +147,8 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         let dir = dir.unwrap_or_else(|| default_dir(&input.file));
         enough_disk(&deck, sim.as_ref(), &dir)?;
         let subject = Subject {
-            steps: deck.steps(sim.info().time_step),
+            steps: deck.steps(sim.info().time_step) - deck.increments(),
+            increments: deck.increments(),
             fields: crate::run::continuum(&deck),
             units: deck.units,
             spec: deck.spec,
@@ -162,7 +167,7 @@ fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) -> R
     };
     let patch = patience(sim).then(|| patch_test(sim));
     let families = sim.families();
-    let trial = trial(sim, subject.steps);
+    let trial = trial(sim, subject.steps, subject.increments);
     let reference = subject.sim.vectors("reference");
     let mut found = find(&subject, &reference, patch, families, trial, threads);
     found.fields = fields;
@@ -204,6 +209,7 @@ fn find<'a>(
         high,
         materials: materials(&subject.spec, sim, patch.as_ref(), thin),
         steps: subject.steps,
+        increments: subject.increments,
         spec: &subject.spec,
         units: subject.units,
         script: subject.script,
@@ -289,20 +295,34 @@ fn materials(
 }
 
 /// No further than the run goes: what would happen after its end is nobody's business.
-fn trial(sim: &mut dyn Simulation, most: u64) -> Trial {
+fn trial(sim: &mut dyn Simulation, most: u64, increments: u64) -> Trial {
     sim.start(true);
+    let (loads, failed) = tried(sim, increments);
+    let all = loads.map_or(0, |(n, _)| n) == increments;
+    let (steps, failed) = match failed {
+        None if all => tried(sim, most.max(1)),
+        failed => (None, failed),
+    };
+    let each = |(n, seconds): (u64, f64)| seconds / n as f64;
+    Trial {
+        steps: steps.map_or(0, |(n, _)| n),
+        seconds_per_step: steps.map(each),
+        seconds_per_increment: loads.map(each),
+        failed,
+    }
+}
+
+/// At most so many steps, no longer than a trial lasts: how many, in how many seconds, and what ended them early.
+fn tried(sim: &mut dyn Simulation, most: u64) -> (Option<(u64, f64)>, Option<String>) {
     let begin = Instant::now();
     let (mut steps, mut failed) = (0, None);
-    while steps < most.max(1) && begin.elapsed() < TRIAL {
+    while steps < most && begin.elapsed() < TRIAL {
         if let Err(error) = sim.step() {
             failed = Some(error.to_string());
             break;
         }
         steps += 1;
     }
-    Trial {
-        steps,
-        seconds_per_step: (steps > 0).then(|| begin.elapsed().as_secs_f64() / steps as f64),
-        failed,
-    }
+    let seconds = begin.elapsed().as_secs_f64();
+    ((steps > 0).then_some((steps, seconds)), failed)
 }

@@ -77,6 +77,7 @@ pub fn coarsen(arguments: &CoarsenArguments) -> Result<(), Failure> {
         return Err(Failure::input("coarsen takes a deck (.toml)"));
     }
     let deck = deck::read(&arguments.input)?;
+    deck::is_plain(&deck, "coarsen")?;
     with_threads(arguments.threads, |_| all(arguments, &deck))
 }
 

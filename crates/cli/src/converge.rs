@@ -113,6 +113,7 @@ pub fn converge(arguments: &ConvergeArguments) -> Result<(), Failure> {
         return Err(Failure::input("--substeps 0: take 1 or more"));
     }
     let deck = deck::read(&arguments.input)?;
+    deck::is_plain(&deck, "converge")?;
     let exact = expressions(&arguments.exact, deck.spec.dimension)?;
     let threads = arguments.threads.or(deck.threads);
     with_threads(threads, |_| all(arguments, &deck, &exact))

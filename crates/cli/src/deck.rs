@@ -109,8 +109,13 @@ pub fn command(input: &Input) -> String {
     };
     let sets = input.set.iter();
     let sets = sets.map(|(key, value)| format!(" --set {}", word(&format!("{key}={value}"))));
+    let vars = input.var.iter();
+    let vars = vars.map(|(name, value)| format!(" --var {}", word(&format!("{name}={value}"))));
     let file = word(&input.file.to_string_lossy());
-    format!("peridyne run {file}{}", sets.collect::<String>())
+    format!(
+        "peridyne run {file}{}",
+        sets.chain(vars).collect::<String>()
+    )
 }
 
 pub fn simd(input: &Input) -> Result<Option<Simd>, Failure> {
@@ -147,6 +152,19 @@ pub fn remarks(deck: &Deck, time_step: f64) -> String {
     notes
         .chain(warnings.map(|w| format!("\nwarning: {w}")))
         .collect()
+}
+
+/// Decks of two stages, and points with horizons of their own, which `verb` does not know.
+pub fn is_plain(deck: &Deck, verb: &str) -> Result<(), Failure> {
+    let what = match (&deck.spec.preload, &deck.spec.own_horizon) {
+        (Some(_), _) => "a deck of [run] or of [statics], and this one has both",
+        (_, Some(_)) => "one horizon, and the points of this deck have their own (own_horizon)",
+        (None, None) => return Ok(()),
+    };
+    Err(Failure::input(format!(
+        "{}: {verb} takes {what}",
+        deck.file()
+    )))
 }
 
 /// How fast something spreads, and what its steps are beside those of the run.
@@ -225,7 +243,7 @@ pub fn headline(sim: &dyn Simulation, units: UnitSystem) -> String {
         text += &format!("\npre-cracks cut {} directed bonds", whole(i.cut));
     }
     for w in &i.warnings {
-        text += &format!("\nwarning: {w}");
+        text += &format!("\nwarning: {}", units.tell(w));
     }
     text
 }

@@ -347,7 +347,7 @@ fn save(request: &Request, mut made: Made) -> Result<(), Failure> {
     made.hold(request)?;
     let name = request.frames.display().to_string();
     let finished = made.collected.finish(&name, &request.model.name, &method);
-    summary(request, &finished.map_err(unwritten)?);
+    summary(request, &finished.map_err(unwritten)?.frames);
     Ok(())
 }
 

@@ -145,6 +145,9 @@ fn explain(key: &Key) -> String {
             format!("one of {}", words.join(", "))
         }
         Value::Name => "a name".into(),
+        Value::Formula(variables, dimension) => {
+            format!("an expression of {}, {dimension}", variables.join(", "))
+        }
         Value::Table | Value::Entries(_) => "a file".into(),
     };
     let need = match key.need {

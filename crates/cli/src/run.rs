@@ -8,12 +8,12 @@ use crate::progress::Terminal;
 use crate::report;
 use crate::script;
 use crate::signals;
+use peridyne::columns::Shape;
 use peridyne::error::{BuildError, size};
-use peridyne::expression::Expression;
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
 use peridyne::space::rigid::RigidShape;
-use peridyne::spec::{BodySpec, IndenterMotion, Schedule, Stepper, TimeStep};
+use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
@@ -23,7 +23,7 @@ use peridyne_io::write::dump::DumpBox;
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::marks::Marks;
 use peridyne_io::write::picture::shown::{About, component_of};
-use peridyne_io::write::run_json::{MovingBall, Status};
+use peridyne_io::write::run_json::{MarkNotes, MovingBall, Status};
 use peridyne_io::write::space::{Amount, free};
 use std::path::{Path, PathBuf};
 
@@ -98,9 +98,22 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
-    plan.indenters = indenters(deck, steps as f64 * sim.info().time_step);
+    let end = (steps - plan.increments) as f64 * sim.info().time_step;
+    plan.indenters = indenters(deck, end);
+    let until = if counts_load(&deck.spec.schedule) {
+        1.0
+    } else {
+        end
+    };
+    let marks = Marks::of(&deck.spec, sim.as_mut(), until);
+    plan.marks = MarkNotes::of(&marks, deck.units);
     say(&format!(
-        "threads   {threads}\nrunning {steps} steps, results in {}",
+        "threads   {threads}\nrunning {}{} steps, results in {}",
+        match plan.increments {
+            0 => String::new(),
+            n => format!("{n} increments of load, then "),
+        },
+        steps - plan.increments,
         plan.dir.display()
     ));
     let statics = counts_load(&deck.spec.schedule);
@@ -215,7 +228,7 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
     let end = if counts_load(&deck.spec.schedule) {
         1.0
     } else {
-        deck.steps(step) as f64 * step
+        (deck.steps(step) - deck.increments()) as f64 * step
     };
     let marks = Marks::of(&deck.spec, sim, end);
     let columns = sim.columns();
@@ -260,6 +273,23 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
             let factor = deck.units.plain_factor(column.dimension);
             range = range.map(|r| r.map(|x| x * factor));
         }
+        if let Some(name) = &asked.arrows {
+            let vectors = || { columns.iter() }.filter(|c| c.shape == Shape::Vector);
+            if !vectors().any(|c| c.name == *name) {
+                let names: Vec<&str> = vectors().map(|c| &*c.name).collect();
+                let why = match columns.iter().any(|c| c.name == *name) {
+                    true => format!("{name} has no direction: it is no vector"),
+                    false => format!("there is no field `{name}`"),
+                };
+                let help = format!("vectors of this model: {}", names.join(", "));
+                return Err(wrong("arrows", why, help));
+            }
+            if sim.info().dimension == 1 {
+                let why = "arrows are drawn in 2-D and 3-D".to_string();
+                let help = "leave them out: curves show displacements along a line".to_string();
+                return Err(wrong("arrows", why, help));
+            }
+        }
         all.push(PictureOptions {
             title: deck.spec.title.clone(),
             length_unit: length_unit.to_string(),
@@ -269,6 +299,7 @@ pub fn pictures(deck: &Deck, sim: &mut dyn Simulation) -> Result<Vec<PictureOpti
             component: asked.component.clone(),
             scale: asked.scale,
             range,
+            arrows: asked.arrows.clone(),
             film: asked.film,
             still,
             marks: marks.clone(),
@@ -299,13 +330,21 @@ fn counts_load(schedule: &Schedule) -> bool {
 /// Where indenters are that are moved, until `end`.
 fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
     const PARTS: u32 = 100;
-    let moved = { deck.spec.indenters.iter() }.filter_map(|i| match (&i.shape, &i.motion) {
-        (RigidShape::Sphere { radius }, IndenterMotion::Kinematic(center)) => {
-            Some((*radius, center))
-        }
-        (_, IndenterMotion::Kinematic(_) | IndenterMotion::Free(_)) => None,
-    });
-    let ball = |(radius, center): (f64, &[Expression; 3])| {
+    let ball = |i: &IndenterSpec| {
+        // of other shapes reports show nothing
+        let radius = match i.shape {
+            RigidShape::Sphere { radius } => radius,
+            RigidShape::Box { .. }
+            | RigidShape::Cylinder { .. }
+            | RigidShape::Plane { .. }
+            | RigidShape::Solid(_) => 0.0,
+        };
+        let IndenterMotion::Kinematic(center) = &i.motion else {
+            return MovingBall {
+                radius,
+                path: vec![],
+            };
+        };
         let at = |k: u32| {
             let t = end * f64::from(k) / f64::from(PARTS);
             let [x, y, z] = [0, 1, 2].map(|a: usize| center[a].eval(&[0.0; 3], t));
@@ -314,7 +353,7 @@ fn indenters(deck: &Deck, end: f64) -> Vec<MovingBall> {
         let path = (0..=PARTS).map(at).collect();
         MovingBall { radius, path }
     };
-    moved.map(ball).collect()
+    deck.spec.indenters.iter().map(ball).collect()
 }
 
 /// Columns of a frame.
@@ -359,9 +398,11 @@ fn plan(
         understood: deck.describe(),
         sources: deck.sources(),
         indenters: vec![],
+        marks: MarkNotes::default(),
         report: output.report,
         allow_outside,
         steps,
+        increments: deck.increments(),
         every: output.every,
         modes: deck.modes,
         linear_body: output.linear_body,

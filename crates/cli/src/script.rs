@@ -7,15 +7,20 @@ use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use peridyne::observe::observables::USUAL;
 use peridyne::run::Simulation;
+use peridyne_io::deck::{Dim, UnitSystem};
 use peridyne_io::drive::default_dir;
 use peridyne_io::write::folder::Folder;
+use peridyne_io::write::history::{Column, History};
 use peridyne_io::write::picture::PictureOptions;
 use peridyne_io::write::picture::shown::About;
-use peridyne_io::write::run_json::{self, EnergyReport, RunReport, Status};
+use peridyne_io::write::report;
+use peridyne_io::write::run_json::{
+    self, EnergyReport, FieldNote, RunReport, Setting, Status, UnitNames,
+};
 use peridyne_io::write::{Series, SeriesOptions, WriteError};
 use peridyne_lammps::host::{Console, Engine, Host, HostError, Setup};
 use peridyne_lammps::model::{ModelEngine, ModelHost, Prepared};
-use peridyne_lammps::{Options, Outcome, run_text};
+use peridyne_lammps::{Options, Outcome, Record, run_text};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
@@ -123,7 +128,7 @@ pub fn run(
     if let Some(Err(e)) = host.held {
         return Err(Failure::Run(e.to_string()));
     }
-    let mut outcome = result.map_err(|e| {
+    let outcome = result.map_err(|e| {
         if e.while_running {
             Failure::Run(match &e.help {
                 Some(help) => format!("{e}\n{help}"),
@@ -134,8 +139,13 @@ pub fn run(
         }
     })?;
     let signal = signals::received().filter(|_| outcome.ended);
-    finish(&mut outcome, &name, &text, &results, threads)
-        .map_err(|e| Failure::Run(e.to_string()))?;
+    let told = Told {
+        name: &name,
+        text: &text,
+        command: deck::command(input),
+        threads,
+    };
+    told.finish(outcome, &results)?;
     signal.map_or(Ok(()), |s| Err(Failure::Ended(s)))
 }
 
@@ -165,109 +175,186 @@ impl Host for Holder {
     }
 }
 
-/// Report, last state and picture of a script that ran.
-fn finish(
-    outcome: &mut Outcome,
-    name: &str,
-    text: &str,
-    dir: &Path,
+/// What a script was, for the files that tell of it.
+struct Told<'a> {
+    name: &'a str,
+    text: &'a str,
+    command: String,
     threads: usize,
-) -> Result<(), WriteError> {
-    let engine = outcome.engine.as_mut().map(|e| e.as_any());
-    let Some(model) = engine.and_then(|e| e.downcast_mut::<ModelEngine>()) else {
-        say("the script has no `run`: nothing was computed");
-        return Ok(());
-    };
-    let (length_unit, time_unit) = model.units().labels();
-    let sim = model.simulation();
-    let series_options = SeriesOptions {
-        pictures: vec![PictureOptions {
-            title: info_title(name),
-            length_unit: length_unit.into(),
-            time_unit: time_unit.into(),
-            ..PictureOptions::default()
-        }],
-        ..SeriesOptions::default()
-    };
-    let mut report = report(
-        sim,
-        outcome.steps,
-        outcome.seconds_stepping,
-        name,
-        text,
-        threads,
-    );
-    if let Some(signal) = signals::received().filter(|_| outcome.ended) {
-        report.status = Status::Ended;
-        report.ended_by = Some(signal.to_string());
-    }
-    let snapshot = sim.snapshot(&USUAL, false);
-    // files and picture are made of the snapshot: room for them
-    outcome.engine = None;
-    let mut series = Series::new(dir, series_options)?;
-    series.write(&snapshot)?;
-    let pictures = series.finish(&snapshot, About::Fracture)?;
-    report.pictures = { pictures.iter() }
-        .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
-        .collect();
-    report.peak_memory_bytes = run_json::peak_memory_bytes();
-    report.write(&dir.join("run.json"))?;
-    say(&format!(
-        "{}: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
-        report.outcome(),
-        report.steps,
-        report.seconds_stepping,
-        report.ns_per_bond_step.map_or(String::new(), |ns| format!(
-            ", {ns:.2} ns per bond and step"
-        )),
-        report.broken_directed_bonds,
-        report.fragments.unwrap_or(0),
-        dir.display(),
-    ));
-    for path in pictures {
-        say(&format!("picture: {}", path.display()));
-    }
-    Ok(())
 }
 
-fn report(
-    sim: &mut dyn Simulation,
-    steps: u64,
-    seconds: f64,
-    name: &str,
-    text: &str,
-    threads: usize,
-) -> RunReport {
-    let mut warnings = sim.info().warnings.clone();
-    let ledger = sim.ledger().unwrap_or_else(|e| {
-        warnings.push(e.to_string());
-        Default::default()
-    });
-    let info = sim.info();
-    RunReport {
-        version: env!("CARGO_PKG_VERSION").to_string(),
-        deck: name.to_string(),
-        deck_hash: run_json::deck_hash(text.as_bytes()),
-        title: info_title(name),
-        status: Status::Done,
-        ended_by: None,
-        particles: info.points,
-        directed_bonds: info.directed_bonds,
-        steps,
-        time_step: info.time_step,
-        parts_of_a_step: info.parts,
-        seconds_stepping: seconds,
-        ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
-        peak_memory_bytes: run_json::peak_memory_bytes(),
-        broken_directed_bonds: sim.broken(),
-        fragments: Some(sim.fragments()),
-        threads,
-        simd: info.simd.to_string(),
-        energy: EnergyReport::from(&ledger),
-        pictures: vec![],
-        warnings,
-        setting: None,
+impl Told<'_> {
+    /// `run.json`, `report.html`, history, last state and picture of a script that ran.
+    fn finish(&self, mut outcome: Outcome, dir: &Path) -> Result<(), Failure> {
+        let engine = outcome.engine.as_mut().map(|e| e.as_any());
+        let Some(model) = engine.and_then(|e| e.downcast_mut::<ModelEngine>()) else {
+            say("the script has no `run`: nothing was computed");
+            return Ok(());
+        };
+        let units = model.units();
+        let (length_unit, time_unit) = units.labels();
+        let mut setting = self.setting(model, &outcome.record, dir);
+        let sim = model.simulation();
+        setting.dimension = sim.info().dimension;
+        setting.spacing = sim.info().spacing;
+        let series_options = SeriesOptions {
+            pictures: vec![PictureOptions {
+                title: info_title(self.name),
+                length_unit: length_unit.into(),
+                time_unit: time_unit.into(),
+                ..PictureOptions::default()
+            }],
+            ..SeriesOptions::default()
+        };
+        let seconds = outcome.seconds_stepping;
+        let mut report = self.report(sim, units.system(), outcome.steps, seconds);
+        if let Some(signal) = signals::received().filter(|_| outcome.ended) {
+            report.status = Status::Ended;
+            report.ended_by = Some(signal.to_string());
+        }
+        let snapshot = sim.snapshot(&USUAL, false);
+        let notes = snapshot.columns.iter().map(|c| FieldNote {
+            name: c.name().to_string(),
+            unit: units.system().unit(c.declaration.dimension),
+            says: c.declaration.doc.to_string(),
+        });
+        setting.fields = notes.collect();
+        // files and picture are made of the snapshot: room for them
+        outcome.engine = None;
+        let failed = |e: WriteError| Failure::Run(e.to_string());
+        let mut series = Series::new(dir, series_options).map_err(failed)?;
+        series.write(&snapshot).map_err(failed)?;
+        let pictures = series.finish(&snapshot, About::Fracture).map_err(failed)?;
+        report.pictures = { pictures.iter() }
+            .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
+            .collect();
+        if write_history(&outcome.record, time_unit, dir).map_err(failed)? {
+            setting.files.insert(0, "history.csv".into());
+        }
+        setting.files.extend(report.pictures.clone());
+        report.setting = Some(setting);
+        report.peak_memory_bytes = run_json::peak_memory_bytes();
+        report.write(&dir.join("run.json")).map_err(failed)?;
+        let made = report::write(dir).map_err(|e| Failure::Run(format!("report.html: {e}")))?;
+        say(&format!(
+            "{}: {} steps in {:.2} s{}, {} directed bonds broken, {} fragments\nresults in {}",
+            report.outcome(),
+            report.steps,
+            report.seconds_stepping,
+            report.ns_per_bond_step.map_or(String::new(), |ns| format!(
+                ", {ns:.2} ns per bond and step"
+            )),
+            report.broken_directed_bonds,
+            report.fragments.unwrap_or(0),
+            dir.display(),
+        ));
+        for path in pictures {
+            say(&format!("picture: {}", path.display()));
+        }
+        say(&format!("report: {}", made.path.display()));
+        Ok(())
     }
+
+    /// What the report tells besides.
+    fn setting(&self, model: &ModelEngine, record: &Record, dir: &Path) -> Setting {
+        let (length, time) = model.units().labels();
+        let inside = |path: &PathBuf| match path.strip_prefix(dir) {
+            Ok(name) => name.display().to_string(),
+            Err(_) => {
+                let whole = path.canonicalize().unwrap_or_else(|_| path.clone());
+                whole.display().to_string()
+            }
+        };
+        let dumps: Vec<String> = record.dumps.iter().map(inside).collect();
+        // fixes say what acts, and the report has the title
+        let own = |l: &&str| *l != self.name && !l.starts_with("acting ");
+        let understood = model.understood().lines().filter(own);
+        let understood = understood.map(|l| format!("{l}\n"));
+        let columns = { record.fields.iter() }.map(|(h, f)| (h.clone(), f.to_string()));
+        Setting {
+            command: self.command.clone(),
+            deck_text: self.text.to_string(),
+            understood: understood.collect(),
+            sources: model.sources().to_vec(),
+            units: UnitNames {
+                length: length.into(),
+                time: time.into(),
+                energy: model.units().system().unit(Dim::ENERGY),
+            },
+            indenters: record.spheres.clone(),
+            columns: columns.collect(),
+            files: ["points.pvd".to_string()]
+                .into_iter()
+                .chain(dumps.clone())
+                .collect(),
+            dumps,
+            ..Setting::default()
+        }
+    }
+
+    fn report(
+        &self,
+        sim: &mut dyn Simulation,
+        units: UnitSystem,
+        steps: u64,
+        seconds: f64,
+    ) -> RunReport {
+        let warnings = sim.info().warnings.iter();
+        let mut warnings: Vec<String> = warnings.map(|w| units.tell(w)).collect();
+        let ledger = sim.ledger().unwrap_or_else(|e| {
+            warnings.push(units.tell(&e.message()));
+            Default::default()
+        });
+        let info = sim.info();
+        RunReport {
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            deck: self.name.to_string(),
+            deck_hash: run_json::deck_hash(self.text.as_bytes()),
+            title: info_title(self.name),
+            status: Status::Done,
+            ended_by: None,
+            particles: info.points,
+            directed_bonds: info.directed_bonds,
+            steps,
+            time_step: info.time_step,
+            parts_of_a_step: info.parts,
+            seconds_stepping: seconds,
+            ns_per_bond_step: run_json::ns_per_bond_step(seconds, info.directed_bonds, steps),
+            peak_memory_bytes: run_json::peak_memory_bytes(),
+            broken_directed_bonds: sim.broken(),
+            fragments: Some(sim.fragments()),
+            threads: self.threads,
+            simd: info.simd.to_string(),
+            energy: EnergyReport::from(&ledger),
+            pictures: vec![],
+            warnings,
+            setting: None,
+        }
+    }
+}
+
+/// Lines of thermo output as `history.csv`; false where there was none.
+fn write_history(record: &Record, time_unit: &str, dir: &Path) -> Result<bool, WriteError> {
+    if record.rows.is_empty() {
+        return Ok(false);
+    }
+    // the step and the time stand there anyway
+    let own: Vec<usize> = { 0..record.columns.len() }
+        .filter(|c| !["Step", "Time"].contains(&&*record.columns[*c]))
+        .collect();
+    let named = own.iter().map(|c| Column::new(&record.columns[*c], ""));
+    let columns: Vec<Column> = [Column::new("time", time_unit)]
+        .into_iter()
+        .chain(named)
+        .collect();
+    let mut history = History::create(&dir.join("history.csv"), &columns)?;
+    for row in &record.rows {
+        let mut values = vec![row.time];
+        values.extend(own.iter().map(|c| row.values[*c]));
+        history.push(row.step, &values)?;
+    }
+    history.finish()?;
+    Ok(true)
 }
 
 /// `decks/in.impact_disk` is called `impact_disk`.

@@ -43,6 +43,7 @@ pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
     let mut steps = deck.steps(sim.info().time_step);
     if let Some(until) = until.or(deck.duration)
         && deck.spec.schedule.statics().is_none()
+        && deck.increments() == 0
     {
         steps = (until / sim.info().time_step - 1e-6).ceil().max(1.0) as u64;
         sim.set_time_step(until / steps as f64);

@@ -62,7 +62,9 @@ pub fn upscale(arguments: &UpscaleArguments) -> Result<(), Failure> {
                 ));
             }
             let name = file.file_stem().map(|n| n.to_string_lossy().into_owned());
-            (deck::read(&input)?, name)
+            let deck = deck::read(&input)?;
+            deck::is_plain(&deck, "upscale")?;
+            (deck, name)
         }
         (None, Some(law)) => {
             let (deck, found) =

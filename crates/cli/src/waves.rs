@@ -62,6 +62,7 @@ pub fn waves(arguments: &WavesArguments) -> Result<(), Failure> {
         )));
     }
     let deck = deck::read(&arguments.input)?;
+    deck::is_plain(&deck, "waves")?;
     with_threads(arguments.threads, |_| all(arguments, &deck))
 }
 

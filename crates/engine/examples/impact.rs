@@ -88,6 +88,8 @@ fn main() {
         )],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        preload: None,
+        own_horizon: None,
         schedule: Schedule {
             steps,
             time_step: TimeStep::Fixed(1e-7),

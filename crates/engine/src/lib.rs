@@ -16,6 +16,7 @@ pub(crate) mod fracture;
 pub mod interaction;
 pub mod law;
 pub mod observe;
+pub mod quantity;
 pub mod run;
 #[cfg(test)]
 mod samples;

@@ -51,7 +51,7 @@ pub fn lattice<const D: usize>(
             alpha: 0.0,
         }],
         repulsion: None,
-        simd: Simd::Portable,
+        simd: Simd::detect(),
     });
     let interaction = Box::new(interaction);
     (body, interaction)

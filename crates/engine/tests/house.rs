@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Folders of the engine, from the ground up; those of one line do not know each other.
 const FLOORS: &[&[&str]] = &[
+    &["quantity"],
     &["error"],
     &["execute"],
     &["space", "columns", "expression"],
@@ -264,6 +265,11 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "Thermoelastic",
         "engine/src/run/transfers/expansion.rs",
         "what pmb becomes where bodies expand",
+    ),
+    (
+        "ThermoelasticSolid",
+        "engine/src/run/transfers/expansion.rs",
+        "what lps becomes where bodies expand",
     ),
     (
         "elastic_plastic",

@@ -1,5 +1,10 @@
 //! Newmark's method against closed forms, the explicit integrator, statics, and Peridigm's stored numbers.
 
+#[path = "implicit/breaking.rs"]
+mod breaking;
+#[path = "implicit/hht.rs"]
+mod hht;
+
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;
@@ -268,12 +273,14 @@ fn what_has_no_tangent_is_refused() {
     );
     newmark(&mut spec, 1.0);
     let said = |spec: &Spec| build(spec, Options::default()).err().unwrap();
-    let mut breaking = spec.clone();
-    breaking.materials[0].fracture = Some(FractureSpec {
+    let mut late = spec.clone();
+    late.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.1),
         alpha: 0.0,
     });
-    assert_eq!(said(&breaking).path, "materials[0].fracture");
+    assert!(build(&late, Options::default()).is_ok());
+    late.release = Release::AfterForce;
+    assert_eq!(said(&late).path, "materials[0].fracture");
     let mut touching = spec.clone();
     touching.contact = Some(ContactSpec {
         bonded: 0.9,
@@ -281,7 +288,26 @@ fn what_has_no_tangent_is_refused() {
         stiffness: ContactStiffness::Laws,
         friction: None,
     });
-    assert_eq!(said(&touching).path, "contact");
+    assert!(build(&touching, Options::default()).is_ok());
+    if let Some(contact) = &mut touching.contact {
+        contact.friction = Some(FrictionSpec::constant(0.3));
+    }
+    assert_eq!(said(&touching).path, "contact.friction");
+    let mut free = spec.clone();
+    let motion = IndenterMotion::Free(FreeSpec::new(1.0, [0.0, 9.0, 0.0], [0.0; 3]));
+    free.indenters.push(IndenterSpec::sphere(1.0, 1.0, motion));
+    assert_eq!(said(&free).path, "indenters");
+    for alpha in [-0.4, 0.1, f64::NAN] {
+        let mut wrong = spec.clone();
+        wrong.schedule.stepper = Stepper::Newmark(Newmark::hht(alpha));
+        assert_eq!(said(&wrong).path, "schedule.alpha", "{alpha}");
+    }
+    let mut wrong = spec.clone();
+    wrong.schedule.stepper = Stepper::Newmark(Newmark {
+        alpha: -0.1,
+        ..Newmark::default()
+    });
+    assert_eq!(said(&wrong).path, "schedule.alpha");
     let mut auto = spec.clone();
     auto.schedule.time_step = TimeStep::Auto;
     assert_eq!(said(&auto).path, "schedule.time_step");

@@ -218,7 +218,7 @@ proptest! {
                 sim.start(true);
                 let _ = sim.step();
             }
-            (Err(e), Err(message)) => prop_assert_eq!(e.message, message),
+            (Err(e), Err(message)) => prop_assert_eq!(&*e.message, &*message),
             (Err(_), Ok(())) => {}
             (Ok(_), Err(message)) => panic!("it was built although {message}"),
         }

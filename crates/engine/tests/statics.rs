@@ -1,5 +1,10 @@
 //! Equilibrium and vibration against closed forms, and one method against the others.
 
+#[path = "statics/preload.rs"]
+mod preload;
+#[path = "statics/sequence.rs"]
+mod sequence;
+
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::lattice::LatticeKind;

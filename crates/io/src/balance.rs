@@ -1,7 +1,9 @@
 //! Watches the energy balance of a run: a residual that jumps is said when it does.
 
 use peridyne::error::RunError;
+use peridyne::message;
 use peridyne::observe::Ledger;
+use peridyne::quantity::{Dimension, Message, rounded};
 use peridyne::run::Info;
 
 /// Growth of the residual from one row to the next that is a jump.
@@ -49,7 +51,7 @@ impl BalanceWatch {
     }
 
     /// A row: what to warn of, if its residual is 16 times that of the row before.
-    pub fn row(&mut self, step: u64, ledger: &Ledger) -> Option<String> {
+    pub fn row(&mut self, step: u64, ledger: &Ledger) -> Option<Message> {
         let residual = ledger.residual();
         let work = ledger.work_conditions.abs() + ledger.work_indenter.abs();
         let given = work + ledger.initial.abs();
@@ -57,7 +59,8 @@ impl BalanceWatch {
         self.most = self.most.max(given);
         let lost = !begins && residual > LOST * self.most;
         self.gone = std::mem::replace(&mut self.lost, lost) && lost;
-        let held = ledger.kinetic + ledger.strain + ledger.contact + ledger.released;
+        let held =
+            ledger.kinetic + ledger.strain + ledger.contact + ledger.released + ledger.numerical;
         self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
         if !std::mem::replace(&mut self.begun, true) {
             return None;
@@ -71,18 +74,29 @@ impl BalanceWatch {
         if !(residual.abs() > JUMP * least) {
             return None;
         }
+        let energy = |e: f64| Dimension::ENERGY.of(e);
         let percent = 100.0 * residual.abs() / self.scale;
         let cause = if ledger.contact.max(contact) > SMALL * self.scale {
-            format!(
-                "; contact held {contact:.3e} then and holds {:.3e} now: it may be too stiff for this step",
-                ledger.contact
-            )
+            message![
+                "; contact held ",
+                energy(contact),
+                " then and holds ",
+                energy(ledger.contact),
+                " now: it may be too stiff for this step",
+            ]
         } else {
-            ": the step may be too long".to_string()
+            ": the step may be too long".into()
         };
-        Some(format!(
-            "step {step}: the energy balance misses {residual:.3e} ({percent:.2} % of the energy), at step {then} it missed {was:.3e}{cause}"
-        ))
+        Some(message![
+            format!("step {step}: the energy balance misses "),
+            energy(residual),
+            format!(
+                " ({} % of the energy), at step {then} it missed ",
+                rounded(percent, 3)
+            ),
+            energy(was),
+            cause,
+        ])
     }
 }
 
@@ -113,11 +127,11 @@ mod tests {
         }
         let told = watch.row(50, &ledger(0.9, 0.3)).unwrap();
         assert!(
-            told.starts_with("step 50: the energy balance misses 2.000e-1 (16.67 %"),
+            told.starts_with("step 50: the energy balance misses 0.2 (16.7 %"),
             "{told}"
         );
         assert!(
-            told.contains("contact held 0.000e0 then and holds 3.000e-1 now"),
+            told.contains("contact held 0 then and holds 0.3 now"),
             "{told}"
         );
         assert_eq!(watch.row(60, &ledger(0.9, 0.35)), None);

@@ -8,6 +8,7 @@ use crate::write::folder::Folder;
 use crate::write::history::{Column, History};
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{FieldNote, Setting, Status, UnitNames, deck_hash, peak_memory_bytes};
+use peridyne::quantity::rounded;
 use peridyne_transport::{Evaluation, Method, RunError, measure};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -19,7 +20,7 @@ pub enum LawError {
     Write(#[from] WriteError),
     #[error("report.html: {0}")]
     Report(#[from] ReportError),
-    #[error("{error}\nthe last good state, t = {time:.6e} after {steps} steps, is in {}", dir.display())]
+    #[error("{error}\nthe last good state, t = {} after {steps} steps, is in {}", rounded(*.time, 6), dir.display())]
     Run {
         error: RunError,
         time: f64,

@@ -27,7 +27,7 @@ use crate::write::linear::write_linear;
 use crate::write::picture::{self, shown::About};
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{
-    self, EnergyReport, FieldNote, MovingBall, RunReport, Setting, Status, UnitNames,
+    self, EnergyReport, FieldNote, MarkNotes, MovingBall, RunReport, Setting, Status, UnitNames,
 };
 use crate::write::table::Table;
 use crate::write::trajectory::Trajectory;
@@ -45,13 +45,17 @@ pub struct Plan {
     pub command: String,
     pub understood: String,
     pub sources: Vec<String>,
-    /// Indenters that are moved, for the report.
+    /// Indenters that are moved, for the report; of those that move by themselves no path.
     pub indenters: Vec<MovingBall>,
+    /// What is done to the body, for the report.
+    pub marks: MarkNotes,
     /// Write `report.html` at the end.
     pub report: bool,
     /// May files that the deck names lie outside `dir`?
     pub allow_outside: bool,
     pub steps: u64,
+    /// Of these, increments of statics before motion.
+    pub increments: u64,
     /// Steps between frames; `None`: first and last.
     pub every: Option<u64>,
     /// Steps between rows of `history.csv`.
@@ -91,7 +95,7 @@ impl Plan {
                     spread.chain(others).collect()
                 }
             };
-            for field in shown {
+            for field in shown.into_iter().chain(picture.arrows.as_deref()) {
                 if !fields.contains(&field) {
                     fields.push(field);
                 }
@@ -101,7 +105,13 @@ impl Plan {
     }
 
     /// What reports tell of this run.
-    fn setting(&self, sim: &mut dyn Simulation, last: &Snapshot, pictures: &[String]) -> Setting {
+    fn setting(
+        &self,
+        sim: &mut dyn Simulation,
+        last: &Snapshot,
+        pictures: &[String],
+        indenters: Vec<MovingBall>,
+    ) -> Setting {
         let series = &self.series;
         let mut files = vec!["history.csv".to_string()];
         let mut file = |there: bool, name: &str| files.extend(there.then(|| name.to_string()));
@@ -137,7 +147,11 @@ impl Plan {
                 energy: self.energy_unit.clone(),
             },
             fields: fields.collect(),
-            indenters: self.indenters.clone(),
+            indenters,
+            marks: self.marks.clone(),
+            slices: vec![],
+            dumps: vec![],
+            columns: vec![],
             files,
         }
     }
@@ -181,9 +195,11 @@ pub trait Progress {
 pub enum DriveError {
     #[error(transparent)]
     Write(#[from] WriteError),
-    #[error("{error}\nthe last good state, step {step}, is in {}", dir.display())]
+    #[error("{told}\nthe last good state, step {step}, is in {}", dir.display())]
     Run {
         error: RunError,
+        /// The error with units.
+        told: String,
         step: u64,
         dir: PathBuf,
     },
@@ -228,9 +244,11 @@ pub fn drive(
     let mut stepping = Duration::ZERO;
     let mut stopped = None;
     let mut ledger = Ledger::default();
+    let mut indenters = plan.indenters.clone();
     let mut framed = None;
     let mut balance = BalanceWatch::default();
-    let mut warnings = sim.info().warnings.clone();
+    let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
+    let mut warnings: Vec<String> = told.collect();
     let mut ended = None;
     // what the history and the trajectories tell of already
     let mut told = None;
@@ -263,8 +281,15 @@ pub fn drive(
             ended = progress.ended();
         }
         let last = n == plan.steps || ended.is_some();
-        let frame = n == 0 || plan.every.is_some_and(|e| n % e == 0);
-        let rows = (n % plan.history == 0 || last) && told != Some(sim.step_number());
+        // steps of motion count from its beginning; every increment before it is told
+        let loads = n < plan.increments;
+        let moved = n.saturating_sub(plan.increments);
+        let every = |e: u64| !loads && moved % e == 0;
+        let frame = n == 0 || n == plan.increments || plan.every.is_some_and(every);
+        let rows = (loads || every(plan.history) || last) && told != Some(sim.step_number());
+        if rows || frame {
+            follow(&mut indenters, sim);
+        }
         if rows || (frame && exodus.is_some()) {
             match sim.ledger() {
                 Ok(l) => ledger = l,
@@ -278,12 +303,13 @@ pub fn drive(
         if let Some((step, row)) = row.as_ref().filter(|_| rows) {
             history.push(*step, row)?;
             told = Some(*step);
-            progress.row(*step, sim.time(), &ledger, sim.broken());
+            progress.row(*step, sim.clock(), &ledger, sim.broken());
             if let Some(jump) = balance.row(*step, &ledger) {
+                let jump = plan.units.tell(&jump);
                 progress.warning(&jump);
                 warnings.push(jump);
             }
-            let explicit = matches!(sim.info().stepper, Stepper::Verlet);
+            let explicit = matches!(sim.info().stepper, Stepper::Verlet) && !loads;
             stopped = balance
                 .gone(sim.step_number(), &ledger, sim.info())
                 .filter(|_| explicit);
@@ -311,6 +337,10 @@ pub fn drive(
             if let (Some(exodus), Some((_, row))) = (&mut exodus, &row) {
                 exodus.push(&snapshot, row)?;
             }
+        }
+        if plan.modes > 0 && plan.increments > 0 && n == plan.increments {
+            let loaded = plan.look(sim);
+            write_modes(sim, plan, &loaded)?;
         }
         if last {
             break;
@@ -343,9 +373,10 @@ pub fn drive(
     let pictures = pictures.iter().filter_map(|p| p.file_name());
     let pictures: Vec<String> = pictures.map(|p| p.to_string_lossy().into_owned()).collect();
     history.finish()?;
-    if let Some(running) = running {
-        running.finish()?;
-    }
+    let slices = match running {
+        Some(running) => running.finish()?,
+        None => vec![],
+    };
     for mut trajectory in trajectories {
         // of a run that stopped, the last good state
         if let Some(atoms) = plan
@@ -362,7 +393,7 @@ pub fn drive(
     {
         write_data(&plan.dir.join(name), &atoms.last(sim))?;
     }
-    if plan.modes > 0 && stopped.is_none() && ended.is_none() {
+    if plan.modes > 0 && plan.increments == 0 && stopped.is_none() && ended.is_none() {
         write_modes(sim, plan, &snapshot)?;
     }
     if plan.linear_body {
@@ -374,7 +405,7 @@ pub fn drive(
         }
     }
     let status = match &stopped {
-        Some(error) => Status::Stopped(error.to_string()),
+        Some(error) => Status::Stopped(plan.units.tell(&error.message())),
         None if ended.is_some() => Status::Ended,
         None => Status::Done,
     };
@@ -404,7 +435,10 @@ pub fn drive(
         simd: info.simd.to_string(),
         energy: EnergyReport::from(&ledger),
         warnings,
-        setting: Some(plan.setting(sim, &snapshot, &pictures)),
+        setting: Some(Setting {
+            slices,
+            ..plan.setting(sim, &snapshot, &pictures, indenters)
+        }),
         pictures,
     };
     report.write(&plan.dir.join("run.json"))?;
@@ -414,10 +448,23 @@ pub fn drive(
     match stopped {
         None => Ok(report),
         Some(error) => Err(DriveError::Run {
+            told: plan.units.tell(&error.message()),
             error,
             step: sim.step_number(),
             dir: plan.dir.to_path_buf(),
         }),
+    }
+}
+
+/// Where indenters are that move by themselves.
+fn follow(balls: &mut [MovingBall], sim: &dyn Simulation) {
+    let t = sim.time();
+    for (ball, (center, radius)) in balls.iter_mut().zip(sim.indenters()) {
+        // of those that are moved the path is known
+        if ball.path.last().is_none_or(|p| p[0] < t) {
+            ball.radius = radius;
+            ball.path.push([t, center[0], center[1], center[2]]);
+        }
     }
 }
 

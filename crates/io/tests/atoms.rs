@@ -7,6 +7,7 @@ use peridyne_io::write::trajectory::{Format, Trajectory, write_atoms};
 fn sample(step: u64) -> Atoms {
     let vectors = |f: fn(f64) -> [f64; 3]| (0..4).map(|i| f(f64::from(i))).collect::<Vec<_>>();
     Atoms {
+        columns: vec![],
         species: [("Cu", 63.55), ("Ni", 58.69)]
             .map(|(name, mass)| Species {
                 name: name.into(),

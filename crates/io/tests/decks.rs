@@ -2,7 +2,7 @@
 
 use peridyne::error::BuildErrorKind;
 use peridyne::run::{Options, build};
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, UnitSystem};
 use std::path::{Path, PathBuf};
 
 fn decks(folder: &str) -> Vec<(PathBuf, String)> {
@@ -106,6 +106,87 @@ fn decks_that_fail_in_the_build_say_what_is_wrong_and_where() {
         }
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// A number of a sentence that nobody would write so: `5.72e0`, or one as a power of ten without a unit.
+fn odd_number(text: &str, units: UnitSystem) -> Option<String> {
+    let plain = |w: &str| {
+        w.trim_matches(|c: char| "(),;:".contains(c) || c == '.' || c == '`')
+            .to_string()
+    };
+    let words: Vec<String> = text.split_whitespace().map(plain).collect();
+    let unit = |w: &str| {
+        ["m", "s", "Pa", "N", "J", "K", "kg", "W", "1"]
+            .iter()
+            .any(|u| {
+                w == *u
+                    || w.strip_prefix(u)
+                        .is_some_and(|rest| rest.starts_with(['/', '^']))
+            })
+    };
+    for (n, word) in words.iter().enumerate() {
+        let Some((_, power)) = word.split_once('e').filter(|_| word.parse::<f64>().is_ok()) else {
+            continue;
+        };
+        let next = words.get(n + 1).map_or("", |w| w);
+        // how many there are has no unit
+        let counted = ["bonds", "points", "lattice", "particles"].contains(&next);
+        let named = unit(next) || counted || matches!(units, UnitSystem::Lj | UnitSystem::None);
+        if power == "0" || !named {
+            return Some(format!("{word} {next}"));
+        }
+    }
+    None
+}
+
+/// What the engine says has numbers for people, whatever units the deck has.
+#[test]
+fn numbers_of_warnings_and_errors_have_units() {
+    assert_eq!(
+        odd_number("the spacing 5.72e0 is", UnitSystem::Si).unwrap(),
+        "5.72e0 is"
+    );
+    assert_eq!(
+        odd_number("the period is 1.0e-3, less", UnitSystem::Si).unwrap(),
+        "1.0e-3 less"
+    );
+    assert_eq!(
+        odd_number("a stiffness of 2e18 N/m^6; 3e9 bonds", UnitSystem::Si),
+        None
+    );
+    assert_eq!(odd_number("apart by 2e-4", UnitSystem::Lj), None);
+    let mut wrong = Vec::new();
+    let (mut told, mut looked) = (0, 0);
+    for folder in ["good", "bad/build"] {
+        for (path, text) in decks(folder) {
+            let name = path.to_str().unwrap();
+            // those of many points say nothing that smaller ones do not
+            let large = name.contains("impact.toml") || name.contains("too_");
+            let Some(deck) = Deck::parse(&text, name, &[]).ok().filter(|_| !large) else {
+                continue;
+            };
+            looked += 1;
+            let mut said: Vec<String> = deck.warnings.clone();
+            match build(&deck.spec, Options::default()) {
+                Ok(sim) => said.extend(sim.info().warnings.iter().map(|w| deck.units.tell(w))),
+                Err(e) => {
+                    let e = deck.explain(&e);
+                    said.extend([e.message].into_iter().chain(e.help));
+                }
+            }
+            told += said.len();
+            for text in said {
+                if let Some(number) = odd_number(&text, deck.units) {
+                    wrong.push(format!("{name}: `{number}` in: {text}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    assert!(
+        looked > 60 && told > 30,
+        "{looked} decks said {told} things"
+    );
 }
 
 /// A program need not read the message.

@@ -38,6 +38,10 @@ fn failed(path: &Path, error: &std::io::Error) -> Box<Problem> {
 }
 
 impl Sink {
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// # Errors
     /// The file cannot be written.
     pub fn write(&mut self, text: &str) -> Result<()> {

@@ -7,6 +7,7 @@ use super::error::{Problem, Result, ScriptError};
 use super::files::Folder;
 use super::host::{Console, Engine, Host};
 use super::input;
+use super::record::Record;
 use super::session::{Session, Store};
 use super::text::{Text, logical_lines, words};
 
@@ -35,6 +36,8 @@ pub struct Outcome {
     pub seconds_stepping: f64,
     /// Did [`Console::ended`] end it?
     pub ended: bool,
+    /// What it printed and wrote.
+    pub record: Record,
 }
 
 /// A script file that is being read.
@@ -128,6 +131,7 @@ pub fn run_text(
         time,
         seconds_stepping,
         ended,
+        record: s.watch.record,
     })
 }
 

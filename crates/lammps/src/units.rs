@@ -1,6 +1,8 @@
 //! Unit systems of LAMMPS, with the numbers that LAMMPS computes with: those of CODATA 2006 and older, which its own
 //! answers depend on from the sixth digit on.
 
+use peridyne_io::deck::UnitSystem;
+
 /// `units lj | real | metal | si | cgs | electron | micro | nano`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Units {
@@ -47,6 +49,20 @@ impl Units {
             Units::Cgs => ("cm", "s"),
             Units::Micro => ("µm", "µs"),
             Units::Nano => ("nm", "ns"),
+        }
+    }
+
+    /// Units in which decks have the same numbers; of the others numbers carry none.
+    pub fn system(self) -> UnitSystem {
+        match self {
+            Units::Si => UnitSystem::Si,
+            Units::Lj => UnitSystem::Lj,
+            Units::Real
+            | Units::Metal
+            | Units::Cgs
+            | Units::Electron
+            | Units::Micro
+            | Units::Nano => UnitSystem::None,
         }
     }
 

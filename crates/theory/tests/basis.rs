@@ -1,16 +1,21 @@
 //! Waves of crystals with a basis of unlike atoms, against the forces of the engine under small displacements.
 
 use num_complex::Complex64;
+use peridyne::expression::Expression;
 use peridyne::law::potential::Potential;
 use peridyne::law::potential::cut::{Cut, Ends};
 use peridyne::law::potential::lennard_jones::LennardJones;
 use peridyne::law::potential::mixture::Mixture;
+use peridyne::law::potential::no_potential::NoPotential;
 use peridyne::law::potential::tabulated::{Eam, Tabulated};
 use peridyne::run::{Options, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
 use peridyne::spec::*;
 use peridyne_theory::crystal::Atom;
 use peridyne_theory::crystal::Crystal;
 use peridyne_theory::dispersion::hermitian::{Matrix, eigen};
+use peridyne_theory::upscale::{self, Rule};
 
 const CELLS: usize = 4;
 
@@ -232,4 +237,145 @@ fn caesium_chloride_of_an_alloy() {
     });
     let own = tables.clone().map(|t| PotentialSpec::of(Eam::new(t)));
     check("alloy", 1.25, &CAESIUM_CHLORIDE, &mixture, own, None);
+}
+
+/// Two kinds of atoms in turn on a chain whose neighbours stay neighbours.
+fn diatomic(masses: [f64; 2], potentials: [PotentialSpec; 2], across: PotentialSpec) -> Spec {
+    let low_high = Region::Block {
+        low: [-0.1, 0.0, 0.0],
+        high: [23.9, 0.0, 0.0],
+    };
+    let body = BodySpec::lattice(LatticeKind::Chain, 1.0, low_high);
+    let mut spec = Spec::new(1, body, 1.0, LawSpec::Atoms(potentials[0].clone()));
+    spec.periodic[0] = Some(24.0);
+    spec.materials.clear();
+    for (n, (density, potential)) in masses.into_iter().zip(potentials).enumerate() {
+        let name = ["light", "heavy"][n].to_string();
+        let of = format!("cos(3.14159265358979*x) {} 0", [">", "<"][n]);
+        spec.sets.push(SetSpec {
+            name: name.clone(),
+            members: Members::Where(Expression::parse(&of, &[]).unwrap()),
+        });
+        spec.materials.push(MaterialSpec {
+            set: name.clone(),
+            name,
+            density,
+            law: LawSpec::Atoms(potential),
+            fracture: None,
+        });
+    }
+    spec.potentials = vec![ActingSpec {
+        potential: across,
+        on: Acting::Between([0, 1]),
+    }];
+    spec.family = FamilyChoice::Stencil;
+    spec.horizon = Horizon::Ratio(2);
+    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec
+}
+
+/// `φ″(1)/ε` of Lennard-Jones whose minimum is at 1.
+const STIFFNESS: f64 = 72.0;
+
+fn argon(epsilon: f64, rest: f64) -> PotentialSpec {
+    let sigma = rest / 2f64.powf(1.0 / 6.0);
+    PotentialSpec::of(LennardJones { epsilon, sigma })
+}
+
+/// Born and von Kármán 1912: `M m ω⁴ − 2 K (M + m) ω² + 2 K² (1 − cos 2ka) = 0` of springs K between unlike neighbours a apart.
+#[test]
+fn a_chain_of_two_kinds_on_fixed_neighbours() {
+    let nothing = PotentialSpec::of(NoPotential);
+    let (m, big, k) = (1.3, 4.1, 0.7 * STIFFNESS);
+    let spec = diatomic([m, big], [nothing.clone(), nothing], argon(0.7, 1.0));
+    let (crystal, reference) = upscale::crystal::<1>(&spec).unwrap();
+    assert!((reference.unwrap().energy + 0.7).abs() < 1e-12);
+    assert_eq!(crystal.basis.len(), 2);
+    for wave in [0.0f64, 0.1, 0.7, 1.2, 1.5] {
+        let sum = k * (1.0 / m + 1.0 / big);
+        let root = (sum * sum - 2.0 * k * k / (m * big) * (1.0 - (2.0 * wave).cos())).sqrt();
+        for (found, exact) in crystal.squares([wave]).iter().zip([sum - root, sum + root]) {
+            assert!(
+                (found - exact).abs() < 1e-12 * sum,
+                "{wave}: {found} {exact}"
+            );
+        }
+    }
+    // second neighbours, of one kind each, are part of the model, whatever their distance is later
+    let spec = diatomic(
+        [m, big],
+        [argon(0.3, 2.1), argon(0.5, 1.9)],
+        argon(0.7, 1.0),
+    );
+    let (crystal, _) = upscale::crystal::<1>(&spec).unwrap();
+    assert_eq!(crystal.bonds.len(), 8);
+    let options = Options {
+        trust_time_step: true,
+        ..Options::default()
+    };
+    let mut sim = build(&spec, options).unwrap();
+    sim.start(true);
+    // force constants of the engine
+    let (h, masses) = (1e-5, [m, big]);
+    for wave in [0.3, 1.1] {
+        let mut matrix = Matrix::zero(2);
+        for from in 0..2 {
+            let mut at = |x: f64| {
+                let mut u = vec![[0.0; 3]; 24];
+                u[from][0] = x;
+                sim.forces_under(&u)
+            };
+            let far = [2.0, 1.0, -1.0, -2.0].map(|x| at(x * h));
+            for i in 0..24 {
+                let slope = (8.0 * (far[1][i][0] - far[2][i][0]) - (far[0][i][0] - far[3][i][0]))
+                    / (12.0 * h);
+                let apart = (i as f64 - from as f64 + 12.0).rem_euclid(24.0) - 12.0;
+                let factor = Complex64::from_polar(1.0, -wave * apart);
+                let mass = (masses[i % 2] * masses[from]).sqrt();
+                matrix.add(i % 2, from, factor * (-slope / mass));
+            }
+        }
+        for (x, y) in eigen(&matrix).0.iter().zip(crystal.squares([wave])) {
+            assert!((x - y).abs() < 1e-8 * y.abs().max(1.0), "{wave}: {x} {y}");
+        }
+    }
+    // kinds by an expression do not lie there as they lie here
+    let refused = upscale::upscale(&spec, 2).unwrap_err();
+    assert_eq!(refused, upscale::UpscaleError::OtherArrangement);
+}
+
+/// The coarse model of fixed neighbours has half the frequencies at half the wave vector.
+#[test]
+fn fixed_neighbours_of_two_kinds_have_a_coarse_model() {
+    let mut spec = diatomic(
+        [1.3, 4.1],
+        [argon(0.3, 1.1), argon(0.5, 0.9)],
+        argon(0.7, 1.0),
+    );
+    let cells = Region::Block {
+        low: [-0.1; 3],
+        high: [7.9; 3],
+    };
+    spec.dimension = 3;
+    spec.body = BodySpec::lattice(LatticeKind::Bcc, 1.0, cells);
+    spec.periodic = [Some(8.0); 3];
+    spec.horizon = Horizon::Length(1.2);
+    for (n, set) in spec.sets.iter_mut().enumerate() {
+        set.members = Members::Basis(vec![n]);
+    }
+    let (fine, _) = upscale::crystal::<3>(&spec).unwrap();
+    // eight unlike and six like neighbours of both
+    assert_eq!(fine.bonds.len(), 28);
+    let (coarse, rule) = upscale::upscale(&spec, 2).unwrap();
+    assert_eq!((rule, coarse.family), (Rule::Shells, FamilyChoice::Stencil));
+    let (large, _) = upscale::crystal::<3>(&coarse).unwrap();
+    for wave in [[0.2, 0.0, 0.0], [0.9, 0.4, 2.1]] {
+        let half = large.squares(wave.map(|k| 0.5 * k));
+        for (x, y) in fine.squares(wave).iter().zip(half) {
+            assert!(
+                (0.25 * x - y).abs() < 1e-10 * x.abs().max(1.0),
+                "{wave:?}: {x} {y}"
+            );
+        }
+    }
 }

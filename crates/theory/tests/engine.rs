@@ -107,6 +107,8 @@ fn case(
         indenters: vec![],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        preload: None,
+        own_horizon: None,
         schedule: Schedule {
             steps: 0,
             time_step: TimeStep::Fraction(0.5),

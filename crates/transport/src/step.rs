@@ -5,6 +5,7 @@ use crate::flux::Flux;
 use crate::measure;
 use crate::operator::Operator;
 use crate::threads::{PIECE, pieces, pieces_of_two};
+use peridyne::quantity::rounded;
 
 /// How a step is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,14 +31,14 @@ impl Method {
 /// What can go wrong in a run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RunError {
-    #[error("u is {value} at x = {x:?} at t = {time:.6e}: it has no finite value any more")]
+    #[error("u is {value} at x = {x:?} at t = {}: it has no finite value any more", rounded(*.time, 6))]
     NotFinite { value: f64, x: Vec<f64>, time: f64 },
     #[error(
-        "the step {step:.6e} is unstable at t = {time:.6e}: with |u| as it is now, steps up to {stable:.6e} are stable (write a smaller time_step, or leave it out)"
+        "the step {} is unstable at t = {}: with |u| as it is now, steps up to {} are stable (write a smaller time_step, or leave it out)", rounded(*.step, 6), rounded(*.time, 6), rounded(*.stable, 6)
     )]
     Unstable { step: f64, stable: f64, time: f64 },
     #[error(
-        "the implicit step at t = {time:.6e} was not solved: its residual is {residual:.3e} of the right side"
+        "the implicit step at t = {} was not solved: its residual is {} of the right side", rounded(*.time, 6), rounded(*.residual, 3)
     )]
     NotSolved { residual: f64, time: f64 },
 }

@@ -9,6 +9,7 @@
 use crate::grid::Grid;
 use crate::kernel::{Kernel, MOMENT, Parity};
 use peridyne::error::BuildError;
+use peridyne::quantity::rounded;
 
 /// Spacings that a horizon has at least: two bonds on either side, though the kernel may be 0 at the horizon, for two moments.
 pub const FEWEST: f64 = 3.0;
@@ -35,9 +36,9 @@ impl Stencil {
         };
         if ratio < FEWEST * (1.0 - 1e-9) {
             return coarse(format!(
-                "the horizon is under-resolved: {:.6e} is {ratio:.3} spacings of {:.6e}",
-                kernel.horizon(),
-                grid.spacing
+                "the horizon is under-resolved: {} is {ratio:.3} spacings of {}",
+                rounded(kernel.horizon(), 6),
+                rounded(grid.spacing, 6)
             ));
         }
         let most = if grid.dimension == 1 { 1e6 } else { 500.0 };

@@ -2,7 +2,7 @@
 
 use super::{Findings, atoms, directions, mean};
 use peridyne::spec::{Calibration, Horizon, LawSpec};
-use peridyne_io::deck::UnitSystem;
+use peridyne_io::deck::{Dim, UnitSystem};
 use peridyne_theory::patch_test::Place;
 
 /// A warning with its fix.
@@ -21,7 +21,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     };
     let (spec, info) = (found.spec, found.sim.info());
     for warning in &info.warnings {
-        say(warning.clone(), "");
+        say(found.units.tell(warning), "");
     }
     if spec.potential().is_some() {
         atoms::advice(found, &mut say);
@@ -45,8 +45,9 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
         if found.units == UnitSystem::Si && speed > 30e3 {
             say(
                 format!(
-                    "pressure waves of `{}` run at {speed:.3e} m/s, faster than in any solid",
-                    m.name
+                    "pressure waves of `{}` run at {}, faster than in any solid",
+                    m.name,
+                    found.units.show(speed, Dim::VELOCITY)
                 ),
                 "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
             );
@@ -54,8 +55,9 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
         if found.units == UnitSystem::Si && speed < 1.0 {
             say(
                 format!(
-                    "pressure waves of `{}` run at {speed:.3e} m/s, slower than in any solid",
-                    m.name
+                    "pressure waves of `{}` run at {}, slower than in any solid",
+                    m.name,
+                    found.units.show(speed, Dim::VELOCITY)
                 ),
                 "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
             );

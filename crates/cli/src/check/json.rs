@@ -49,9 +49,11 @@ pub fn write(found: &Findings) -> String {
         "materials": materials.collect::<Vec<_>>(),
         "fields": found.fields.iter().map(fields).collect::<Vec<_>>(),
         "steps": found.steps,
+        "increments_before": found.increments,
         "time_step": found.spec.schedule.statics().is_none().then_some(info.time_step),
         "integrator": match info.stepper {
             Stepper::Verlet => Some("verlet"),
+            Stepper::Newmark(n) if n.alpha != 0.0 => Some("hht"),
             Stepper::Newmark(_) => Some("newmark"),
             Stepper::Still => Some("still"),
             Stepper::Statics(_) => None,
@@ -69,7 +71,8 @@ pub fn write(found: &Findings) -> String {
         "threads": found.threads,
         "simd": info.simd,
         "seconds_per_step": found.trial.seconds_per_step,
-        "seconds": found.trial.seconds_per_step.map(|s| s * found.steps as f64),
+        "seconds_per_increment_before": found.trial.seconds_per_increment,
+        "seconds": found.trial.seconds_per_step.map(|s| found.load() + s * found.steps as f64),
         "warnings": advice(found).iter().map(|a| json!({"what": a.what, "fix": a.fix})).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&report).unwrap_or_default()

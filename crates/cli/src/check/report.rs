@@ -74,6 +74,20 @@ fn cost(found: &Findings) -> String {
             bytes / info.directed_bonds.max(1) as f64
         ),
     );
+    if let Some(seconds) = found.trial.seconds_per_increment {
+        row(
+            &mut out,
+            "statics",
+            format!(
+                "about {} for {} increments",
+                duration(found.load()),
+                found.increments
+            ),
+        );
+        if seconds > 0.0 && found.trial.seconds_per_step.is_none() {
+            row(&mut out, "speed", "motion was not reached in the trial");
+        }
+    }
     let Some(seconds) = found.trial.seconds_per_step else {
         return out;
     };
@@ -94,7 +108,7 @@ fn cost(found: &Findings) -> String {
         "time of the run",
         format!(
             "about {}, without writing",
-            duration(seconds * found.steps as f64)
+            duration(found.load() + seconds * found.steps as f64)
         ),
     );
     out

@@ -3,8 +3,9 @@
 use crate::Input;
 use crate::deck;
 use crate::failure::Failure;
+use peridyne::error::RunError;
 use peridyne::expression::Expression;
-use peridyne_io::deck::Deck;
+use peridyne_io::deck::{Deck, Dim};
 use peridyne_theory::convergence::Kind;
 use std::collections::HashMap;
 use std::time::Instant;
@@ -77,10 +78,12 @@ impl Level {
         // the common step is set below
         trusting.spec.schedule.force_unstable = true;
         let mut sim = deck::model(&trusting, input)?;
-        let failed = |e: &dyn std::fmt::Display| {
+        let failed = |e: RunError| {
             Failure::Run(format!(
-                "spacing {:e}: {e}",
-                deck.spec.body.spacing().unwrap_or(0.0)
+                "spacing {}: {}",
+                deck.units
+                    .show(deck.spec.body.spacing().unwrap_or(0.0), Dim::LENGTH),
+                deck.units.tell(&e.message())
             ))
         };
         let steps = (step.time / (step.time_step * f64::from(stretch)) - 1e-6).ceil();
@@ -89,12 +92,12 @@ impl Level {
         sim.start(true);
         let began = Instant::now();
         for n in 0..steps {
-            sim.step().map_err(|e| failed(&e))?;
+            sim.step().map_err(failed)?;
             if n % WATCH == 0 {
-                sim.ledger().map_err(|e| failed(&e))?;
+                sim.ledger().map_err(failed)?;
             }
         }
-        sim.ledger().map_err(|e| failed(&e))?;
+        sim.ledger().map_err(failed)?;
         let info = sim.info();
         Ok(Level {
             spacing: info.spacing,
@@ -131,7 +134,7 @@ impl Level {
             .map(|x| match own.get(&key(x)) {
                 Some(&i) => Ok(self.displacement[i]),
                 None => Err(format!(
-                    "the point {x:?} of the coarsest level is no point of the level with spacing {:e}: put origin and region on multiples of the spacing",
+                    "the point {x:?} of the coarsest level is no point of the level with spacing {}: put origin and region on multiples of the spacing",
                     self.spacing
                 )),
             })

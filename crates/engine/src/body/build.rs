@@ -111,6 +111,7 @@ impl<const D: usize> Body<D> {
             density: Values::Uniform(1.0),
             period,
             material: vec![],
+            horizon: vec![],
             mark: vec![],
             images,
         })
@@ -174,6 +175,7 @@ impl<const D: usize> Body<D> {
             density: Values::Uniform(1.0),
             period,
             material: vec![],
+            horizon: vec![],
             mark: mark.to_vec(),
             images: vec![],
         })

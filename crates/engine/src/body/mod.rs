@@ -49,6 +49,8 @@ pub struct Body<const D: usize> {
     pub(crate) period: [Option<f64>; D],
     /// Material per slot; empty when there is one.
     pub(crate) material: Vec<u8>,
+    /// Horizon per slot (length), where points have their own; else empty.
+    pub(crate) horizon: Vec<f64>,
     /// Mark per point, in order of id; empty: all 0.
     pub(crate) mark: Vec<i32>,
     /// `(copy, original)` slots of periodic images.

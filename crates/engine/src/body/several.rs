@@ -55,6 +55,7 @@ impl<const D: usize> Body<D> {
             density,
             period: pieces.first().map_or([None; D], |p| p.body.period),
             material: vec![],
+            horizon: vec![],
             mark: match marked {
                 true => pieces.iter().flat_map(mark).collect(),
                 false => vec![],

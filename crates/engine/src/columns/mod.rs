@@ -1,9 +1,7 @@
 //! State says what it is: every column of numbers over points or bonds is declared by whoever owns it. Writers, probes, pictures and
 //! whatever stores or sends a state read the declarations; nobody lists columns by hand.
 
-mod dimension;
-
-pub use dimension::Dimension;
+pub use crate::quantity::Dimension;
 use std::borrow::Cow;
 
 /// What a column is over.

@@ -97,6 +97,14 @@ impl<const D: usize> Constraint<D> {
         self.kind == Prescribed::Velocity
     }
 
+    /// The displacement along axis `a` that point `k` of the list has at time `t`; `None`: its velocity is told.
+    pub fn displaced(&self, a: usize, k: usize, t: f64) -> Option<f64> {
+        match self.kind {
+            Prescribed::Displacement => Some(self.program.at(a, k, &self.points[k], t)),
+            Prescribed::Velocity => None,
+        }
+    }
+
     /// Displacements as prescribed at time `t`.
     pub fn place(&self, u: &mut Field<D>, t: f64) {
         if self.kind == Prescribed::Displacement {

@@ -545,6 +545,11 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
+    /// No point has gone further than `path` (length) since the last call.
+    pub fn moved(&mut self, path: f64) {
+        self.slack -= path;
+    }
+
     /// Where it is at this time, in statics; what is near is looked for again.
     pub fn place(&mut self, t: f64) {
         if self.rigid.place(t) {
@@ -568,6 +573,10 @@ impl<const D: usize> Indenter<D> {
     }
 
     /// Does it move by the forces on it?
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     pub fn is_free(&self) -> bool {
         self.rigid.is_free()
     }

@@ -1,5 +1,7 @@
 //! What cannot be built.
 
+use crate::quantity::Message;
+
 /// What a program can tell apart of the ways in which a specification cannot be built.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BuildErrorKind {
@@ -32,14 +34,14 @@ pub struct BuildError {
     /// Dotted path of the offending entry in the spec (`"body.region"`), empty when it is not one entry.
     pub path: String,
     /// What is wrong and what was expected.
-    pub message: String,
+    pub message: Message,
     /// What to write instead, if there is something useful to say.
-    pub help: Option<String>,
+    pub help: Option<Message>,
 }
 
 /// One constructor for each kind.
 impl BuildError {
-    fn of(kind: BuildErrorKind, path: impl Into<String>, message: impl Into<String>) -> Self {
+    fn of(kind: BuildErrorKind, path: impl Into<String>, message: impl Into<Message>) -> Self {
         BuildError {
             kind,
             path: path.into(),
@@ -47,44 +49,52 @@ impl BuildError {
             help: None,
         }
     }
-    pub fn invalid(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn invalid(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::Invalid, path, message)
     }
-    pub fn missing(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn missing(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::Missing, path, message)
     }
     /// Nothing is called `name`.
     pub fn unknown(
         path: impl Into<String>,
         name: impl Into<String>,
-        message: impl Into<String>,
+        message: impl Into<Message>,
     ) -> Self {
         Self::of(BuildErrorKind::Unknown { name: name.into() }, path, message)
     }
-    pub fn conflict(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn conflict(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::Conflict, path, message)
     }
-    pub fn unsupported(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn unsupported(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::Unsupported, path, message)
     }
-    pub fn empty(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn empty(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::Empty, path, message)
     }
-    pub fn too_many(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn too_many(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::TooMany, path, message)
     }
     pub fn too_large(
         path: impl Into<String>,
         (needed, left): (f64, Option<f64>),
-        message: impl Into<String>,
+        message: impl Into<Message>,
     ) -> Self {
         Self::of(BuildErrorKind::TooLarge { needed, left }, path, message)
     }
-    pub fn ill_posed(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn ill_posed(path: impl Into<String>, message: impl Into<Message>) -> Self {
         Self::of(BuildErrorKind::IllPosed, path, message)
     }
-    pub fn help(mut self, help: impl Into<String>) -> Self {
+    pub fn help(mut self, help: impl Into<Message>) -> Self {
         self.help = Some(help.into());
+        self
+    }
+    /// The same of what is called so within `whole`.
+    pub fn within(mut self, whole: &str) -> Self {
+        self.path = match self.path.is_empty() {
+            true => whole.to_string(),
+            false => format!("{whole}.{}", self.path),
+        };
         self
     }
     /// The same of another entry.

@@ -1,20 +1,19 @@
 //! What a run dies of.
 
+use std::fmt;
+
 use super::SolveError;
+use crate::message;
+use crate::quantity::{Dimension, Message, place};
 
 /// A run that went bad. The simulation keeps its last good state.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum RunError {
-    #[error("step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) is not finite", position[0], position[1], position[2])]
     NotFinite {
         step: u64,
         id: u64,
         position: [f64; 3],
     },
-    #[error(
-        "step {step}: point {id} at ({:.6e}, {:.6e}, {:.6e}) would move {path:.3e} in one step, more than the spacing {spacing:.3e}: {}",
-        position[0], position[1], position[2], blame(*contact, "the run is unstable or the step too long")
-    )]
     TooFast {
         step: u64,
         id: u64,
@@ -24,48 +23,52 @@ pub enum RunError {
         /// The stability limit of contact, if contact is what drives the point.
         contact: Option<f64>,
     },
-    #[error(
-        "step {step}: the electron density at atom {id} at ({:.6e}, {:.6e}, {:.6e}) is {density:.4e}: the embedding energy has no meaning there (its logarithm needs a positive density); atoms are too close or too far from each other for this potential, or its length scales do not fit the lattice",
-        position[0], position[1], position[2]
-    )]
     Density {
         step: u64,
         id: u64,
         position: [f64; 3],
         density: f64,
     },
-    #[error("increment {step}: {error}{}", position.map_or(String::new(), |x| format!(" at ({:.6e}, {:.6e}, {:.6e})", x[0], x[1], x[2])))]
     Equilibrium {
         step: u64,
         /// Where, if it is one place.
         position: Option<[f64; 3]>,
         error: SolveError,
     },
-    #[error("step {step}: the equations of the implicit step have no solution: {error}{}{}", position.map_or(String::new(), |x| format!(" at ({:.6e}, {:.6e}, {:.6e})", x[0], x[1], x[2])), shorter(error))]
     Implicit {
         step: u64,
         /// Where, if it is one place.
         position: Option<[f64; 3]>,
         error: SolveError,
     },
-    #[error("step {step}: the factor of the toughness is {value} at ({:.6e}, {:.6e}, {:.6e}), expected a positive number", position[0], position[1], position[2])]
+    Jump {
+        step: u64,
+        /// In the reference.
+        position: [f64; 3],
+        axis: &'static str,
+        asked: f64,
+        found: f64,
+    },
+    Touching {
+        step: u64,
+        pairs: usize,
+    },
     Toughness {
         step: u64,
         position: [f64; 3],
         value: f64,
     },
-    #[error("step {step}: the equations of {quantity} have no solution: {error}")]
     Transfer {
         step: u64,
         /// What spreads.
         quantity: &'static str,
         error: SolveError,
     },
-    #[error("step {step}: points {i} and {j} crossed: their bond turned over within one step")]
-    Crossing { step: u64, i: u64, j: u64 },
-    #[error(
-        "step {step}: total energy grew from {before:.6e} to {after:.6e} without work: {}", blame(*contact, &format!("the step {time_step:.3e} is unstable"))
-    )]
+    Crossing {
+        step: u64,
+        i: u64,
+        j: u64,
+    },
     Unstable {
         step: u64,
         before: f64,
@@ -75,6 +78,133 @@ pub enum RunError {
         contact: Option<f64>,
     },
 }
+
+impl RunError {
+    /// What happened, with numbers that know what they measure.
+    pub fn message(&self) -> Message {
+        let length = |x: f64| Dimension::LENGTH.of(x);
+        let point = |step: &u64, id: &u64, x: &[f64; 3]| {
+            message![format!("step {step}: point {id} at "), place(x)]
+        };
+        let somewhere =
+            |x: &Option<[f64; 3]>| x.map_or(Message::default(), |x| message![" at ", place(&x)]);
+        match self {
+            RunError::NotFinite { step, id, position } => {
+                message![point(step, id, position), " is not finite"]
+            }
+            RunError::TooFast {
+                step,
+                id,
+                position,
+                path,
+                spacing,
+                contact,
+            } => message![
+                point(step, id, position),
+                " would move ",
+                length(*path),
+                " in one step, more than the spacing ",
+                length(*spacing),
+                ": ",
+                blame(*contact, "the run is unstable or the step too long".into()),
+            ],
+            RunError::Density {
+                step,
+                id,
+                position,
+                density,
+            } => message![
+                format!("step {step}: the electron density at atom {id} at "),
+                place(position),
+                format!(
+                    " is {density:.4}: the embedding energy has no meaning there (its logarithm needs a positive density); atoms are too close or too far from each other for this potential, or its length scales do not fit the lattice"
+                ),
+            ],
+            RunError::Equilibrium {
+                step,
+                position,
+                error,
+            } => {
+                message![format!("increment {step}: {error}"), somewhere(position)]
+            }
+            RunError::Implicit {
+                step,
+                position,
+                error,
+            } => message![
+                format!(
+                    "step {step}: the equations of the implicit step have no solution: {error}"
+                ),
+                somewhere(position),
+                shorter(error),
+            ],
+            RunError::Jump {
+                step,
+                position,
+                axis,
+                asked,
+                found,
+            } => message![
+                format!("after {step} increments of statics: motion asks for a displacement of "),
+                length(*asked),
+                format!(" along {axis} at "),
+                place(position),
+                ", where statics left it at ",
+                length(*found),
+                ": prescribe a velocity of 0 to hold a point where it is",
+            ],
+            RunError::Touching { step, pairs } => format!(
+                "after {step} increments of statics, which knew no contact, {pairs} pairs of points touch: write method = \"relaxation\" under [statics], or contact = false"
+            )
+            .into(),
+            RunError::Toughness {
+                step,
+                position,
+                value,
+            } => message![
+                format!("step {step}: the factor of the toughness is {value} at "),
+                place(position),
+                ", expected a positive number",
+            ],
+            RunError::Transfer {
+                step,
+                quantity,
+                error,
+            } => {
+                format!("step {step}: the equations of {quantity} have no solution: {error}").into()
+            }
+            RunError::Crossing { step, i, j } => format!(
+                "step {step}: points {i} and {j} crossed: their bond turned over within one step"
+            )
+            .into(),
+            RunError::Unstable {
+                step,
+                before,
+                after,
+                time_step,
+                contact,
+            } => message![
+                format!("step {step}: total energy grew from "),
+                Dimension::ENERGY.of(*before),
+                " to ",
+                Dimension::ENERGY.of(*after),
+                " without work: ",
+                blame(
+                    *contact,
+                    message!["the step ", Dimension::TIME.of(*time_step), " is unstable"]
+                ),
+            ],
+        }
+    }
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.message().fmt(f)
+    }
+}
+
+impl std::error::Error for RunError {}
 
 /// Does a shorter implicit step help?
 fn shorter(error: &SolveError) -> &'static str {
@@ -91,23 +221,28 @@ fn shorter(error: &SolveError) -> &'static str {
         | SolveError::StillBreaking { .. }
         | SolveError::Contact
         | SolveError::NoTangent { .. }
+        | SolveError::NothingBreaks
         | SolveError::NotFinite
         | SolveError::Stopped => "",
     }
 }
 
 /// What a run dies of: `otherwise`, or contact, whose limit of the step is known.
-fn blame(contact: Option<f64>, otherwise: &str) -> String {
-    match contact {
-        None => otherwise.to_string(),
-        Some(limit) => {
-            let limit = match limit.is_finite() {
-                true => format!(" (contact is stable below about {limit:.3e})"),
-                false => String::new(),
-            };
-            format!(
-                "contact is the cause, points repel with more energy than their bonds hold: take a shorter step{limit}, a lower contact stiffness, or slower points"
-            )
-        }
-    }
+fn blame(contact: Option<f64>, otherwise: Message) -> Message {
+    let Some(limit) = contact else {
+        return otherwise;
+    };
+    let limit = match limit.is_finite() {
+        true => message![
+            " (contact is stable below about ",
+            Dimension::TIME.of(limit),
+            ")"
+        ],
+        false => Message::default(),
+    };
+    message![
+        "contact is the cause, points repel with more energy than their bonds hold: take a shorter step",
+        limit,
+        ", a lower contact stiffness, or slower points",
+    ]
 }

@@ -50,6 +50,8 @@ pub enum SolveError {
     Contact,
     #[error("{what} has no tangent here: the explicit integrator knows it")]
     NoTangent { what: &'static str },
+    #[error("under this load no bond comes near to its critical stretch: nothing is left to break")]
+    NothingBreaks,
     #[error("a force or displacement is not a number")]
     NotFinite,
     #[error("it was asked to end before it was found")]

@@ -2,6 +2,7 @@
 //! one that succeeds on paper ends it later.
 
 use crate::error::{BuildError, size};
+use crate::quantity::Message;
 use std::fs::read_to_string;
 
 /// Bytes that this process may still take: of the machine, of its control group, of its address space. `None` where the
@@ -15,7 +16,12 @@ pub fn available() -> Option<f64> {
 ///
 /// # Errors
 /// It does not fit into what is left.
-pub fn afford(path: &str, what: &str, bytes: f64, help: &str) -> Result<(), BuildError> {
+pub fn afford(
+    path: &str,
+    what: &str,
+    bytes: f64,
+    help: impl Into<Message>,
+) -> Result<(), BuildError> {
     match available() {
         Some(left) if bytes > left => Err(BuildError::too_large(
             path,

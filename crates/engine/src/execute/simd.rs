@@ -4,8 +4,10 @@ use super::lane::{Eight, Lane};
 #[cfg(target_arch = "x86_64")]
 use super::lane::{F64x4, F64x8, Pair};
 
-/// For work on the engine: built with PERIDYNE_AVX2_ALONE=1 it has one path, and compiles in a third of the time.
-const ALL: bool = option_env!("PERIDYNE_AVX2_ALONE").is_none();
+/// For work on the engine: built with PERIDYNE_AVX2_ALONE=1 it has one path, and compiles in a third of the time. So are its unit tests:
+/// that widths do not show is for the tests of the library as it is.
+const ALL: bool =
+    option_env!("PERIDYNE_AVX2_ALONE").is_none() && cfg!(not(all(test, target_arch = "x86_64")));
 
 /// Instruction sets with a path of their own. All give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,8 +70,26 @@ impl Simd {
             #[cfg(target_arch = "x86_64")]
             Simd::Avx512 if ALL && has_avx512() => unsafe { wide::run(kernel, b) },
             _ if ALL => portable::run(kernel, b),
-            _ => panic!("built with PERIDYNE_AVX2_ALONE, for machines that have AVX2"),
+            _ => panic!("built for machines that have AVX2 (unit tests, PERIDYNE_AVX2_ALONE)"),
         }
+    }
+
+    /// Block 0 with every instruction set that this machine has.
+    #[cfg(test)]
+    pub(crate) fn each<K: Kernel>(kernel: &K) -> Vec<K::Out> {
+        #[allow(unused_mut)]
+        let mut all = vec![portable::run(kernel, 0)];
+        #[cfg(target_arch = "x86_64")]
+        {
+            // SAFETY, both: just detected
+            if has_avx2() {
+                all.push(unsafe { pairs::run(kernel, 0) });
+            }
+            if has_avx512() {
+                all.push(unsafe { wide::run(kernel, 0) });
+            }
+        }
+        all
     }
 }
 

@@ -38,7 +38,11 @@ pub trait Measure {
     fn number(&self, value: f64) -> Self::Kind;
     /// `pi`, `e`.
     fn pure(&self) -> Self::Kind;
-    /// `x`, `y`, `z`.
+    /// Names of the variables. Where these are others than x, y, z there is no `t` either.
+    fn variables(&self) -> &'static [&'static str] {
+        PLACE
+    }
+    /// `x`, `y`, `z`, or whatever the variables are.
     fn coordinate(&self) -> Self::Kind;
     /// `t`.
     fn time(&self) -> Self::Kind;
@@ -67,12 +71,18 @@ pub trait Measure {
     ) -> Result<Self::Kind, Misfit>;
 }
 
+/// The variables of a place.
+pub(super) const PLACE: &[&str] = &["x", "y", "z"];
+
 /// Plain numbers everywhere.
-pub(super) struct Plain;
+pub(super) struct Plain(pub &'static [&'static str]);
 
 impl Measure for Plain {
     type Kind = ();
 
+    fn variables(&self) -> &'static [&'static str] {
+        self.0
+    }
     fn number(&self, _: f64) {}
     fn pure(&self) {}
     fn coordinate(&self) {}

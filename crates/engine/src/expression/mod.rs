@@ -23,7 +23,7 @@ mod random;
 mod tests;
 
 pub use measure::{Measure, Misfit, Rule};
-use op::{Binary, Op};
+pub(crate) use op::{Binary, Op, Unary};
 pub(crate) use parse::nearest;
 use std::fmt;
 use std::ops::Range;
@@ -60,7 +60,22 @@ impl Expression {
     ///
     /// `x`, `y`, `z`, `t` and function names are never looked up among the constants.
     pub fn parse(source: &str, constants: &[(&str, f64)]) -> Result<Self, ExpressionError> {
-        Ok(Self::measured(source, constants, &measure::Plain)?.0)
+        Ok(Self::measured(source, constants, &measure::Plain(measure::PLACE))?.0)
+    }
+
+    /// The same of other variables, at most three, in place of x, y, z and t.
+    ///
+    /// ```
+    /// use peridyne::expression::Expression;
+    /// let w = Expression::of(&["I1", "J"], "mu/2*(I1 - 3) - mu*ln(J)", &[("mu", 2.0)]).unwrap();
+    /// assert_eq!(w.eval(&[5.0, 1.0, 0.0], 0.0), 2.0);
+    /// ```
+    pub fn of(
+        variables: &'static [&'static str],
+        source: &str,
+        constants: &[(&str, f64)],
+    ) -> Result<Self, ExpressionError> {
+        Ok(Self::measured(source, constants, &measure::Plain(variables))?.0)
     }
 
     /// The same where parts measure something, and what the whole measures.
@@ -116,6 +131,11 @@ impl Expression {
         self.program
             .iter()
             .any(|op| matches!(op, Op::Coordinate(_)))
+    }
+
+    /// Its operations, in the order in which they are done.
+    pub(crate) fn program(&self) -> &[Op] {
+        &self.program
     }
 
     /// The text it was compiled from.

@@ -3,9 +3,9 @@
 use super::{Rule, STACK, random};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Op {
+pub(crate) enum Op {
     Push(f64),
-    /// x, y or z
+    /// x, y or z, or another variable of the expression
     Coordinate(usize),
     Time,
     One(Unary),
@@ -14,7 +14,7 @@ pub(super) enum Op {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Unary {
+pub(crate) enum Unary {
     Negate,
     Not,
     Sin,
@@ -38,7 +38,7 @@ pub(super) enum Unary {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     Add,
     Subtract,
     Multiply,
@@ -59,7 +59,7 @@ pub(super) enum Binary {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Ternary {
+pub(crate) enum Ternary {
     Select,
     Clamp,
     Random,
@@ -145,7 +145,7 @@ impl Unary {
         }
     }
 
-    pub(super) fn apply(self, a: f64) -> f64 {
+    pub(crate) fn apply(self, a: f64) -> f64 {
         match self {
             Unary::Negate => -a,
             Unary::Not => truth(a == 0.0),
@@ -193,7 +193,7 @@ impl Binary {
         }
     }
 
-    pub(super) fn apply(self, a: f64, b: f64) -> f64 {
+    pub(crate) fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             Binary::Add => a + b,
             Binary::Subtract => a - b,

@@ -1,5 +1,6 @@
 //! Text to program: a precedence-climbing parser that emits operations as it goes.
 
+use super::measure::PLACE;
 use super::op::{Binary, FUNCTIONS, Function, Op, Ternary, Unary};
 use super::{ExpressionError, Measure, Misfit, STACK};
 use std::ops::Range;
@@ -345,10 +346,12 @@ impl<'a, M: Measure> Parser<'a, M> {
         if let Some(&(_, function)) = FUNCTIONS.iter().find(|(f, _)| *f == name) {
             return self.call(name, function, span);
         }
-        if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) {
+        let variables = self.measure.variables();
+        if let Some(axis) = variables.iter().position(|v| *v == name) {
             return self.leaf(Op::Coordinate(axis), self.measure.coordinate());
         }
-        if name == "t" {
+        let timed = variables == PLACE;
+        if timed && name == "t" {
             return self.leaf(Op::Time, self.measure.time());
         }
         if let Some(index) = self.constants.iter().position(|(c, _)| *c == name) {
@@ -365,20 +368,25 @@ impl<'a, M: Measure> Parser<'a, M> {
         }
         let mut error = self.error(span, format!("unknown name \"{name}\""));
         let constants: Vec<&str> = self.constants.iter().map(|(c, _)| *c).collect();
+        let mut own = variables.to_vec();
+        if timed {
+            own.push("t");
+        }
+        // a single letter is near everything
+        let long = variables.iter().copied().filter(|v| v.len() > 1);
         let known = FUNCTIONS
             .iter()
             .map(|(f, _)| *f)
+            .chain(long)
             .chain(constants.iter().copied())
             .chain(["pi"]);
         error.help = Some(match nearest(name, known) {
             Some(known) => format!("did you mean \"{known}\"?"),
-            None if constants.is_empty() => {
-                "known names: x, y, z, t, pi, e and the functions".into()
+            None => {
+                own.extend(["pi", "e"]);
+                own.extend(constants);
+                format!("known names: {} and the functions", own.join(", "))
             }
-            None => format!(
-                "known names: x, y, z, t, pi, e, {} and the functions",
-                constants.join(", ")
-            ),
         });
         Err(error)
     }

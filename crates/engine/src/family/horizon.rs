@@ -9,6 +9,8 @@ use crate::body::{Body, Identity, Layout};
 use crate::error::BuildError;
 use crate::execute::lane::TILE;
 use crate::execute::memory;
+use crate::message;
+use crate::quantity::{Dimension, place, rounded};
 use crate::space::AXES;
 use rayon::prelude::*;
 
@@ -66,11 +68,13 @@ impl HorizonList {
             if let Some(p) = period.filter(|p| *p <= 2.0 * horizon) {
                 return Err(BuildError::conflict(
                     "periodic",
-                    format!(
-                        "the period along {} is {p:e}, not more than two horizons of {horizon:e}: a point would meet \
-                         two images of the same partner",
-                        AXES[a]
-                    ),
+                    message![
+                        format!("the period along {} is ", AXES[a]),
+                        Dimension::LENGTH.of(p),
+                        ", not more than two horizons of ",
+                        Dimension::LENGTH.of(horizon),
+                        ": a point would meet two images of the same partner",
+                    ],
                 )
                 .help("make the body longer along this axis, or the horizon shorter"));
             }
@@ -107,15 +111,18 @@ impl HorizonList {
         memory::afford(
             "horizon",
             &format!(
-                "{:.2e} bonds",
-                size.iter().map(|s| f64::from(*s)).sum::<f64>()
+                "{} bonds",
+                rounded(size.iter().map(|s| f64::from(*s)).sum::<f64>(), 3)
             ),
             lines as f64 * (4 * TILE + 1) as f64,
-            &format!(
-                "the horizon {horizon:e} is {:.1} spacings: check its unit and its decimal point; three to six spacings are \
-                 usual",
-                horizon / body.spacing
-            ),
+            message![
+                "the horizon ",
+                Dimension::LENGTH.of(horizon),
+                format!(
+                    " is {:.1} spacings: check its unit and its decimal point; three to six spacings are usual",
+                    horizon / body.spacing
+                ),
+            ],
         )?;
         let mut list = HorizonList {
             body: body.identity,
@@ -255,10 +262,7 @@ fn count<const D: usize>(
             let p = body.position(i);
             Err(BuildError::conflict(
                 "body",
-                format!(
-                    "points {a} and {b} are in one place, ({:e}, {:e}, {:e})",
-                    p[0], p[1], p[2]
-                ),
+                message![format!("points {a} and {b} are in one place, "), place(&p)],
             )
             .help("remove one of them: two points of a body must be apart"))
         }

@@ -1,6 +1,8 @@
 //! Stencils: on a lattice every point has the same bonds, given by integers.
 
 use crate::error::BuildError;
+use crate::message;
+use crate::quantity::{Dimension, rounded};
 use crate::space::ball_volume;
 use crate::space::lattice::LatticeKind;
 use crate::spec::Horizon;
@@ -134,14 +136,20 @@ pub(crate) fn too_many(bonds: f64, horizon: Horizon, spacings: f64) -> BuildErro
         Horizon::Ratio(_) => {
             "write horizon = { m_ratio = 3 }: three to six spacings are usual".into()
         }
-        Horizon::Length(d) => format!(
-            "the horizon {d:e} is {spacings:.1} spacings: check its unit and its decimal point, and those of the spacing; \
-             three to six spacings are usual"
-        ),
+        Horizon::Length(d) => message![
+            "the horizon ",
+            Dimension::LENGTH.of(d),
+            format!(
+                " is {spacings:.1} spacings: check its unit and its decimal point, and those of the spacing; three to six spacings are usual"
+            ),
+        ],
     };
     BuildError::too_many(
         "horizon",
-        format!("{bonds:.4e} bonds per point are too many: at most {MOST}"),
+        format!(
+            "{} bonds per point are too many: at most {MOST}",
+            rounded(bonds, 4)
+        ),
     )
     .help(cause)
 }

@@ -7,6 +7,8 @@
 //! exactly once, and none within it. A surface is crossed where one of its triangles is, each a polygon of its own. "On" means within 1e-9 of the bond's length: round-off decides nothing.
 
 use crate::error::BuildError;
+use crate::message;
+use crate::quantity::{Dimension, Message, place};
 use crate::space::triangles::{Tree, Triangles};
 use crate::spec::CrackShape;
 
@@ -56,7 +58,7 @@ impl<const D: usize> Crack<D> {
     /// radius of zero, a polygon with fewer than three corners, without area, or not flat (to 1e-6 of its size). A
     /// polygon that crosses itself is cracked where a ray from outside enters an odd number of times.
     pub fn new(shape: &CrackShape, period: [Option<f64>; D]) -> Result<Self, BuildError> {
-        let fail = |message: String| Err(BuildError::invalid("precracks", message));
+        let fail = |message: Message| Err(BuildError::invalid("precracks", message));
         let numbers: Vec<f64> = match shape {
             CrackShape::Segment { from, to } => [*from, *to].concat(),
             CrackShape::Disk {
@@ -69,9 +71,9 @@ impl<const D: usize> Crack<D> {
             CrackShape::Surface(triangles) => triangles.corner.concat(),
         };
         if numbers.iter().any(|x| !x.is_finite()) {
-            return fail(format!(
+            return fail(message![format!(
                 "a crack's numbers must be finite, this one has {numbers:?}"
-            ));
+            )]);
         }
         let fits = match shape {
             CrackShape::Segment { .. } => D == 2 || D == 3,
@@ -111,10 +113,11 @@ impl<const D: usize> Crack<D> {
                 let t = [to[0] - from[0], to[1] - from[1], 0.0];
                 let length = dot(&t, &t).sqrt();
                 if length == 0.0 {
-                    return fail(format!(
-                        "the crack's segment has no length: both ends are at ({}, {}) in the plane",
-                        from[0], from[1]
-                    ));
+                    return fail(message![
+                        "the crack's segment has no length: both ends are at ",
+                        place(&from[..2]),
+                        " in the plane",
+                    ]);
                 }
                 let t = t.map(|c| c / length);
                 let bound = |pick: fn(f64, f64) -> f64, open: f64| {
@@ -140,9 +143,11 @@ impl<const D: usize> Crack<D> {
                     return fail("the normal of a crack's disk is zero".into());
                 };
                 if *radius <= 0.0 {
-                    return fail(format!(
-                        "the radius of a crack's disk is {radius}, expected a positive length"
-                    ));
+                    return fail(message![
+                        "the radius of a crack's disk is ",
+                        Dimension::LENGTH.of(*radius),
+                        ", expected a positive length",
+                    ]);
                 }
                 // how far a disk reaches along an axis
                 let half = |a: usize| radius * (1.0 - n[a] * n[a]).max(0.0).sqrt();
@@ -156,10 +161,10 @@ impl<const D: usize> Crack<D> {
             }
             CrackShape::Polygon { corners } => {
                 if corners.len() < 3 {
-                    return fail(format!(
+                    return fail(message![format!(
                         "a crack's polygon has {} corners, expected three or more",
                         corners.len()
-                    ));
+                    )]);
                 }
                 let low: [f64; 3] =
                     std::array::from_fn(|a| corners.iter().map(|c| c[a]).fold(f64::MAX, f64::min));
@@ -174,10 +179,11 @@ impl<const D: usize> Crack<D> {
                 for (k, c) in corners.iter().enumerate() {
                     let off = dot(&sub(c, &corners[0]), &n);
                     if off.abs() > 1e-6 * size {
-                        return fail(format!(
-                            "a crack's polygon must be flat; corner {} is {off:.3e} off the plane of the others",
-                            k + 1
-                        ));
+                        return fail(message![
+                            format!("a crack's polygon must be flat; corner {} is ", k + 1),
+                            Dimension::LENGTH.of(off),
+                            " off the plane of the others",
+                        ]);
                     }
                 }
                 // the projection along the largest component of the normal keeps the most

@@ -3,7 +3,7 @@
 //! A pair repels as its materials do ([`Repulsion`]); its energy is `½ K (r − d)² V_i V_j`, and volumes are not scaled at
 //! the horizon. Pairs inside a family repel in the family's own sweep.
 
-use super::Repulsion;
+use super::{BondTangent, Repulsion};
 use crate::body::{Body, Field};
 use crate::family::neighbours::{LOOSE, Neighbours, periods};
 
@@ -147,6 +147,26 @@ impl<const D: usize> Contact<D> {
                 });
             }
         }
+    }
+
+    /// Tangents of all contacts, as those of bonds between points that touch: `V_j (K n⊗n + pull (1 − n⊗n))`. `u` as for
+    /// [`Contact::energy`].
+    pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        self.each_contact(u, |touch| {
+            let Some(pull) = touch.pull() else { return };
+            let Touch { i, j, y, r, .. } = touch;
+            let n = y.map(|c| c / r);
+            for (i, j, way) in [(i, j, 1.0), (j, i, -1.0)] {
+                let volume = body.volume.at(j);
+                let block = std::array::from_fn(|a| {
+                    std::array::from_fn(|b| {
+                        let along = (touch.stiffness - pull) * n[a] * n[b];
+                        volume * (along + if a == b { pull } else { 0.0 })
+                    })
+                });
+                visit(BondTangent::direct(i, j, y.map(|c| way * c), block));
+            }
+        });
     }
 
     /// Energy of all contacts (energy). `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].

@@ -10,6 +10,8 @@ pub enum PointConstants {
     None,
     /// Field 0 is a constant per material.
     PerMaterial(Vec<f64>),
+    /// Both fields per slot.
+    PerPoint(Vec<[f64; 2]>),
     /// EAM-like: per material `(n, κ, β)`.
     Solid(Vec<Solid>),
 }
@@ -20,7 +22,9 @@ impl PointConstants {
     pub(super) fn per_weight(&self, material: usize, by_weight: impl Fn() -> f64) -> [f64; 2] {
         match self {
             PointConstants::Solid(s) => [s[material].n, by_weight() / s[material].beta],
-            PointConstants::None | PointConstants::PerMaterial(_) => [0.0; 2],
+            PointConstants::None | PointConstants::PerMaterial(_) | PointConstants::PerPoint(_) => {
+                [0.0; 2]
+            }
         }
     }
 }

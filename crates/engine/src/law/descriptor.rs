@@ -3,6 +3,7 @@
 
 use crate::columns::Dimension;
 use crate::law::solid::eam_like::Solid;
+use crate::quantity::rounded;
 use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
 use std::borrow::Cow;
 
@@ -56,6 +57,8 @@ pub enum Value {
     Word(&'static [(&'static str, &'static str)]),
     /// Any word.
     Name,
+    /// An expression of these variables, that measures this.
+    Formula(&'static [&'static str], Dimension),
     /// Tables of functions: in decks the name of a file that has them, eam/alloy (setfl) or .eam (funcfl).
     Table,
 }
@@ -220,7 +223,9 @@ impl Key {
     /// What it measures, where it is made of numbers.
     pub fn dimension(&self) -> Option<Dimension> {
         match self.value {
-            Value::Number(dimension, _) | Value::List(_, dimension, _) => Some(dimension),
+            Value::Number(dimension, _)
+            | Value::List(_, dimension, _)
+            | Value::Formula(_, dimension) => Some(dimension),
             Value::Rows(_) | Value::Entries(_) | Value::Word(_) | Value::Name | Value::Table => {
                 None
             }
@@ -265,8 +270,13 @@ pub fn moduli(parameters: &Parameters) -> Result<Moduli, String> {
     let stable = made.young > 0.0 && made.poisson > -1.0 && made.poisson < 0.5;
     if !stable {
         return Err(format!(
-            "Young's modulus {:e} and Poisson's ratio {} are those of no stable solid: E > 0, −1 < ν < ½",
-            made.young, made.poisson
+            "{} Young's modulus and Poisson's ratio {} are those of no stable solid: E > 0, −1 < ν < ½",
+            if made.young > 0.0 {
+                "a positive"
+            } else {
+                "no positive"
+            },
+            rounded(made.poisson, 6)
         ));
     }
     Ok(made)
@@ -457,11 +467,16 @@ impl Value {
                 Err(format!("`{name}` is \"{word}\", expected one of {words}"))
             }
             (Value::Name, Parameter::Word(_)) => Ok(()),
+            (Value::Formula(..), Parameter::Formula(_)) => Ok(()),
             (Value::Table, Parameter::Table(table)) => table.check(),
             (Value::Number(..), _) => Err(format!("`{name}` is a number")),
             (Value::List(..), _) => Err(format!("`{name}` is a list of numbers")),
             (Value::Entries(_), _) => Err(format!("`{name}` is a list of rows")),
             (Value::Rows(_), _) => Err(format!("`{name}` is a list of rows")),
+            (Value::Formula(variables, _), _) => Err(format!(
+                "`{name}` is an expression of {}",
+                variables.join(", ")
+            )),
             (Value::Word(_) | Value::Name, _) => Err(format!("`{name}` is a word")),
             (Value::Table, _) => Err(format!("`{name}` is a table of functions")),
         }

@@ -78,6 +78,12 @@ pub trait Law: Copy + Send + Sync + 'static {
     /// The bond constant `k` from reference length and `ω ν V_j`.
     fn constant<L: Lane>(self, r0: L, inv_r0: L, weight: L) -> L;
 
+    /// `k` times what lists multiply it with for both ends, from the length of the bond: 1 but for horizons of points.
+    #[inline(always)]
+    fn between_ends<L: Lane>(self, k: L, _r0: L, _i: [L; 2], _j: [L; 2]) -> L {
+        k
+    }
+
     /// Force density on i along `ξ + η`: the coefficient of `ξ + η`, of first degree in `g = (r − r0)/r`.
     fn pull<L: Lane>(self, k: L, g: L, i: [L; 2], j: [L; 2]) -> L;
 

@@ -25,6 +25,7 @@ impl<const D: usize> Model<D> {
             contact,
             released: self.released,
             dissipated: self.past_work[0],
+            numerical: self.numerical,
             work_conditions: self.past_work[1],
             work_indenter: self.past_work[2],
             ..Ledger::default()
@@ -74,7 +75,8 @@ impl<const D: usize> Model<D> {
             + ledger.strain
             + ledger.contact
             + ledger.released
-            + ledger.dissipated;
+            + ledger.dissipated
+            + ledger.numerical;
         if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
             return Err(RunError::Unstable {
                 step: self.step,
@@ -213,7 +215,7 @@ impl<const D: usize> Model<D> {
 
 /// The part of the balance that must stay as it is from now on.
 pub(super) fn ledger_base(l: &Ledger) -> f64 {
-    l.kinetic + l.strain + l.contact + l.released + l.dissipated
+    l.kinetic + l.strain + l.contact + l.released + l.dissipated + l.numerical
         - l.work_conditions
         - l.work_indenter
 }

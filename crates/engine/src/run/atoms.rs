@@ -6,6 +6,8 @@ use super::reference::{SplitMix, current_neighbours};
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::family::stencil::Stencil;
+use crate::message;
+use crate::quantity::{Dimension, Message, rounded};
 use crate::space::AXES;
 use crate::space::lattice::LatticeKind;
 use crate::spec::{Horizon, Spec, ThermalSpec};
@@ -29,9 +31,13 @@ pub(super) fn check_box(
         {
             return Err(BuildError::conflict(
                 "potential.cutoff",
-                format!(
-                    "the cut-off {cutoff:.6e} is beyond half the period {p:.6e} along {axis}: an atom would see another twice"
-                ),
+                message![
+                    "the cut-off ",
+                    Dimension::LENGTH.of(cutoff),
+                    " is beyond half the period ",
+                    Dimension::LENGTH.of(*p),
+                    format!(" along {axis}: an atom would see another twice"),
+                ],
             )
             .help("make the box longer along this axis, or the cut-off shorter"));
         }
@@ -45,7 +51,7 @@ pub(super) fn crystal(
     potentials: &AnyPotentials,
     kind: LatticeKind,
     spacing: f64,
-) -> Result<Option<String>, BuildError> {
+) -> Result<Option<Message>, BuildError> {
     let horizon = match (current_neighbours(spec), spec.horizon) {
         (true, _) => Horizon::Length(potentials.reach),
         (false, h) => h,
@@ -65,23 +71,29 @@ pub(super) fn crystal(
     if found.density <= found.least_density {
         return Err(BuildError::ill_posed(
             "potential",
-            format!(
-                "the electron density of the perfect {} lattice of spacing {spacing:e} is {:.6e}: the embedding energy has no meaning there, its logarithm needs a positive density",
-                kind.name(),
-                found.density
-            ),
+            message![
+                format!("the electron density of the perfect {} lattice of spacing ", kind.name()),
+                Dimension::LENGTH.of(spacing),
+                format!(
+                    " is {}: the embedding energy has no meaning there, its logarithm needs a positive density",
+                    rounded(found.density, 4)
+                ),
+            ],
         )
         .help("the length scale of the density does not fit this lattice: give density_length of its own"));
     }
     // pressure against that of a strain of a thousandth
     let scale = (stiff.pressure - found.pressure).abs();
     Ok((found.pressure.abs() > 1e-3 * scale).then(|| {
-        format!(
-            "the {} lattice of spacing {spacing:e} is not in equilibrium: its pressure is {:.6e} (energy per volume), its energy per atom {:.6e}; free ends and surfaces will move, and constants of this state include the pressure",
-            kind.name(),
-            found.pressure,
-            found.energy
-        )
+        message![
+            format!("the {} lattice of spacing ", kind.name()),
+            Dimension::LENGTH.of(spacing),
+            " is not in equilibrium: its pressure is ",
+            Dimension::PRESSURE.of(found.pressure),
+            ", its energy per atom ",
+            Dimension::ENERGY.of(found.energy),
+            "; free ends and surfaces will move, and constants of this state include the pressure",
+        ]
     }))
 }
 

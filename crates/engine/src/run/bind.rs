@@ -8,6 +8,8 @@ use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::interaction::Interaction;
 use crate::interaction::several::SeveralInteraction;
+use crate::message;
+use crate::quantity::{Dimension, Warnings};
 use crate::spec::{BodySpec, Spec};
 
 /// Laws and bonds of all bodies.
@@ -18,7 +20,7 @@ pub(super) fn bind<const D: usize>(
     body: &mut Body<D>,
     shelf: &Shelf,
     simd: Simd,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<(ConstitutiveModels, Box<dyn Interaction<D>>), BuildError> {
     let BodySpec::Several(named) = &spec.body else {
         if let Some(interface) = spec.interfaces.first() {
@@ -38,7 +40,7 @@ pub(super) fn bind<const D: usize>(
     for (n, part) in parts.iter_mut().enumerate() {
         let mut own = body.pieces()[n].body.clone();
         part.choose(body, n, &mut own);
-        let mut told = vec![];
+        let mut told = Warnings::default();
         let made = part
             .constitutive(&own, shelf, simd, &mut told)
             .and_then(|model| {
@@ -46,12 +48,12 @@ pub(super) fn bind<const D: usize>(
                 Ok((model, bonds))
             });
         let (model, bond) = made.map_err(|e| BuildError {
-            message: format!("body `{}`: {}", named[n].name, e.message),
+            message: message![format!("body `{}`: ", named[n].name), e.message],
             ..e
         })?;
         warnings.extend(
             told.iter()
-                .map(|w| format!("body `{}`: {w}", named[n].name)),
+                .map(|w| message![format!("body `{}`: ", named[n].name), w]),
         );
         constitutive.push((body.pieces()[n].first, part.materials.clone(), model));
         bonds.push(bond);
@@ -63,9 +65,13 @@ pub(super) fn bind<const D: usize>(
     for made in interfaces(spec, named, body, shelf, simd)? {
         let (count, horizon) = (made.interface.near_horizon(), made.model.horizon);
         if count > 0 && !made.model.ratio {
-            warnings.push(format!(
-                "{count} directed bonds of an interface end within round-off of its horizon {horizon:e}: write it as a whole number of spacings (m_ratio), or well between two distances"
-            ));
+            warnings.push(message![
+                format!(
+                    "{count} directed bonds of an interface end within round-off of its horizon "
+                ),
+                Dimension::LENGTH.of(horizon),
+                ": write it as a whole number of spacings (m_ratio), or well between two distances",
+            ]);
         }
         joined.push(made.interface);
     }

@@ -6,6 +6,7 @@ use super::clouds::{own_densities, own_velocities};
 use super::constitutive::Shelf;
 use super::equilibrium::state::StaticState;
 use super::feasible::{consistent, enough_memory, possible};
+use super::implicit;
 use super::implicit::state::Implicit;
 use super::model::Model;
 use super::parts::{Part, parts};
@@ -14,7 +15,7 @@ use super::sets::{assign_materials, initial, sets};
 use super::time_step::{Limits, time_step};
 use super::transfers::state::Transfers;
 use super::{Info, Simulation, Steered};
-use super::{bonds, indenters, precracks, surface, transfers};
+use super::{bonds, indenters, own_horizons, precracks, surface, transfers};
 use super::{contact, gaps};
 use crate::body::zeros;
 use crate::condition::carried::Carried;
@@ -22,7 +23,9 @@ use crate::condition::still::Still;
 use crate::dynamics::verlet::Verlet;
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
-use crate::spec::{BodySpec, Horizon, Spec, Stepper, TimeStep};
+use crate::message;
+use crate::quantity::{Dimension, Warnings, rounded};
+use crate::spec::{BodySpec, Control, Horizon, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// How to build, as opposed to what.
@@ -71,7 +74,7 @@ pub fn build_in<const D: usize>(
     let spec = &resolved;
     consistent(spec)?;
     let simd = options.simd.unwrap_or_else(Simd::detect);
-    let mut warnings = vec![];
+    let mut warnings = Warnings::default();
     let (mut parts, mut body) = parts::<D>(spec)?;
     let potentials = shelf.potentials(spec)?;
     if let Some(potentials) = &potentials
@@ -85,7 +88,7 @@ pub fn build_in<const D: usize>(
         .reduce(f64::max)
         .unwrap_or(parts[0].horizon);
     // within a body all pairs nearer than this are a family
-    let least_horizon = bonded_horizons().fold(horizon, f64::min);
+    let mut least_horizon = bonded_horizons().fold(horizon, f64::min);
     for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.bonded) {
         let own = body.pieces().get(n).map_or(&body, |p| &p.body);
         let atoms = current_neighbours(spec);
@@ -98,6 +101,11 @@ pub fn build_in<const D: usize>(
     let (sets, carrier_sets) = sets(spec, &body, carriers.as_ref())?;
     assign_materials(spec, &mut body, &sets)?;
     own_densities(spec, &mut body);
+    own_horizons::give(spec, &mut body, horizon)?;
+    if !body.horizon.is_empty() {
+        let own = body.slots.iter().map(|s| body.horizon[*s as usize]);
+        least_horizon = own.fold(least_horizon, f64::min);
+    }
     let by_length = |p: &&Part| matches!(p.spec.horizon, Horizon::Length(_));
     let ends = parts.iter().filter(by_length).flat_map(|p| &p.stencil);
     let ends: u64 = ends.map(|s| s.near_horizon as u64).sum();
@@ -125,9 +133,11 @@ pub fn build_in<const D: usize>(
         } else {
             "directed bonds"
         };
-        warnings.push(format!(
-            "{near_horizon} {what} end within round-off of the horizon {horizon:e}: a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances"
-        ));
+        warnings.push(message![
+            format!("{near_horizon} {what} end within round-off of the horizon "),
+            Dimension::LENGTH.of(horizon),
+            ": a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances",
+        ]);
     }
     if spec.potential().is_none() && spec.micromoduli().is_none() {
         warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
@@ -137,14 +147,14 @@ pub fn build_in<const D: usize>(
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {
         warnings.push(
-            "friction acts between points that were never bonded: the faces of a crack slide on each other without it"
-                .into(),
+            "friction acts between points that were never bonded: the faces of a crack slide on each other without it",
         );
     }
     let asymmetry = interaction.asymmetry();
     if asymmetry > SYMMETRIC {
         warnings.push(format!(
-            "action is not reaction in this body (asymmetry {asymmetry:.1e}): it has no energy, what is printed as strain energy is that of its symmetric part, and neither energy nor momentum need balance"
+            "action is not reaction in this body (asymmetry {}): it has no energy, what is printed as strain energy is that of its symmetric part, and neither energy nor momentum need balance",
+            rounded(asymmetry, 2)
         ));
     }
     let directed_bonds = interaction.directed_bonds();
@@ -152,15 +162,16 @@ pub fn build_in<const D: usize>(
     if directed_bonds == 0 && body.points() > 1 && bonded && body.points() > body.pieces().len() {
         return Err(BuildError::empty(
             "horizon",
-            format!(
-                "no two of the {} points are within the horizon {horizon:e}",
-                body.points()
-            ),
+            message![
+                format!("no two of the {} points are within the horizon ", body.points()),
+                Dimension::LENGTH.of(horizon),
+            ],
         )
-        .help(format!(
-            "the spacing is {:e}: a horizon of three spacings is usual; points that only touch are a body with bonded = false",
-            body.spacing
-        )));
+        .help(message![
+            "the spacing is ",
+            Dimension::LENGTH.of(body.spacing),
+            ": a horizon of three spacings is usual; points that only touch are a body with bonded = false",
+        ]));
     }
     let repulsion = contact::repulsion(spec, &parts, &constitutive, &body)?;
     let range = |a: usize, b: usize| repulsion.as_ref().map_or(0.0, |r| r.range(a, b));
@@ -273,9 +284,12 @@ pub fn build_in<const D: usize>(
         broken: 0,
         released: 0.0,
         past_work: [0.0; 3],
+        numerical: 0.0,
         initial_energy: None,
         fault: None,
         statics: None,
+        preload: None,
+        loaded: None,
         implicit: None,
         stands: false,
         transfers: Transfers::default(),
@@ -301,7 +315,6 @@ pub fn build_in<const D: usize>(
     indenters::check(spec, &model.body)?;
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.toughness = model.toughness_of(spec, shelf, &sets)?;
-    model.sets = sets;
     // how long a run of a given duration is, its caller knows
     let steps = match spec.schedule.steps {
         0 => 1000,
@@ -312,15 +325,31 @@ pub fn build_in<const D: usize>(
         Stepper::Verlet | Stepper::Still => {}
         Stepper::Newmark(newmark) => {
             model.check_implicit(newmark, spec)?;
-            model.implicit = Some(Implicit::new(newmark));
+            let mut made = Implicit::new(newmark);
+            made.breaks = implicit::breaks(spec);
+            let reach = model.info.horizon / model.info.spacing;
+            if made.breaks && dt > reach * limits.bond {
+                model.info.warnings.push(format!(
+                    "bonds break at the end of a step: a crack grows by no more than a horizon in each, and a wave goes further than that in {dt:.3e}; where cracks run, steps of {:.3e} follow them",
+                    reach * limits.bond
+                ));
+            }
+            model.implicit = Some(made);
         }
         Stepper::Statics(statics) => {
             if spec.schedule.steps > 0 {
                 model.check_statics(statics)?;
+                if statics.control == Control::Breaking {
+                    model.check_sequence(statics, spec)?;
+                }
             }
             model.statics = Some(StaticState::new(statics));
         }
     }
+    if let Some(preload) = &spec.preload {
+        model.prepare_preload(preload, &sets)?;
+    }
+    model.sets = sets;
     model.probes = model.probes_of(&spec.probes)?;
     Ok(model)
 }

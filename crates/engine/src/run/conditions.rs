@@ -7,6 +7,8 @@ use crate::condition::constraint::{Constraint, Prescribed};
 use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
 use crate::expression::Expression;
+use crate::message;
+use crate::quantity::{place, rounded};
 use crate::spec::{Carriers, ConditionKind, ConditionSpec};
 use std::collections::HashMap;
 
@@ -184,12 +186,18 @@ impl<const D: usize> Model<D> {
                         let (n, m) = (number[other], number[c]);
                         let x = self.body.position(slot);
                         let axis = ["x", "y", "z"][a];
-                        let message = format!(
-                            "two conditions, on `{}` and on `{}`, ask different motions of the point at {:?} along {axis}: {first:e} and {second:e}",
-                            conditions[n].set,
-                            conditions[m].set,
-                            &x[..D]
-                        );
+                        let message = message![
+                            format!(
+                                "two conditions, on `{}` and on `{}`, ask different motions of the point at ",
+                                conditions[n].set, conditions[m].set
+                            ),
+                            place(&x[..D]),
+                            format!(
+                                " along {axis}: {} and {}",
+                                rounded(first, 4),
+                                rounded(second, 4)
+                            ),
+                        ];
                         return Err(BuildError::conflict(format!("conditions[{m}]"), message).help(
                             "make their sets disjoint, or leave this component out of one of them",
                         ));

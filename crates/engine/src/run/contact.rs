@@ -9,6 +9,8 @@ use crate::error::BuildError;
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
 use crate::interaction::{PairTable, Repulsion};
+use crate::message;
+use crate::quantity::Dimension;
 use crate::space::AXES;
 use crate::spec::{ContactStiffness, FrictionSpec, Spec};
 
@@ -74,10 +76,13 @@ pub(super) fn repulsion<const D: usize>(
             if let Some(p) = period.filter(|p| *p <= 3.0 * longest) {
                 return Err(BuildError::conflict(
                     "periodic",
-                    format!(
-                        "the period along {} is {p:e}, not more than three ranges of contact of {longest:e}: a point would meet its own image",
-                        AXES[a]
-                    ),
+                    message![
+                        format!("the period along {} is ", AXES[a]),
+                        Dimension::LENGTH.of(p),
+                        ", not more than three ranges of contact of ",
+                        Dimension::LENGTH.of(longest),
+                        ": a point would meet its own image",
+                    ],
                 ));
             }
         }

@@ -1,10 +1,13 @@
 //! Can a spec be built at all? What is looked at before anything is made.
 
+use super::preload;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::memory;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
+use crate::message;
+use crate::quantity::{Dimension, rounded};
 use crate::space::ball_volume;
 use crate::spec::{LawSpec, Spec, Stepper};
 
@@ -15,6 +18,9 @@ pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError
             "pairs",
             "pairs of materials with constants of their own have no tangents: velocity Verlet moves them, there is no statics and no implicit step",
         ));
+    }
+    if let Some(preload) = &spec.preload {
+        preload::possible(spec, preload)?;
     }
     if let Some(simd) = simd
         && !Simd::available().contains(&simd)
@@ -49,22 +55,29 @@ pub(super) fn enough_memory<const D: usize>(
     };
     let (what, path, help) = if bonds * each > slots * 24.0 * D as f64 {
         (
-            format!("{:.2e} bonds of {:.2e} points", bonds, body.points() as f64),
-            "horizon",
             format!(
-                "the horizon {horizon:e} is {spacings:.1} spacings: check its unit and its decimal point, and those of the \
-                 spacing; three to six spacings are usual"
+                "{} bonds of {} points",
+                rounded(bonds, 3),
+                rounded(body.points() as f64, 3)
             ),
+            "horizon",
+            message![
+                "the horizon ",
+                Dimension::LENGTH.of(horizon),
+                format!(
+                    " is {spacings:.1} spacings: check its unit and its decimal point, and those of the spacing; three to six spacings are usual"
+                ),
+            ],
         )
     } else {
         (
-            format!("a body of {:.2e} points", body.points() as f64),
+            format!("a body of {} points", rounded(body.points() as f64, 3)),
             "body.spacing",
             "check the units of the spacing and of the region; a larger spacing makes fewer points"
                 .into(),
         )
     };
-    memory::afford(path, &what, slots * 24.0 * D as f64 + bonds * each, &help)
+    memory::afford(path, &what, slots * 24.0 * D as f64 + bonds * each, help)
 }
 
 /// Do lists that the spec gives belong to each other?

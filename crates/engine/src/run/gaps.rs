@@ -5,6 +5,8 @@ use crate::body::Body;
 use crate::family::cells::Cells;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondState, Interaction};
+use crate::message;
+use crate::quantity::{Dimension, Message, place};
 use crate::spec::{BodySpec, PieceSpec, Spec};
 
 /// Points further apart than so many spacings are not next to each other: diagonal neighbours are up to √3 apart, the
@@ -61,11 +63,12 @@ pub(super) fn between<const D: usize>(
 }
 
 /// What is wrong with them.
-pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64) -> Vec<String> {
+pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64) -> Vec<Message> {
     let BodySpec::Several(pieces) = &spec.body else {
         return vec![];
     };
     let name = |n: usize| pieces.get(n).map_or("", |p: &PieceSpec| p.name.as_str());
+    let length = |x: f64| Dimension::LENGTH.of(x);
     let told = gaps.iter().filter_map(|gap| {
         let [a, b] = gap.bodies;
         let (own, distance) = (0.5 * (spacing(a) + spacing(b)), gap.distance);
@@ -76,21 +79,34 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
             joints.any(|i| i.bodies.iter().all(|end| ends.contains(&end.as_str())))
         };
         if distance < OVERLAP * own {
-            Some(format!(
-                "{bodies} overlap: their nearest points are {distance:.4e} apart, their spacing is {own:.4e}"
-            ))
+            Some(message![
+                bodies,
+                " overlap: their nearest points are ",
+                length(distance),
+                " apart, their spacing is ",
+                length(own),
+            ])
         } else if joined(a, b) {
             None
         } else if spec.contact.is_none() {
-            Some(format!(
-                "{bodies} are {distance:.4e} apart and there is no contact: they go through each other"
-            ))
+            Some(message![
+                bodies,
+                " are ",
+                length(distance),
+                " apart and there is no contact: they go through each other",
+            ])
         } else if distance < gap.contact {
-            Some(format!(
-                "{bodies} are {distance:.4e} apart, nearer than the distance of contact {:.4e}: such points begin to repel when they are nearer than {} of their distance now",
-                gap.contact,
-                spec.contact.as_ref().map_or(0.0, |c| c.bonded)
-            ))
+            Some(message![
+                bodies,
+                " are ",
+                length(distance),
+                " apart, nearer than the distance of contact ",
+                length(gap.contact),
+                format!(
+                    ": such points begin to repel when they are nearer than {} of their distance now",
+                    spec.contact.as_ref().map_or(0.0, |c| c.bonded)
+                ),
+            ])
         } else {
             None
         }
@@ -103,7 +119,7 @@ pub(super) fn across<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
     interaction: &dyn Interaction<D>,
-) -> Vec<String> {
+) -> Vec<Message> {
     let length = |s: usize| {
         let own = (body.volume.at(s) / spec.section).powf(1.0 / D as f64);
         body.spacing_at(s).max(own)
@@ -139,15 +155,19 @@ pub(super) fn across<const D: usize>(
         BodySpec::Several(pieces) => format!("body `{}`", pieces[body.piece_of(i)].name),
         BodySpec::Lattice { .. } | BodySpec::Sites { .. } | BodySpec::Cloud(_) => "the body".into(),
     };
-    let at = |s: usize| {
-        let x = body.position(s);
-        let numbers: Vec<String> = x[..D].iter().map(|c| format!("{c:.4e}")).collect();
-        format!("({})", numbers.join(", "))
-    };
-    vec![format!(
-        "{of} is in separate pieces that {bonds} bonds join across a gap: the shortest of them, from {} to {}, is {r:.4e} long, {:.2} spacings. If the pieces should only touch, write [[body]] for each",
+    let at = |s: usize| place(&body.position(s)[..D]);
+    vec![message![
+        format!(
+            "{of} is in separate pieces that {bonds} bonds join across a gap: the shortest of them, from "
+        ),
         at(i),
+        " to ",
         at(j),
-        r / length(i).max(length(j))
-    )]
+        ", is ",
+        Dimension::LENGTH.of(r),
+        format!(
+            " long, {:.2} spacings. If the pieces should only touch, write [[body]] for each",
+            r / length(i).max(length(j))
+        ),
+    ]]
 }

@@ -9,6 +9,8 @@ use crate::execute::simd::Simd;
 use crate::family::cells::Cells;
 use crate::interaction::interface::Interface;
 use crate::law::micromodulus::Moments;
+use crate::message;
+use crate::quantity::Dimension;
 use crate::spec::{Calibration, InterfaceSpec, MaterialSpec, PieceSpec, Spec};
 
 /// An interface with its law, and places of the two bodies.
@@ -32,7 +34,7 @@ pub(super) fn interfaces<const D: usize>(
             let path = e.path.strip_prefix("materials[0].").unwrap_or(&e.path);
             BuildError {
                 path: format!("interface[{n}].{path}"),
-                message: format!("interface `{}`: {}", written.name, e.message),
+                message: message![format!("interface `{}`: ", written.name), e.message],
                 ..e
             }
         })?;
@@ -128,10 +130,11 @@ fn join<const D: usize>(
     if slots.is_empty() {
         return Err(BuildError::empty(
             "horizon",
-            format!(
-                "no point of `{}` is within its horizon {:e} of `{}`",
-                written.bodies[0], full.horizon, written.bodies[1]
-            ),
+            message![
+                format!("no point of `{}` is within its horizon ", written.bodies[0]),
+                Dimension::LENGTH.of(full.horizon),
+                format!(" of `{}`", written.bodies[1]),
+            ],
         )
         .help("a longer horizon, or bodies that are nearer to each other"));
     }

@@ -23,8 +23,10 @@ mod interfaces;
 mod model;
 mod motion;
 mod observation;
+mod own_horizons;
 mod parts;
 mod precracks;
+mod preload;
 mod probe;
 mod probes;
 mod record;
@@ -49,6 +51,7 @@ use crate::condition::driven::Drive;
 use crate::condition::reaction::Reaction;
 use crate::error::{BuildError, RunError, SolveError};
 use crate::observe::{Column, Ledger, Observed, PointForce, ProbeColumn, Snapshot, Values};
+use crate::quantity::Warnings;
 use crate::space::Point;
 use crate::spec::{AnyLinearBody, Influence, Quantity, Stepper};
 use crate::statics::Solved;
@@ -100,7 +103,7 @@ pub struct Info {
     /// Bytes held by the model.
     pub bytes: usize,
     pub simd: &'static str,
-    pub warnings: Vec<String>,
+    pub warnings: Warnings,
 }
 
 /// The shortest distance between two bodies in the reference.
@@ -176,7 +179,10 @@ pub trait Simulation: Steered + Examined + Send {
     /// [`SolveError::Stopped`], and the state is that of the increment before.
     fn stop_when(&mut self, stop: fn() -> bool);
     fn step_number(&self) -> u64;
+    /// What t is: counted from the start of a stage.
     fn time(&self) -> f64;
+    /// Time as records show it: motion begins at 0, statics before it lies at times below.
+    fn clock(&self) -> f64;
     /// Energies now; an error if the balance shows that the run has gone unstable.
     fn ledger(&mut self) -> Result<Ledger, RunError>;
     /// Everything that points and bonds have a value of: observables, and what laws declare.
@@ -200,6 +206,8 @@ pub trait Simulation: Steered + Examined + Send {
     fn set_velocities(&mut self, v: &[Point]);
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
+    /// Centres and radii of the indenters of the specification, as they are now.
+    fn indenters(&self) -> Vec<(Point, f64)>;
     /// What came in of every quantity that spreads since the start, and what is there.
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)>;
     /// What the solver did in the last increment; `None`: steps are steps in time.

@@ -3,6 +3,7 @@
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
 use super::implicit::state::Implicit;
+use super::preload::state::Preload;
 use super::probes::state::Probe;
 use super::transfers::state::Transfers;
 use super::{Info, Simulation};
@@ -99,11 +100,17 @@ pub struct Model<const D: usize> {
     pub(super) released: f64,
     /// Work of conditions that were replaced since.
     pub(super) past_work: [f64; 3],
+    /// Taken by the implicit method (energy).
+    pub(super) numerical: f64,
     pub(super) initial_energy: Option<f64>,
     /// The last forces mean nothing.
     pub(super) fault: Option<Fault>,
     /// Steps are increments of load.
     pub(super) statics: Option<StaticState<D>>,
+    /// What waits for the motion, while steps are increments of the load before it.
+    pub(super) preload: Option<Preload<D>>,
+    /// Of the last increment before motion, where there was one.
+    pub(super) loaded: Option<Solved>,
     /// Steps are implicit.
     pub(super) implicit: Option<Implicit<D>>,
     /// No step moves points.
@@ -201,6 +208,9 @@ impl<const D: usize> Simulation for Model<D> {
     }
 
     fn step(&mut self) -> Result<(), RunError> {
+        if self.is_loaded() {
+            self.set_in_motion()?;
+        }
         if self.statics.is_some() {
             return self.increment();
         }
@@ -226,6 +236,10 @@ impl<const D: usize> Simulation for Model<D> {
             Some(part) => part.begin + f64::from(part.done) * part.length,
             None => self.origin.1 + (self.step - self.origin.0) as f64 * self.dt,
         }
+    }
+
+    fn clock(&self) -> f64 {
+        self.shown_time()
     }
 
     fn ledger(&mut self) -> Result<Ledger, RunError> {
@@ -286,12 +300,19 @@ impl<const D: usize> Simulation for Model<D> {
         named.map(|(_, ids)| ids.clone())
     }
 
+    fn indenters(&self) -> Vec<(Point, f64)> {
+        { self.indenters.iter() }
+            .map(|i| (i.rigid.center, i.radius()))
+            .collect()
+    }
+
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
         self.transfer_accounts()
     }
 
     fn solved(&self) -> Option<Solved> {
         let implicit = self.implicit.as_ref().map(|i| &i.equations);
-        self.statics.as_ref().or(implicit).map(|s| s.solved)
+        let now = self.statics.as_ref().or(implicit).map(|s| s.solved);
+        now.or(self.loaded)
     }
 }

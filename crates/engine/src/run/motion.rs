@@ -26,6 +26,16 @@ impl<const D: usize> Model<D> {
 
     /// All forces at the current displacements; `dt` is 0 at the start of a run.
     pub(super) fn forces(&mut self, bonds: bool, dt: f64) {
+        self.forces_of_steps(bonds, dt, [dt, self.dt]);
+    }
+
+    /// All forces at the end of an implicit step, in which no bond goes on pulling beyond what it is.
+    pub(super) fn evolve(&mut self) {
+        self.forces_of_steps(true, 0.0, [0.0; 2]);
+    }
+
+    /// `steps` that end and begin here, for what breaking costs.
+    fn forces_of_steps(&mut self, bonds: bool, dt: f64, steps: [f64; 2]) {
         self.refresh_images();
         let mut watched = self.watched.take();
         watched = std::mem::take(&mut self.watch).then(|| watched.unwrap_or_default());
@@ -48,7 +58,7 @@ impl<const D: usize> Model<D> {
                 &mut self.f,
                 Sweep::Evolve {
                     v: &self.v,
-                    steps: [dt, self.dt],
+                    steps,
                     release: self.release,
                 },
                 watched.as_mut(),
@@ -139,6 +149,9 @@ impl<const D: usize> Model<D> {
         }
         self.start_transfers();
         self.look_again();
+        if let Some(implicit) = &mut self.implicit {
+            implicit.acceleration.clear();
+        }
         self.forces(bonds, 0.0);
         // energy that came in from outside counts as initial
         let now = self.energy_now();

@@ -1,7 +1,7 @@
 //! What may be seen of a model: its columns by name, and the state that observables look at.
 
+use super::Examined;
 use super::model::Model;
-use super::{Examined, Simulation};
 use crate::columns::{Declaration, Life, On};
 use crate::error::BuildError;
 use crate::expression::nearest;
@@ -322,7 +322,7 @@ impl<const D: usize> Model<D> {
         let columns = self.columns_of(first.chain(others));
         Snapshot {
             step: self.step,
-            time: self.time(),
+            time: self.frame_time(),
             dimension: D,
             spacing: self.body.spacing,
             reference: self.by_id(|i| self.body.position(i)),

@@ -9,6 +9,8 @@ use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::interaction::Interaction;
 use crate::law::micromodulus::Moments;
+use crate::message;
+use crate::quantity::Warnings;
 use crate::space::ball_volume;
 use crate::spec::{
     BodySpec, Calibration, ContactStiffness, Horizon, LawSpec, MaterialSpec, PieceSpec,
@@ -73,7 +75,7 @@ pub(super) fn parts<'a, const D: usize>(
         };
         let (part, body) = part(Cow::Owned(own), piece.bonded).map_err(|e| BuildError {
             path: e.path.replacen("body", &format!("body[{n}]"), 1),
-            message: format!("body `{}`: {}", piece.name, e.message),
+            message: message![format!("body `{}`: ", piece.name), e.message],
             ..e
         })?;
         all.push(part);
@@ -162,7 +164,7 @@ impl Part<'_> {
         body: &Body<D>,
         shelf: &Shelf,
         simd: Simd,
-        warnings: &mut Vec<String>,
+        warnings: &mut Warnings,
     ) -> Result<ConstitutiveModel, BuildError> {
         let spec: &Spec = &self.spec;
         let cell = cell(spec, body);
@@ -179,7 +181,7 @@ impl Part<'_> {
             bulk = cloud_moments(spec, body, self.horizon, cell)?;
             if bulk.is_none() {
                 warnings.push(
-                    "no point of this cloud has a full family to calibrate to, all are closer to the surface than the horizon: the constants are those of the continuum".into(),
+                    "no point of this cloud has a full family to calibrate to, all are closer to the surface than the horizon: the constants are those of the continuum",
                 );
             }
         }

@@ -4,6 +4,7 @@ use crate::body::Body;
 use crate::error::BuildError;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
+use crate::quantity::Warnings;
 use crate::spec::{CrackKind, Spec};
 
 /// Cuts the bonds that pre-cracks cross, and lets the interaction weigh its families between those that were never there and those
@@ -12,7 +13,7 @@ pub(super) fn cut<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
     interaction: &mut dyn Interaction<D>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<u64, BuildError> {
     let mut cut = 0;
     for kind in [CrackKind::Absent, CrackKind::Broken] {

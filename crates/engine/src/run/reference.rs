@@ -5,6 +5,8 @@ use crate::error::BuildError;
 use crate::family::stencil::{MOST, Stencil, too_many};
 use crate::law::influence::influence;
 use crate::law::micromodulus::Moments;
+use crate::message;
+use crate::quantity::Dimension;
 use crate::space::fill::fill;
 use crate::space::lattice::{Lattice, LatticeKind};
 use crate::space::{AXES, Point};
@@ -105,10 +107,13 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
         if horizon < spacing * kind.nearest() {
             return Err(BuildError::conflict(
                 "horizon",
-                format!(
-                    "the horizon {horizon:e} is below the distance {:e} of nearest points",
-                    spacing * kind.nearest()
-                ),
+                message![
+                    "the horizon ",
+                    Dimension::LENGTH.of(horizon),
+                    " is below the distance ",
+                    Dimension::LENGTH.of(spacing * kind.nearest()),
+                    " of nearest points",
+                ],
             )
             .help("three spacings are usual: horizon = { m_ratio = 3 }"));
         }
@@ -137,10 +142,12 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
             {
                 return Err(BuildError::conflict(
                     "periodic",
-                    format!(
-                        "the period along {} is {given:e}, the lattice body repeats after {p:e}",
-                        AXES[a]
-                    ),
+                    message![
+                        format!("the period along {} is ", AXES[a]),
+                        Dimension::LENGTH.of(given),
+                        ", the lattice body repeats after ",
+                        Dimension::LENGTH.of(p),
+                    ],
                 ));
             }
         }

@@ -54,6 +54,11 @@ impl<const D: usize> Steered for Model<D> {
     }
 
     fn set_time_step(&mut self, dt: f64) {
+        if let Some(waits) = &mut self.preload {
+            waits.dt = dt;
+            self.info.time_step = dt;
+            return;
+        }
         self.finish();
         self.origin = (self.step, self.time());
         self.dt = dt;

@@ -9,6 +9,8 @@ use crate::body::Body;
 use crate::dynamics::contact_step::ContactLimit;
 use crate::error::BuildError;
 use crate::interaction::Interaction;
+use crate::message;
+use crate::quantity::{Dimension, Warnings};
 use crate::spec::{Spec, Stepper, TimeStep};
 
 /// Part of the stability limit that peridynamic bodies run at if nobody says otherwise.
@@ -60,7 +62,7 @@ pub(super) fn time_step(
     points: usize,
     limits: &Limits,
     repulsion: Option<&Rules>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<f64, BuildError> {
     let explicit = match spec.schedule.stepper {
         Stepper::Verlet | Stepper::Statics(_) => true,
@@ -124,17 +126,30 @@ pub(super) fn time_step(
         } else {
             format!("{a} and {b}")
         };
-        warnings.push(format!(
-            "the time step {dt:.4e} is above the stability limit {:.4e} of contact between {between}: the run goes unstable if many of them touch",
-            limits.contact
-        ));
+        warnings.push(message![
+            "the time step ",
+            Dimension::TIME.of(dt),
+            " is above the stability limit ",
+            Dimension::TIME.of(limits.contact),
+            format!(" of contact between {between}: the run goes unstable if many of them touch"),
+        ]);
     }
     if dt > limit && explicit {
-        let message =
-            format!("the time step {dt:.4e} is above the stability limit {limit:.4e} of this body");
+        let message = message![
+            "the time step ",
+            Dimension::TIME.of(dt),
+            " is above the stability limit ",
+            Dimension::TIME.of(limit),
+            " of this body",
+        ];
         if !spec.schedule.force_unstable {
-            return Err(BuildError::invalid("schedule.time_step", message)
-                .help(format!("write time_step = {:.3e} or \"auto\"; force_unstable = true under [run] runs it all the same", 0.8 * limits.stable())));
+            return Err(
+                BuildError::invalid("schedule.time_step", message).help(message![
+                    "write time_step = \"auto\", or ",
+                    Dimension::TIME.of(0.8 * limits.stable()),
+                    "; force_unstable = true under [run] runs it all the same",
+                ]),
+            );
         }
         warnings.push(message);
     }

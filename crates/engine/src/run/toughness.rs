@@ -5,6 +5,8 @@ use super::model::Model;
 use crate::condition::toughness::ToughnessField;
 use crate::error::{BuildError, RunError};
 use crate::interaction::history;
+use crate::message;
+use crate::quantity::place;
 use crate::spec::{LawSpec, Spec};
 
 /// What has no toughness of places.
@@ -70,18 +72,11 @@ impl<const D: usize> Model<D> {
         }
         let mut field = ToughnessField::new(base, factors);
         field.set(&self.body, 0.0).map_err(|unfit| {
-            let place = self
-                .body
-                .position(unfit.slot)
-                .iter()
-                .take(D)
-                .map(|x| format!("{x:.6e}"))
-                .collect::<Vec<_>>();
-            let message = format!(
-                "the factor is {} at ({}), expected a positive number",
-                unfit.value,
-                place.join(", ")
-            );
+            let message = message![
+                format!("the factor is {} at ", unfit.value),
+                place(&self.body.position(unfit.slot)[..D]),
+                ", expected a positive number",
+            ];
             BuildError::invalid(format!("toughness[{}]", unfit.number), message)
                 .help("no_failure = true spares a set")
         })?;

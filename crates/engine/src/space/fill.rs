@@ -6,6 +6,7 @@ use super::region::Region;
 use super::{AXES, Point};
 use crate::error::BuildError;
 use crate::execute::memory;
+use crate::quantity::rounded;
 
 /// The least that a point takes (bytes): its place, displacement, velocity and force.
 const POINT: f64 = 88.0;
@@ -69,7 +70,7 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
     if cells > f64::from(u32::MAX) {
         return Err(BuildError::too_many(
             "body.spacing",
-            format!("the region spans {cells:.3e} lattice cells"),
+            format!("the region spans {} lattice cells", rounded(cells, 3)),
         )
         .help("points are numbered up to 4.29e9: use a larger spacing or a smaller region"));
     }
@@ -96,7 +97,7 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
         let points = all * inside(SAMPLES, 2 * SAMPLES);
         memory::afford(
             "body.spacing",
-            &format!("a body of {points:.2e} points"),
+            &format!("a body of {} points", rounded(points, 3)),
             points * POINT,
             "check the units of the spacing and of the region; a larger spacing or a smaller region makes fewer points",
         )?;
@@ -112,7 +113,10 @@ pub fn fill(lattice: &Lattice, region: &Region) -> Result<Sites, BuildError> {
                     (cells as usize * basis.len() * size_of::<[i32; 3]>()) as f64,
                     memory::available(),
                 ),
-                format!("no memory for the sites of {cells:.3e} lattice cells"),
+                format!(
+                    "no memory for the sites of {} lattice cells",
+                    rounded(cells, 3)
+                ),
             )
         })?;
     for k in first[2]..=last[2] {

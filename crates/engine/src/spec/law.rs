@@ -1,6 +1,7 @@
 //! Materials: constitutive laws and their constants, fracture, and what bonds between them have.
 
 use super::{AnyLinearBody, PotentialSpec, TableSpec};
+use crate::expression::Expression;
 use std::sync::Arc;
 
 /// A material on a set of points.
@@ -166,6 +167,8 @@ pub enum Parameter {
     List(Vec<f64>),
     Rows(Vec<Vec<f64>>),
     Word(String),
+    /// An expression of the variables that the law's key names.
+    Formula(Expression),
     /// The tables of an embedded-atom model.
     Table(Arc<TableSpec>),
 }
@@ -198,9 +201,7 @@ impl Parameters {
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.get(key)? {
             Parameter::Number(x) => Some(*x),
-            Parameter::List(_) | Parameter::Rows(_) | Parameter::Word(_) | Parameter::Table(_) => {
-                None
-            }
+            _ => None,
         }
     }
 
@@ -221,39 +222,35 @@ impl Parameters {
     pub fn list(&self, key: &str) -> Option<&[f64]> {
         match self.get(key)? {
             Parameter::List(list) => Some(list),
-            Parameter::Number(_)
-            | Parameter::Rows(_)
-            | Parameter::Word(_)
-            | Parameter::Table(_) => None,
+            _ => None,
         }
     }
 
     pub fn rows(&self, key: &str) -> Option<&[Vec<f64>]> {
         match self.get(key)? {
             Parameter::Rows(rows) => Some(rows),
-            Parameter::Number(_)
-            | Parameter::List(_)
-            | Parameter::Word(_)
-            | Parameter::Table(_) => None,
+            _ => None,
         }
     }
 
     pub fn word(&self, key: &str) -> Option<&str> {
         match self.get(key)? {
             Parameter::Word(word) => Some(word),
-            Parameter::Number(_)
-            | Parameter::List(_)
-            | Parameter::Rows(_)
-            | Parameter::Table(_) => None,
+            _ => None,
+        }
+    }
+
+    pub fn formula(&self, key: &str) -> Option<&Expression> {
+        match self.get(key)? {
+            Parameter::Formula(formula) => Some(formula),
+            _ => None,
         }
     }
 
     pub fn table(&self, key: &str) -> Option<&Arc<TableSpec>> {
         match self.get(key)? {
             Parameter::Table(table) => Some(table),
-            Parameter::Number(_) | Parameter::List(_) | Parameter::Rows(_) | Parameter::Word(_) => {
-                None
-            }
+            _ => None,
         }
     }
 }

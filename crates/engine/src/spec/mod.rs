@@ -15,11 +15,13 @@ mod interface;
 mod law;
 mod linear_body;
 mod potential;
+mod preload;
 mod probe;
 mod schedule;
 mod surface;
 mod transfer;
 
+use crate::expression::Expression;
 pub use atoms::{Acting, ActingSpec, Mixing};
 pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
 pub use bonded::{BondedSpec, BondedTerm, Form};
@@ -39,8 +41,9 @@ pub use law::{
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
+pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
-pub use schedule::{Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
+pub use schedule::{Control, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};
 pub use transfer::{
@@ -80,6 +83,8 @@ pub struct Spec {
     /// When a bond past its critical stretch lets go.
     pub release: Release,
     pub horizon: Horizon,
+    /// Horizon of each point of a cloud (length), an expression of x, y, z, at most `horizon`; `None`: all have that.
+    pub own_horizon: Option<Expression>,
     /// Scale the partner's volume linearly where its cell straddles the horizon (`lammps-peri` item 3).
     pub volume_scaling: bool,
     /// Calibrate stiffness constants to the discrete bulk family, or use the continuum integrals.
@@ -107,6 +112,8 @@ pub struct Spec {
     pub transfers: Vec<TransferSpec>,
     /// Which family enumerates the bonds; `Auto` takes the stencil for lattice bodies, the list otherwise.
     pub family: FamilyChoice,
+    /// Statics that the motion of the schedule begins from.
+    pub preload: Option<PreloadSpec>,
     pub schedule: Schedule,
     /// Columns of points that the caller will ask for, by name; a name that does not exist is an error. `None`: what is usual.
     pub fields: Option<Vec<String>>,
@@ -140,6 +147,7 @@ impl Spec {
             toughness: vec![],
             release: Release::AtOnce,
             horizon: Horizon::Ratio(1),
+            own_horizon: None,
             volume_scaling: false,
             calibration: Calibration::Discrete,
             influence: Influence::Constant,
@@ -156,6 +164,7 @@ impl Spec {
             indenters: vec![],
             transfers: vec![],
             family: FamilyChoice::Auto,
+            preload: None,
             schedule: Schedule {
                 steps: 0,
                 time_step: TimeStep::Auto,

@@ -25,7 +25,7 @@ pub enum Stepper {
     /// Motion in time by velocity Verlet: explicit, stable below a limit of the step.
     #[default]
     Verlet,
-    /// Motion in time by Newmark's method: implicit, stable at any step.
+    /// Motion in time by Newmark's method, or that of Hilber, Hughes and Taylor: implicit, stable at any step.
     Newmark(Newmark),
     /// Points stand where they are in time; what spreads through bonds goes on.
     Still,
@@ -34,11 +34,14 @@ pub enum Stepper {
 }
 
 /// Newmark's method (Newmark 1959): `u₁ = u₀ + Δt v₀ + Δt² ((½ − β) a₀ + β a₁)`, `v₁ = v₀ + Δt ((1 − γ) a₀ + γ a₁)`, with
-/// `a₁` from the forces at the end of the step.
+/// `a₁` from the forces at the end of the step; with α below 0 from those before it, too (Hilber, Hughes & Taylor 1977):
+/// `ρ a₁ = (1 + α) f₁ − α f₀`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Newmark {
     pub beta: f64,
     pub gamma: f64,
+    /// 0, or from −1/3 on, with the β and γ of [`Newmark::hht`].
+    pub alpha: f64,
     /// How the linear equations of Newton's method are solved.
     pub solver: Solver,
     /// Residual force over loads, reactions, inertia `m a` and `m v/Δt`.
@@ -47,12 +50,28 @@ pub struct Newmark {
     pub most_iterations: usize,
 }
 
+impl Newmark {
+    /// The method of H. M. Hilber, T. J. R. Hughes and R. L. Taylor (1977, Improved numerical dissipation for time integration algorithms
+    /// in structural dynamics, Earthquake Eng. Struct. Dyn. 5, 283–292): `β = (1 − α)²/4`, `γ = ½ − α`. Of second order for
+    /// `−1/3 ≤ α ≤ 0`; what is fast beside the step it damps, by `(1 + α)/(1 − α)` a step in the limit (α = 0: not at all), and what is
+    /// slow nearly not.
+    pub fn hht(alpha: f64) -> Self {
+        Newmark {
+            beta: 0.25 * (1.0 - alpha).powi(2),
+            gamma: 0.5 - alpha,
+            alpha,
+            ..Newmark::default()
+        }
+    }
+}
+
 impl Default for Newmark {
     /// The trapezoidal rule, β = ¼ and γ = ½: second order, and no energy is lost.
     fn default() -> Self {
         Newmark {
             beta: 0.25,
             gamma: 0.5,
+            alpha: 0.0,
             solver: Solver::Auto,
             tolerance: 1e-10,
             most_iterations: 100_000,
@@ -64,6 +83,7 @@ impl Default for Newmark {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statics {
     pub method: Method,
+    pub control: Control,
     pub solver: Solver,
     /// Residual force over loads and reactions.
     pub tolerance: f64,
@@ -76,6 +96,7 @@ impl Default for Statics {
     fn default() -> Self {
         Statics {
             method: Method::Linear,
+            control: Control::Load,
             solver: Solver::Auto,
             tolerance: 1e-10,
             most_iterations: 100_000,
@@ -91,6 +112,16 @@ pub enum Method {
     Newton,
     /// Adaptive dynamic relaxation: contact, and what Newton's method does not find.
     Relaxation,
+}
+
+/// What says how far an increment goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// t, of which loads are functions.
+    Load,
+    /// The next bond: an increment ends where it is at its critical stretch, and the next one begins without it. t is the factor of
+    /// loads that are proportional to it, and may fall.
+    Breaking,
 }
 
 /// How linear equations are solved.

@@ -1,6 +1,7 @@
 //! The linear body of any law about any state: tangents of bonds, gathered row by row.
 
 use crate::body::{Body, Field};
+use crate::interaction::contact::Contact;
 use crate::interaction::{BondTangent, Channel, Interaction};
 use crate::spec::{LinearBody, add_alike};
 use rayon::prelude::*;
@@ -14,15 +15,29 @@ pub fn linear_body<const D: usize>(
     interaction: &mut dyn Interaction<D>,
     u: &Field<D>,
 ) -> LinearBody<D> {
+    linear_body_touching(body, interaction, None, u)
+}
+
+/// The same with points that touch, as contact found them at `u`.
+pub fn linear_body_touching<const D: usize>(
+    body: &Body<D>,
+    interaction: &mut dyn Interaction<D>,
+    contact: Option<&Contact<D>>,
+    u: &Field<D>,
+) -> LinearBody<D> {
     let mut id = vec![u32::MAX; body.len];
     for (n, &s) in body.slots.iter().enumerate() {
         id[s as usize] = n as u32;
     }
     let mut bonds = Bonds::default();
-    interaction.tangents(body, u, &mut |mut bond| {
+    let mut push = |mut bond: BondTangent<D>| {
         (bond.i, bond.j) = (id[bond.i] as usize, id[bond.j] as usize);
         bonds.push(&bond);
-    });
+    };
+    interaction.tangents(body, u, &mut push);
+    if let Some(contact) = contact {
+        contact.tangents(body, u, &mut push);
+    }
     bonds.sort();
     let n = body.points();
     let mut first = vec![0; n + 1];

@@ -20,7 +20,7 @@ pub mod support;
 mod vectors;
 
 use crate::error::SolveError;
-pub use assemble::linear_body;
+pub use assemble::{linear_body, linear_body_touching};
 pub use direct::{Direct, SYMMETRIC};
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
 pub use soundness::Soundness;

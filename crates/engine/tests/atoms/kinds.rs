@@ -3,6 +3,7 @@
 
 use crate::sample::Noise;
 use peridyne::execute::simd::Simd;
+use peridyne::expression::Expression;
 use peridyne::law::potential::Potential;
 use peridyne::law::potential::buckingham::Buckingham;
 use peridyne::law::potential::lennard_jones::LennardJones;
@@ -12,6 +13,8 @@ use peridyne::law::potential::tabulated::{Eam, Tabulated};
 use peridyne::law::terms::Near;
 use peridyne::run::{Options, Shelf, Simulation, build};
 use peridyne::space::Point;
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
 use peridyne::spec::*;
 
 const CELLS: usize = 5;
@@ -414,7 +417,9 @@ fn threads_and_widths_do_not_show() {
         vec![between(0, 0, lj(0.1, 1.0, 2.0))],
         Some(Mixing::Arithmetic),
     );
-    for spec in [metal, mixture] {
+    let anyhow = ["x*y + z > 2", "x*y + z <= 2"];
+    let crystal = fixed(metal.clone(), LatticeKind::Cubic, &anyhow);
+    for spec in [metal, mixture, crystal] {
         let trace = |threads: usize, simd: Simd| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             pool.unwrap().install(|| {
@@ -441,6 +446,72 @@ fn threads_and_widths_do_not_show() {
                 assert!(trace(threads, simd) == first, "{threads} {}", simd.name());
             }
         }
+    }
+}
+
+/// The same atoms on sites of a lattice, kind by kind as an expression says, on fixed neighbours two spacings away.
+fn fixed(mut spec: Spec, kind: LatticeKind, which: &[&str]) -> Spec {
+    let edge = 1.1 * (CELLS - 1) as f64 + 0.1;
+    let cells = Region::Block {
+        low: [-0.1; 3],
+        high: [edge + 0.55; 3],
+    };
+    spec.body = BodySpec::lattice(kind, 1.1, cells);
+    for (set, text) in spec.sets.iter_mut().zip(which) {
+        set.members = Members::Where(Expression::parse(text, &[]).unwrap());
+    }
+    spec.horizon = Horizon::Ratio(2);
+    spec.family = FamilyChoice::Stencil;
+    spec.schedule.time_step = TimeStep::Fixed(1e-3);
+    spec
+}
+
+/// While nobody changes partners, fixed neighbours are those that are near.
+#[test]
+fn fixed_neighbours_of_several_kinds() {
+    let anyhow = [
+        "sin(12.9*x + 78.2*y + 37.7*z) > 0",
+        "sin(12.9*x + 78.2*y + 37.7*z) <= 0",
+    ];
+    let metals = tables().map(|t| PotentialSpec::of(Eam::new(t))).to_vec();
+    let gases = [
+        smooth(lj(1.0, 0.9, 2.05), 2.05),
+        smooth(lj(0.4, 1.1, 1.8), 1.8),
+    ];
+    let half = PotentialSpec::of(NoPotential);
+    for (name, spec) in [
+        ("gases", mixed(&gases, vec![], Some(Mixing::Arithmetic))),
+        ("alloy", mixed(&metals, vec![], None)),
+        (
+            "nothing between",
+            mixed(&gases, vec![between(0, 1, half)], None),
+        ),
+    ] {
+        let spec = fixed(spec, LatticeKind::Cubic, &anyhow);
+        let mut near = spec.clone();
+        near.family = FamilyChoice::Neighbours;
+        near.horizon = Horizon::Length(2.1);
+        let (mut a, mut b) = (started(&spec), started(&near));
+        assert_eq!(a.info().points as usize, CELLS.pow(3));
+        let mut noise = Noise(3);
+        let u: Vec<Point> = (0..CELLS.pow(3))
+            .map(|_| std::array::from_fn(|_| 0.03 * noise.next()))
+            .collect();
+        for sim in [&mut a, &mut b] {
+            sim.set_displacements(&u);
+            sim.start(true);
+        }
+        let of = |sim: &mut dyn Simulation| {
+            let mut all = sim.vectors("force_density");
+            all.push([sim.ledger().unwrap().strain, 0.0, 0.0]);
+            all
+        };
+        let (a, b) = (of(a.as_mut()), of(b.as_mut()));
+        let most = b.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (x, y) in a.iter().flatten().zip(b.iter().flatten()) {
+            assert!((x - y).abs() < 1e-12 * most, "{name}: {x} {y}");
+        }
+        consistent(name, &spec);
     }
 }
 

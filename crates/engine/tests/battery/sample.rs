@@ -75,6 +75,13 @@ pub fn materials() -> Vec<Material> {
             .with("dilatancy", Parameter::Number(0.5 * friction));
         LawSpec::named("hypoelastic_plastic", more)
     };
+    let of_energy = |text: &str| {
+        let energy = Expression::of(&["I1", "I2", "J"], text, &[]).unwrap();
+        LawSpec::named(
+            "hyperelastic",
+            Parameters::default().with("energy", Parameter::Formula(energy)),
+        )
+    };
     let of_bonds = |law: LawSpec| match law {
         LawSpec::Named(mut law) => {
             law.parameters
@@ -191,6 +198,15 @@ pub fn materials() -> Vec<Material> {
         },
         Material {
             lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            ..two(
+                "of written energies",
+                of_energy("0.6*(I1*J^(-2/3) - 3) + 0.2*(I1*J^(-2/3) - 3)^2 + 1.2*(J - 1)^2"),
+                of_energy("0.2*(I1 - 3 - 2*ln(J)) + 0.1*(I2 - 3 - 4*ln(J)) + 0.3*ln(J)^2"),
+                Influence::Conical,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
             potential: false,
             ..two(
                 "metal and soil",
@@ -242,6 +258,12 @@ pub fn materials() -> Vec<Material> {
             "thermoelastic",
             LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 3.0)])),
             Influence::Constant,
+        ),
+        two(
+            "thermoelastic solids",
+            LawSpec::named("thermoelastic_solid", elastic(3.0, 0.2)),
+            LawSpec::named("thermoelastic_solid", elastic(1.0, 0.4)),
+            Influence::Inverse,
         ),
         two(
             "a user's, mixed",
@@ -427,6 +449,8 @@ impl Case {
             indenters: vec![],
             transfers: vec![],
             family: FamilyChoice::Auto,
+            preload: None,
+            own_horizon: None,
             schedule: Schedule {
                 steps: 0,
                 time_step: TimeStep::Fraction(0.5),

@@ -3,6 +3,7 @@
 
 mod case;
 mod cloud;
+mod dual_horizon;
 mod repeat;
 mod stencil;
 

@@ -53,7 +53,7 @@ async function body() {
   viewer.onframe.push((scene, frame) => {
     const { field } = viewer;
     id("view").setAttribute("aria-label", `${scenes[0].title}: ${count(scene.points)} points coloured by ${words(field.name)}, ${id("when").textContent}`);
-    if (scene.kind === "run") for (const plot of timed) plot.now(scene.frames[frame].value);
+    if (scene.kind === "run" && scene.axis === "time") for (const plot of timed) plot.now(scene.frames[frame].value);
   });
   await viewer.open(scenes[0]);
 }
@@ -136,7 +136,7 @@ function energy() {
   if (!e) return;
   const names = [
     ["initial", "at the start", 1], ["work_conditions", "work of loads and supports", 1], ["work_indenter", "work of indenters", 1],
-    ["kinetic", "kinetic", -1], ["strain", "strain, or potential", -1], ["contact", "contact", -1], ["released", "released by breaking bonds", -1], ["dissipated", "dissipated", -1],
+    ["kinetic", "kinetic", -1], ["strain", "strain, or potential", -1], ["contact", "contact", -1], ["released", "released by breaking bonds", -1], ["dissipated", "dissipated", -1], ["numerical", "taken by the method", -1],
   ].filter(([key]) => e[key]);
   if (!names.length) return;
   reveal("energy");
@@ -212,7 +212,7 @@ function printed(on) {
   const image = id("printed");
   if (on) {
     viewer.now();
-    image.src = viewer.canvas.toDataURL();
+    image.src = viewer.whole().toDataURL();
     image.alt = viewer.canvas.getAttribute("aria-label");
   }
   image.hidden = !on;

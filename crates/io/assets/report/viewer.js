@@ -1,6 +1,7 @@
 // The body: field, time, cut, deformation, view. One viewer shows one scene; 1-D scenes are curves over the reference position.
 
 const AXES = ["x", "y", "z"];
+const MARKS = { crack: "#30353d", support: "#2e549e", load: "#00704f" };
 const id = name => document.getElementById(name);
 
 class Viewer {
@@ -8,6 +9,7 @@ class Viewer {
     this.draw = renderer(id("view"));
     this.canvas = this.draw.canvas;
     this.onframe = [];
+    this.ratio = 1;
     this.playing = null;
     this.cut = { axis: -1, part: 50, other: false };
     this.listen();
@@ -29,12 +31,39 @@ class Viewer {
     this.stretches();
     this.home();
     id("spheresBox").hidden = this.line || !scene.balls.length;
+    await this.marked();
+    this.torn = scene.shown.find(f => f.name === "damage");
+    id("onlyBox").hidden = this.line || !this.torn;
+    if (!this.torn) id("only").value = "all";
     id("balls").value = scene.atoms ? "balls" : "cubes";
     if (this.line) {
       this.curve ??= new Plot(id("curve"), "Profile");
     }
     this.drag(this.flat ? "move" : "turn");
     await this.show();
+  }
+
+  /** Marks of the scene, each with the point that carries it, and what they are in words. */
+  async marked() {
+    const { marks } = this.scene;
+    const { cracks = [], supports = [], loads = [] } = this.line ? {} : marks ?? {};
+    const at = await this.scene.places();
+    const nearest = p => {
+      let [best, found] = [Infinity, 0];
+      for (let i = 0; i < this.scene.points; i++) {
+        let square = 0;
+        for (let a = 0; a < 3; a++) square += (at[a][i] - p[a]) ** 2;
+        if (square < best) [best, found] = [square, i];
+      }
+      return found;
+    };
+    const carried = m => ({ ...m, point: nearest(m.at) });
+    this.done = { cracks, supports: supports.map(carried), loads: loads.map(carried) };
+    const parts = [["loads", loads], ["supports", supports], ["cracks", cracks]].filter(([, all]) => all.length).map(([name]) => name);
+    id("marksBox").hidden = !parts.length;
+    id("marksName").textContent = capital(parts.join(", "));
+    const said = [...new Set([...loads, ...supports].map(m => capital(m.says)))];
+    id("marksSays").replaceChildren(...said.map(s => make("li", {}, s)));
   }
 
   /** Corners of the reference, sizes, default edge. */
@@ -143,10 +172,14 @@ class Viewer {
   async show() {
     const turn = (this.turns = (this.turns ?? 0) + 1);
     const { scene, frame, field, component } = this;
-    const [reference, moved, value] = await Promise.all([scene.places(), scene.displacement(frame), scene.values(field, component, frame)]);
+    const torn = id("only").value === "torn" && this.torn;
+    const [reference, all, value, damage] = await Promise.all([scene.places(), scene.displacement(frame), scene.values(field, component, frame), torn ? scene.values(torn, 0, frame) : null]);
     // somebody was faster
     if (turn !== this.turns) return;
-    this.shown = { reference, moved, value };
+    // what has no place is not drawn
+    const least = id("onlyAt").valueAsNumber / 100;
+    const moved = torn ? all.map(c => c.map((x, i) => (damage[i] >= least ? x : NaN))) : all;
+    this.shown = { reference, moved, all, value };
     if (this.fresh) {
       this.fresh = false;
       // a few points that fly away must not leave one colour to all others
@@ -354,8 +387,67 @@ class Viewer {
       make("line", { x1: 0, y1: 0, x2: x, y2: y }),
       Math.hypot(x, y) > 6 ? make("text", { x: 1.4 * x, y: 1.4 * y + 4, "text-anchor": "middle" }, AXES[a]) : null,
     ]).filter(n => n));
+    this.draws();
     const note = this.stretch === 1 || id("stretchBox").hidden ? "" : `displacements ×${plain(this.stretch)}`;
     id("note").textContent = note;
+  }
+
+  /** Lines of loads, supports and cracks on the canvas (pixels of the page). */
+  draws() {
+    const { view, shown } = this;
+    const [w, h, px] = [this.canvas.width / this.ratio, this.canvas.height / this.ratio, view.pixels / this.ratio];
+    const place = (at, point) => {
+      const p = at.map((x, a) => x + (point === undefined ? 0 : view.stretch * (shown.all[a][point] || 0)) - view.middle[a]);
+      return [w / 2 + dot(p, view.right) * px - (view.shift[0] * view.pixels) / this.ratio, h / 2 - dot(p, view.up) * px + (view.shift[1] * view.pixels) / this.ratio];
+    };
+    const path = (points, close = "") => `M${points.map(p => p.map(x => x.toFixed(1)).join(" ")).join("L")}${close}`;
+    const lines = [];
+    const { cracks, supports, loads } = id("marksOn").checked ? this.done : { cracks: [], supports: [], loads: [] };
+    for (const crack of cracks) lines.push([path(crack.map(c => place(c))), "crack"]);
+    for (const { at, point } of supports) {
+      const [x, y] = place(at, point);
+      lines.push([path([[x, y], [x - 6, y + 10], [x + 6, y + 10]], "Z"), "support"]);
+    }
+    for (const { at, point, toward } of loads) {
+      const [x, y] = place(at, point);
+      const d = [dot(toward, view.right), -dot(toward, view.up)];
+      const part = Math.hypot(...d);
+      // towards the eye, or away from it
+      if (part < 0.25) {
+        lines.push([`M${x - 5} ${y}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0`, "load"]);
+        continue;
+      }
+      const [ux, uy] = d.map(c => c / part);
+      const tip = [x + 30 * d[0], y + 30 * d[1]];
+      const barb = side => [tip[0] - 8 * ux + side * 4.5 * uy, tip[1] - 8 * uy - side * 4.5 * ux];
+      lines.push([path([[x, y], tip]) + path([barb(1), tip, barb(-1)]), "load"]);
+    }
+    this.lines = lines;
+    const svg = id("marks");
+    svg.setAttribute("viewBox", `0 0 ${w} ${h}`);
+    svg.replaceChildren(...lines.flatMap(([d, kind]) => [make("path", { d, class: "halo" }), make("path", { d, class: kind })]));
+  }
+
+  /** The picture with its marks. */
+  whole(paper) {
+    const { width: w, height: h } = this.canvas;
+    const out = make("canvas", { width: w, height: h });
+    const c = out.getContext("2d");
+    if (paper) {
+      c.fillStyle = paper;
+      c.fillRect(0, 0, w, h);
+    }
+    c.drawImage(this.canvas, 0, 0);
+    c.scale(this.ratio, this.ratio);
+    c.lineJoin = c.lineCap = "round";
+    for (const [d, kind] of this.lines ?? []) {
+      const shape = new Path2D(d);
+      [c.lineWidth, c.strokeStyle] = [4.5, "#fff"];
+      c.stroke(shape);
+      [c.lineWidth, c.strokeStyle] = [2, MARKS[kind]];
+      c.stroke(shape);
+    }
+    return out;
   }
 
   // ---- pointing
@@ -470,10 +562,12 @@ class Viewer {
     for (const name of ["map", "range"]) id(name).addEventListener("change", () => { this.bar(); this.line ? this.profile() : this.paint(); });
     id("frame").addEventListener("input", () => { this.stop(); this.go(id("frame").valueAsNumber); });
     id("play").addEventListener("click", () => (this.playing ? this.stop() : this.play()));
-    for (const name of ["balls", "spheres"]) id(name).addEventListener("change", () => this.paint());
+    for (const name of ["balls", "spheres", "marksOn"]) id(name).addEventListener("change", () => this.paint());
     id("stretch").addEventListener("input", () => this.paint());
     id("auto").addEventListener("click", () => { id("stretch").value = this.auto; this.frameAll(); this.paint(); });
     id("true").addEventListener("click", () => { id("stretch").value = 1; this.frameAll(); this.paint(); });
+    id("only").addEventListener("change", () => this.only());
+    id("onlyAt").addEventListener("input", () => this.only());
     id("cutAxis").addEventListener("change", () => {
       this.cut.axis = Number(id("cutAxis").value);
       id("cutBox").hidden = this.cut.axis < 0;
@@ -488,6 +582,14 @@ class Viewer {
     id("in").addEventListener("click", () => this.zoomBy(1.25));
     id("out").addEventListener("click", () => this.zoomBy(0.8));
     id("save").addEventListener("click", () => this.save());
+  }
+
+  only() {
+    id("onlyAtBox").hidden = id("only").value === "all";
+    const text = `damage of ${plain(id("onlyAt").valueAsNumber / 100)} or more`;
+    id("onlyText").textContent = text;
+    id("onlyAt").setAttribute("aria-valuetext", text);
+    this.show();
   }
 
   cutAt() {
@@ -559,12 +661,7 @@ class Viewer {
   /** The picture as a file. */
   save() {
     this.now();
-    const { width: w, height: h } = this.canvas;
-    const out = make("canvas", { width: w, height: h });
-    const c = out.getContext("2d");
-    c.fillStyle = getComputedStyle(id("stage")).backgroundColor;
-    c.fillRect(0, 0, w, h);
-    c.drawImage(this.canvas, 0, 0);
+    const out = this.whole(getComputedStyle(id("stage")).backgroundColor);
     out.toBlob(blob => {
       const link = make("a", { href: URL.createObjectURL(blob), download: `${words(this.field.name)} ${id("when").textContent}.png` });
       link.click();

@@ -182,7 +182,7 @@ impl Live {
             mass: density.iter().zip(&volume).map(|(d, v)| d * v).collect(),
             position,
             kind,
-            time: Some(sim.time()),
+            time: Some(sim.clock()),
         }
     }
 

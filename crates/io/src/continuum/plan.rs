@@ -21,6 +21,8 @@ pub struct FieldsSpec {
     pub skip: u64,
     /// Write each frame.
     pub each: bool,
+    /// Animated pictures of the slice.
+    pub film: bool,
     /// Write the pressure, too.
     pub pressure: bool,
     /// Points at which residuals are measured.
@@ -93,6 +95,7 @@ mod tests {
             every: Some(10),
             skip: 3,
             each: false,
+            film: false,
             pressure: false,
             residuals: 0,
         };

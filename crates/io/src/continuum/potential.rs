@@ -42,7 +42,12 @@ fn file_key(of: &Descriptor) -> Option<(&'static str, bool)> {
     of.keys.iter().find_map(|k| match k.value {
         Value::Table => Some((k.name, true)),
         Value::Entries(_) => Some((k.name, false)),
-        Value::Number(..) | Value::List(..) | Value::Rows(_) | Value::Word(_) | Value::Name => None,
+        Value::Number(..)
+        | Value::List(..)
+        | Value::Rows(_)
+        | Value::Word(_)
+        | Value::Formula(..)
+        | Value::Name => None,
     })
 }
 

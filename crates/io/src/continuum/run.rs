@@ -8,6 +8,7 @@ use crate::write::continuum::{Collected, Origin, examined};
 use peridyne::run::Simulation;
 use peridyne::spec::Spec;
 use peridyne_fields::{Cell, FieldsError, Frame, Method, Quantity, Targets};
+use std::ffi::OsStr;
 use std::path::Path;
 use std::time::Instant;
 
@@ -110,7 +111,8 @@ impl RunningFields {
                     plan.units,
                     asked.each,
                     asked.pressure,
-                ),
+                )
+                .with_film(asked.film),
                 asked: asked.clone(),
                 cell,
                 targets,
@@ -149,16 +151,20 @@ impl RunningFields {
         Ok(said)
     }
 
-    /// Writes what stands for all frames.
+    /// Writes what stands for all frames; gives the pictures that there are, with their names in the folder of the run.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn finish(self) -> Result<(), WriteError> {
+    pub fn finish(self) -> Result<Vec<String>, WriteError> {
         let of = self.live.source();
+        let mut pictures = vec![];
         for one in self.each {
-            one.collected.finish("the run", of, &one.method)?;
+            let made = one.collected.finish("the run", of, &one.method)?;
+            let names = made.pictures.iter().filter_map(|p| p.file_name());
+            let inside = |n: &OsStr| format!("{}/{}", one.asked.name, n.display());
+            pictures.extend(names.map(inside));
         }
-        Ok(())
+        Ok(pictures)
     }
 }
 
@@ -196,7 +202,7 @@ impl One {
         let origin = Origin {
             index: self.collected.frames(),
             step: Some(sim.step_number()),
-            time: Some(sim.time()),
+            time: Some(sim.clock()),
             cell: &self.cell,
             grid: grid.is_some(),
             force: None,

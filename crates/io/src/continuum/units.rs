@@ -97,6 +97,10 @@ impl Units {
         self.words()[2]
     }
 
+    pub fn time(self) -> &'static str {
+        self.words()[3]
+    }
+
     /// Unit of a quantity; "reduced" where numbers carry none.
     pub fn unit(self, quantity: Quantity) -> String {
         let p = quantity.powers();

@@ -6,10 +6,10 @@ use peridyne::run::Shelf;
 use peridyne::space::region::Region;
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::{
-    Acting, BodySpec, BondFactorSpec, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion,
-    LawSpec, MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane, PotentialSpec,
-    ProbeSpec, Release, RigidQuantity, Spec, Stepper, TimeStep, ToughnessFactor, TransferMethod,
-    TransferSpec,
+    Acting, BodySpec, BondFactorSpec, Control, Criterion, FamilyChoice, Fold, Horizon,
+    IndenterMotion, LawSpec, MaterialSpec, Measure, Method, Parameter, Part, PieceSpec, Plane,
+    PotentialSpec, ProbeSpec, Release, RigidQuantity, Spec, Statics, Stepper, TimeStep,
+    ToughnessFactor, TransferMethod, TransferSpec,
 };
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
@@ -106,6 +106,12 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                 p.influence.unwrap_or(spec.influence)
             )
         }));
+    }
+    if let Some(own) = &spec.own_horizon {
+        lines.push(format!(
+            "           of each point {}, at most that: dual horizon",
+            own.source()
+        ));
     }
     for i in &spec.interfaces {
         let fracture = match i.fracture.map(|f| f.criterion) {
@@ -231,16 +237,21 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         ));
     }
     if let Some(statics) = &spec.schedule.statics() {
-        let method = match statics.method {
-            Method::Linear => "linear equations about the reference",
-            Method::Newton => "Newton's method",
-            Method::Relaxation => "adaptive dynamic relaxation",
-        };
-        lines.push(format!(
-            "statics    {} increments of load, {method}, tolerance {:e}",
-            spec.schedule.steps, statics.tolerance
-        ));
+        lines.push(equilibrium(statics, spec.schedule.steps));
         return lines.join("\n");
+    }
+    if let Some(preload) = &spec.preload {
+        lines.push(format!(
+            "{}, under {} conditions",
+            equilibrium(&preload.statics, preload.increments),
+            preload.conditions.len()
+        ));
+        if !preload.cuts.is_empty() {
+            lines.push(format!(
+                "cut        {} cracks, when motion begins",
+                preload.cuts.len()
+            ));
+        }
     }
     let step = match spec.schedule.time_step {
         TimeStep::Fixed(step) => units.write(step, Dim::TIME),
@@ -260,6 +271,10 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     let how = match spec.schedule.stepper {
         Stepper::Verlet | Stepper::Statics(_) => String::new(),
         Stepper::Still => ", no point moves".into(),
+        Stepper::Newmark(n) if n.alpha != 0.0 => format!(
+            ", implicit by the method of Hilber, Hughes and Taylor with alpha = {}, tolerance {:e}",
+            n.alpha, n.tolerance
+        ),
         Stepper::Newmark(n) => format!(
             ", implicit by Newmark's method with beta = {}, gamma = {}, tolerance {:e}",
             n.beta, n.gamma, n.tolerance
@@ -267,6 +282,23 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
     };
     lines.push(format!("run        {steps} of {step}{how}"));
     lines.join("\n")
+}
+
+/// Increments of load and how each finds its equilibrium.
+fn equilibrium(statics: &Statics, increments: u64) -> String {
+    let method = match statics.method {
+        Method::Linear => "linear equations about the reference",
+        Method::Newton => "Newton's method",
+        Method::Relaxation => "adaptive dynamic relaxation",
+    };
+    let what = match statics.control {
+        Control::Load => "increments of load",
+        Control::Breaking => "equilibria, each where the next bond breaks",
+    };
+    format!(
+        "statics    {increments} {what}, {method}, tolerance {:e}",
+        statics.tolerance
+    )
 }
 
 /// What spreads, and how.
@@ -508,6 +540,7 @@ fn constants(law: &LawSpec, units: UnitSystem) -> String {
             (_, Parameter::Number(x)) => super::units::short(*x),
             (_, Parameter::List(list)) => format!("{list:?}"),
             (_, Parameter::Rows(rows)) => format!("{rows:?}"),
+            (_, Parameter::Formula(formula)) => formula.source().into(),
             (_, Parameter::Table(_)) => "tables".into(),
         };
         said += &format!(", {} = {value}", key.replace('_', " "));

@@ -87,6 +87,10 @@ pub struct Document {
     /// Not needed by atoms that talk to their current neighbours.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
+    /// Horizon of each point, an expression of x, y, z, at most `horizon` (dual horizon): pmb on clouds, with family = "list" of lattices, too;
+    /// with calibration = "continuum".
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub own_horizon: Option<Number>,
     /// constant for pmb and inverse for lps when left out.
     pub influence: Option<InfluenceName>,
     /// Scale the partner's volume where its cell straddles the horizon; true when left out.
@@ -135,9 +139,9 @@ pub struct Document {
     /// Continuum fields of the running model: density, momentum, stress, heat flux.
     #[serde(default)]
     pub fields: Vec<At<Fields>>,
-    /// Motion in time; instead of statics.
+    /// Motion in time; instead of statics, or from the last equilibrium of [statics] on.
     pub run: Option<At<Run>>,
-    /// Equilibrium under conditions that grow with t; instead of run.
+    /// Equilibrium under conditions that grow with t; instead of run, or before it.
     pub statics: Option<At<Statics>>,
     /// Files of the results.
     #[serde(default)]

@@ -32,7 +32,7 @@ pub use units::{Constants, Dim, UnitSystem, example, named, rounded, usual};
 use crate::continuum::plan::FieldsSpec;
 use crate::write::trajectory::Format;
 use document::Document;
-use lower::Files;
+use lower::{Entries, Files};
 use peridyne::error::BuildError;
 use peridyne::spec::Spec;
 use serde::Deserialize;
@@ -63,8 +63,8 @@ pub struct Deck {
     pub warnings: Vec<String>,
     /// What was passed over in files.
     pub notes: Vec<String>,
-    /// Entry of the deck that each condition of the spec comes from.
-    condition_entries: Vec<usize>,
+    /// Entries of the deck that those of the spec come from.
+    entries: Entries,
     source: Source,
 }
 
@@ -108,6 +108,8 @@ pub struct PictureSpec {
     pub scale: Option<f64>,
     /// Plain numbers of the deck.
     pub range: Option<[f64; 2]>,
+    /// A vector field.
+    pub arrows: Option<String>,
     pub film: bool,
 }
 
@@ -166,7 +168,7 @@ impl Deck {
             modes: lowered.modes,
             warnings: lowered.warnings,
             notes: lowered.notes,
-            condition_entries: lowered.condition_entries,
+            entries: lowered.entries,
             source,
         })
     }
@@ -214,22 +216,24 @@ impl Deck {
         lower::boltzmann(self.units)
     }
 
-    /// Steps of the run once the time step is known.
+    /// Steps of the run once the time step is known; increments of statics before motion are among them.
     pub fn steps(&self, time_step: f64) -> u64 {
-        self.duration.map_or(self.spec.schedule.steps, |duration| {
+        let steps = self.duration.map_or(self.spec.schedule.steps, |duration| {
             lower::steps(duration, time_step)
-        })
+        });
+        self.increments() + steps
+    }
+
+    /// Increments of statics before motion.
+    pub fn increments(&self) -> u64 {
+        self.spec.preload.as_ref().map_or(0, |p| p.increments)
     }
 
     /// Where an entry of the spec (`"materials[0].density"`, `"body.region"`) stands in the deck, in bytes; the
     /// nearest table around it if it was left out.
     pub fn locate(&self, path: &str) -> Option<Range<usize>> {
         // an entry that does several things is several conditions of the spec
-        let entry = path.strip_prefix("conditions[").and_then(|rest| {
-            let (number, rest) = rest.split_once(']')?;
-            let entry = self.condition_entries.get(number.parse::<usize>().ok()?)?;
-            Some(format!("conditions[{entry}]{rest}"))
-        });
+        let entry = self.entries.path(path);
         locate::locate(&self.source, entry.as_deref().unwrap_or(path))
     }
 
@@ -248,8 +252,8 @@ impl Deck {
     pub fn explain(&self, error: &BuildError) -> DeckError {
         self.source.error(
             self.locate(&error.path),
-            error.message.clone(),
-            error.help.clone(),
+            self.units.tell(&error.message),
+            error.help.as_ref().map(|h| self.units.tell(h)),
         )
     }
 

@@ -80,6 +80,7 @@ impl AtomsPlan {
             kind,
             velocity: Some(sim.velocities()),
             force: Some(force.collect()),
+            columns: vec![],
             energy: Some(
                 sim.scalars("energy_density")
                     .iter()
@@ -93,7 +94,7 @@ impl AtomsPlan {
             periodic: self.periodic.map(|p| p.is_some()),
             edges: None,
             step: Some(sim.step_number()),
-            time: Some(sim.time()),
+            time: Some(sim.clock()),
             from_momenta: false,
         }
     }

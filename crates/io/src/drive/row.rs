@@ -2,6 +2,7 @@
 
 use peridyne::observe::Ledger;
 use peridyne::run::Simulation;
+use peridyne::spec::Stepper;
 
 use super::Plan;
 use crate::deck::UnitSystem;
@@ -9,10 +10,18 @@ use crate::write::history::{
     Column, ledger_columns, ledger_values, transfer_columns, transfer_values,
 };
 
+/// Does the method take energy of its own?
+fn is_implicit(sim: &dyn Simulation) -> bool {
+    matches!(sim.info().stepper, Stepper::Newmark(_))
+}
+
 /// Columns of a row, the first is time.
 pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
     let mut columns = vec![Column::new("time", &plan.time_unit)];
     columns.extend(ledger_columns(&plan.energy_unit));
+    if is_implicit(sim) {
+        columns.push(Column::new("numerical dissipation", &plan.energy_unit));
+    }
     columns.push(Column::new("broken_directed_bonds", ""));
     if sim.solved().is_some() {
         columns.push(Column::new("iterations", ""));
@@ -38,8 +47,11 @@ pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
 
 /// Their values now.
 pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec<f64> {
-    let mut row = vec![sim.time()];
+    let mut row = vec![sim.clock()];
     row.extend(ledger_values(ledger));
+    if is_implicit(sim) {
+        row.push(ledger.numerical);
+    }
     row.push(sim.broken() as f64);
     if let Some(solved) = sim.solved() {
         row.extend([solved.iterations as f64, solved.residual]);

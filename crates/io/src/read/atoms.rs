@@ -25,6 +25,8 @@ pub struct Atoms {
     pub from_momenta: bool,
     /// Potential energy of each atom.
     pub energy: Option<Vec<f64>>,
+    /// Other numbers of a dump, by the names of their columns.
+    pub columns: Vec<(String, Vec<f64>)>,
     /// Corners of the box.
     pub low: [f64; 3],
     pub high: [f64; 3],

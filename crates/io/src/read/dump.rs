@@ -279,6 +279,11 @@ fn triple(columns: &[String], names: [&str; 3]) -> Option<[usize; 3]> {
     Some([find(names[0])?, find(names[1])?, find(names[2])?])
 }
 
+/// Columns that say where an atom is, a second time.
+const OWN: [&str; 15] = [
+    "x", "y", "z", "xu", "yu", "zu", "xs", "ys", "zs", "xsu", "ysu", "zsu", "ix", "iy", "iz",
+];
+
 pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<Atoms, ReadError> {
     let columns = &head.columns;
     let find = |name: &str| columns.iter().position(|c| c == name);
@@ -301,6 +306,17 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
     let force = triple(columns, ["fx", "fy", "fz"]);
     let energy = find("c_pe");
     let mass = find("mass");
+    let known = |c: usize| {
+        let vectors = [plain, scaled, velocity, force].into_iter().flatten();
+        vectors.flatten().any(|k| k == c)
+            || [Some(id), Some(kind), number, energy, mass].contains(&Some(c))
+            || OWN.contains(&&*columns[c])
+    };
+    let more: Vec<usize> = (0..columns.len()).filter(|c| !known(*c)).collect();
+    let mut others: Vec<(String, Vec<f64>)> = { more.iter() }
+        .map(|c| (columns[*c].clone(), vec![]))
+        .collect();
+    let mut ids = vec![];
     let mut names = Names::default();
     // the number of the type, of each species
     let mut numbers: Vec<u32> = vec![];
@@ -340,8 +356,13 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
         if let Some(mass) = mass {
             names.species[species as usize].mass = Some(stream.finite(words[mass], "mass")?);
         }
+        for (c, (_, values)) in more.iter().zip(&mut others) {
+            values.push(words[*c].parse().unwrap_or(f64::NAN));
+        }
+        let own = stream.count(words[id], "the id")?;
+        ids.push(own);
         rows.push((
-            stream.count(words[id], "the id")?,
+            own,
             species,
             x,
             velocity.map(vector).transpose()?,
@@ -352,6 +373,13 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
         ));
     }
     rows.sort_by_key(|r| r.0);
+    let mut places: Vec<usize> = (0..ids.len()).collect();
+    places.sort_by_key(|k| ids[*k]);
+    for (_, values) in &mut others {
+        *values = places.iter().map(|k| values[*k]).collect();
+    }
+    // words are no numbers
+    others.retain(|(_, values)| values.iter().any(|v| v.is_finite()));
     if let Some(w) = rows.windows(2).find(|w| w[0].0 == w[1].0) {
         return Err(stream.error(format!(
             "the id {} occurs twice in the frame of step {}",
@@ -383,5 +411,6 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
         step: Some(head.step),
         time: head.time,
         from_momenta: false,
+        columns: others,
     })
 }

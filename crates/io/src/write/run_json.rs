@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 
 use super::atomic::{WriteError, write_file};
+use super::picture::marks::{Mark, Marks};
+use crate::deck::UnitSystem;
 
 /// Everything `run.json` holds. Numbers are in the units of the run; a number that is not finite reads `null`.
 #[derive(Debug, Clone, Serialize)]
@@ -71,6 +73,12 @@ pub struct Setting {
     pub units: UnitNames,
     pub fields: Vec<FieldNote>,
     pub indenters: Vec<MovingBall>,
+    pub marks: MarkNotes,
+    /// Pictures of continuum fields, in the folder.
+    pub slices: Vec<String>,
+    /// Files with snapshots of atoms that a script wrote, and what their columns are here.
+    pub dumps: Vec<String>,
+    pub columns: Vec<(String, String)>,
     /// Names in the folder, of series their collection.
     pub files: Vec<String>,
 }
@@ -89,6 +97,52 @@ pub struct UnitNames {
 pub struct MovingBall {
     pub radius: f64,
     pub path: Vec<[f64; 4]>,
+}
+
+/// What is done to a body, in its reference configuration (lengths).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MarkNotes {
+    /// Corners of cracks, one after the other.
+    pub cracks: Vec<Vec<[f64; 3]>>,
+    pub supports: Vec<MarkNote>,
+    pub loads: Vec<MarkNote>,
+}
+
+/// A support or load at one place of its set.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MarkNote {
+    pub at: [f64; 3],
+    /// A vector of length 1; 0 of supports.
+    pub toward: [f64; 3],
+    pub says: String,
+}
+
+impl MarkNotes {
+    /// Of what pictures mark.
+    pub fn of(marks: &Marks, units: UnitSystem) -> MarkNotes {
+        let note = |m: &Mark| {
+            let held = m.size == 0.0;
+            MarkNote {
+                at: m.at,
+                toward: m.toward.map(|c| if held { 0.0 } else { c / m.size }),
+                says: match held {
+                    true => format!("{} is held", m.set),
+                    false => {
+                        let size = units.show(m.size, m.dimension);
+                        format!("{} of {}: {size} at most", m.what, m.set)
+                    }
+                },
+            }
+        };
+        let (supports, loads, cracks) = marks.seen();
+        MarkNotes {
+            cracks: cracks.to_vec(),
+            supports: supports.iter().map(note).collect(),
+            loads: loads.iter().map(note).collect(),
+        }
+    }
 }
 
 /// Unit of a field, and what it is.
@@ -131,6 +185,9 @@ pub struct EnergyReport {
     pub contact: f64,
     pub released: f64,
     pub dissipated: f64,
+    /// Taken by an implicit method.
+    #[serde(default)]
+    pub numerical: f64,
     pub work_conditions: f64,
     pub work_indenter: f64,
     pub initial: f64,
@@ -145,6 +202,7 @@ impl From<&Ledger> for EnergyReport {
             contact: l.contact,
             released: l.released,
             dissipated: l.dissipated,
+            numerical: l.numerical,
             work_conditions: l.work_conditions,
             work_indenter: l.work_indenter,
             initial: l.initial,

@@ -114,7 +114,8 @@ impl Series {
             if let Some(film) = film {
                 let failed = WriteError::at("make a film in", &self.dir);
                 let component = picture.component.as_deref();
-                film.push(s, picture.field(About::Motion), component)
+                let shown = (picture.field(About::Motion), component);
+                film.push(s, shown, picture.arrows.as_deref())
                     .map_err(failed)?;
             }
         }

@@ -1,7 +1,7 @@
 //! Snapshots of dumps, written when they are due.
 
-use super::{Dump, DumpSource, DumpStyle};
-use crate::compute::Source;
+use super::{Dump, DumpColumn, DumpSource, DumpStyle};
+use crate::compute::{ComputeKind, Source};
 use crate::error::{Problem, Result};
 use crate::files::Sink;
 use crate::host::{BLOCK, Quantity};
@@ -76,6 +76,8 @@ impl Session<'_> {
             }
             let rows = self.rows(dump, &trees)?;
             self.snapshot_text(dump, &trees, rows.as_deref(), &mut writer)?;
+            self.watch.record.snapshot(writer.path());
+            self.note_fields(&dump.columns);
         }
         writer.flush()?;
         dump.last_written = Some(step);
@@ -83,6 +85,25 @@ impl Session<'_> {
             dump.writer = Some(writer);
         }
         Ok(())
+    }
+
+    /// Which columns are fields of the model.
+    fn note_fields(&mut self, columns: &[DumpColumn]) {
+        for column in columns {
+            let DumpSource::Values(Source::Compute(id, None)) = &column.source else {
+                continue;
+            };
+            let compute = self.watch.computes.iter().find(|c| c.id == *id);
+            let field = match compute.map(|c| &c.kind) {
+                Some(ComputeKind::Atoms(fields)) => match fields[..] {
+                    [Field::Raw(Quantity::Damage)] => "damage",
+                    [Field::Raw(Quantity::Dilatation)] => "dilatation",
+                    _ => continue,
+                },
+                _ => continue,
+            };
+            self.watch.record.field(&column.heading, field);
+        }
     }
 
     /// The atoms of a snapshot in their order; `None`: all members in order of id.

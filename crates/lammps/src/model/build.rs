@@ -6,6 +6,7 @@ use peridyne::error::BuildError;
 use peridyne::execute::simd::Simd;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::spec::Spec;
+use peridyne_io::deck::{UnitSystem, describe, sources};
 
 use super::types::Types;
 use super::{ModelEngine, in_plane, spec};
@@ -38,7 +39,7 @@ impl Host for ModelHost {
             notes,
             moduli,
             unbonded,
-            ..
+            spec,
         } = self.prepare(&setup)?;
         let Setup {
             dimension,
@@ -54,6 +55,8 @@ impl Host for ModelHost {
             0.0
         };
         Ok(Box::new(ModelEngine {
+            understood: describe(&spec, units.system()),
+            sources: sources(&spec),
             sim: RefCell::new(simulation),
             dimension,
             domain,
@@ -94,7 +97,8 @@ impl ModelHost {
             simd: self.simd,
             ..Options::default()
         };
-        let mut simulation = build(&spec, options).map_err(explain)?;
+        let units = setup.units.system();
+        let mut simulation = build(&spec, options).map_err(|e| explain(&e, units))?;
         write_velocities(simulation.as_mut(), setup.dimension, &setup.atoms)?;
         let highest = setup.pair.types();
         let moduli = types.moduli();
@@ -172,7 +176,8 @@ fn notes(setup: &Setup, types: &Types, sim: &dyn Simulation) -> Vec<String> {
     notes
 }
 
-fn explain(e: BuildError) -> HostError {
+fn explain(e: &BuildError, units: UnitSystem) -> HostError {
+    let message = units.tell(&e.message);
     let help = match e.path.as_str() {
         "horizon" => "the horizon is the number before s00 in `pair_coeff`",
         "periodic" => "use a larger box, or a smaller horizon in `pair_coeff`",
@@ -180,9 +185,9 @@ fn explain(e: BuildError) -> HostError {
         path if path.ends_with("law") => "check the moduli in `pair_coeff`",
         path if path.ends_with("density") => "write `set group all density VALUE` before `run`",
         "run.time_step" => "write `timestep VALUE` with a positive number",
-        _ => return HostError::new(e.message),
+        _ => return HostError::new(message),
     };
-    HostError::new(e.message).help(help)
+    HostError::new(message).help(help)
 }
 
 fn write_velocities(

@@ -17,6 +17,7 @@ use peridyne::condition::driven::Drive;
 use peridyne::error::RunError;
 use peridyne::observe::Observed;
 use peridyne::observe::Snapshot;
+use peridyne::quantity::rounded;
 use peridyne::run::Simulation;
 
 use super::atoms::{Column, Members};
@@ -71,9 +72,23 @@ pub struct ModelEngine {
     /// Would LAMMPS not know the critical stretches of the next evaluation with bonds?
     undefined: bool,
     notes: Vec<String>,
+    /// What was understood, in lines.
+    understood: String,
+    /// Where its law comes from.
+    sources: Vec<String>,
 }
 
 impl ModelEngine {
+    /// What was understood, in lines.
+    pub fn understood(&self) -> &str {
+        &self.understood
+    }
+
+    /// Where its law comes from.
+    pub fn sources(&self) -> &[String] {
+        &self.sources
+    }
+
     /// The units of the script.
     pub fn units(&self) -> Units {
         self.units
@@ -117,7 +132,7 @@ impl ModelEngine {
 
     /// A step's error, and what may be behind it.
     fn explained(&self, e: &RunError) -> HostError {
-        let error = HostError::new(e.to_string());
+        let error = HostError::new(self.units.system().tell(&e.message()));
         match self.unbonded[..] {
             [] => error,
             [(i, j), ..] => error.help(format!(
@@ -277,9 +292,10 @@ impl Engine for ModelEngine {
         let stable = sim.info().stable_step;
         if (changed || !self.bonded) && run.time_step > stable {
             self.notes.push(format!(
-                "the time step {:.4e} is above the stability limit {stable:.4e} of this body: write `timestep {:.2e}` or less",
-                run.time_step,
-                0.8 * stable
+                "the time step {} is above the stability limit {} of this body: write `timestep {}` or less",
+                rounded(run.time_step, 4),
+                rounded(stable, 4),
+                rounded(0.8 * stable, 3)
             ));
         }
         let still: Vec<u32> = (0..n as u32)

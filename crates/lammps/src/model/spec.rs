@@ -97,6 +97,8 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
         indenters: vec![],
         transfers: vec![],
         family: FamilyChoice::Auto,
+        preload: None,
+        own_horizon: None,
         schedule: Schedule {
             steps: setup.steps,
             time_step: TimeStep::Fixed(setup.time_step),

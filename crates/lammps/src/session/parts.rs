@@ -10,6 +10,7 @@ use crate::fix::Fix;
 use crate::host::{Condition, Motion, Style};
 use crate::random::Ranmar;
 use crate::rebuild::{Rebuild, Schedule};
+use crate::record::Record;
 use crate::thermo::Thermo;
 use crate::units::Units;
 use crate::variable::Variables;
@@ -60,6 +61,7 @@ pub struct Watch {
     pub computes: Vec<Compute>,
     pub dumps: Vec<Dump>,
     pub thermo: Thermo,
+    pub record: Record,
 }
 
 /// Variables, and the random numbers of formulas.

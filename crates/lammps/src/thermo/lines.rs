@@ -5,6 +5,7 @@ use super::columns::Column;
 use crate::error::Result;
 use crate::particles::Field;
 use crate::printf::{Format, Value};
+use crate::record::Row;
 use crate::session::Session;
 
 impl Session<'_> {
@@ -65,6 +66,15 @@ impl Session<'_> {
         for column in &columns {
             values.push(self.column_value(column)?);
         }
+        let (step, time) = (self.progress.step, self.progress.time());
+        let row = Row {
+            step,
+            time,
+            values: values.clone(),
+        };
+        let headings = columns.iter().map(Column::heading).collect();
+        self.watch.record.line(headings, row);
+        self.watch.record.place(time, &self.fixes.acting);
         let texts: Vec<String> = columns
             .iter()
             .zip(&values)

@@ -33,7 +33,7 @@ struct Points {
 
 impl Points {
     fn of(spec: &Spec, lattice: Lattice) -> Result<Points, CrystalError> {
-        let all = materials_of(spec).map_err(|e| CrystalError::Potential(e.message))?;
+        let all = materials_of(spec).map_err(|e| CrystalError::Potential(e.message.into()))?;
         let edges = lattice.kind.edges();
         let quarters =
             |a: usize, length: f64| (4.0 * length / (lattice.spacing * edges[a])).round();

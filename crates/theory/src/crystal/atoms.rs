@@ -13,15 +13,35 @@ pub struct Atom<const D: usize> {
 }
 
 /// An atom of the cell and one near to it.
-pub(super) struct Near<const D: usize> {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Near<const D: usize> {
     pub from: usize,
     pub to: usize,
     pub xi: [f64; D],
     pub r: f64,
 }
 
+impl<const D: usize> Near<D> {
+    /// Where both ends are carried along.
+    pub fn moved(self, by: impl Fn([f64; D]) -> [f64; D]) -> Self {
+        let xi = by(self.xi);
+        let r = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
+        Near { xi, r, ..self }
+    }
+}
+
+/// A cell of atoms, and who feels whom.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cell<'a, const D: usize> {
+    /// Rows: lattice vectors (length).
+    pub rows: [[f64; D]; D],
+    pub atoms: &'a [Atom<D>],
+    /// Those that were near in the reference, as they are now; `None`: those that are near now.
+    pub fixed: Option<&'a [Near<D>]>,
+}
+
 /// All pairs of an atom of the cell with another, or an image of one, within the cut-off of their kinds, which is at most `reach`.
-pub(super) fn neighbours<const D: usize>(
+pub(crate) fn neighbours<const D: usize>(
     cell: &[[f64; D]; D],
     atoms: &[Atom<D>],
     reach: f64,

@@ -49,7 +49,8 @@ pub fn links<const D: usize>(
     horizon: Horizon,
 ) -> Result<Vec<Link<D>>, CrystalError> {
     same_dimension::<D>(kind)?;
-    Stencil::fits(kind, spacing, horizon).map_err(|e| CrystalError::TooManyBonds(e.message))?;
+    Stencil::fits(kind, spacing, horizon)
+        .map_err(|e| CrystalError::TooManyBonds(e.message.into()))?;
     let stencil = Stencil::new(kind, spacing, horizon);
     let edges = kind.edges();
     // sites of the conventional cell that stand for those of the primitive one

@@ -1,26 +1,22 @@
 //! Crystals of all potentials of a body, by their names: sums of mixtures and fans.
 
+use super::atoms::Cell;
 use super::{Atom, Crystal, CrystalError};
 use peridyne::law::descriptor::Wrong;
 use peridyne::law::fan::{self, Fan};
 use peridyne::law::potential::mixture::{Given, Mixture, mixture};
 use peridyne::law::potential::{self, Described, Potential};
 
-/// What is asked of each potential about a cell with these rows (length) and atoms.
+/// What is asked of each potential about a cell.
 trait Ask<const D: usize> {
     type Out;
 
     fn mixture<P: Potential>(
         mixture: &Mixture<P>,
-        cell: [[f64; D]; D],
-        atoms: &[Atom<D>],
+        cell: Cell<D>,
     ) -> Result<Self::Out, CrystalError>;
 
-    fn fan<F: Fan>(
-        fan: &F,
-        cell: [[f64; D]; D],
-        atoms: &[Atom<D>],
-    ) -> Result<Self::Out, CrystalError>;
+    fn fan<F: Fan>(fan: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError>;
 }
 
 /// The crystal, and the energy per cell.
@@ -31,18 +27,13 @@ impl<const D: usize> Ask<D> for Whole {
 
     fn mixture<P: Potential>(
         mixture: &Mixture<P>,
-        cell: [[f64; D]; D],
-        atoms: &[Atom<D>],
+        cell: Cell<D>,
     ) -> Result<Self::Out, CrystalError> {
-        Crystal::of_mixture(mixture, cell, atoms)
+        Crystal::of_cell(mixture, cell)
     }
 
-    fn fan<F: Fan>(
-        fan: &F,
-        cell: [[f64; D]; D],
-        atoms: &[Atom<D>],
-    ) -> Result<Self::Out, CrystalError> {
-        Crystal::of_fan(fan, cell, atoms)
+    fn fan<F: Fan>(fan: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError> {
+        Crystal::of_fan(fan, cell.rows, cell.atoms)
     }
 }
 
@@ -54,19 +45,14 @@ impl<const D: usize> Ask<D> for State {
 
     fn mixture<P: Potential>(
         mixture: &Mixture<P>,
-        cell: [[f64; D]; D],
-        atoms: &[Atom<D>],
+        cell: Cell<D>,
     ) -> Result<Self::Out, CrystalError> {
-        let (crystal, energy) = Crystal::of_mixture(mixture, cell, atoms)?;
+        let (crystal, energy) = Crystal::of_cell(mixture, cell)?;
         Ok([energy, crystal.pressure()])
     }
 
-    fn fan<F: Fan>(
-        fan: &F,
-        cell: [[f64; D]; D],
-        atoms: &[Atom<D>],
-    ) -> Result<Self::Out, CrystalError> {
-        super::fan::state(fan, cell, atoms)
+    fn fan<F: Fan>(fan: &F, cell: Cell<D>) -> Result<Self::Out, CrystalError> {
+        super::fan::state(fan, cell.rows, cell.atoms)
     }
 }
 
@@ -75,12 +61,11 @@ impl<const D: usize> Ask<D> for State {
 ///
 /// # Errors
 /// The engine has none of a name, or there is no crystal ([`Crystal::of_mixture`], [`Crystal::of_fan`]).
-pub fn crystal<const D: usize>(
+pub(crate) fn crystal<const D: usize>(
     potentials: &[(String, Given)],
-    cell: [[f64; D]; D],
-    atoms: &[Atom<D>],
+    cell: Cell<D>,
 ) -> Result<(Crystal<D>, f64), CrystalError> {
-    let all = ask::<D, Whole>(potentials, cell, atoms)?.into_iter();
+    let all = ask::<D, Whole>(potentials, cell)?.into_iter();
     let sum = all.reduce(|(a, e), (b, f)| (a.plus(b), e + f));
     sum.ok_or_else(nothing)
 }
@@ -89,12 +74,11 @@ pub fn crystal<const D: usize>(
 ///
 /// # Errors
 /// As of [`crystal`].
-pub fn state<const D: usize>(
+pub(crate) fn state<const D: usize>(
     potentials: &[(String, Given)],
-    cell: [[f64; D]; D],
-    atoms: &[Atom<D>],
+    cell: Cell<D>,
 ) -> Result<[f64; 2], CrystalError> {
-    let all = ask::<D, State>(potentials, cell, atoms)?.into_iter();
+    let all = ask::<D, State>(potentials, cell)?.into_iter();
     let sum = all.reduce(|[a, b], [c, d]| [a + c, b + d]);
     sum.ok_or_else(nothing)
 }
@@ -105,8 +89,7 @@ fn nothing() -> CrystalError {
 
 fn ask<const D: usize, A: Ask<D>>(
     potentials: &[(String, Given)],
-    cell: [[f64; D]; D],
-    atoms: &[Atom<D>],
+    cell: Cell<D>,
 ) -> Result<Vec<A::Out>, CrystalError> {
     let mut answers = vec![];
     for (name, given) in potentials {
@@ -114,7 +97,6 @@ fn ask<const D: usize, A: Ask<D>>(
             name,
             given,
             cell,
-            atoms,
             found: None,
         };
         potential::each(&mut find);
@@ -128,8 +110,7 @@ fn ask<const D: usize, A: Ask<D>>(
 struct Find<'a, const D: usize, A: Ask<D>> {
     name: &'a str,
     given: &'a Given,
-    cell: [[f64; D]; D],
-    atoms: &'a [Atom<D>],
+    cell: Cell<'a, D>,
     found: Option<Result<A::Out, CrystalError>>,
 }
 
@@ -137,7 +118,7 @@ impl<const D: usize, A: Ask<D>> Find<'_, D, A> {
     /// The atoms, as one that knows so many kinds counts them.
     fn atoms(&self, kinds: usize) -> Vec<Atom<D>> {
         let kind = |k: usize| if kinds == 1 { 0 } else { k };
-        let atoms = self.atoms.iter();
+        let atoms = self.cell.atoms.iter();
         atoms
             .map(|a| Atom {
                 kind: kind(a.kind),
@@ -158,8 +139,10 @@ impl<const D: usize, A: Ask<D>> potential::Kinds for Find<'_, D, A> {
     fn kind<P: Described>(&mut self) {
         if P::NAME == self.name {
             let made = mixture::<P>(self.given).map_err(wrong);
-            self.found =
-                Some(made.and_then(|made| A::mixture(&made, self.cell, &self.atoms(made.kinds()))));
+            self.found = Some(made.and_then(|made| {
+                let atoms = &self.atoms(made.kinds());
+                A::mixture(&made, Cell { atoms, ..self.cell })
+            }));
         }
     }
 }
@@ -168,9 +151,13 @@ impl<const D: usize, A: Ask<D>> fan::Kinds for Find<'_, D, A> {
     fn fan<F: fan::Described>(&mut self) {
         if F::NAME == self.name {
             let made = fan::of_kinds::<F>(self.given).map_err(wrong);
-            self.found = Some(
-                made.and_then(|made| A::fan(&made, self.cell, &self.atoms(made.table().kinds()))),
-            );
+            self.found = Some(made.and_then(|made| {
+                if self.cell.fixed.is_some() {
+                    return Err(CrystalError::FixedNeighbours);
+                }
+                let atoms = &self.atoms(made.table().kinds());
+                A::fan(&made, Cell { atoms, ..self.cell })
+            }));
         }
     }
 }

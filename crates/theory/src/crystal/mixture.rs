@@ -1,6 +1,6 @@
 //! Crystals of several kinds of atoms: any cell with any basis, in a potential of their kinds.
 
-use super::atoms::{Atom, Near, neighbours};
+use super::atoms::{Atom, Cell, Near, neighbours};
 use super::{Bond, Crystal, CrystalError};
 use peridyne::law::jet;
 use peridyne::law::potential::Potential;
@@ -17,8 +17,29 @@ impl<const D: usize> Crystal<D> {
         cell: [[f64; D]; D],
         atoms: &[Atom<D>],
     ) -> Result<(Self, f64), CrystalError> {
+        Crystal::of_cell(
+            mixture,
+            Cell {
+                rows: cell,
+                atoms,
+                fixed: None,
+            },
+        )
+    }
+
+    pub(super) fn of_cell<P: Potential>(
+        mixture: &Mixture<P>,
+        cell: Cell<D>,
+    ) -> Result<(Self, f64), CrystalError> {
+        let atoms = cell.atoms;
         let cutoff = |a: usize, b: usize| mixture.cutoff(a, b);
-        let near = neighbours(&cell, atoms, mixture.reach(), cutoff)?;
+        let near = match cell.fixed {
+            Some(all) => {
+                let within = |n: &&Near<D>| n.r < cutoff(atoms[n.from].kind, atoms[n.to].kind);
+                all.iter().filter(within).copied().collect()
+            }
+            None => neighbours(&cell.rows, atoms, mixture.reach(), cutoff)?,
+        };
         let of = |n: &Near<D>| mixture.of(atoms[n.from].kind, atoms[n.to].kind);
         let mut density = vec![0.0; atoms.len()];
         let mut energy = 0.0;
@@ -72,7 +93,7 @@ impl<const D: usize> Crystal<D> {
             });
         }
         let crystal = Crystal {
-            cell,
+            cell: cell.rows,
             basis: atoms.iter().map(|a| a.place).collect(),
             mass: atoms.iter().map(|a| a.mass).collect(),
             bonds,

@@ -126,8 +126,8 @@ pub enum CrystalError {
     )]
     NotPeriodic,
     #[error(
-        "fixed neighbours know one kind of atom and its pairs: several kinds, and potentials of more than two atoms, feel those that \
-         are near now (leave family out)"
+        "potentials of more than two atoms, and sums of several, have no fixed neighbours: they feel those that are near now (leave \
+         family out)"
     )]
     FixedNeighbours,
     /// A name that the engine does not have, or constants that do not fit it.

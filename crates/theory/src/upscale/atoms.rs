@@ -2,15 +2,18 @@
 
 use super::{UpscaleError, current, lattice};
 use crate::crystal::arrangement::arrangement;
+use crate::crystal::atoms::{Cell, Near, neighbours};
 use crate::crystal::cells::determinant;
 use crate::crystal::{Atom, Crystal, CrystalError, Reference, kinds};
 use peridyne::law::fan;
 use peridyne::law::potential::mixture::Given;
 use peridyne::run::Shelf;
-use peridyne::spec::{FamilyChoice, LawSpec, Spec};
+use peridyne::spec::{Horizon, LawSpec, Spec};
 
-/// Has it several kinds of atoms, or terms of more than two? Such atoms live on current neighbours, and theory knows their potentials
-/// by names.
+/// What is at a horizon is within it.
+const INCLUSIVE: f64 = 1.0 + 1e-9;
+
+/// Has it several kinds of atoms, or terms of more than two? Theory knows such potentials by names.
 pub fn has_basis_or_fans(spec: &Spec) -> bool {
     let several = spec.materials.len() > 1 || !spec.potentials.is_empty();
     spec.potential()
@@ -22,13 +25,12 @@ pub(super) struct Atoms<const D: usize> {
     given: Vec<(String, Given)>,
     cell: [[f64; D]; D],
     atoms: Vec<Atom<D>>,
+    /// Neighbours that stay neighbours; `None`: those that are near now.
+    fixed: Option<Vec<Near<D>>>,
 }
 
 impl<const D: usize> Atoms<D> {
     pub fn of(spec: &Spec) -> Result<Self, UpscaleError> {
-        if !current(spec) {
-            return Err(CrystalError::FixedNeighbours.into());
-        }
         let (kind, spacing) = lattice(spec)?;
         let found = arrangement::<D>(spec)?;
         let volume = kind.site_volume() * spacing.powi(D as i32) * spec.section;
@@ -38,25 +40,50 @@ impl<const D: usize> Atoms<D> {
             mass: spec.materials[*kind].density * volume,
         };
         let given = Shelf::standard().given(spec);
+        let given = given.map_err(|e| CrystalError::Potential(e.message.into()))?;
+        let atoms: Vec<Atom<D>> = found.sites.iter().map(atom).collect();
+        let fixed = match current(spec) {
+            true => None,
+            false if given.len() > 1 => return Err(CrystalError::FixedNeighbours.into()),
+            false => {
+                let horizon = INCLUSIVE * spec.horizon.length(spacing);
+                Some(neighbours(&found.cell, &atoms, horizon, |_, _| horizon)?)
+            }
+        };
         Ok(Atoms {
-            given: given.map_err(|e| CrystalError::Potential(e.message))?,
+            given,
             cell: found.cell,
-            atoms: found.sites.iter().map(atom).collect(),
+            atoms,
+            fixed,
         })
+    }
+
+    fn cell(&self) -> Cell<'_, D> {
+        Cell {
+            rows: self.cell,
+            atoms: &self.atoms,
+            fixed: self.fixed.as_deref(),
+        }
+    }
+
+    /// Everything carried along.
+    fn moved(&self, by: impl Fn([f64; D]) -> [f64; D] + Copy) -> Self {
+        let atom = |a: &Atom<D>| Atom {
+            place: by(a.place),
+            ..*a
+        };
+        let near = |all: &Vec<Near<D>>| all.iter().map(|n| n.moved(by)).collect();
+        Atoms {
+            given: self.given.clone(),
+            cell: self.cell.map(by),
+            atoms: self.atoms.iter().map(atom).collect(),
+            fixed: self.fixed.as_ref().map(near),
+        }
     }
 
     /// All lengths of the cell times a factor.
     pub fn grown(&self, factor: f64) -> Self {
-        let grown = |x: [f64; D]| x.map(|x| factor * x);
-        let atom = |a: &Atom<D>| Atom {
-            place: grown(a.place),
-            ..*a
-        };
-        Atoms {
-            given: self.given.clone(),
-            cell: self.cell.map(grown),
-            atoms: self.atoms.iter().map(atom).collect(),
-        }
+        self.moved(|x| x.map(|x| factor * x))
     }
 
     /// Energy per volume of the reference where it is strained by ε (x → x + ε x) with all atoms carried along.
@@ -64,23 +91,19 @@ impl<const D: usize> Atoms<D> {
         let moved = |x: [f64; D]| -> [f64; D] {
             std::array::from_fn(|a| x[a] + (0..D).map(|b| strain[a][b] * x[b]).sum::<f64>())
         };
-        let atom = |a: &Atom<D>| Atom {
-            place: moved(a.place),
-            ..*a
-        };
-        let atoms: Vec<Atom<D>> = self.atoms.iter().map(atom).collect();
-        let found = kinds::state(&self.given, self.cell.map(moved), &atoms).ok();
+        let strained = self.moved(moved);
+        let found = kinds::state(&self.given, strained.cell()).ok();
         found.map(|[energy, _]| energy / determinant(&self.cell).abs())
     }
 
     /// Energy per atom and pressure.
     pub fn state(&self) -> Result<[f64; 2], CrystalError> {
-        let [energy, pressure] = kinds::state(&self.given, self.cell, &self.atoms)?;
+        let [energy, pressure] = kinds::state(&self.given, self.cell())?;
         Ok([energy / self.atoms.len() as f64, pressure])
     }
 
     pub fn crystal(&self) -> Result<(Crystal<D>, Reference), CrystalError> {
-        let (crystal, energy) = kinds::crystal(&self.given, self.cell, &self.atoms)?;
+        let (crystal, energy) = kinds::crystal(&self.given, self.cell())?;
         let sites = self.atoms.len();
         let reference = Reference {
             energy: energy / sites as f64,
@@ -109,7 +132,12 @@ pub(super) fn grow(fine: &Spec, coarse: &mut Spec, n: f64) -> Result<(), Upscale
         let scaled = acting.potential.scaled(n, energy);
         acting.potential = scaled.map_err(CrystalError::Potential)?;
     }
-    coarse.family = FamilyChoice::Neighbours;
+    coarse.family = fine.family;
+    if let Horizon::Length(d) = &mut coarse.horizon
+        && !current(fine)
+    {
+        *d *= n;
+    }
     let alike = match fine.dimension {
         1 => alike::<1>(fine, coarse, n),
         2 => alike::<2>(fine, coarse, n),

@@ -145,7 +145,7 @@ fn card_in<const D: usize>(
     if a.basis.len() > 1 {
         notes.push(optical(&a, factor));
     }
-    let current = has_basis_or_fans(fine);
+    let current = has_basis_or_fans(fine) && super::current(fine);
     if current {
         notes.push("The coarse atoms feel those that are near now, as the fine ones do: the coarse crystal is the fine one, larger and heavier; defects, surfaces and thermal motion of it are not those of the fine one.".into());
     }

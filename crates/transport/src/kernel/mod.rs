@@ -11,6 +11,7 @@ pub use bump::Bump;
 
 use crate::quadrature::Gauss;
 use peridyne::error::BuildError;
+use peridyne::quantity::rounded;
 use std::fmt;
 use std::sync::Arc;
 
@@ -222,11 +223,19 @@ impl Kernel {
                 Parity::Even => (v - other, "symmetric: φ(−z) must be φ(z)"),
             };
             if both_sides && sum.abs() > PARITY * largest {
-                return Err(BuildError::invalid(path, format!("the kernel is not {name}, and is {v:.6e} at z = {z:.6}, {other:.6e} at z = {:.6}", -z))
-                    .help(match self.parity {
-                        Parity::Odd => "use an odd function of z; sign(z) and abs(z) are at hand",
-                        Parity::Even => "use an even function of z, such as of abs(z)",
-                    }));
+                return Err(BuildError::invalid(
+                    path,
+                    format!(
+                        "the kernel is not {name}, and is {} at z = {z:.6}, {} at z = {:.6}",
+                        rounded(*v, 6),
+                        rounded(other, 6),
+                        -z
+                    ),
+                )
+                .help(match self.parity {
+                    Parity::Odd => "use an odd function of z; sign(z) and abs(z) are at hand",
+                    Parity::Even => "use an even function of z, such as of abs(z)",
+                }));
             }
         }
         Ok(())

@@ -16,6 +16,7 @@ use crate::threads::{PIECE, pieces};
 use crate::weights::Stencil;
 use fourier::Fourier;
 use peridyne::error::BuildError;
+use peridyne::quantity::rounded;
 
 /// How sums over bonds are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -154,7 +155,7 @@ impl Operator {
                 let [low, high] = self.extremes(&[], 0.0);
                 let told = a.flux.evaluable(low, high, "advection.flux");
                 told.map_err(|mut e| {
-                    e.message += " in the collars";
+                    e.message.add(" in the collars");
                     e
                 })
             }
@@ -194,7 +195,7 @@ impl Operator {
             false => Ok(()),
             true => Err(BuildError::ill_posed(
                 "diffusion.kernel",
-                format!("this kernel makes waves grow, by exp({:.6e} t) at the worst: its Fourier transform is above its value at 0", d.viscosity * most),
+                format!("this kernel makes waves grow, by exp({} t) at the worst: its Fourier transform is above its value at 0", rounded(d.viscosity * most, 4)),
             )
             .help("use a kernel that is not negative, such as kernel = { bump = \"smooth\" }")),
         }

@@ -85,7 +85,7 @@ fn cost(found: &Findings) -> Option<String> {
     let seconds = found.trial.seconds_per_step?;
     Some(format!(
         "cost: about {} of stepping, at {} steps/s",
-        duration(seconds * found.steps as f64),
+        duration(found.load() + seconds * found.steps as f64),
         digits(1.0 / seconds)
     ))
 }

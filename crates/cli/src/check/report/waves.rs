@@ -4,7 +4,7 @@ use super::row;
 use crate::check::Findings;
 use crate::numbers::whole;
 use peridyne::spec::{Criterion, Method, Stepper};
-use peridyne_io::deck::Dim;
+use peridyne_io::deck::{Dim, rounded};
 
 /// How long a run is.
 fn lasts(found: &Findings) -> String {
@@ -14,6 +14,19 @@ fn lasts(found: &Findings) -> String {
         whole(found.steps),
         found.units.show(time, Dim::TIME)
     )
+}
+
+fn equilibrium(out: &mut String, name: &str, method: Method, increments: u64) {
+    let how = match method {
+        Method::Linear => "linear about the reference",
+        Method::Newton => "by Newton's method",
+        Method::Relaxation => "by relaxation, which finds its own step",
+    };
+    row(
+        out,
+        name,
+        format!("{} increments of load, {how}", whole(increments)),
+    );
 }
 
 pub(super) fn waves(found: &Findings) -> String {
@@ -71,26 +84,32 @@ pub(super) fn waves(found: &Findings) -> String {
         );
     }
     if let Some(statics) = found.spec.schedule.statics() {
-        let how = match statics.method {
-            Method::Linear => "linear about the reference",
-            Method::Newton => "by Newton's method",
-            Method::Relaxation => "by relaxation, which finds its own step",
-        };
-        row(
-            &mut out,
-            "equilibrium",
-            format!("{} increments of load, {how}", whole(found.steps)),
-        );
+        equilibrium(&mut out, "equilibrium", statics.method, found.steps);
         return out;
+    }
+    if let Some(preload) = &found.spec.preload {
+        equilibrium(
+            &mut out,
+            "before motion",
+            preload.statics.method,
+            found.increments,
+        );
     }
     if let Stepper::Newmark(n) = found.spec.schedule.stepper {
         row(
             &mut out,
             "integrator",
-            format!(
-                "implicit, Newmark's method with beta = {}, gamma = {}",
-                n.beta, n.gamma
-            ),
+            match n.alpha != 0.0 {
+                true => format!(
+                    "implicit, the method of Hilber, Hughes and Taylor with alpha = {}: what is fast keeps {} of itself in a step",
+                    n.alpha,
+                    rounded((1.0 + n.alpha) / (1.0 - n.alpha), 3)
+                ),
+                false => format!(
+                    "implicit, Newmark's method with beta = {}, gamma = {}",
+                    n.beta, n.gamma
+                ),
+            },
         );
         let ratio = info.time_step / info.stable_step;
         row(

@@ -2,6 +2,7 @@
 
 mod kernel;
 
+use super::line::Table;
 use super::{Curvatures, Faults, find_fault};
 use crate::body::{Body, Field, Identity, Values};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -14,7 +15,7 @@ use crate::interaction::{
 };
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::Mixture;
-use kernel::{Density, Energies, Forces, Table, View};
+use kernel::{Density, Energies, Forces, View};
 
 /// Margin of the list, in cut-offs.
 const SKIN: f64 = 0.12;
@@ -40,8 +41,7 @@ impl<const D: usize, P: Potential> CurrentAtoms<D, P> {
     /// The kinds of the potential are the materials of the body, or there is one.
     pub fn new(body: &Body<D>, potential: Mixture<P>, simd: Simd) -> Self {
         let kinds = potential.kinds();
-        let cutoffs = (0..kinds * kinds).map(|n| potential.cutoff(n / kinds, n % kinds));
-        let limits = cutoffs.map(|c| c * c).collect();
+        let limits = potential.limits(f64::INFINITY);
         let of = |i, j| potential.of(i, j);
         let table = potential.is_side_by_side();
         let table = table.then(|| Table::new(kinds, of));

@@ -12,16 +12,19 @@ use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::law::potential::Potential;
+use crate::law::potential::mixture::Mixture;
 use kernel::{Density, Energies, Forces, View};
 
 /// A potential on a stencil.
 pub struct FixedAtoms<const D: usize, P> {
     body: Identity,
     simd: Simd,
-    potential: P,
+    potential: Mixture<P>,
     links: Links<D>,
-    /// Distances beyond this do not count (length).
-    limit: f64,
+    /// Squared distances beyond which pairs of kinds do not count.
+    limits: Vec<f64>,
+    /// Kind per slot; empty: there is one.
+    kind: Column,
     /// F′ per slot; empty without embedding.
     slope: Column,
     curvatures: Curvatures,
@@ -33,12 +36,17 @@ pub struct FixedAtoms<const D: usize, P> {
 }
 
 impl<const D: usize, P: Potential> FixedAtoms<D, P> {
-    pub fn new(body: &Body<D>, links: Links<D>, potential: P, simd: Simd) -> Self {
+    /// The kinds of the potential are the materials of the body, or there is one.
+    pub fn new(body: &Body<D>, links: Links<D>, potential: Mixture<P>, simd: Simd) -> Self {
         FixedAtoms {
             body: body.identity,
             simd,
             // displacements of absent sites are farther than this
-            limit: potential.cutoff().min(0.5 * FAR * body.spacing),
+            limits: potential.limits(0.5 * FAR * body.spacing),
+            kind: match potential.kinds() {
+                1 => Column::default(),
+                _ => kinds_of(body),
+            },
             slope: if P::EMBEDDED {
                 Column::new(body.len, 0.0, field::line(3))
             } else {
@@ -58,8 +66,14 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
         View {
             tiles: Tiles::new(&self.links, body, u),
             potential: &self.potential,
-            limit: self.limit * self.limit,
+            limits: &self.limits,
+            kind: &self.kind,
+            slope: &self.slope,
         }
+    }
+
+    fn kind(&self, slot: usize) -> usize {
+        self.kind.get(slot).map_or(0, |k| *k as usize)
     }
 
     /// Energy, and energy densities per slot where asked for.
@@ -84,6 +98,16 @@ impl<const D: usize, P: Potential> FixedAtoms<D, P> {
         body.fill_images(&mut self.slope);
         tally
     }
+}
+
+/// Materials of all slots, images too.
+fn kinds_of<const D: usize>(body: &Body<D>) -> Column {
+    let mut kind = Column::new(body.len, 0.0, field::line(4));
+    for slot in &body.slots {
+        kind[*slot as usize] = body.material_of(*slot as usize) as f64;
+    }
+    body.fill_images(&mut kind);
+    kind
 }
 
 /// The shortest link forward, in one dimension.
@@ -120,7 +144,6 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         }
         let kernel = Forces {
             view: self.view(body, u),
-            slope: &self.slope,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             scale: 2.0 / self.volume,
             next: self.next,
@@ -157,23 +180,26 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
             let xi = self.links.links[sub][k].xi;
             let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
             let q: f64 = y.iter().map(|c| c * c).sum();
-            if q >= self.limit * self.limit {
+            let j = original(j);
+            let [own, other] = [i, j].map(|s| self.kind(s));
+            let limit = self.limits[own * self.potential.kinds() + other];
+            let Some(potential) = self.potential.of(own, other).filter(|_| q < limit) else {
                 return;
-            }
+            };
             if P::EMBEDDED {
-                density[i] += self.potential.density(q);
+                density[i] += potential.density(q);
             }
             visit(BondTangent::of_potential(
-                &self.potential,
-                [i, original(j)],
+                potential,
+                [i, j],
                 y,
                 [slope(i), slope(j)],
                 2.0 / self.volume,
-                false,
+                own != other,
             ));
         });
-        let potential = &self.potential;
-        self.curvatures = Curvatures::of(density.iter().map(|d| (Some(potential), *d)));
+        let of = |(slot, d): (usize, &f64)| (self.potential.own(self.kind(slot)), *d);
+        self.curvatures = Curvatures::of(density.iter().enumerate().map(of));
     }
 
     fn each_force(
@@ -182,6 +208,10 @@ impl<const D: usize, P: Potential> Interaction<D> for FixedAtoms<D, P> {
         u: &Field<D>,
         visit: &mut dyn FnMut(BondForce<D>),
     ) -> bool {
+        if self.potential.kinds() > 1 {
+            self.tangents(body, u, &mut |bond| visit(bond.force()));
+            return true;
+        }
         if P::EMBEDDED {
             self.check(body, &[u]);
             self.embed(body, u);

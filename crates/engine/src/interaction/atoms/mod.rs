@@ -7,6 +7,7 @@ pub mod bonded;
 pub mod current;
 pub mod fan;
 pub mod fixed;
+mod line;
 pub mod together;
 
 use super::tangent::curvature;

@@ -42,6 +42,8 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             let (xi, share) = view.constant(i, j);
             let mut k = share / xi.iter().map(|x| x * x).sum::<f64>();
             let mut fields = [i, j].map(|s| self.field(s));
+            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            k = self.law.between_ends(k, length, fields[0], fields[1]);
             if view.paired {
                 let pair = self.pairs.get(body.material_of(i), body.material_of(j));
                 k *= pair.stiffness;

@@ -186,7 +186,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
     #[inline(always)]
     unsafe fn acting<L: Lane>(&self, b: &Bond<L, D>, i: [L; 2], j: [L; 2]) -> (L, [L; 2], [L; 2]) {
         if !self.paired {
-            return (b.k, i, j);
+            return (self.law.between_ends(b.k, b.r0, i, j), i, j);
         }
         // SAFETY: of this table
         let BondLanes {

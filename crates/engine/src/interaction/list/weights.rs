@@ -26,6 +26,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
                     field[0] = c[body.material_of(slot)];
                 }
             }
+            PointConstants::PerPoint(all) => {
+                for (field, own) in self.fields.chunks_mut(2).zip(all) {
+                    field.copy_from_slice(own);
+                }
+            }
             PointConstants::Solid(solids) => {
                 let of = |s: usize| solids[body.material_of(s)];
                 let view = self.view(&self.moved);

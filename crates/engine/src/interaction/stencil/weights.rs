@@ -62,6 +62,11 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         };
         match &self.point_constants {
             PointConstants::None => {}
+            PointConstants::PerPoint(all) => {
+                for n in 0..2 {
+                    self.fields[n] = per_slot(n, &|s| all[s][n]);
+                }
+            }
             PointConstants::PerMaterial(c) => {
                 self.fields[0] = per_slot(0, &|s| c[body.material_of(s)])
             }

@@ -11,6 +11,7 @@ pub mod numbers;
 pub mod softening;
 pub mod tensor;
 pub mod thermoelastic;
+pub mod thermoelastic_solid;
 pub mod viscoelastic;
 
 use crate::columns::Declaration;
@@ -20,6 +21,7 @@ use crate::spec::Parameters;
 pub use non_ordinary::{BondAssociated, NonOrdinary};
 pub use numbers::{Numbers, Sink, Source};
 pub use thermoelastic::Thermoelastic;
+pub use thermoelastic_solid::ThermoelasticSolid;
 
 /// All that come with the engine, a line each.
 pub fn each(kinds: &mut impl Kinds) {
@@ -30,6 +32,7 @@ pub fn each(kinds: &mut impl Kinds) {
     non_ordinary::each(kinds);
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
+    kinds.law::<ThermoelasticSolid>();
 }
 
 /// Who wants to see all of them ([`each`]).

@@ -57,6 +57,13 @@ impl<P: Potential> Mixture<P> {
         self.of(i, j).map_or(0.0, Potential::cutoff)
     }
 
+    /// Squares of the cut-offs, `[i][j]`, of none more than that of `most` (length).
+    pub fn limits(&self, most: f64) -> Vec<f64> {
+        let pairs = (0..self.kinds * self.kinds).map(|n| (n / self.kinds, n % self.kinds));
+        let cutoffs = pairs.map(|(i, j)| self.cutoff(i, j).min(most));
+        cutoffs.map(|c| c * c).collect()
+    }
+
     /// The greatest of them.
     pub fn reach(&self) -> f64 {
         let all = self.of.iter().flatten().map(Potential::cutoff);

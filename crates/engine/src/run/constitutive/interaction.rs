@@ -14,6 +14,7 @@ use crate::interaction::stencil::{StencilInteraction, StencilParts};
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, PointConstants, Repulsion, Toughness};
 use crate::law::solid::bond_based::{BondBased, BondBasedMixed};
+use crate::law::solid::dual_horizon::DualHorizon;
 use crate::law::solid::eam_like::{EamLike, Solid};
 use std::sync::Arc;
 
@@ -97,6 +98,9 @@ impl ConstitutiveModel {
                     .filter(|(n, _)| pick(*n))
                     .map(|(_, c)| *c)
                     .collect();
+                if !body.horizon.is_empty() {
+                    return self.of_own_horizons(body, c[0], toughness, repulsion);
+                }
                 if c.iter().all(|x| *x == c[0]) {
                     let law = BondBased { c: c[0] };
                     self.bind(body, law, PointConstants::None, toughness, repulsion)
@@ -213,6 +217,38 @@ impl ConstitutiveModel {
                 simd: self.simd,
             }))),
         }
+    }
+
+    /// Bonds of points with horizons of their own: `c ∝ δ^−(D+1)` at equal moduli.
+    fn of_own_horizons<const D: usize>(
+        &self,
+        body: &Body<D>,
+        c: f64,
+        toughness: Vec<Toughness>,
+        repulsion: Option<Repulsion>,
+    ) -> Result<Box<dyn Interaction<D>>, BuildError> {
+        let own = |i: usize| body.horizon[i];
+        let half = 0.5 * self.spacing;
+        let constants = (0..body.len).map(|i| match own(i) > 0.0 {
+            true => [
+                c * (self.horizon / own(i)).powi(D as i32 + 1),
+                0.5 + own(i) / self.spacing,
+            ],
+            false => [0.0; 2],
+        });
+        let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
+        Ok(Box::new(ListInteraction::new(ListParts {
+            body,
+            list: HorizonList::within(body, self.horizon + half, reach)?,
+            law: DualHorizon {
+                rate: self.spacing.recip(),
+            },
+            weight: BondWeight::new(self.influence, self.horizon, None),
+            point_constants: PointConstants::PerPoint(constants.collect()),
+            toughness,
+            repulsion,
+            simd: self.simd,
+        })))
     }
 
     /// Laws of unit constants, with what pairs of materials have.

@@ -5,6 +5,8 @@ use crate::error::BuildError;
 use crate::interaction::pairs::{BondConstants, BondTable};
 use crate::interaction::{PairTable, Toughness};
 use crate::law::solid::eam_like::Solid;
+use crate::message;
+use crate::quantity::{Dimension, Message, rounded};
 use crate::spec::{ContactStiffness, Influence, LawSpec, PmbStiffness, Spec};
 
 /// What pairs of materials have, checked.
@@ -18,14 +20,14 @@ pub(super) fn bond_table(
     if spec.pairs.is_empty() {
         return Ok(None);
     }
-    let invalid = |message: String| Err(BuildError::invalid("pairs", message));
+    let invalid = |message: Message| Err(BuildError::invalid("pairs", message));
     let unsupported = |message: &str| Err(BuildError::unsupported("pairs", message));
     if spec.pairs.len() != materials * materials {
-        return invalid(format!(
+        return invalid(message![format!(
             "{} pairs of {materials} materials, expected {}",
             spec.pairs.len(),
             materials * materials
-        ));
+        )]);
     }
     if !matches!(spec.influence, Influence::Constant | Influence::Inverse) {
         return unsupported(
@@ -52,15 +54,20 @@ pub(super) fn bond_table(
         let mirrored = &spec.pairs[with * materials + of];
         let fine = |x: f64| x >= 0.0 && x.is_finite();
         if !fine(stiffness) || !fine(p.horizon) || p.horizon > horizon * (1.0 + 1e-9) {
-            return invalid(format!(
-                "materials {of} and {with} have the stiffness {stiffness:e} and the horizon {:e}; that of the body is {horizon:e}",
-                p.horizon
-            ));
+            return invalid(message![
+                format!(
+                    "materials {of} and {with} have the stiffness {} and the horizon ",
+                    rounded(stiffness, 4)
+                ),
+                Dimension::LENGTH.of(p.horizon),
+                "; that of the body is ",
+                Dimension::LENGTH.of(horizon),
+            ]);
         }
         if p.horizon != mirrored.horizon {
-            return invalid(format!(
+            return invalid(message![format!(
                 "materials {of} and {with} must have the same horizon both ways round"
-            ));
+            )]);
         }
         pairs.push(BondConstants {
             horizon: p.horizon,

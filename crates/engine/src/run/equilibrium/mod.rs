@@ -1,6 +1,7 @@
 //! Statics of a model: every step is an increment of load, and ends in equilibrium.
 
 mod linear;
+mod sequence;
 mod solve;
 pub(super) mod state;
 pub(super) mod tried;
@@ -9,6 +10,7 @@ use self::state::StaticState;
 use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
+use crate::condition::constraint::Constraint;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
@@ -16,6 +18,7 @@ use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::law::descriptor::Memory;
+use crate::quantity::rounded;
 use crate::run::Simulation;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
@@ -29,9 +32,13 @@ const ROUNDS: usize = 10_000;
 impl<const D: usize> Model<D> {
     /// Which components the conditions leave free.
     pub(super) fn support(&self) -> Support<D> {
+        self.support_of(&self.constraints)
+    }
+
+    fn support_of(&self, constraints: &[Constraint<D>]) -> Support<D> {
         let id = self.ids();
         let mut support = Support::none(self.body.points());
-        for c in &self.constraints {
+        for c in constraints {
             for (slot, held) in c.holds() {
                 for a in (0..D).filter(|a| held[*a]) {
                     support.free[id[slot] as usize][a] = false;
@@ -152,7 +159,10 @@ impl<const D: usize> Model<D> {
             if let Some((path, wrong, help)) = wrong {
                 return Err(BuildError::unsupported(
                     path,
-                    format!("{wrong}, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
+                    format!(
+                        "{wrong}, and action is not reaction in this one (asymmetry {})",
+                        rounded(asymmetry, 2)
+                    ),
                 )
                 .help(help));
             }
@@ -187,7 +197,7 @@ impl<const D: usize> Model<D> {
         let row = (families * self.info.family.1).min(points) + 1.0;
         memory::afford(
             "statics.solver",
-            &format!("the equations of {points:.2e} points"),
+            &format!("the equations of {} points", rounded(points, 3)),
             points * row * (8 * D * D + 4) as f64,
             "leave solver out, or write solver = \"cg\", which needs no matrix; a shorter horizon makes shorter rows",
         )
@@ -205,9 +215,31 @@ impl<const D: usize> Model<D> {
             self.interaction
                 .forces(body, u, &mut self.f, Sweep::Hold, None);
         }
+        self.learn_strength();
         // energy that came in from outside counts as initial
         let now = self.energy_now();
         self.initial_energy = Some(ledger_base(&now));
+    }
+
+    /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
+    pub(super) fn learn_strength(&mut self) {
+        let rest = match self.is_linear() {
+            true => self.body.at_rest(),
+            false => self.u.clone(),
+        };
+        let still = zeros(self.body.len);
+        let mut f = zeros(self.body.len);
+        let sweep = Sweep::Evolve {
+            v: &still,
+            steps: [0.0; 2],
+            release: self.release,
+        };
+        let tally = self
+            .interaction
+            .forces(&self.body, &rest, &mut f, sweep, None);
+        self.broken += tally.broken;
+        self.released += tally.released;
+        self.past_work[0] += tally.dissipated;
     }
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.
@@ -225,6 +257,9 @@ impl<const D: usize> Model<D> {
         };
         let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
         self.step += 1;
+        if Self::breaks_in_turn(state.options) {
+            return self.break_next(state, u, f);
+        }
         let result = self.settle_increment(&mut state);
         if let Err(error) = result {
             self.step -= 1;
@@ -244,6 +279,30 @@ impl<const D: usize> Model<D> {
         self.account(&u, &f, &external);
         self.pay(0.5, 0.0);
         Ok(())
+    }
+
+    /// An increment that ends where the next bonds break.
+    fn break_next(
+        &mut self,
+        mut state: StaticState<D>,
+        u: Field<D>,
+        f: Field<D>,
+    ) -> Result<(), RunError> {
+        let origin = self.origin;
+        match self.settle_sequence(&mut state) {
+            Ok(solved) => {
+                state.solved = solved;
+                self.statics = Some(state);
+                Ok(())
+            }
+            Err(error) => {
+                self.step -= 1;
+                (self.u, self.f, self.origin) = (u, f, origin);
+                self.refresh_images();
+                self.statics = Some(state);
+                Err(self.unsolved(error))
+            }
+        }
     }
 
     pub(super) fn unsolved(&self, error: SolveError) -> RunError {
@@ -274,6 +333,7 @@ impl<const D: usize> Model<D> {
                 c.place(&mut self.u, t);
             }
             self.indenters.iter_mut().for_each(|i| i.place(t));
+            self.look_again();
             let before = self.broken;
             let solved = match state.options.method {
                 Method::Linear => self.settle_linear(state, &support)?,
@@ -318,12 +378,15 @@ impl<const D: usize> Model<D> {
         self.past_work[1] += work;
     }
 
-    /// The lowest modes of vibration about the state of now.
+    /// The lowest modes of vibration about the state of now; of a body that was loaded those of the motion that follows.
     ///
     /// # Errors
     /// Those of the factorisation.
     pub(super) fn lowest_modes(&mut self, count: usize) -> Result<Vec<Mode<D>>, SolveError> {
-        let support = self.support();
+        let support = match self.preload.as_ref().filter(|_| self.is_loaded()) {
+            Some(waits) => self.support_of(&waits.constraints),
+            None => self.support(),
+        };
         let body = self.linear_now();
         modes::lowest(&body, &support, count)
     }

@@ -47,7 +47,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Forces per point of force densities.
-    fn per_point(&self, f: &Field<D>) -> Vec<[f64; D]> {
+    pub(super) fn per_point(&self, f: &Field<D>) -> Vec<[f64; D]> {
         self.by_id(|i| {
             let volume = self.body.volume.at(i);
             std::array::from_fn(|a| volume * f[a][i])
@@ -59,12 +59,39 @@ impl<const D: usize> Model<D> {
     }
 
     pub(in crate::run) fn set_values(&mut self, x: &[[f64; D]]) {
+        let mut square = 0.0f64;
         for (x, &s) in x.iter().zip(&self.body.slots) {
+            let mut path = 0.0;
             for a in 0..D {
-                self.u[a][s as usize] = x[a];
+                let u = &mut self.u[a][s as usize];
+                path += (x[a] - *u) * (x[a] - *u);
+                *u = x[a];
             }
+            square = square.max(path);
         }
         self.refresh_images();
+        // who keeps track of what is near is told of every trial
+        let path = square.sqrt();
+        if let Some(contact) = &mut self.contact {
+            contact.moved(path);
+        }
+        self.indenters.iter_mut().for_each(|i| i.moved(path));
+    }
+
+    /// The linear body about the displacements of now, points that touch too.
+    fn tangent_now(&mut self) -> LinearBody<D> {
+        self.refresh_images();
+        let contact = self.contact.as_ref();
+        statics::linear_body_touching(&self.body, self.interaction.as_mut(), contact, &self.u)
+    }
+
+    /// What indenters resist with at points (force / length).
+    fn pushed(&self) -> Vec<f64> {
+        let mut sum = vec![0.0; self.body.len];
+        for indenter in &self.indenters {
+            indenter.add_stiffness(&self.body, &self.u, &mut sum);
+        }
+        self.by_id(|i| sum[i])
     }
 
     pub(in crate::run) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
@@ -129,7 +156,7 @@ impl<const D: usize> Model<D> {
         Ok(solved)
     }
 
-    fn solve_about_reference(
+    pub(super) fn solve_about_reference(
         &mut self,
         state: &mut StaticState<D>,
         support: &Support<D>,
@@ -195,7 +222,6 @@ impl<const D: usize> Model<D> {
         let mut scale = self
             .missing(&now, inertia, &mut r, support)
             .hypot(reference);
-        let added = inertia.map_or(&[][..], |m| &m.added);
         let mut iterations = 0;
         for _ in 0..NEWTON {
             goal.go_on()?;
@@ -225,9 +251,9 @@ impl<const D: usize> Model<D> {
                 let (body, factors) = match kept {
                     Some(kept) => kept,
                     None => {
-                        let mut body = self.linear_now();
+                        let mut body = self.tangent_now();
                         if let Some(inertia) = inertia {
-                            inertia.load(&mut body);
+                            inertia.load(&mut body, &self.pushed());
                         }
                         let factors = match Direct::new(&body, support, shift) {
                             Err(SolveError::Indefinite { .. })
@@ -242,19 +268,23 @@ impl<const D: usize> Model<D> {
                     }
                 };
                 let operator = &mut Assembled(&body);
+                let added = inertia.map_or(vec![], |m| m.of_loaded(&body));
+                let added = &added;
                 let linear =
                     factors.solve_held(&mut Shifted { operator, added }, support, &r, &mut step);
                 if inertia.is_some() {
                     state.factors = Some((body, factors));
                 }
                 linear
-            } else if self.at_peace() {
+            } else if self.at_peace() && self.contact.is_none() {
+                let added = &self.added(inertia);
                 let operator = &mut Swept::new(&self.body, self.interaction.as_mut());
                 let mut operator = Shifted { operator, added };
                 cg::solve(&mut operator, support, &r, &mut step, rough)?
             } else {
-                let body = self.linear_now();
-                solve_assembled(&body, added, support, &r, &mut step, rough)?
+                let added = self.added(inertia);
+                let body = self.tangent_now();
+                solve_assembled(&body, &added, support, &r, &mut step, rough)?
             };
             iterations += linear.iterations.max(1);
             let longest = |x: &[[f64; D]]| {
@@ -309,6 +339,15 @@ impl<const D: usize> Model<D> {
             residual: norm(&r) / scale,
             tolerance: goal.tolerance,
         })
+    }
+
+    /// What inertia and indenters add to the stiffness at points (force / length); empty: nothing.
+    fn added(&self, inertia: Option<&Inertia<D>>) -> Vec<f64> {
+        let Some(inertia) = inertia else {
+            return vec![];
+        };
+        let both = inertia.added.iter().zip(self.pushed());
+        both.map(|(a, b)| a + b).collect()
     }
 
     /// Forces that are missing on the free components, less what inertia takes, and what they are compared with.

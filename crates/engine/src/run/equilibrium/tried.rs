@@ -41,11 +41,13 @@ impl<const D: usize> Tried<D> {
     }
 }
 
-/// What a step in time adds to the equations of equilibrium: `f(u, v, t) = m a`, with v and a that follow u.
+/// What a step in time adds to the equations of equilibrium: `f(u, v, t) = (m a + α f₀)/(1 + α)`, with v and a that follow u.
 pub(in crate::run) struct Inertia<const D: usize> {
-    /// `[N]`
+    /// `[N]` over `1 + α`.
     pub mass: Vec<f64>,
-    /// `[N]` what it adds to the stiffness (force / length): `m ∂a/∂u + c ∂v/∂u`, c what damping takes per velocity.
+    /// `[N]` `α f₀/(1 + α)` (force); empty: α is 0.
+    pub past: Vec<[f64; D]>,
+    /// `[N]` what it adds to the stiffness (force / length): `m ∂a/∂u/(1 + α) + c ∂v/∂u`, c what damping takes per velocity.
     pub added: Vec<f64>,
     /// `∂v/∂u = γ/(βΔt)`
     pub velocity: f64,
@@ -61,11 +63,17 @@ impl<const D: usize> Inertia<D> {
         self.acceleration
     }
 
-    /// Densities whose inertia alone is what this one adds.
-    pub fn load(&self, body: &mut LinearBody<D>) {
-        for (n, added) in self.added.iter().enumerate() {
-            body.density[n] = added / (self.acceleration * body.volume[n]);
+    /// Densities whose inertia alone is what this one adds, and what resists at points by itself (force / length).
+    pub fn load(&self, body: &mut LinearBody<D>, resists: &[f64]) {
+        for (n, added) in self.added.iter().zip(resists).enumerate() {
+            body.density[n] = (added.0 + added.1) / (self.acceleration * body.volume[n]);
         }
+    }
+
+    /// What a body loaded so adds to its stiffness.
+    pub fn of_loaded(&self, body: &LinearBody<D>) -> Vec<f64> {
+        let each = body.density.iter().zip(&body.volume);
+        each.map(|(rho, v)| self.acceleration * rho * v).collect()
     }
 
     /// Takes `m a` from the forces on the free components; how large it and `m v/Δt` are.
@@ -75,7 +83,7 @@ impl<const D: usize> Inertia<D> {
             let m = self.mass[n];
             for a in (0..D).filter(|a| support.free[n][*a]) {
                 let [inertia, momentum] = [m * tried.a[n][a], m * tried.v[n][a] / self.step];
-                r[a] -= inertia;
+                r[a] -= inertia + self.past.get(n).map_or(0.0, |f| f[a]);
                 size += inertia * inertia + momentum * momentum;
             }
         }

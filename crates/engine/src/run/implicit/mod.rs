@@ -5,7 +5,14 @@
 //!
 //! in displacements, velocities and force densities, as velocity Verlet has them: `a = f/ρ`. The equations are solved by the
 //! Newton's method of statics, with `m/(βΔt²)` added to its tangents. `2β ≥ γ ≥ ½` is stable at any step for linear bodies; with
-//! β = ¼, γ = ½ those keep their energy to round-off, because `Δ(½ v·m v) = Δu·½(F₀ + F₁)` then.
+//! β = ¼, γ = ½ those keep their energy to round-off, because `Δ(½ v·m v) = Δu·½(F₀ + F₁)` then. The method of Hilber, Hughes and
+//! Taylor ([`Newmark::hht`]) has `ρ a₁ = (1 + α) f₁ − α f₀` in place of the last equation.
+//!
+//! What a method takes, `Δu·½(F₀ + F₁) − Δ(½ v·m v)` on the points that forces move, is an account of its own: what the balance misses
+//! then is the error of the trapezoidal rule along the path of nonlinear forces, as in statics.
+//!
+//! Bonds break at the end of a step, at its displacements: they are whole within it, and what they hold there is released. Forces jump
+//! then, and accelerations with them. So a crack grows by no more than the reach of a bond in a step.
 
 pub(super) mod state;
 
@@ -13,11 +20,20 @@ use self::state::Implicit;
 use super::Simulation;
 use super::equilibrium::tried::{Inertia, Tried};
 use super::model::Model;
+use crate::body::Field;
 use crate::condition::driven::Driven;
+use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
-use crate::spec::{Newmark, Solver, Spec};
+use crate::quantity::rounded;
+use crate::spec::{Newmark, Release, Solver, Spec};
 use crate::statics::{self, Support};
+
+/// Can bonds break?
+pub(super) fn breaks(spec: &Spec) -> bool {
+    spec.materials.iter().any(|m| m.fracture.is_some())
+        || spec.interfaces.iter().any(|i| i.fracture.is_some())
+}
 
 /// Loads of the spec and those from outside.
 fn loads<'a, const D: usize>(
@@ -34,7 +50,24 @@ fn loads<'a, const D: usize>(
 impl<const D: usize> Model<D> {
     /// Has all that acts a tangent, and is the method stable?
     pub(super) fn check_implicit(&self, options: Newmark, spec: &Spec) -> Result<(), BuildError> {
-        let Newmark { beta, gamma, .. } = options;
+        let Newmark {
+            beta, gamma, alpha, ..
+        } = options;
+        let hht = Newmark::hht(alpha);
+        if !(-1.0 / 3.0..=0.0).contains(&alpha) {
+            return Err(BuildError::invalid(
+                "schedule.alpha",
+                format!("alpha is {alpha}, expected a number from -1/3 to 0"),
+            )
+            .help("write alpha = -0.1, or leave it out"));
+        }
+        if alpha != 0.0 && (beta - hht.beta).hypot(gamma - hht.gamma) > 1e-12 {
+            return Err(BuildError::conflict(
+                "schedule.alpha",
+                format!("beta = {beta} and gamma = {gamma} do not go with alpha = {alpha}, which takes (1 - alpha)²/4 and 1/2 - alpha"),
+            )
+            .help("leave beta and gamma out"));
+        }
         if !(gamma >= 0.5 && 2.0 * beta >= gamma && beta.is_finite()) {
             let path = match gamma >= 0.5 {
                 true => "schedule.beta",
@@ -48,33 +81,26 @@ impl<const D: usize> Model<D> {
         }
         let explicit = "integrator = \"verlet\" knows it; or leave it out";
         self.knows_no_time("schedule.integrator")?;
-        if let Some(n) = spec.materials.iter().position(|m| m.fracture.is_some()) {
+        if breaks(spec) && spec.release == Release::AfterForce {
             return Err(BuildError::unsupported(
-                format!("materials[{n}].fracture"),
-                "bonds that break within an implicit step are not supported",
+                "materials[0].fracture",
+                "bonds that pull once more after they broke have no place in an implicit step",
             )
-            .help(explicit));
+            .help("leave release out, or take integrator = \"verlet\""));
         }
-        if let Some(n) = spec.interfaces.iter().position(|i| i.fracture.is_some()) {
+        if self.friction.is_some() {
             return Err(BuildError::unsupported(
-                format!("interface[{n}].fracture"),
-                "bonds that break within an implicit step are not supported",
+                "contact.friction",
+                "friction has no tangent, which an implicit step needs",
             )
-            .help(explicit));
+            .help("leave friction out, or take integrator = \"verlet\""));
         }
-        if spec.contact.is_some() {
-            return Err(BuildError::unsupported(
-                "contact",
-                "contact has no tangent, which an implicit step needs",
-            )
-            .help("write contact = false, or integrator = \"verlet\""));
-        }
-        if !self.indenters.is_empty() {
+        if self.indenters.iter().any(Indenter::is_free) {
             return Err(BuildError::unsupported(
                 "indenters",
-                "an indenter has no tangent, which an implicit step needs",
+                "an indenter with a mass moves by explicit steps",
             )
-            .help(explicit));
+            .help("leave mass out and write center as a function of t, or take integrator = \"verlet\""));
         }
         if let Err(SolveError::NoTangent { what }) = self.all_have_tangents() {
             return Err(BuildError::unsupported(
@@ -91,7 +117,7 @@ impl<const D: usize> Model<D> {
         if asymmetry > statics::SYMMETRIC && options.solver == Solver::ConjugateGradients {
             return Err(BuildError::unsupported(
                 "schedule.solver",
-                format!("conjugate gradients need a symmetric body, and action is not reaction in this one (asymmetry {asymmetry:.1e})"),
+                format!("conjugate gradients need a symmetric body, and action is not reaction in this one (asymmetry {})", rounded(asymmetry, 2)),
             )
             .help("write solver = \"direct\""));
         }
@@ -108,8 +134,7 @@ impl<const D: usize> Model<D> {
         let what = match () {
             () if self.loads.iter().any(own) => "a force of the program",
             () if self.loads.iter().any(replaces) => "a force that replaces all others",
-            () if !self.indenters.is_empty() || driven => "an indenter or a force from outside",
-            () if self.contact.is_some() => "contact",
+            () if driven => "an indenter or a force from outside",
             () => return Ok(()),
         };
         Err(SolveError::NoTangent { what })
@@ -136,18 +161,20 @@ impl<const D: usize> Model<D> {
 
     /// One step. On an error the state is that of the step before.
     pub(super) fn implicit_step(&mut self) -> Result<(), RunError> {
-        self.spread(self.time(), self.dt)?;
+        let (t, dt) = (self.time(), self.dt);
+        self.update_toughness(t + dt)?;
+        self.spread(t, dt)?;
         self.pay(0.5, 0.0);
         let Some(mut state) = self.implicit.take() else {
             return Ok(());
         };
-        let (u, v) = (self.u.clone(), self.v.clone());
+        let (u, v, f) = (self.u.clone(), self.v.clone(), self.f.clone());
+        let accelerations = state.acceleration.clone();
         let before: Vec<Vec<[f64; D]>> = loads(&self.loads, &self.driven)
             .map(|l| l.acting().to_vec())
             .collect();
+        let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
         let moved = self.move_implicitly(&mut state);
-        self.implicit = Some(state);
-        let (t, dt) = (self.time(), self.dt);
         let error = match (moved, self.fault) {
             (Err(error), _) => Some(self.not_solved(error)),
             (Ok(()), Some(fault)) => Some(self.explained(fault)),
@@ -155,8 +182,14 @@ impl<const D: usize> Model<D> {
         };
         if let Some(error) = error {
             (self.u, self.v) = (u, v);
+            state.acceleration = accelerations;
+            state.equations.forget();
+            self.implicit = Some(state);
             self.retreat_transfers();
             self.step -= 1;
+            let t = self.time();
+            self.indenters.iter_mut().for_each(|i| i.place(t));
+            self.look_again();
             self.forces_held();
             return Err(error);
         }
@@ -170,16 +203,63 @@ impl<const D: usize> Model<D> {
                 std::array::from_fn(|a| now[a][i] - u[a][i])
             });
         }
-        for c in &mut self.constraints {
-            c.end(&self.body, &self.u, &self.f, t, dt);
+        for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
+            indenter.account(before, body, [&u, now]);
         }
+        let end = self.time();
+        for c in &mut self.constraints {
+            c.end(&self.body, &self.u, &self.f, end, dt);
+        }
+        self.numerical += self.taken([&u, &v, &f], &state.held);
+        if state.breaks {
+            self.let_go(&mut state);
+        }
+        self.implicit = Some(state);
         self.pay(0.5, 0.0);
         Ok(())
     }
 
-    /// Displacements, velocities and forces of the step's end; told points go where they are told.
+    /// `Δu·½(F₀ + F₁) − Δ(½ v·m v)` on free components (energy).
+    fn taken(&self, [u, v, f]: [&Field<D>; 3], support: &Support<D>) -> f64 {
+        let mut taken = 0.0;
+        for (free, &s) in support.free.iter().zip(&self.body.slots) {
+            let i = s as usize;
+            let rho = self.body.density.at(i);
+            let mut each = 0.0;
+            for a in (0..D).filter(|a| free[*a]) {
+                let work = 0.5 * (f[a][i] + self.f[a][i]) * (self.u[a][i] - u[a][i]);
+                let [before, now] = [v[a][i], self.v[a][i]];
+                each += work - 0.5 * rho * (now - before) * (now + before);
+            }
+            taken += each * self.body.volume.at(i);
+        }
+        taken
+    }
+
+    /// Breaks the bonds that the end of a step stretched too far, and lets forces and accelerations jump.
+    fn let_go(&mut self, state: &mut Implicit<D>) {
+        let before = self.broken;
+        let whole = self.f.clone();
+        self.evolve();
+        if self.broken == before {
+            return;
+        }
+        state.equations.forget();
+        self.forces_held();
+        for (a, &s) in state.acceleration.iter_mut().zip(&self.body.slots) {
+            let i = s as usize;
+            let rho = self.body.density.at(i);
+            for axis in 0..D {
+                a[axis] += (self.f[axis][i] - whole[axis][i]) / rho;
+            }
+        }
+    }
+
+    /// Displacements, velocities and forces of the step's end, before bonds break; told points go where they are told.
     fn move_implicitly(&mut self, state: &mut Implicit<D>) -> Result<(), SolveError> {
         let (t, dt) = (self.time(), self.dt);
+        let alpha = state.options.alpha;
+        let f = self.f.clone();
         for c in &mut self.constraints {
             c.begin(&self.u, &mut self.v, &mut self.f, t, dt);
         }
@@ -199,7 +279,10 @@ impl<const D: usize> Model<D> {
         for (n, &s) in self.body.slots.iter().enumerate() {
             let i = s as usize;
             for axis in (0..D).filter(|axis| support.free[n][*axis]) {
-                let rate = self.f[axis][i] / self.body.density.at(i);
+                let rate = match state.acceleration.get(n) {
+                    Some(known) => known[axis],
+                    None => self.f[axis][i] / self.body.density.at(i),
+                };
                 self.u[axis][i] += dt * (self.v[axis][i] + 0.5 * dt * rate);
                 self.v[axis][i] += dt * rate;
                 a[n][axis] = rate;
@@ -212,26 +295,35 @@ impl<const D: usize> Model<D> {
         self.carried.drift(&mut self.u);
         self.still.settle(&mut self.v);
         self.carried.settle(&mut self.v);
+        self.indenters.iter_mut().for_each(|i| i.place(t));
+        self.look_again();
         let start = Tried {
             x: self.values(&self.u),
             v: self.values(&self.v),
             a,
         };
         if support.unknowns() > 0 {
-            let inertia = self.inertia(state.options, t);
+            let inertia = self.inertia(state.options, t, &f);
             let (solved, found) =
                 self.solve_from(&mut state.equations, &support, start, Some(&inertia))?;
             state.equations.solved = solved;
             // trials may have gone further than what was taken
             self.set_values(&found.x);
             self.set_velocities_of(&found);
+            if alpha != 0.0 {
+                state.acceleration = found.a;
+            }
         }
-        // with whole velocities: nothing is added to them
-        self.forces(true, 0.0);
+        match state.breaks {
+            true => self.forces_held(),
+            // with whole velocities: nothing is added to them
+            false => self.forces(true, 0.0),
+        }
         Ok(())
     }
 
-    fn inertia(&self, options: Newmark, t: f64) -> Inertia<D> {
+    /// `f` are the force densities at the start of the step.
+    fn inertia(&self, options: Newmark, t: f64, f: &Field<D>) -> Inertia<D> {
         let velocity = options.gamma / (options.beta * self.dt);
         let acceleration = 1.0 / (options.beta * self.dt * self.dt);
         let mut viscosity = vec![0.0; self.body.len];
@@ -239,12 +331,19 @@ impl<const D: usize> Model<D> {
             load.each_viscosity(t, |slot, c| viscosity[slot] += c);
         }
         let volume = |i: usize| self.body.volume.at(i);
-        let mass = self.by_id(|i| self.body.density.at(i) * volume(i));
+        let weight = 1.0 / (1.0 + options.alpha);
+        let mass = self.by_id(|i| weight * self.body.density.at(i) * volume(i));
         let drag = self.by_id(|i| viscosity[i] * volume(i));
         let both = mass.iter().zip(&drag);
+        let past = match options.alpha != 0.0 {
+            true => self
+                .by_id(|i| std::array::from_fn(|a| options.alpha * weight * volume(i) * f[a][i])),
+            false => vec![],
+        };
         Inertia {
             added: both.map(|(m, c)| acceleration * m + velocity * c).collect(),
             mass,
+            past,
             velocity,
             acceleration,
             step: self.dt,

@@ -1,7 +1,7 @@
 //! What the implicit stepper keeps between steps.
 
 use crate::run::equilibrium::state::StaticState;
-use crate::spec::{Method, Newmark, Statics};
+use crate::spec::{Control, Method, Newmark, Statics};
 use crate::statics::Support;
 
 /// Factors that may serve again, and for whom.
@@ -10,12 +10,17 @@ pub(in crate::run) struct Implicit<const D: usize> {
     pub equations: StaticState<D>,
     /// What was held when the factors were made.
     pub held: Support<D>,
+    /// `[N]` accelerations at the end of the last step; empty: those of the forces.
+    pub acceleration: Vec<[f64; D]>,
+    /// Can bonds break?
+    pub breaks: bool,
 }
 
 impl<const D: usize> Implicit<D> {
     pub fn new(options: Newmark) -> Self {
         let equations = StaticState::new(Statics {
             method: Method::Newton,
+            control: Control::Load,
             solver: options.solver,
             tolerance: options.tolerance,
             most_iterations: options.most_iterations,
@@ -24,6 +29,8 @@ impl<const D: usize> Implicit<D> {
             options,
             equations,
             held: Support::none(0),
+            acceleration: vec![],
+            breaks: false,
         }
     }
 }

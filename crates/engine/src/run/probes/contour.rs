@@ -17,7 +17,9 @@
 
 use super::rectangle::Contour;
 use crate::error::BuildError;
+use crate::message;
 use crate::observe::Values;
+use crate::quantity::Dimension;
 use crate::run::model::Model;
 use crate::spec::ContourSpec;
 
@@ -64,11 +66,12 @@ impl<const D: usize> Model<D> {
         for a in 0..2 {
             let (low, high) = (spec.low[a], spec.high[a]);
             if !(high - low >= 2.0 * REACH * horizon) {
-                let message = format!(
-                    "the rectangle is {:.3e} wide and needs {REACH} horizons on either side of the tip: {:.3e}",
-                    high - low,
-                    2.0 * REACH * horizon
-                );
+                let message = message![
+                    "the rectangle is ",
+                    Dimension::LENGTH.of(high - low),
+                    format!(" wide and needs {REACH} horizons on either side of the tip: "),
+                    Dimension::LENGTH.of(2.0 * REACH * horizon),
+                ];
                 return Err(
                     BuildError::conflict(at("corners"), message).help("move the corners apart")
                 );

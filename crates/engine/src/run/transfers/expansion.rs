@@ -2,12 +2,12 @@
 
 use super::state::Transfers;
 use crate::error::BuildError;
-use crate::law::material::Thermoelastic;
-use crate::law::solid::linear::of_stiffness;
+use crate::law::material::{Thermoelastic, ThermoelasticSolid};
+use crate::law::solid::linear::{Linear, Lps, of_stiffness};
 use crate::run::model::Model;
 use crate::spec::{LawSpec, Method, NamedLaw, Spec, Statics, Stepper, TransferSpec};
 
-/// Where a material expands, `pmb` is `thermoelastic`: its own kernels know no temperature. Were laws changed?
+/// Where a material expands, `pmb` is `thermoelastic` and `lps` `thermoelastic_solid`: their own kernels know no temperature. Were laws changed?
 pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
     if !spec.transfers.iter().any(expands) {
@@ -15,15 +15,18 @@ pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     }
     let mut changed = false;
     for m in &mut spec.materials {
-        if let LawSpec::Pmb(stiffness) = m.law {
-            m.law = LawSpec::Named(NamedLaw {
-                name: Thermoelastic::NAME.into(),
-                parameters: of_stiffness(stiffness),
-                isotropic: true,
-                linear: None,
-            });
-            changed = true;
-        }
+        let (name, parameters) = match (&m.law, Lps::parameters(&m.law)) {
+            (LawSpec::Pmb(stiffness), _) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
+            (_, Some(moduli)) => (ThermoelasticSolid::NAME, moduli),
+            _ => continue,
+        };
+        m.law = LawSpec::Named(NamedLaw {
+            name: name.into(),
+            parameters,
+            isotropic: true,
+            linear: None,
+        });
+        changed = true;
     }
     changed
 }
@@ -56,9 +59,9 @@ impl<const D: usize> Model<D> {
         if !self.interaction.expand(&self.body, &self.transfers.strain) {
             return Err(BuildError::unsupported(
                 name,
-                "the bonds of this law or body know no expansion: those of pmb in one body do, and laws such as elastic_plastic, viscoelastic, correspondence, softening",
+                "the bonds of this law or body know no expansion: those of pmb and lps in one body do, and laws such as elastic_plastic, viscoelastic, correspondence, softening",
             )
-            .help("take one of these (for lps: elastic_plastic with a yield stress that is never reached), or leave expansion and swelling out"));
+            .help("take one of these, or leave expansion and swelling out"));
         }
         Ok(())
     }

@@ -3,6 +3,8 @@
 use super::state::TransferInfo;
 use crate::body::Body;
 use crate::error::BuildError;
+use crate::message;
+use crate::quantity::Dimension;
 use crate::run::model::Model;
 use crate::space::Point;
 use crate::spec::{
@@ -94,10 +96,10 @@ impl<const D: usize> Model<D> {
                 "schedule.time_step",
                 "implicit and steady values have steps of any length: how long they are must be said",
             )
-            .help(format!(
-                "write time_step as a number: what is here spreads over the body in about {:.1e}",
-                self.info.transfers[0].spread
-            )));
+            .help(message![
+                "write time_step as a number: what is here spreads over the body in about ",
+                Dimension::TIME.of(self.info.transfers[0].spread),
+            ]));
         }
         self.dt = dt;
         self.info.time_step = dt;

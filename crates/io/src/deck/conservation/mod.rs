@@ -121,5 +121,6 @@ impl LawDeck {
 /// An error of the law at its key.
 fn explain(source: &Source, error: &BuildError) -> DeckError {
     let place = locate::locate(source, &error.path);
-    source.error(place, error.message.clone(), error.help.clone())
+    let help = error.help.as_ref().map(ToString::to_string);
+    source.error(place, error.message.to_string(), help)
 }

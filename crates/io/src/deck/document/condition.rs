@@ -1,6 +1,6 @@
 //! What is done to a body: contact, initial values, conditions.
 
-use super::{Convection, Radiation, Shape, SpeciesExchange};
+use super::{Convection, Radiation, Shape, SpeciesExchange, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Components, Number, Or, Written};
 use schemars::JsonSchema;
@@ -70,6 +70,8 @@ pub struct Condition {
     pub set: Option<At<String>>,
     /// Instead of a set.
     pub region: Option<At<Shape>>,
+    /// Of a deck with [statics] and [run]: the one of both in which this acts, both when left out (without t, which begins at 0 in each).
+    pub stage: Option<At<StageName>>,
     /// Held there: expressions of x, y, z, t; an axis that is left out is free.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub displacement: Option<Components>,

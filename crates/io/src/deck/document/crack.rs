@@ -1,6 +1,6 @@
 //! Cracks, and bonds with factors.
 
-use super::CrackName;
+use super::{CrackName, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Vector};
 use schemars::JsonSchema;
@@ -67,6 +67,9 @@ pub struct Precrack {
     pub stl: Option<At<Stl>>,
     /// absent (never there; when left out) or broken (counted as damage).
     pub kind: Option<CrackName>,
+    /// Of a deck with [statics] and [run]: motion cuts the loaded body when motion begins, and its bonds are then broken; before statics when
+    /// left out.
+    pub stage: Option<At<StageName>>,
 }
 
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

@@ -42,6 +42,9 @@ pub struct Fields {
     /// Write the fields of each frame, too; false when left out. Else they are means over frames alone.
     #[serde(default)]
     pub each: bool,
+    /// Pictures of the slice of a grid in all frames as an animated PNG, too: stress_film.png, of atoms temperature_film.png; false
+    /// when left out. Needs `every`.
+    pub film: Option<At<bool>>,
     /// Write the pressure, too: minus a third of the trace of the Cauchy stress; false when left out.
     #[serde(default)]
     pub pressure: bool,

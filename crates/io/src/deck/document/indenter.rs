@@ -1,6 +1,6 @@
 //! Rigid bodies that push points.
 
-use super::Friction;
+use super::{Friction, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
 use schemars::JsonSchema;
@@ -10,6 +10,8 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Indenter {
+    /// Of a deck with [statics] and [run]: the one of both in which it is there, both when left out (without t, which begins at 0 in each).
+    pub stage: Option<At<StageName>>,
     /// For probes and messages.
     pub name: Option<At<String>>,
     /// Force density / length²: a point at a depth g below the surface is pushed out by stiffness g².

@@ -127,7 +127,9 @@ impl<'de> Visitor<'de> for Constants<'_> {
                 Value::Number(..) => Given::Number(map.next_value()?),
                 Value::List(..) => Given::List(map.next_value()?),
                 Value::Rows(_) => Given::Rows(map.next_value()?),
-                Value::Name | Value::Table | Value::Entries(_) => Given::Word(map.next_value()?),
+                Value::Name | Value::Formula(..) | Value::Table | Value::Entries(_) => {
+                    Given::Word(map.next_value()?)
+                }
                 Value::Word(words) => {
                     let word: At<String> = map.next_value()?;
                     if !words.iter().any(|(w, _)| *w == word.value) {
@@ -180,11 +182,16 @@ impl JsonSchema for Law {
                         let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
                         json!({ "type": "string", "enum": words })
                     }
-                    Value::Name | Value::Table | Value::Entries(_) => json!({ "type": "string" }),
+                    Value::Name | Value::Formula(..) | Value::Table | Value::Entries(_) => {
+                        json!({ "type": "string" })
+                    }
                 };
                 value["description"] = json!(k.doc);
                 let (dimension, bounds) = match k.value {
                     Value::Number(d, b) | Value::List(_, d, b) => (Some(d), b.words()),
+                    Value::Formula(variables, d) => {
+                        (Some(d), format!("an expression of {}", variables.join(", ")))
+                    }
                     Value::Rows(_) | Value::Word(_) | Value::Name => (None, String::new()),
                     Value::Table | Value::Entries(_) => (None, String::new()),
                 };

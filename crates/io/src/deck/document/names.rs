@@ -98,11 +98,28 @@ names! {
         Neighbours,
     }
     /// How a motion goes on in time.
+    /// What says how far an increment goes.
+    ControlName {
+        /// t, of which loads are functions.
+        Load,
+        /// The next bond: loads are proportional to t, an increment goes to where a bond is at its critical stretch, however little t is
+        /// there, and the next one begins without it.
+        Breaking,
+    }
+    /// Of a deck with [statics] and [run].
+    StageName {
+        /// While the body is loaded.
+        Statics,
+        /// From its last equilibrium on.
+        Motion,
+    }
     IntegratorName {
         /// Velocity Verlet: explicit, stable below a limit of the step.
         Verlet,
         /// Newmark's method: implicit, stable at any step.
         Newmark,
+        /// The method of Hilber, Hughes and Taylor: implicit, and damps what is fast beside the step.
+        Hht,
         /// Points stand where they are; heat and species go on.
         Still,
     }

@@ -60,6 +60,9 @@ pub struct Picture {
     /// What the ends of the colours mean, in plain numbers of the field; those of its values when left out.
     #[schemars(extend("dimension" = "that of the field"))]
     pub range: Option<At<[f64; 2]>>,
+    /// Name of a vector field that is drawn as arrows over the colours, in 2-D and 3-D: displacement, velocity, …; none when left
+    /// out.
+    pub arrows: Option<At<String>>,
     /// All frames as an animated PNG, too: FIELD_film.png.
     #[serde(default)]
     pub film: bool,

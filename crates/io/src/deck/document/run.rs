@@ -1,6 +1,6 @@
 //! How a body moves or comes to rest, and what is measured of it.
 
-use super::{IntegratorName, MeasureName};
+use super::{ControlName, IntegratorName, MeasureName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Vector, Written};
 use schemars::JsonSchema;
@@ -20,8 +20,8 @@ pub struct Run {
     /// Run even if the step is above the stability limit.
     #[serde(default)]
     pub force_unstable: bool,
-    /// verlet when left out. newmark is implicit: stable at any step, which must be given, and without fracture and contact. still: no point
-    /// moves while heat or a species spreads.
+    /// verlet when left out. newmark and hht are implicit: stable at any step, which must be given; bonds break at the end of a step. still: no
+    /// point moves while heat or a species spreads.
     pub integrator: Option<At<IntegratorName>>,
     /// newmark: 1/4 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
@@ -29,12 +29,15 @@ pub struct Run {
     /// newmark: 1/2 when left out; more damps what is fast beside the step.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub gamma: Option<Number>,
-    /// newmark: auto when left out, factors of small systems, conjugate gradients of large ones.
+    /// hht: -0.1 when left out, from -1/3 (most damping of what is fast) to 0 (none); sets beta and gamma.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub alpha: Option<Number>,
+    /// newmark, hht: auto when left out, factors of small systems, conjugate gradients of large ones.
     pub solver: Option<At<SolverName>>,
-    /// newmark: residual force over loads, reactions and inertia; 1e-10 when left out.
+    /// newmark, hht: residual force over loads, reactions and inertia; 1e-10 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub tolerance: Option<Number>,
-    /// newmark: iterations of conjugate gradients; 100,000 when left out.
+    /// newmark, hht: iterations of conjugate gradients; 100,000 when left out.
     pub iterations: Option<At<usize>>,
     /// All cores when left out; results do not depend on it.
     pub threads: Option<At<usize>>,
@@ -53,13 +56,17 @@ pub enum ReleaseName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
-    /// linear (about the reference) when left out; newton for large deformation, relaxation for contact.
+    /// linear (about the reference) when left out, newton before [run]; newton for large deformation, relaxation for contact.
     pub method: Option<MethodName>,
+    /// load when left out; breaking follows bond after bond, also where load and displacement fall (snap-back), with method = "linear".
+    pub control: Option<At<ControlName>>,
     /// auto when left out: factors of small systems, conjugate gradients of large ones.
     pub solver: Option<SolverName>,
-    /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only.
+    /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only. With control =
+    /// "breaking" so many equilibria, in each of which the next bonds are about to break.
     pub increments: Option<At<u64>>,
-    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out.
+    /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out. Before [run] the
+    /// stage is as long in records, which count time from the beginning of motion; when left out an increment is as long as a step.
     #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub duration: Option<Number>,
     /// Residual force over loads and reactions; 1e-10 when left out, 1e-8 with newton, 1e-6 with relaxation.
@@ -67,7 +74,7 @@ pub struct Statics {
     pub tolerance: Option<Number>,
     /// Iterations of conjugate gradients or of relaxation; 100,000 when left out.
     pub iterations: Option<At<usize>>,
-    /// So many lowest modes of vibration about the last state; modes.csv and modes.pvd.
+    /// So many lowest modes of vibration about the last state, before [run] those of the motion that follows; modes.csv and modes.pvd.
     pub modes: Option<At<usize>>,
     /// All cores when left out; results do not depend on it.
     pub threads: Option<At<usize>>,

@@ -97,6 +97,11 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// From here on `t` is that of another stage.
+    pub fn set_time(&mut self, time: Dim) {
+        self.time = time;
+    }
+
     pub fn error(&self, span: &Range<usize>, message: impl Into<String>) -> DeckError {
         self.source.error(Some(span.clone()), message, None)
     }
@@ -113,7 +118,18 @@ impl<'a> Context<'a> {
 
     /// A text as an expression in units of computation: a quantity, the name of a constant, or more.
     fn meaning(&self, text: &str, span: &Range<usize>, dim: Dim) -> Result<Expression> {
-        let (expression, kind) = self.compile(text, span)?;
+        self.meaning_of(text, span, dim, None)
+    }
+
+    /// The same of other variables, plain numbers, in place of x, y, z and t.
+    fn meaning_of(
+        &self,
+        text: &str,
+        span: &Range<usize>,
+        dim: Dim,
+        variables: Option<&'static [&'static str]>,
+    ) -> Result<Expression> {
+        let (expression, kind) = self.compile_of(text, span, variables)?;
         let factor = self.units.plain_factor(dim);
         if kind.takes_any() || !kind.unit {
             return Ok(if factor == 1.0 {
@@ -141,6 +157,15 @@ impl<'a> Context<'a> {
 
     /// The expression, in units of computation where a unit is written in it, and what it measures.
     fn compile(&self, text: &str, span: &Range<usize>) -> Result<(Expression, Kind)> {
+        self.compile_of(text, span, None)
+    }
+
+    fn compile_of(
+        &self,
+        text: &str,
+        span: &Range<usize>,
+        variables: Option<&'static [&'static str]>,
+    ) -> Result<(Expression, Kind)> {
         // infinities, too
         if let Ok(value) = text.trim().parse::<f64>() {
             return Ok((Expression::constant(value), Kind::bare(value == 0.0)));
@@ -169,6 +194,7 @@ impl<'a> Context<'a> {
             time: self.time,
             constants: &kinds,
             strict: false,
+            variables,
         };
         let read = |dimensions: &Dimensions| {
             Expression::measured(text, &constants, dimensions)
@@ -267,6 +293,16 @@ impl<'a> Context<'a> {
                 ),
             ))
         }
+    }
+
+    /// An expression of variables that are plain numbers, of this dimension.
+    pub fn formula(
+        &self,
+        text: &At<String>,
+        variables: &'static [&'static str],
+        dim: Dim,
+    ) -> Result<Expression> {
+        self.meaning_of(&text.value, &text.span, dim, Some(variables))
     }
 
     /// An expression of x, y, z, t of this dimension.

@@ -54,6 +54,22 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
         other => other.as_ref().map(|n| n.value),
     };
     let averaged = averaged(context, written)?;
+    if let Some(film) = written.film.as_ref().filter(|f| f.value) {
+        if written.grid.is_none() {
+            return Err(context.error_with(
+                &film.span,
+                "a film is one of the slice of a grid",
+                "write grid = [40, 40], or leave film out",
+            ));
+        }
+        if every.is_none() {
+            return Err(context.error_with(
+                &film.span,
+                "a film has frames",
+                "write every = 10, the steps between them, or leave film out",
+            ));
+        }
+    }
     Ok(FieldsSpec {
         name: name.into(),
         shape: shape(context, written)?,
@@ -64,6 +80,7 @@ fn one(context: &Context, at: &At<Fields>, atoms: bool) -> Result<FieldsSpec> {
         every,
         skip: written.skip.unwrap_or(0),
         each: written.each,
+        film: written.film.as_ref().is_some_and(|f| f.value),
         pressure: written.pressure,
         residuals: written.residuals.unwrap_or(16),
     })

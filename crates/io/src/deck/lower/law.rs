@@ -51,6 +51,9 @@ pub(super) fn read<'a>(
                 Parameter::Rows(rows.collect::<Result<_>>()?)
             }
             (Given::Word(name), Value::Table | Value::Entries(_)) => file(name, key)?,
+            (Given::Word(text), Value::Formula(variables, dimension)) => {
+                Parameter::Formula(context.formula(text, variables, dimension)?)
+            }
             (Given::Word(word), _) => Parameter::Word(word.value.clone()),
             (Given::Number(_) | Given::List(_) | Given::Rows(_), _) => {
                 let message = format!("`{name}` has another form");

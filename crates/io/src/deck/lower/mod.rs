@@ -17,6 +17,7 @@ mod probes;
 mod region;
 mod schedule;
 mod sets;
+mod stage;
 mod transfer;
 mod warnings;
 
@@ -26,7 +27,7 @@ pub(super) use schedule::{MANY_STEPS, steps};
 
 use super::OutputSpec;
 use super::document::{
-    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName,
+    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName, StageName,
     SurfaceName, UnitName, Units,
 };
 use super::error::DeckError;
@@ -43,8 +44,10 @@ use peridyne::run::Shelf;
 use peridyne::space::triangles::Triangles;
 use peridyne::spec::{
     BodySpec, BondedSpec, Calibration, Cloud, FamilyChoice, Horizon, Influence, MaterialSpec,
-    Plane, Spec, SurfaceFactors, SurfaceMethod,
+    Plane, PreloadSpec, Spec, SurfaceFactors, SurfaceMethod,
 };
+pub(super) use stage::Entries;
+use stage::{Staged, Stages};
 use std::path::Path;
 
 /// How files named in a deck are read.
@@ -145,7 +148,7 @@ pub(super) struct Lowered {
     pub modes: usize,
     pub warnings: Vec<String>,
     pub notes: Vec<String>,
-    pub condition_entries: Vec<usize>,
+    pub entries: Entries,
 }
 
 pub(super) fn lower(
@@ -154,11 +157,8 @@ pub(super) fn lower(
     files: &Files,
 ) -> std::result::Result<Lowered, DeckError> {
     let units = units(document);
-    let time = match &document.statics {
-        Some(statics) if statics.value.duration.is_none() => Dim::NUMBER,
-        Some(_) | None => Dim::TIME,
-    };
-    let mut context = Context::new(source, units, time, &document.constants)?;
+    let stages = Stages::of(document);
+    let mut context = Context::new(source, units, stages.time(None), &document.constants)?;
     measured_constants(&context, document)?;
     let mut body = bodies::bodies(&mut context, document, files)?;
     bodies::check(&context, document)?;
@@ -200,12 +200,39 @@ pub(super) fn lower(
         transfer::initial(&context, &at.value, &made.set, &mut starts)?;
         initial.push(made);
     }
-    let (mut conditions, mut condition_entries) = (Vec::new(), Vec::new());
+    let mut conditions = Staged::default();
     let mut exchanged = Vec::new();
     for (index, at) in document.condition.iter().enumerate() {
+        let stage = stages.named(&context, &at.value.stage)?;
+        context.set_time(stages.time(stage));
         let made = motion::condition(&context, index, at, &mut sets, &mut exchanged)?;
-        conditions.extend(made);
-        condition_entries.resize(conditions.len(), index);
+        if stages.both && stage.is_none() && made.iter().any(stage::of_time) {
+            return Err(stages.whose(&context, &at.span));
+        }
+        conditions.put(stage, stages.both, index, made);
+    }
+    let section = section(&context, document)?;
+    let mut indenters = Staged::default();
+    for (index, at) in document.indenter.iter().enumerate() {
+        let stage = stages.named(&context, &at.value.stage)?;
+        context.set_time(stages.time(stage));
+        let made = indenter::indenter(&context, at, section, files)?;
+        if stages.both && stage.is_none() && stage::moves(&made) {
+            return Err(stages.whose(&context, &at.span));
+        }
+        indenters.put(stage, stages.both, index, vec![made]);
+    }
+    context.set_time(stages.time(None));
+    let mut precracks = Staged::default();
+    for (index, at) in document.precrack.iter().enumerate() {
+        let late = stages.named(&context, &at.value.stage)? == Some(StageName::Motion);
+        let made = motion::precrack(&context, at, late, files)?;
+        let when = if late {
+            StageName::Motion
+        } else {
+            StageName::Statics
+        };
+        precracks.put(Some(when), true, index, vec![made]);
     }
     let transfers = transfer::transfers(&context, document, &materials, starts, exchanged)?;
     let probes = document.probe.iter();
@@ -213,7 +240,6 @@ pub(super) fn lower(
         .map(|at| probes::probe(&context, at, &sets))
         .collect::<Result<Vec<_>>>()?;
     let first = bodies::own(&context, document, &mut body, &materials, &sets)?;
-    let section = section(&context, document)?;
     let run = schedule::schedule(&context, document)?;
     let mut spec = Spec {
         title: document.title.clone().unwrap_or_default(),
@@ -239,6 +265,11 @@ pub(super) fn lower(
                 ));
             }
         },
+        own_horizon: document
+            .own_horizon
+            .as_ref()
+            .map(|e| context.expression(e, Dim::LENGTH))
+            .transpose()?,
         bonded: atoms::molecules(&context, document, files)?,
         thermal: document
             .thermal
@@ -269,20 +300,20 @@ pub(super) fn lower(
             .iter()
             .map(|t| motion::toughness(&context, t, &sets))
             .collect::<Result<_>>()?,
-        precracks: document
-            .precrack
-            .iter()
-            .map(|p| motion::precrack(&context, p, files))
-            .collect::<Result<_>>()?,
+        precracks: precracks.before,
         contact: contact::contact(&context, document, &materials)?,
         initial,
-        conditions,
+        preload: run.preload.map(|p| PreloadSpec {
+            statics: p.statics,
+            increments: p.increments,
+            duration: p.duration,
+            conditions: conditions.before,
+            indenters: indenters.before,
+            cuts: precracks.then,
+        }),
+        conditions: conditions.then,
         transfers,
-        indenters: document
-            .indenter
-            .iter()
-            .map(|i| indenter::indenter(&context, i, section, files))
-            .collect::<Result<_>>()?,
+        indenters: indenters.then,
         family: match document.family {
             Some(FamilyName::Stencil) => FamilyChoice::Stencil,
             Some(FamilyName::List) => FamilyChoice::List,
@@ -313,7 +344,11 @@ pub(super) fn lower(
         modes: run.modes,
         warnings: warnings::warnings(&context, document),
         notes: context.notes,
-        condition_entries,
+        entries: Entries {
+            conditions: conditions.entries,
+            indenters: indenters.entries,
+            precracks: precracks.entries,
+        },
     })
 }
 

@@ -143,9 +143,11 @@ pub(super) fn condition(
         .collect())
 }
 
+/// One that is `late` cuts a body that is loaded.
 pub(super) fn precrack(
     context: &Context,
     at: &At<Precrack>,
+    late: bool,
     files: &Files,
 ) -> Result<PrecrackSpec> {
     let p = &at.value;
@@ -157,6 +159,7 @@ pub(super) fn precrack(
     };
     let kind = match p.kind {
         Some(CrackName::Broken) => CrackKind::Broken,
+        None if late => CrackKind::Broken,
         Some(CrackName::Absent) | None => CrackKind::Absent,
     };
     let flat = shape.segment.is_some()

@@ -2,14 +2,16 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{
-    Document, IntegratorName, MethodName, Output, Picture, Run, Safety, SolverName, Statics,
+    ControlName, Document, IntegratorName, MethodName, Output, Picture, Run, Safety, SolverName,
+    Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
 use crate::deck::{OutputSpec, PictureSpec};
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
-use peridyne::spec::{Method, Newmark, Schedule, Solver, Stepper, TimeStep};
+use peridyne::spec::{Control, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// A run of more steps is likely a slip of units.
@@ -22,32 +24,78 @@ pub(super) struct RunSpec {
     pub duration: Option<f64>,
     /// Modes of vibration asked for.
     pub modes: usize,
+    /// Statics before motion.
+    pub preload: Option<Before>,
+}
+
+/// Statics before motion.
+pub(super) struct Before {
+    pub statics: peridyne::spec::Statics,
+    pub increments: u64,
+    pub duration: Option<f64>,
 }
 
 pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec> {
     match (&document.run, &document.statics) {
         (Some(run), None) => motion(context, run),
-        (None, Some(written)) => statics(context, written),
-        (Some(_), Some(written)) => Err(context.error_with(
-            &written.span,
-            "the deck has [run] and [statics]: motion in time, or equilibrium",
-            "remove one of them",
-        )),
+        (None, Some(written)) => statics(context, written, Method::Linear),
+        (Some(run), Some(written)) => {
+            let before = statics(context, written, Method::Newton)?;
+            let Some(options) = before.schedule.statics() else {
+                return Ok(before);
+            };
+            if before.schedule.steps == 0 {
+                let zero = &written.value.increments;
+                let span = zero.as_ref().map_or(&written.span, |n| &n.span);
+                return Err(context.error_with(
+                    span,
+                    "motion begins in equilibrium, and no increment leads to one",
+                    "write increments = 1 or more, or leave [statics] out",
+                ));
+            }
+            let duration = written.value.duration.as_ref();
+            let duration = duration.map(|d| context.positive(d, Dim::TIME, "the duration"));
+            let then = motion(context, run)?;
+            Ok(RunSpec {
+                modes: before.modes,
+                threads: then.threads.or(before.threads),
+                preload: Some(Before {
+                    statics: options,
+                    increments: before.schedule.steps,
+                    duration: duration.transpose()?,
+                }),
+                ..then
+            })
+        }
         (None, None) => Err(context.error_with(
             &(0..0),
             "the deck does not say what to do",
-            "add [run] with steps or a duration, or [statics] for equilibrium",
+            "add [run] with steps or a duration, or [statics] for equilibrium, or both: motion from an equilibrium",
         )),
     }
 }
 
-fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
+fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<RunSpec> {
     let written = &written.value;
     let method = match written.method {
-        None | Some(MethodName::Linear) => Method::Linear,
+        None => usual,
+        Some(MethodName::Linear) => Method::Linear,
         Some(MethodName::Newton) => Method::Newton,
         Some(MethodName::Relaxation) => Method::Relaxation,
     };
+    let control = written
+        .control
+        .as_ref()
+        .map_or(ControlName::Load, |c| c.value);
+    if control == ControlName::Breaking
+        && let Some(duration) = &written.duration
+    {
+        return Err(context.error_with(
+            &duration.span,
+            "t is the factor of the load where bonds break in turn, and no time",
+            "leave duration out",
+        ));
+    }
     let tolerance = match &written.tolerance {
         Some(number) => context.positive(number, Dim::NUMBER, "the tolerance")?,
         None => match method {
@@ -77,6 +125,10 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
             force_unstable: false,
             stepper: Stepper::Statics(peridyne::spec::Statics {
                 method,
+                control: match control {
+                    ControlName::Load => Control::Load,
+                    ControlName::Breaking => Control::Breaking,
+                },
                 solver: solver(written.solver),
                 tolerance,
                 most_iterations: written.iterations.as_ref().map_or(100_000, |n| n.value),
@@ -85,6 +137,7 @@ fn statics(context: &Context, written: &At<Statics>) -> Result<RunSpec> {
         threads: threads(context, &written.threads)?,
         duration: None,
         modes,
+        preload: None,
     })
 }
 
@@ -96,40 +149,76 @@ fn solver(written: Option<SolverName>) -> Solver {
     }
 }
 
-/// What moves the points; keys of the implicit method belong to it alone.
+/// What moves the points; keys of the implicit methods belong to them alone.
 fn stepper(context: &Context, run: &Run) -> Result<Stepper> {
-    let (implicit, other) = match run.integrator.as_ref().map(|i| i.value) {
-        None | Some(IntegratorName::Verlet) => (false, Stepper::Verlet),
-        Some(IntegratorName::Still) => (false, Stepper::Still),
-        Some(IntegratorName::Newmark) => (true, Stepper::Verlet),
-    };
-    let own = [
-        ("beta", run.beta.as_ref().map(|n| &n.span)),
-        ("gamma", run.gamma.as_ref().map(|n| &n.span)),
-        ("solver", run.solver.as_ref().map(|n| &n.span)),
-        ("tolerance", run.tolerance.as_ref().map(|n| &n.span)),
-        ("iterations", run.iterations.as_ref().map(|n| &n.span)),
+    use IntegratorName::{Hht, Newmark as Plain, Still, Verlet};
+    let name = run.integrator.as_ref().map_or(Verlet, |i| i.value);
+    let own: [(&str, Option<&Range<usize>>, &[IntegratorName]); 6] = [
+        ("beta", run.beta.as_ref().map(|n| &n.span), &[Plain]),
+        ("gamma", run.gamma.as_ref().map(|n| &n.span), &[Plain]),
+        ("alpha", run.alpha.as_ref().map(|n| &n.span), &[Hht]),
+        (
+            "solver",
+            run.solver.as_ref().map(|n| &n.span),
+            &[Plain, Hht],
+        ),
+        (
+            "tolerance",
+            run.tolerance.as_ref().map(|n| &n.span),
+            &[Plain, Hht],
+        ),
+        (
+            "iterations",
+            run.iterations.as_ref().map(|n| &n.span),
+            &[Plain, Hht],
+        ),
     ];
-    if let Some((key, span)) = own.iter().find_map(|(key, span)| Some((key, (*span)?)))
-        && !implicit
-    {
-        return Err(context.error_with(
-            span,
-            format!("{key} belongs to the implicit integrator"),
-            "write integrator = \"newmark\", or leave it out",
-        ));
-    }
-    if !implicit {
-        return Ok(other);
+    for (key, span, of) in own {
+        if let Some(span) = span
+            && !of.contains(&name)
+        {
+            let (whose, word) = match of {
+                [Hht] => ("the method of Hilber, Hughes and Taylor", "hht"),
+                [Plain] if name == Hht => ("Newmark's method; alpha says both here", "newmark"),
+                _ => ("the implicit integrator", "newmark"),
+            };
+            return Err(context.error_with(
+                span,
+                format!("{key} belongs to {whose}"),
+                format!("write integrator = \"{word}\", or leave it out"),
+            ));
+        }
     }
     let number = |written: &Option<_>, or: f64, what: &str| match written {
         None => Ok(or),
         Some(written) => context.positive(written, Dim::NUMBER, what),
     };
-    let standard = Newmark::default();
+    let standard = match name {
+        Verlet => return Ok(Stepper::Verlet),
+        Still => return Ok(Stepper::Still),
+        Plain => Newmark::default(),
+        Hht => match &run.alpha {
+            None => Newmark::hht(-0.1),
+            Some(written) => {
+                let alpha = context.finite(written, Dim::NUMBER)?;
+                if !(-1.0 / 3.0..=0.0).contains(&alpha) {
+                    return Err(context.error_with(
+                        &written.span,
+                        format!(
+                            "alpha is {}, expected a number from -1/3 to 0",
+                            short(alpha)
+                        ),
+                        "write alpha = -0.1, or leave it out",
+                    ));
+                }
+                Newmark::hht(alpha)
+            }
+        },
+    };
     Ok(Stepper::Newmark(Newmark {
         beta: number(&run.beta, standard.beta, "beta")?,
         gamma: number(&run.gamma, standard.gamma, "gamma")?,
+        alpha: standard.alpha,
         solver: solver(run.solver.as_ref().map(|s| s.value)),
         tolerance: number(&run.tolerance, standard.tolerance, "the tolerance")?,
         most_iterations: run
@@ -224,6 +313,7 @@ fn motion(context: &Context, run: &At<Run>) -> Result<RunSpec> {
         threads: threads(context, &written.threads)?,
         duration,
         modes: 0,
+        preload: None,
     })
 }
 
@@ -356,6 +446,7 @@ fn picture(context: &Context, at: &At<Picture>) -> Result<PictureSpec> {
         component: text(&p.component),
         scale: scale.transpose()?,
         range: p.range.as_ref().map(|r| r.value),
+        arrows: text(&p.arrows),
         film: p.film,
     })
 }

@@ -123,7 +123,12 @@ pub struct Dimensions<'a> {
     pub constants: &'a [(&'a str, Option<Dim>)],
     /// Refuse what does not fit.
     pub strict: bool,
+    /// Plain numbers in place of x, y, z and t.
+    pub variables: Option<&'static [&'static str]>,
 }
+
+/// What expressions are of where nothing else is said.
+const PLACE: &[&str] = &["x", "y", "z"];
 
 fn misfit(message: String, help: impl Into<String>) -> Misfit {
     Misfit {
@@ -134,7 +139,9 @@ fn misfit(message: String, help: impl Into<String>) -> Misfit {
 
 impl Dimensions<'_> {
     fn taken(&self, name: &str) -> bool {
-        ["x", "y", "z", "t", "pi", "e"].contains(&name)
+        self.variables().contains(&name)
+            || ["pi", "e"].contains(&name)
+            || self.variables.is_none() && name == "t"
             || self.constants.iter().any(|(known, _)| *known == name)
     }
 
@@ -230,8 +237,14 @@ impl Measure for Dimensions<'_> {
     fn pure(&self) -> Kind {
         PURE
     }
+    fn variables(&self) -> &'static [&'static str] {
+        self.variables.unwrap_or(PLACE)
+    }
     fn coordinate(&self) -> Kind {
-        Kind::variable(Dim::LENGTH)
+        match self.variables {
+            Some(_) => PURE,
+            None => Kind::variable(Dim::LENGTH),
+        }
     }
     fn time(&self) -> Kind {
         Kind::variable(self.time)

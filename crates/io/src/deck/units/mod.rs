@@ -7,7 +7,7 @@ mod write;
 
 pub use measure::{Dimensions, Kind, factor_help};
 pub use parse::{split, unit};
-pub use write::rounded;
+pub use peridyne::quantity::rounded;
 pub(in crate::deck) use write::short;
 
 use schemars::JsonSchema;

@@ -1,5 +1,7 @@
 //! Values as text.
 
+use peridyne::quantity::{Message, rounded};
+
 use super::{AVOGADRO, Dim, UnitSystem};
 
 impl UnitSystem {
@@ -11,6 +13,11 @@ impl UnitSystem {
     /// The same in the four digits that a reader looks at: `167.8 GPa`.
     pub fn show(self, value: f64, dim: Dim) -> String {
         self.digits(value, dim, 4)
+    }
+
+    /// What the engine says, its numbers with units.
+    pub fn tell(self, message: &Message) -> String {
+        message.with(|q| self.show(q.value, q.dimension))
     }
 
     fn digits(self, value: f64, dim: Dim, digits: usize) -> String {
@@ -128,21 +135,6 @@ impl UnitSystem {
 /// A number in six digits, without trailing zeros.
 pub(in crate::deck) fn short(value: f64) -> String {
     rounded(value, 6)
-}
-
-/// A number in so many digits, without trailing zeros.
-pub fn rounded(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let rounded: f64 = format!("{value:.*e}", digits.max(1) - 1)
-        .parse()
-        .unwrap_or(value);
-    if (1e-3..1e6).contains(&rounded.abs()) {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
-    }
 }
 
 /// In the largest unit of which it is so much at least.

@@ -1,6 +1,7 @@
 //! What comes of fields frame by frame: a file for each if asked for, means over all, and at the end everything else.
 
 use super::describe::{About, Frame, describe};
+use super::slice::SliceFilm;
 use super::{Table, write_arrays, write_image, write_profiles, write_slice, write_table};
 use crate::continuum::Units;
 use crate::write::atomic::{WriteError, create_directory, write_file};
@@ -19,6 +20,8 @@ pub struct Collected {
     each: bool,
     /// Write the pressure, too.
     pressure: bool,
+    /// Slices of all frames, where a film is wanted.
+    film: Option<SliceFilm>,
     read: Vec<Frame>,
     average: Average,
     last: Option<(Table, Option<f64>)>,
@@ -35,11 +38,19 @@ impl Collected {
             units,
             each,
             pressure,
+            film: None,
             read: vec![],
             average: Average::default(),
             last: None,
             written: vec![],
         }
+    }
+
+    /// With a film of the slice, if one is wanted.
+    #[must_use]
+    pub fn with_film(mut self, wanted: bool) -> Collected {
+        self.film = wanted.then(SliceFilm::default);
+        self
     }
 
     /// Files of frames.
@@ -82,6 +93,9 @@ impl Collected {
                 }
             }
         }
+        if let Some(film) = &mut self.film {
+            film.push(&table, shown);
+        }
         self.read.push(about);
         self.last = Some((table, time));
         Ok(())
@@ -97,9 +111,9 @@ impl Collected {
         source: &str,
         potential: &str,
         method: &Method,
-    ) -> Result<Vec<Frame>, WriteError> {
+    ) -> Result<Made, WriteError> {
         let Some((last, time)) = self.last else {
-            return Ok(vec![]);
+            return Ok(Made::default());
         };
         create_directory(&self.dir)?;
         let frames = self.read.len();
@@ -121,17 +135,40 @@ impl Collected {
             read: self.read,
         };
         let time = time.filter(|_| frames == 1);
-        save(&self.dir, &table, &about, time)?;
-        Ok(about.read)
+        let mut pictures = save(&self.dir, &table, &about, time)?;
+        if let Some(film) = self.film {
+            pictures.extend(film.finish(&self.dir, about.units)?);
+        }
+        Ok(Made {
+            frames: about.read,
+            pictures,
+        })
     }
 }
 
-fn save(dir: &Path, table: &Table, about: &About, time: Option<f64>) -> Result<(), WriteError> {
+/// What was made.
+#[derive(Default)]
+pub struct Made {
+    /// What the frames say of themselves.
+    pub frames: Vec<Frame>,
+    /// Pictures of slices, and films of them.
+    pub pictures: Vec<PathBuf>,
+}
+
+/// Gives the pictures.
+fn save(
+    dir: &Path,
+    table: &Table,
+    about: &About,
+    time: Option<f64>,
+) -> Result<Vec<PathBuf>, WriteError> {
+    let mut pictures = vec![];
     match table.grid {
         None => write_table(&dir.join("points.csv"), table)?,
         Some(_) => {
             write_image(dir, "fields", table, time)?;
-            write_slice(dir, table, about.units)?;
+            pictures = write_slice(dir, table, about.units)?;
+            pictures.retain(|p| p.extension().is_some_and(|e| e == "png"));
             write_profiles(dir, table, about.units)?;
         }
     }
@@ -141,7 +178,8 @@ fn save(dir: &Path, table: &Table, about: &About, time: Option<f64>) -> Result<(
     let text = serde_json::to_string_pretty(&describe(about, table))
         .map_err(Error::other)
         .map_err(WriteError::at("write", &path))?;
-    write_file(&path, |w| writeln!(w, "{text}"))
+    write_file(&path, |w| writeln!(w, "{text}"))?;
+    Ok(pictures)
 }
 
 /// Of which frame fields are.

@@ -9,7 +9,7 @@ mod slice;
 mod table;
 
 pub use arrays::write_arrays;
-pub use collected::{Collected, Origin, examined};
+pub use collected::{Collected, Made, Origin, examined};
 pub use describe::{About, Frame, describe};
 pub use image::write_image;
 pub use profile::write_profiles;

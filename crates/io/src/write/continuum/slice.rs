@@ -1,29 +1,46 @@
-//! A picture of the slice through the middle of a grid: the mean of the normal stresses, and the kinetic temperature where there is one.
+//! Pictures of the slice through the middle of a grid: the mean of the normal stresses, and the kinetic temperature where there is one;
+//! of one table, or of all frames as a film.
 
-use super::Table;
+use super::{Column, Table};
 use crate::continuum::Units;
-use crate::write::atomic::WriteError;
+use crate::write::atomic::{WriteError, write_file};
+use crate::write::picture::film::animate;
+use crate::write::picture::label;
 use crate::write::plot::{ColorMap, Map};
 use peridyne_fields::Quantity;
 use std::path::{Path, PathBuf};
 
-/// Writes pictures of the slice across the shortest axis of the grid; gives their paths. Nothing for points that are no grid, or a grid
-/// that is no more than a line.
-///
-/// # Errors
-/// The operating system's.
-pub fn write_slice(dir: &Path, table: &Table, units: Units) -> Result<Vec<PathBuf>, WriteError> {
+/// A slice across the shortest axis of a grid.
+#[derive(Debug, Clone)]
+struct Slice {
+    /// Names of its files, and what it shows.
+    name: &'static str,
+    title: &'static str,
+    /// Axis across it, axes along it, and where these begin and end.
+    across: usize,
+    along: [usize; 2],
+    range: [[f64; 2]; 2],
+    columns: usize,
+    values: Vec<f64>,
+    unit: String,
+    /// Is it of both signs?
+    signed: bool,
+}
+
+/// Nothing for points that are no grid, or a grid that is no more than a line.
+fn slices(table: &Table) -> Vec<Slice> {
     let Some((n, cell)) = &table.grid else {
-        return Ok(vec![]);
+        return vec![];
     };
     let across = (0..3).min_by_key(|a| n[*a]).unwrap_or(2);
-    let [a, b] = match across {
+    let along = match across {
         0 => [1, 2],
         1 => [0, 2],
         _ => [0, 1],
     };
+    let [a, b] = along;
     if n[a] < 2 || n[b] < 2 {
-        return Ok(vec![]);
+        return vec![];
     }
     let middle = n[across] / 2;
     let place = |i: usize, j: usize| {
@@ -35,55 +52,124 @@ pub fn write_slice(dir: &Path, table: &Table, units: Units) -> Result<Vec<PathBu
         let e = cell.edges[axis];
         (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]).sqrt()
     };
-    let mut made = vec![];
     let find = |quantity: Quantity| {
         let own = table.columns.iter().find(|c| c.quantity == quantity)?;
         own.values.as_ref().ok().map(|v| (own, v))
     };
     let stress = find(Quantity::Stress).or_else(|| find(Quantity::StressPotential));
-    for (name, title, found, trace) in [
+    let temperature = find(Quantity::Temperature);
+    let all = [
         ("stress", "mean normal stress", stress, true),
-        (
-            "temperature",
-            "kinetic temperature",
-            find(Quantity::Temperature),
-            false,
-        ),
-    ] {
-        let Some((column, all)) = found else {
-            continue;
+        ("temperature", "kinetic temperature", temperature, false),
+    ];
+    let of = |(name, title, found, trace): (_, _, Option<(&Column, &Vec<f64>)>, bool)| {
+        let (column, all) = found?;
+        let value = |p: usize| match trace {
+            true => (all[9 * p] + all[9 * p + 4] + all[9 * p + 8]) / 3.0,
+            false => all[p],
         };
-        let mut values = vec![];
-        for j in 0..n[b] {
-            for i in 0..n[a] {
-                let p = place(i, j);
-                values.push(match trace {
-                    true => (all[9 * p] + all[9 * p + 4] + all[9 * p + 8]) / 3.0,
-                    false => all[p],
-                });
-            }
-        }
-        if !values.iter().any(|v| v.is_finite()) {
-            continue;
-        }
+        let rows = (0..n[b]).flat_map(|j| (0..n[a]).map(move |i| (i, j)));
+        let values: Vec<f64> = rows.map(|(i, j)| value(place(i, j))).collect();
+        values.iter().any(|v| v.is_finite()).then(|| Slice {
+            name,
+            title,
+            across,
+            along,
+            range: along.map(|axis| [cell.origin[axis], cell.origin[axis] + length(axis)]),
+            columns: n[a],
+            values,
+            unit: column.unit.clone(),
+            signed: trace,
+        })
+    };
+    all.into_iter().filter_map(of).collect()
+}
+
+/// Lowest and highest finite value; of numbers of both signs as far below 0 as above.
+fn ends(values: impl Iterator<Item = f64>, signed: bool) -> Option<[f64; 2]> {
+    let finite = values.filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+        (l.min(v), h.max(v))
+    });
+    let most = low.abs().max(high.abs());
+    match signed {
+        true => (most > 0.0 && most.is_finite()).then_some([-most, most]),
+        false => (low < high).then_some([low, high]),
+    }
+}
+
+impl Slice {
+    /// Its picture with the colours between these values; `when` follows the title.
+    fn map(&self, between: Option<[f64; 2]>, when: &str, units: Units) -> Map {
         let axes = ["x", "y", "z"];
-        let of = |axis: usize| [cell.origin[axis], cell.origin[axis] + length(axis)];
-        let mut map = Map::new(format!("{title}, slice across {}", axes[across]))
-            .x(axes[a], units.length(), of(a))
-            .y(axes[b], units.length(), of(b))
-            .value(title, &column.unit)
-            .equal()
-            .grid(n[a], &values);
-        if trace {
-            let most = values
-                .iter()
-                .filter(|v| v.is_finite())
-                .fold(0.0f64, |m, v| m.max(v.abs()));
-            if most > 0.0 {
-                map = map.colors(ColorMap::Diverging).between(-most, most);
-            }
+        let [a, b] = self.along;
+        let map = Map::new(format!(
+            "{}, slice across {}{when}",
+            self.title, axes[self.across]
+        ))
+        .x(axes[a], units.length(), self.range[0])
+        .y(axes[b], units.length(), self.range[1])
+        .value(self.title, &self.unit)
+        .equal()
+        .grid(self.columns, &self.values);
+        match (between, self.signed) {
+            (Some([low, high]), true) => map.colors(ColorMap::Diverging).between(low, high),
+            (Some([low, high]), false) => map.between(low, high),
+            (None, _) => map,
         }
-        made.extend(map.save(dir, name)?);
+    }
+}
+
+/// Writes pictures of the slice across the shortest axis of the grid; gives their paths. Nothing for points that are no grid, or a grid
+/// that is no more than a line.
+///
+/// # Errors
+/// The operating system's.
+pub fn write_slice(dir: &Path, table: &Table, units: Units) -> Result<Vec<PathBuf>, WriteError> {
+    let mut made = vec![];
+    for slice in slices(table) {
+        let own = slice
+            .signed
+            .then(|| ends(slice.values.iter().copied(), true));
+        made.extend(slice.map(own.flatten(), "", units).save(dir, slice.name)?);
     }
     Ok(made)
+}
+
+/// Slices of frames, kept until the ends of the colours are known.
+#[derive(Debug, Clone, Default)]
+pub struct SliceFilm(Vec<(Option<f64>, Slice)>);
+
+impl SliceFilm {
+    /// Takes the slices of a frame, of this time.
+    pub fn push(&mut self, table: &Table, time: Option<f64>) {
+        self.0.extend(slices(table).into_iter().map(|s| (time, s)));
+    }
+
+    /// Writes `NAME_film.png` of each kind of slice; gives their paths.
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn finish(self, dir: &Path, units: Units) -> Result<Vec<PathBuf>, WriteError> {
+        let mut made = vec![];
+        for name in ["stress", "temperature"] {
+            let own: Vec<&(Option<f64>, Slice)> =
+                self.0.iter().filter(|(_, s)| s.name == name).collect();
+            let Some((_, first)) = own.first() else {
+                continue;
+            };
+            let all = own.iter().flat_map(|(_, s)| s.values.iter().copied());
+            let between = ends(all, first.signed);
+            let image = |(time, slice): &&(Option<f64>, Slice)| {
+                let when = time.map_or(String::new(), |t| {
+                    format!(", t = {}", label::quantity(t, units.time()))
+                });
+                slice.map(between, &when, units).image()
+            };
+            let path = dir.join(format!("{name}_film.png"));
+            write_file(&path, |w| animate(w, own.len(), own.iter().map(image)))?;
+            made.push(path);
+        }
+        Ok(made)
+    }
 }

@@ -3,6 +3,7 @@
 use peridyne::observe::Snapshot;
 use peridyne::space::AXES;
 
+use super::arrows::Arrows;
 use super::image::{Align, Font, GREY, INK, Image};
 use super::marks;
 use super::shown::Shown;
@@ -17,6 +18,9 @@ const ELEVATION: f64 = 30.0;
 const MAGNIFIED: f64 = 1.25;
 /// Room between and below the views (pixels).
 const GAP: f64 = 48.0;
+/// Height of the key of arrows, length of the colour bar (pixels).
+const KEY: f64 = 44.0;
+const BAR: f64 = 320.0;
 const CAPTION: f64 = 40.0;
 /// A view is not drawn higher than this part of the picture's width.
 const TALLEST: f64 = 0.75;
@@ -45,7 +49,12 @@ struct Panel {
     cut: Option<Cut>,
 }
 
-pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) -> Image {
+pub fn draw(
+    s: &Snapshot,
+    (what, arrows): (&Shown, Option<&Arrows>),
+    scale: f64,
+    options: &PictureOptions,
+) -> Image {
     let bounds = bounds(s);
     let guesses = [s.spacing, longest(&bounds) / 100.0, 1.0];
     // where displacements are magnified, strains are, too, and points must not come apart
@@ -76,7 +85,8 @@ pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) ->
 
     let width = options.width as f64;
     let placed = place(&panels, width - 2.0 * MARGIN, TALLEST * width);
-    let height = HEAD + placed.height + FOOT;
+    let key = if arrows.is_some() { KEY } else { 0.0 };
+    let height = HEAD + placed.height + FOOT + key;
     let mut image = Image::new(options.width, height.ceil() as usize);
     head(&mut image, s, scale, options);
     for ((panel, corner), caption) in panels.iter().zip(&placed.corners).zip(&placed.captions) {
@@ -92,11 +102,19 @@ pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) ->
         );
         let view = marks::View {
             corner,
+            step: spacing,
             scale: placed.scale,
             camera: &panel.camera,
             frame: &panel.frame,
             flat: s.dimension == 2,
         };
+        if let Some(arrows) = arrows {
+            let seen = moved(s, scale).zip(&s.reference).enumerate();
+            let seen = seen.filter(|(_, (x, reference))| {
+                near(x) && panel.cut.is_none_or(|cut| cut.keeps(reference))
+            });
+            arrows.draw(&mut image, &view, seen.map(|(i, (x, _))| (i, x)));
+        }
         marks::draw(&mut image, &view, &options.marks, s.time);
         let middle = corner[0] + 0.5 * panel.frame.size()[0] * placed.scale;
         image.text(
@@ -109,7 +127,11 @@ pub fn draw(s: &Snapshot, what: &Shown, scale: f64, options: &PictureOptions) ->
         );
     }
     let outside = s.reference.len() - shown(None).count();
-    foot(&mut image, placed.scale, outside, what, options);
+    foot(&mut image, (placed.scale, key), outside, what, options);
+    if let Some(arrows) = arrows {
+        let at = [MARGIN, image.height as f64 - 0.62 * KEY];
+        arrows.key(&mut image, at, options.units);
+    }
     image
 }
 
@@ -253,8 +275,15 @@ fn place(panels: &[Panel], width: f64, tallest: f64) -> Placement {
 }
 
 /// Scale bar to the left, colour bar to the right, what is missing between them.
-fn foot(image: &mut Image, scale: f64, outside: usize, what: &Shown, options: &PictureOptions) {
-    let (right, y) = (image.width as f64 - MARGIN, image.height as f64 - 52.0);
+fn foot(
+    image: &mut Image,
+    (scale, below): (f64, f64),
+    outside: usize,
+    what: &Shown,
+    options: &PictureOptions,
+) {
+    let right = image.width as f64 - MARGIN;
+    let y = image.height as f64 - below - 52.0;
     let length = label::round_down(0.16 * image.width as f64 / scale);
     let pixels = length * scale;
     for (dx, dy, w, h) in [
@@ -275,8 +304,22 @@ fn foot(image: &mut Image, scale: f64, outside: usize, what: &Shown, options: &P
     );
 
     let [low, high] = what.range.map(|v| options.units.show(v, what.dimension));
-    let bar = 320.0;
+    let bar = BAR;
     let start = right - bar - Font::Normal.width(&high) - 14.0;
+    // a long name stands above its bar
+    let beside = format!("{}  {low}", what.name);
+    let left = MARGIN + pixels + 14.0 + Font::Normal.width(&text) + GAP;
+    let fits = start - 14.0 - Font::Normal.width(&beside) > left;
+    if !fits {
+        image.text(
+            start + 0.5 * bar,
+            y - 32.0,
+            &what.name,
+            Font::Normal,
+            Align::Center,
+            INK,
+        );
+    }
     for i in 0..bar as usize {
         let tint = what.map.color((i as f64 + 0.5) / bar);
         image.rectangle(start + i as f64, y - 2.0, 1.0, 18.0, tint);
@@ -284,7 +327,7 @@ fn foot(image: &mut Image, scale: f64, outside: usize, what: &Shown, options: &P
     image.text(
         start - 14.0,
         y - 5.0,
-        &format!("{}  {low}", what.name),
+        if fits { &beside } else { &low },
         Font::Normal,
         Align::Right,
         INK,

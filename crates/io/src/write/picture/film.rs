@@ -9,6 +9,8 @@ use peridyne::columns::Declaration;
 use peridyne::observe::{Column, Snapshot, Values};
 
 use super::super::atomic::{WriteError, write_file};
+use super::arrows::Arrows;
+use super::image::Image;
 use super::shown::{Shown, range};
 use super::{PictureOptions, draw, invalid};
 
@@ -25,6 +27,8 @@ pub struct Film {
     first: Option<Snapshot>,
     /// Name, dimension and values of what is shown; the values are those of the last frame.
     shown: Option<Shown>,
+    /// Name and dimension of what is drawn as arrows; its vectors are those of the last frame, the longest that of all.
+    arrows: Option<Arrows>,
     /// Lowest and highest value so far.
     ends: [f64; 2],
     frames: Vec<(u64, f64)>,
@@ -38,6 +42,7 @@ impl Film {
             waiting: BufWriter::new(tempfile::tempfile()?),
             first: None,
             shown: None,
+            arrows: None,
             ends: [f64::INFINITY, f64::NEG_INFINITY],
             frames: vec![],
         })
@@ -47,11 +52,17 @@ impl Film {
     ///
     /// # Errors
     /// The snapshot carries no such field, or the disk is full.
-    pub fn push(&mut self, s: &Snapshot, field: &str, component: Option<&str>) -> io::Result<()> {
+    pub fn push(
+        &mut self,
+        s: &Snapshot,
+        (field, component): (&str, Option<&str>),
+        arrows: Option<&str>,
+    ) -> io::Result<()> {
         if self.frames.last().is_some_and(|(step, _)| *step == s.step) {
             return Ok(());
         }
         let shown = Shown::of(s, field, component)?;
+        let arrows = arrows.map(|field| Arrows::of(s, field)).transpose()?;
         for value in shown.values.iter().filter(|v| v.is_finite()) {
             self.ends = [self.ends[0].min(*value), self.ends[1].max(*value)];
         }
@@ -59,6 +70,14 @@ impl Film {
             for number in [u[0], u[1], u[2], *value] {
                 self.waiting.write_all(&(number as f32).to_le_bytes())?;
             }
+        }
+        if let Some(mut arrows) = arrows {
+            for number in arrows.vectors.iter().flatten() {
+                self.waiting.write_all(&(*number as f32).to_le_bytes())?;
+            }
+            let before = self.arrows.as_ref().map_or(0.0, |a| a.longest);
+            arrows.longest = arrows.longest.max(before);
+            self.arrows = Some(arrows);
         }
         if self.first.is_none() {
             self.first = Some(Snapshot {
@@ -99,28 +118,34 @@ impl Film {
             ..options.clone()
         };
         let shown = shown.between(ends);
-        write_file(path, |w| {
-            write(w, &mut file, &first, &shown, &self.frames, &options, scale)
-        })
+        let same = Same {
+            first: &first,
+            shown: &shown,
+            arrows: self.arrows.as_ref(),
+        };
+        let mut waiting = BufReader::new(&mut file);
+        let images = self.frames.iter().map(|frame| {
+            let (snapshot, shown, arrows) = same.next(&mut waiting, *frame)?;
+            Ok(draw(&snapshot, (&shown, arrows.as_ref()), scale, &options))
+        });
+        write_file(path, |w| animate(w, self.frames.len(), images))
     }
 }
 
-fn write<W: Write>(
+/// An animated PNG of so many images; all get the size of the first: debris makes frames of other heights.
+///
+/// # Errors
+/// The operating system's, those of the images; there is none.
+pub fn animate<W: Write>(
     w: W,
-    file: &mut File,
-    first: &Snapshot,
-    shown: &Shown,
-    frames: &[(u64, f64)],
-    options: &PictureOptions,
-    scale: f64,
+    count: usize,
+    images: impl Iterator<Item = io::Result<Image>>,
 ) -> io::Result<()> {
-    let mut waiting = BufReader::new(file);
     let mut writer = None;
     let mut size = (0, 0);
     let mut w = Some(w);
-    for (step, time) in frames {
-        let (snapshot, shown) = next(&mut waiting, first, shown, *step, *time)?;
-        let image = draw(&snapshot, &shown, scale, options);
+    for image in images {
+        let image = image?;
         let writer = match &mut writer {
             Some(writer) => writer,
             empty => {
@@ -130,7 +155,7 @@ fn write<W: Write>(
                 encoder.set_color(png::ColorType::Rgb);
                 encoder.set_depth(png::BitDepth::Eight);
                 encoder
-                    .set_animated(frames.len() as u32, 0)
+                    .set_animated(count as u32, 0)
                     .map_err(io::Error::other)?;
                 encoder
                     .set_frame_delay(DELAY, 1000)
@@ -138,7 +163,6 @@ fn write<W: Write>(
                 empty.insert(encoder.write_header().map_err(io::Error::other)?)
             }
         };
-        // debris makes frames of other heights: all have that of the first
         let pixels = image.of_size(size);
         writer
             .write_image_data(pixels.as_flattened())
@@ -150,40 +174,56 @@ fn write<W: Write>(
     }
 }
 
-/// The next frame of those that wait.
-fn next(
-    waiting: &mut impl Read,
-    first: &Snapshot,
-    shown: &Shown,
-    step: u64,
-    time: f64,
-) -> io::Result<(Snapshot, Shown)> {
-    let mut numbers = vec![0u8; 16 * first.reference.len()];
-    waiting.read_exact(&mut numbers)?;
-    let number =
-        |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
-    let each: Vec<[f64; 4]> = numbers
-        .chunks_exact(16)
-        .map(|b| std::array::from_fn(|k| number(&b[4 * k..])))
-        .collect();
-    let displacement = Column {
-        declaration: Declaration::of_points(
-            "displacement",
-            peridyne::columns::Shape::Vector,
-            peridyne::columns::Dimension::LENGTH,
-            "",
-        ),
-        values: Values::Vectors(each.iter().map(|e| [e[0], e[1], e[2]]).collect()),
-    };
-    let snapshot = Snapshot {
-        step,
-        time,
-        columns: vec![displacement],
-        ..first.clone()
-    };
-    let shown = Shown {
-        values: each.iter().map(|e| e[3]).collect(),
-        ..shown.clone()
-    };
-    Ok((snapshot, shown))
+/// Numbers of a frame that wait, component after component.
+fn numbers(waiting: &mut impl Read, count: usize) -> io::Result<Vec<f64>> {
+    let mut bytes = vec![0u8; 4 * count];
+    waiting.read_exact(&mut bytes)?;
+    let number = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    Ok(bytes.chunks_exact(4).map(number).collect())
+}
+
+/// What is the same in all frames.
+struct Same<'a> {
+    first: &'a Snapshot,
+    shown: &'a Shown,
+    arrows: Option<&'a Arrows>,
+}
+
+impl Same<'_> {
+    /// The next frame of those that wait.
+    fn next(
+        &self,
+        waiting: &mut impl Read,
+        (step, time): (u64, f64),
+    ) -> io::Result<(Snapshot, Shown, Option<Arrows>)> {
+        let points = self.first.reference.len();
+        let each = numbers(waiting, 4 * points)?;
+        let each = each.chunks_exact(4);
+        let displacement = Column {
+            declaration: Declaration::of_points(
+                "displacement",
+                peridyne::columns::Shape::Vector,
+                peridyne::columns::Dimension::LENGTH,
+                "",
+            ),
+            values: Values::Vectors(each.clone().map(|e| [e[0], e[1], e[2]]).collect()),
+        };
+        let snapshot = Snapshot {
+            step,
+            time,
+            columns: vec![displacement],
+            ..self.first.clone()
+        };
+        let shown = Shown {
+            values: each.map(|e| e[3]).collect(),
+            ..self.shown.clone()
+        };
+        let mut arrows = self.arrows.cloned();
+        if let Some(arrows) = &mut arrows {
+            let vectors = numbers(waiting, 3 * points)?;
+            let vectors = vectors.chunks_exact(3);
+            arrows.vectors = vectors.map(|v| [v[0], v[1], v[2]]).collect();
+        }
+        Ok((snapshot, shown, arrows))
+    }
 }

@@ -1,5 +1,6 @@
 //! What is drawn over a body: cracks, indenters, supports and loads.
 
+use peridyne::columns::Dimension;
 use peridyne::condition::rigid::Rigid;
 use peridyne::expression::Expression;
 use peridyne::run::Simulation;
@@ -20,6 +21,8 @@ const SUPPORT: Color = [46, 84, 158];
 
 /// Arrows or supports along a set.
 const ALONG: usize = 7;
+/// The same along the longest side of one in space.
+const ACROSS: usize = 5;
 /// Times of a run at which loads are looked at.
 const TIMES: u32 = 32;
 /// Length of an arrow, and size of a support (pixels).
@@ -33,9 +36,21 @@ pub struct Marks {
     cracks: Vec<Vec<Point>>,
     /// Rigid bodies whose place is known at every time, and lines along the axes of their shapes.
     rigid: Vec<(IndenterSpec, Vec<[Point; 2]>)>,
-    supports: Vec<Point>,
-    /// Where, and where to; the length says nothing.
-    loads: Vec<(Point, Point)>,
+    supports: Vec<Mark>,
+    loads: Vec<Mark>,
+}
+
+/// Something that is done to a set, at one place of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    pub at: Point,
+    /// Where to; 0 of a support.
+    pub toward: Point,
+    /// What is done, the set, and the largest of the run.
+    pub what: &'static str,
+    pub set: String,
+    pub size: f64,
+    pub dimension: Dimension,
 }
 
 impl Marks {
@@ -57,13 +72,18 @@ impl Marks {
             let points = members.iter().filter_map(|i| reference.get(*i as usize));
             let places = spread(points.copied().collect(), spec.dimension);
             for at in places {
-                marks.add(&condition.kind, at, end);
+                marks.add(&condition.kind, &condition.set, at, end);
             }
         }
         marks
     }
 
-    fn add(&mut self, kind: &ConditionKind, at: Point, end: f64) {
+    /// What holds, what loads, and the corners of cracks.
+    pub fn seen(&self) -> (&[Mark], &[Mark], &[Vec<Point>]) {
+        (&self.supports, &self.loads, &self.cracks)
+    }
+
+    fn add(&mut self, kind: &ConditionKind, set: &str, at: Point, end: f64) {
         // a pulse is over in the end, what grows begins with nothing: the largest of the run counts
         let towards = |v: &[Option<Expression>; 3]| -> Point {
             let then = |k: u32| -> Point {
@@ -77,24 +97,31 @@ impl Marks {
                 |most, p| if size(&p) > size(&most) { p } else { most },
             )
         };
-        match kind {
-            ConditionKind::Displacement(v) | ConditionKind::Velocity(v) => {
-                let pull = towards(v);
-                match pull.iter().all(|c| *c == 0.0) {
-                    true if !self.supports.contains(&at) => self.supports.push(at),
-                    true => {}
-                    false => self.loads.push((at, pull)),
-                }
-            }
-            ConditionKind::BodyForce(v)
-            | ConditionKind::SetForce(v)
-            | ConditionKind::Traction { value: v, .. } => {
-                let pull = towards(v);
-                if pull.iter().any(|c| *c != 0.0) {
-                    self.loads.push((at, pull));
-                }
-            }
-            ConditionKind::Damping(_) | ConditionKind::Own(_) => {}
+        let (what, dimension, v) = match kind {
+            ConditionKind::Displacement(v) => ("displacement", Dimension::LENGTH, v),
+            ConditionKind::Velocity(v) => ("velocity", Dimension::VELOCITY, v),
+            ConditionKind::BodyForce(v) => ("body force", Dimension::FORCE_DENSITY, v),
+            ConditionKind::SetForce(v) => ("force density", Dimension::FORCE_DENSITY, v),
+            ConditionKind::Traction { value: v, .. } => ("traction", Dimension::PRESSURE, v),
+            ConditionKind::Damping(_) | ConditionKind::Own(_) => return,
+        };
+        let holds = matches!(
+            kind,
+            ConditionKind::Displacement(_) | ConditionKind::Velocity(_)
+        );
+        let toward = towards(v);
+        let mark = Mark {
+            at,
+            toward,
+            what,
+            set: set.into(),
+            size: toward.iter().map(|c| c * c).sum::<f64>().sqrt(),
+            dimension,
+        };
+        match (mark.size == 0.0, holds) {
+            (false, _) => self.loads.push(mark),
+            (true, true) if !self.supports.iter().any(|s| s.at == at) => self.supports.push(mark),
+            (true, _) => {}
         }
     }
 }
@@ -198,9 +225,9 @@ fn corners(shape: &CrackShape) -> Option<Vec<Point>> {
     }
 }
 
-/// A few places along the longest side of a set, across it in the middle; none of a set that is a whole body of a solid.
+/// A few places along the longest sides of a set, across it in the middle.
 fn spread(points: Vec<Point>, dimension: usize) -> Vec<Point> {
-    if points.is_empty() || dimension != 2 {
+    if points.is_empty() || dimension < 2 {
         return vec![];
     }
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> Point {
@@ -210,6 +237,9 @@ fn spread(points: Vec<Point>, dimension: usize) -> Vec<Point> {
         bound(f64::min, f64::INFINITY),
         bound(f64::max, f64::NEG_INFINITY),
     );
+    if dimension == 3 {
+        return over(low, high);
+    }
     let long = if high[0] - low[0] >= high[1] - low[1] {
         0
     } else {
@@ -228,9 +258,31 @@ fn spread(points: Vec<Point>, dimension: usize) -> Vec<Point> {
     (0..count).map(place).collect()
 }
 
+/// Places over the two longest sides of a box, in the middle of the third.
+fn over(low: Point, high: Point) -> Vec<Point> {
+    let extent = |a: usize| high[a] - low[a];
+    let longest = (0..3).map(extent).fold(0.0, f64::max);
+    let thin = (0..3).min_by(|a, b| extent(*a).total_cmp(&extent(*b)));
+    let thin = thin.unwrap_or(2);
+    let count = |a: usize| match a == thin || !(longest > 0.0) {
+        true => 1,
+        false => ((ACROSS as f64 * extent(a) / longest).round() as usize).max(1),
+    };
+    let at = |a: usize, n: usize| low[a] + (n as f64 + 0.5) / count(a) as f64 * extent(a);
+    let mut all = vec![];
+    for i in 0..count(0) {
+        for j in 0..count(1) {
+            all.extend((0..count(2)).map(|k| [at(0, i), at(1, j), at(2, k)]));
+        }
+    }
+    all
+}
+
 /// Where on the image a view lies.
 pub struct View<'a> {
     pub corner: [f64; 2],
+    /// Distance of points (length).
+    pub step: f64,
     /// Pixels per length.
     pub scale: f64,
     pub camera: &'a Camera,
@@ -240,7 +292,7 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    fn place(&self, x: Point) -> [f64; 2] {
+    pub fn place(&self, x: Point) -> [f64; 2] {
         let p = self.camera.project(x);
         [
             self.corner[0] + (p[0] - self.frame.low[0]) * self.scale,
@@ -277,8 +329,8 @@ pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
             image.line(from, to, 2.0, CRACK);
         }
     }
-    for at in &marks.supports {
-        let [x, y] = view.place(*at);
+    for mark in &marks.supports {
+        let [x, y] = view.place(mark.at);
         let (l, r, b) = (
             [x - SIZE, y + 1.6 * SIZE],
             [x + SIZE, y + 1.6 * SIZE],
@@ -289,9 +341,9 @@ pub fn draw(image: &mut Image, view: &View, marks: &Marks, time: f64) {
             image.line(from, to, 3.0, SUPPORT);
         }
     }
-    for (at, pull) in &marks.loads {
-        let from = view.place(*at);
-        let toward = view.camera.project(*pull);
+    for mark in &marks.loads {
+        let from = view.place(mark.at);
+        let toward = view.camera.project(mark.toward);
         let length = toward[0].hypot(toward[1]);
         if length > 0.0 && length.is_finite() {
             arrow(image, from, [toward[0] / length, -toward[1] / length]);

@@ -1,8 +1,9 @@
 //! A PNG of a field: a body from above and cut open, a plate, or a chain as curves; and films of them.
 //!
 //! Files: `shown` says which numbers, `body` lays out the views of 2-D and 3-D bodies, `view` draws one of them, `marks` what is drawn
-//! over it, `chain` plots 1-D; `image` is what they draw on; `film` keeps frames.
+//! over it, `arrows` a vector field, `chain` plots 1-D; `image` is what they draw on; `film` keeps frames.
 
+pub mod arrows;
 mod body;
 mod chain;
 pub mod colormap;
@@ -17,6 +18,7 @@ use std::path::Path;
 
 use peridyne::observe::Snapshot;
 
+use self::arrows::Arrows;
 use self::image::{Align, Font, GREY, INK, Image};
 use self::marks::Marks;
 use self::shown::{About, Shown};
@@ -50,6 +52,8 @@ pub struct PictureOptions {
     pub scale: Option<f64>,
     /// What the ends of the colours mean, in computed numbers; those of the values when left out.
     pub range: Option<[f64; 2]>,
+    /// A vector field that is drawn as arrows, too.
+    pub arrows: Option<String>,
     /// All frames as an animated PNG, too.
     pub film: bool,
     /// Without step and time: an equilibrium has none.
@@ -69,6 +73,7 @@ impl Default for PictureOptions {
             component: None,
             scale: None,
             range: None,
+            arrows: None,
             film: false,
             still: false,
             marks: Marks::default(),
@@ -101,6 +106,7 @@ impl PictureOptions {
             component: None,
             scale: None,
             range: None,
+            arrows: None,
             film: false,
             still: true,
             marks: Marks::default(),
@@ -144,10 +150,18 @@ pub fn picture(s: &Snapshot, options: &PictureOptions, about: About) -> std::io:
         Some(range) => shown.between(range),
         None => shown,
     };
-    Ok(draw(s, &shown, options.scale_of(s, about), options))
+    let arrows = options.arrows.as_deref();
+    let arrows = arrows.map(|field| Arrows::of(s, field)).transpose()?;
+    let scale = options.scale_of(s, about);
+    Ok(draw(s, (&shown, arrows.as_ref()), scale, options))
 }
 
-fn draw(s: &Snapshot, shown: &Shown, scale: f64, options: &PictureOptions) -> Image {
+fn draw(
+    s: &Snapshot,
+    (shown, arrows): (&Shown, Option<&Arrows>),
+    scale: f64,
+    options: &PictureOptions,
+) -> Image {
     // narrower than this, title and bars would overlap
     let options = PictureOptions {
         width: options.width.clamp(800, 8192),
@@ -155,7 +169,7 @@ fn draw(s: &Snapshot, shown: &Shown, scale: f64, options: &PictureOptions) -> Im
     };
     match s.dimension {
         1 => chain::draw(s, shown, &options),
-        _ => body::draw(s, shown, scale, &options),
+        _ => body::draw(s, (shown, arrows), scale, &options),
     }
 }
 

@@ -171,6 +171,14 @@ impl Map {
         super::save(dir, name, self.draw())
     }
 
+    /// The picture itself.
+    ///
+    /// # Errors
+    /// As [`Map::save`].
+    pub fn image(&self) -> io::Result<Image> {
+        Ok(super::raster::draw(&self.draw()?, super::SCALE))
+    }
+
     fn check(&self) -> io::Result<&[f64]> {
         for [low, high] in self.range {
             if !(low < high && low.is_finite() && high.is_finite()) {

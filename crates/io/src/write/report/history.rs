@@ -86,6 +86,16 @@ fn cells(line: &str) -> Vec<String> {
     all
 }
 
+/// Steps and their times, where both are there and time is not load.
+pub fn clock(columns: &[Column]) -> Vec<(u64, f64)> {
+    let find = |name: &str| columns.iter().find(|c| c.name == name);
+    let (Some(steps), Some(times)) = (find("step"), find("time")) else {
+        return vec![];
+    };
+    let each = steps.values.iter().zip(&times.values);
+    each.map(|(s, t)| (*s as u64, *t)).collect()
+}
+
 /// What the page needs of it, and what was left out.
 pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
     let rows = columns.first().map_or(0, |c| c.values.len());

@@ -96,14 +96,28 @@ struct Report {
 impl Report {
     fn gather(dir: &Path, run: Value, setting: Setting) -> Result<Report, ReportError> {
         let has = |name: &str| setting.files.iter().any(|f| f == name) && dir.join(name).is_file();
+        let mut history = match has("history.csv") {
+            true => history::read(&dir.join("history.csv"))?,
+            false => vec![],
+        };
         let mut scenes = vec![];
         let ends = |ends: &[&str]| {
             let mut all = setting.files.iter();
             all.find(|f| ends.iter().any(|e| f.ends_with(e)) && dir.join(f).is_file())
         };
+        let mut notes = vec![];
+        let clock = history::clock(&history);
+        match scene::of_dumps(dir, &setting, &clock) {
+            Ok(scene) => scenes.extend(scene.map(|s| (s, "Frames of the dumps", "Points"))),
+            Err(e) => notes.push(format!("Frames of dumps are left out: {e}")),
+        }
         if has("points.pvd") {
+            let label = match scenes.is_empty() {
+                true => "Frames of the run",
+                false => "The last state",
+            };
             let scene = scene::of_collection(dir, "points.pvd", "run", &setting)?;
-            scenes.extend(scene.map(|s| (s, "Frames of the run", "Body")));
+            scenes.extend(scene.map(|s| (s, label, "Body")));
         } else if has("frames.npz") {
             let scene = law::read(&dir.join("frames.npz"), &setting)?;
             scenes.extend(scene.map(|s| (s, "Frames of the run", "Solution")));
@@ -117,7 +131,6 @@ impl Report {
             let scene = scene::of_collection(dir, "modes/points.pvd", "modes", &setting)?;
             scenes.extend(scene.map(|s| (s, "Modes of vibration", "Body")));
         }
-        let mut notes = vec![];
         for (scene, ..) in &mut scenes {
             let same = scene.fields.iter().filter_map(|f| Some((f, f.constant()?)));
             let same: Vec<String> = same
@@ -129,10 +142,6 @@ impl Report {
                 scene.notes.push(text);
             }
         }
-        let mut history = match has("history.csv") {
-            true => history::read(&dir.join("history.csv"))?,
-            false => vec![],
-        };
         // an equilibrium is not at a time
         if setting.statics
             && let Some(time) = history.iter_mut().find(|c| c.name == "time")
@@ -143,11 +152,10 @@ impl Report {
         let mut pictures = vec![];
         let mut room = PICTURES;
         let drawn = scenes.is_empty() || run["kind"] == "conservation_law";
-        for name in setting
-            .files
-            .iter()
-            .filter(|f| drawn && f.ends_with(".png"))
-        {
+        let own = { setting.files.iter() }.filter(|f| drawn && f.ends_with(".png"));
+        // films move, which who reads did not ask for
+        let still = setting.slices.iter().filter(|f| !f.ends_with("_film.png"));
+        for name in own.chain(still) {
             let path = dir.join(name);
             let Ok(bytes) = fs::read(&path) else { continue };
             match room.checked_sub(bytes.len() as u64) {
@@ -217,8 +225,10 @@ impl Report {
                 "label": label, "title": title, "first": head::first(scene, &self.run, &self.setting),
                 "statics": self.setting.statics, "length": self.setting.units.length,
                 "balls": if scene.kind == "run" { &self.setting.indenters[..] } else { &[] },
-                "axis": match scene.kind { "modes" => "frequency", _ => "time" },
+                "marks": if scene.kind == "run" { json!(self.setting.marks) } else { Value::Null },
+                "axis": match (scene.kind, scene.stepped) { ("modes", _) => "frequency", (_, true) => "step", (_, false) => "time" },
                 "unit": match (scene.kind, &*self.setting.units.time) {
+                    (_, _) if scene.stepped => String::new(),
                     ("modes", "s") => "Hz".to_string(),
                     ("modes", "") => String::new(),
                     ("modes", time) => format!("1/{time}"),

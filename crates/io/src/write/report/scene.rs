@@ -52,6 +52,8 @@ pub struct Scene {
     /// Typical distance of points (length).
     pub spacing: f64,
     pub atoms: bool,
+    /// Have frames a step and no time?
+    pub stepped: bool,
     /// Step and time (of modes: number and frequency) of each frame.
     pub frames: Vec<(u64, f64)>,
     pub reference: Codes,
@@ -117,6 +119,7 @@ impl Maker {
                 points: 0,
                 spacing: setting.spacing,
                 atoms: setting.atoms,
+                stepped: false,
                 frames: vec![],
                 reference: Codes::of(&[], 3, false),
                 moved: vec![],
@@ -327,8 +330,98 @@ pub fn of_trajectory(path: &Path, setting: &Setting) -> Result<Option<Scene>, Re
     Ok(scene)
 }
 
+/// Frames of the dumps that a script wrote, several files one after the other; `clock`: steps and their times. Files without atoms are
+/// passed over.
+///
+/// # Errors
+/// File and line of the first mistake, where no frame could be read.
+pub fn of_dumps(
+    dir: &Path,
+    setting: &Setting,
+    clock: &[(u64, f64)],
+) -> Result<Option<Scene>, ReadError> {
+    let mut wrong = None;
+    let mut files = vec![];
+    for name in &setting.dumps {
+        let path = dir.join(name);
+        match Frames::count(&path) {
+            Ok(n) => files.push((path, n)),
+            Err(e) => wrong = Some(e),
+        }
+    }
+    let total: usize = files.iter().map(|f| f.1).sum();
+    let mut maker = Maker::new("run", setting);
+    maker.scene.stepped = clock.is_empty();
+    let (mut at, mut numbers) = (0, None);
+    let mut last = None;
+    for (path, count) in files {
+        let mut frames = match Frames::open(&path) {
+            Ok(frames) => frames,
+            Err(e) => {
+                wrong = Some(e);
+                continue;
+            }
+        };
+        for _ in 0..count {
+            let atoms = match frames.next_frame() {
+                Ok(Some(atoms)) => atoms,
+                Ok(None) => break,
+                Err(e) => {
+                    wrong = Some(e);
+                    break;
+                }
+            };
+            let width = 12 + atoms.columns.len();
+            let numbers = numbers.get_or_insert_with(|| chosen(total, width * atoms.len()));
+            // two dumps may have the same steps: those of the first count
+            let later = last.is_none_or(|l| atoms.step > Some(l));
+            if numbers.binary_search(&at).is_ok() && later {
+                last = atoms.step;
+                let mut look = of_atoms(atoms, at);
+                if !clock.is_empty() {
+                    look.value = time_of(look.step, clock);
+                }
+                for values in &mut look.arrays {
+                    let known = setting.columns.iter().find(|c| c.0 == values.name);
+                    if let Some((_, name)) = known {
+                        values.name = name.clone();
+                    }
+                }
+                maker.push(look, setting);
+            }
+            at += 1;
+        }
+    }
+    let mut scene = maker.made();
+    if let Some(scene) = &mut scene {
+        scene.notes.extend(fewer(scene.frames.len(), total));
+    }
+    match (scene, wrong) {
+        (None, Some(e)) => Err(e),
+        (scene, _) => Ok(scene),
+    }
+}
+
+/// The time of a step between or beyond those of a clock.
+fn time_of(step: u64, clock: &[(u64, f64)]) -> f64 {
+    let after = clock.iter().position(|c| c.0 >= step);
+    let [a, b] = match after {
+        Some(0) if clock[0].0 == step => return clock[0].1,
+        Some(n) if n > 0 => [clock[n - 1], clock[n]],
+        _ if clock.len() > 1 && after.is_none() => [clock[clock.len() - 2], clock[clock.len() - 1]],
+        _ if clock.len() > 1 => [clock[0], clock[1]],
+        _ => return clock[0].1,
+    };
+    if b.0 == a.0 {
+        return a.1;
+    }
+    a.1 + (step as f64 - a.0 as f64) / (b.0 as f64 - a.0 as f64) * (b.1 - a.1)
+}
+
 fn of_atoms(atoms: Atoms, number: usize) -> Look {
-    let mut arrays = vec![];
+    let mut arrays: Vec<Values> = { atoms.columns.iter() }
+        .map(|(name, values)| Values::new(name, "scalar", values.clone()))
+        .collect();
     if atoms.species.len() > 1 {
         let kinds = atoms.kind.iter().map(|k| f64::from(*k)).collect();
         let mut kinds = Values::new("kind", "integer", kinds);
@@ -353,5 +446,20 @@ fn of_atoms(atoms: Atoms, number: usize) -> Look {
         position: atoms.position.concat(),
         displacement: None,
         arrays,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_have_the_times_of_the_clock() {
+        let clock = [(0, 0.0), (10, 1.0), (20, 1.5)];
+        for (step, time) in [(0, 0.0), (5, 0.5), (10, 1.0), (15, 1.25), (30, 2.0)] {
+            assert_eq!(time_of(step, &clock), time, "{step}");
+        }
+        assert_eq!(time_of(7, &[(10, 1.0), (20, 2.0)]), 0.7);
+        assert_eq!(time_of(7, &[(10, 1.0)]), 1.0);
     }
 }

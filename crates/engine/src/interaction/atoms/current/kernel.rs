@@ -1,21 +1,17 @@
 //! The sweeps over current neighbours: lanes run over the atoms of a tile. Of several kinds, all pairs of a line are of one pair of
 //! kinds, so that their potential is the same; or, where potentials differ in constants alone, each lane has its own.
 
-mod line;
-
 use crate::body::Values;
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::family::neighbours::near::{NearList, Tile};
+use crate::interaction::Fault;
+use crate::interaction::atoms::line::{Alike, Line, Mixed, Pulls, Sum, Sums, Table};
 use crate::interaction::atoms::{density_fault, embed};
-use crate::interaction::{Fault, VIRIAL};
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 use crate::law::potential::mixture::{FEW, Mixture};
-use line::{Alike, Line, Mixed};
-
-pub(super) use line::Table;
 
 pub(super) struct View<'a, const D: usize, P> {
     pub list: &'a NearList<D>,
@@ -119,47 +115,6 @@ impl<'a, const D: usize, P: Potential> View<'a, D, P> {
     }
 }
 
-/// What is gathered from the pairs of a tile.
-trait Sum<L: Lane, const D: usize> {
-    /// Vectors, squared lengths and fourth numbers of a line.
-    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, fourth: [L; 2]);
-}
-
-struct Pulls<L, const D: usize>([L; D]);
-
-impl<L: Lane, const D: usize> Sum<L, D> for Pulls<L, D> {
-    #[inline(always)]
-    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, [own, other]: [L; 2]) {
-        let pull = line.pull(q, own, other);
-        for a in 0..D {
-            self.0[a] = pull.fma(y[a], self.0[a]);
-        }
-    }
-}
-
-struct Sums<L> {
-    energy: L,
-    /// Is the virial asked for?
-    asked: bool,
-    virial: [L; 6],
-}
-
-impl<L: Lane, const D: usize> Sum<L, D> for Sums<L> {
-    #[inline(always)]
-    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, [own, other]: [L; 2]) {
-        self.energy = self.energy + line.energy(q, other);
-        if !self.asked {
-            return;
-        }
-        let pull = line.pull(q, own, other);
-        for (v, (m, n)) in self.virial.iter_mut().zip(VIRIAL) {
-            if n < D {
-                *v = (pull * y[m]).fma(y[n], *v);
-            }
-        }
-    }
-}
-
 pub(super) struct Density<'a, const D: usize, P> {
     pub view: View<'a, D, P>,
     /// `[atoms][4]`: F′ goes to the fourth place of own atoms.
@@ -241,11 +196,7 @@ impl<const D: usize, P: Potential> Kernel for Energies<'_, D, P> {
         let mut sum = [0.0; 7];
         for tile in view.list.tiles_of_kinds(block) {
             let i = view.here::<L>(tile.number);
-            let mut sums = Sums {
-                energy: L::splat(0.0),
-                asked: self.virial,
-                virial: [L::splat(0.0); 6],
-            };
+            let mut sums = Sums::zero(self.virial);
             view.visit(&tile, &i, &mut sums);
             let Sums {
                 mut energy, virial, ..

@@ -4,11 +4,14 @@
 pub mod anisotropic;
 mod bond;
 pub mod correspondence;
+pub mod energy;
 mod family;
 pub mod hardening;
+pub mod hyperelastic;
 pub mod hypoelastic;
 pub mod hypoelastic_plastic;
 pub mod rate;
+mod rest;
 pub mod stiffness;
 
 pub use bond::BondAssociated;
@@ -116,6 +119,7 @@ pub(super) fn each(kinds: &mut impl Kinds) {
         kinds.solid_or::<NonOrdinary<L>, BondAssociated<L>>(takes_bonds);
     }
     both::<correspondence::Correspondence>(kinds);
+    both::<hyperelastic::Hyperelastic>(kinds);
     both::<hypoelastic::Hypoelastic>(kinds);
     both::<hypoelastic_plastic::HypoelasticPlastic>(kinds);
     both::<anisotropic::Anisotropic>(kinds);

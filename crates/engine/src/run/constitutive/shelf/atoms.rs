@@ -120,15 +120,9 @@ fn bind<const D: usize, P: Described>(
     simd: Simd,
 ) -> Bound<D> {
     let potential = mixture::<P>(given)?;
-    Ok(match (links, potential.own(0)) {
-        (Some(links), Some(own)) if potential.kinds() == 1 => {
-            Box::new(FixedAtoms::new(body, links, own.clone(), simd))
-        }
-        (Some(_), _) => {
-            let message = "fixed neighbours know one kind of atom: several are near to each other now (family = \"neighbours\")";
-            return Err((String::new(), message.into()));
-        }
-        (None, _) => Box::new(CurrentAtoms::new(body, potential, simd)),
+    Ok(match links {
+        Some(links) => Box::new(FixedAtoms::new(body, links, potential, simd)),
+        None => Box::new(CurrentAtoms::new(body, potential, simd)),
     })
 }
 
@@ -490,11 +484,10 @@ impl AnyPotentials {
             return one.bind(body, links, simd);
         }
         if links.is_some() {
-            return Err(BuildError::unsupported(
-                "family",
-                "fixed neighbours know one kind of atom and one potential",
-            )
-            .help("leave family out: atoms feel those that are near now"));
+            return Err(
+                BuildError::unsupported("family", "fixed neighbours know one potential")
+                    .help("leave family out: atoms feel those that are near now"),
+            );
         }
         let parts = self.parts.iter().map(|p| p.bind(body, None, simd));
         let parts = parts.collect::<Result<Vec<_>, _>>()?;

@@ -1,6 +1,7 @@
-//! What a line of pairs says: pairs of one pair of kinds, or of each lane its own.
+//! What a line of pairs says: pairs of one pair of kinds, or of each lane its own; and what atoms gather of it.
 
 use crate::execute::lane::Lane;
+use crate::interaction::VIRIAL;
 use crate::law::number::Dual;
 use crate::law::potential::Potential;
 use crate::law::potential::constants::{MOST, Rows};
@@ -9,6 +10,8 @@ use crate::law::potential::constants::{MOST, Rows};
 pub trait Line<L: Lane> {
     /// φ; 0 beyond the cut-off.
     fn energy(&self, q: L, other: L) -> L;
+    /// What the second adds to the density at the first; 0 beyond the cut-off.
+    fn density(&self, q: L) -> L;
     /// `dφ/dq + (F′_i + F′_j) df/dq`, of unlike atoms `dφ/dq + F′_i df_ij/dq + F′_j df_ji/dq`; 0 beyond the cut-off.
     fn pull(&self, q: L, own: L, other: L) -> L;
 }
@@ -25,6 +28,12 @@ impl<L: Lane, P: Potential, const UNLIKE: bool> Line<L> for Alike<'_, P, UNLIKE>
     fn energy(&self, q: L, _: L) -> L {
         let phi = self.potential.pair(Dual::variable(q)).value;
         phi.zero_if(q.ge(L::splat(self.limit)))
+    }
+
+    #[inline(always)]
+    fn density(&self, q: L) -> L {
+        let f = self.potential.density(Dual::variable(q)).value;
+        f.zero_if(q.ge(L::splat(self.limit)))
     }
 
     #[inline(always)]
@@ -122,10 +131,70 @@ impl<P: Potential, L: Lane, const K: usize> Line<L> for Mixed<'_, P, L, K> {
         phi.zero_if(q.ge(of.get(MOST)))
     }
 
+    /// Such potentials have none.
+    #[inline(always)]
+    fn density(&self, _: L) -> L {
+        L::splat(0.0)
+    }
+
     #[inline(always)]
     fn pull(&self, q: L, _: L, other: L) -> L {
         let of = self.rows.with(other);
         let pull = self.potential.pair_of(of, Dual::variable(q)).slope;
         pull.zero_if(q.ge(of.get(MOST)))
+    }
+}
+
+/// What is gathered from the pairs of a tile.
+pub trait Sum<L: Lane, const D: usize> {
+    /// Vectors, squared lengths and fourth numbers of a line.
+    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, fourth: [L; 2]);
+}
+
+/// Σ of pulls times vectors.
+pub struct Pulls<L, const D: usize>(pub [L; D]);
+
+impl<L: Lane, const D: usize> Sum<L, D> for Pulls<L, D> {
+    #[inline(always)]
+    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, [own, other]: [L; 2]) {
+        let pull = line.pull(q, own, other);
+        for a in 0..D {
+            self.0[a] = pull.fma(y[a], self.0[a]);
+        }
+    }
+}
+
+/// Energies and virials.
+pub struct Sums<L> {
+    pub energy: L,
+    /// Is the virial asked for?
+    pub asked: bool,
+    pub virial: [L; 6],
+}
+
+impl<L: Lane> Sums<L> {
+    #[inline(always)]
+    pub fn zero(asked: bool) -> Self {
+        Sums {
+            energy: L::splat(0.0),
+            asked,
+            virial: [L::splat(0.0); 6],
+        }
+    }
+}
+
+impl<L: Lane, const D: usize> Sum<L, D> for Sums<L> {
+    #[inline(always)]
+    fn add(&mut self, line: &impl Line<L>, y: &[L; D], q: L, [own, other]: [L; 2]) {
+        self.energy = self.energy + line.energy(q, other);
+        if !self.asked {
+            return;
+        }
+        let pull = line.pull(q, own, other);
+        for (v, (m, n)) in self.virial.iter_mut().zip(VIRIAL) {
+            if n < D {
+                *v = (pull * y[m]).fma(y[n], *v);
+            }
+        }
     }
 }

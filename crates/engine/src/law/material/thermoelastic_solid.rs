@@ -1,0 +1,120 @@
+//! The linear peridynamic solid where bodies expand: `W = ½κθ² + (α/2) Σ ω e²`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e` of
+//! [`Solid`], with the extension e counted, as for every law of this folder, from the length that the ends' temperature or concentration gives a bond.
+//! `T⟨ξ⟩ = ω ((nκθ/m) |ξ| + α e)` along the bond, over its whole bonds, with the m of the family as it was.
+
+use super::{Along, Bond, End, Material, Site};
+use crate::law::descriptor::{self, Descriptor, Given, MODULI, Shelved};
+use crate::law::number::Number;
+use crate::law::solid::eam_like::Solid;
+use crate::spec::{Influence, LawSpec, Parameters, Plane};
+
+/// See the module.
+#[derive(Debug, Clone)]
+pub struct ThermoelasticSolid {
+    /// Per material.
+    pub materials: Vec<Solid>,
+}
+
+/// n²κ and β.
+const VOLUME: usize = 0;
+const PAIR: usize = 1;
+/// `nκθ/m` and α, which bonds read, and θ/n.
+const PRESSURE: usize = 0;
+const ALPHA: usize = 1;
+const DILATED: usize = 2;
+
+type Ends<'a, N> = End<'a, [N; 2], [N; 3], [N; 0]>;
+
+impl ThermoelasticSolid {
+    pub const NAME: &'static str = "thermoelastic_solid";
+}
+
+impl<const D: usize> Material<D> for ThermoelasticSolid {
+    type Constants<N: Number> = [N; 2];
+    /// 1/m
+    type Form<N: Number> = N;
+    /// `Σ ω|ξ|e`
+    type Sum<N: Number> = N;
+    type Point<N: Number> = [N; 3];
+    type Past<N: Number> = [N; 0];
+    type Memory<N: Number> = [N; 0];
+    type State<N: Number> = Along<N>;
+    const PASSES: usize = 1;
+
+    fn constants(&self, material: usize, _: f64) -> [f64; 2] {
+        let m = &self.materials[material];
+        [m.n * m.n * m.kappa, m.beta]
+    }
+
+    fn form(&self, _: usize, shape: [[f64; D]; D]) -> f64 {
+        super::inverse_weight(&shape)
+    }
+
+    #[inline(always)]
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &Ends<N>) -> N {
+        bond.omega * bond.length * bond.extension()
+    }
+
+    #[inline(always)]
+    fn settle<N: Number>(
+        &self,
+        _: usize,
+        site: &Site<[N; 2], N, [N; 0]>,
+        sum: N,
+        point: &mut [N; 3],
+    ) {
+        let (c, per_m) = (site.constants, *site.form);
+        point[DILATED] = per_m * sum;
+        point[ALPHA] = c[PAIR] * per_m;
+        point[PRESSURE] = c[VOLUME] * per_m * point[DILATED];
+    }
+
+    #[inline(always)]
+    fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> Along<N> {
+        let along = end.point[PRESSURE] * bond.length;
+        let t = end.point[ALPHA].fma(bond.extension(), along);
+        Along(bond.omega * t * bond.inv_current)
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &Ends<N>) -> N {
+        let e = bond.extension();
+        N::constant(0.5) * end.point[ALPHA] * bond.omega * e * e
+    }
+
+    #[inline(always)]
+    fn point_energy<N: Number>(&self, site: &Site<[N; 2], N, [N; 0]>, _: N, point: &[N; 3]) -> N {
+        N::constant(0.5) * site.constants[VOLUME] * point[DILATED] * point[DILATED]
+    }
+}
+
+impl Shelved for ThermoelasticSolid {
+    fn descriptor() -> Descriptor {
+        Descriptor::new(
+            Self::NAME,
+            "Linear peridynamic solid, W = ½ κ θ² + β/(2m) Σ ω ν V e², between points that may expand: e is counted from the length that their temperature or concentration gives a bond. lps becomes this where a material expands. Two of young, poisson, bulk, shear.",
+        )
+        .source("Silling, Epton, Weckner, Xu & Askari 2007; Kilic & Madenci 2010")
+        .example("{ young = \"72 GPa\", poisson = 0.22 }")
+        .influence(Influence::Inverse)
+        .keys(&MODULI)
+    }
+
+    fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
+        descriptor::moduli(parameters).map(LawSpec::Lps)
+    }
+
+    fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+        let of = |(n, m): (usize, &Given)| {
+            m.solid
+                .ok_or_else(|| (n, "a state-based solid needs its moduli".into()))
+        };
+        Ok(ThermoelasticSolid {
+            materials: materials
+                .iter()
+                .enumerate()
+                .map(of)
+                .collect::<Result<_, _>>()?,
+        })
+    }
+}

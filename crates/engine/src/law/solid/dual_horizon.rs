@@ -1,0 +1,48 @@
+//! The bond-based solid with a horizon for each point (H. Ren, X. Zhuang, Y. Cai and T. Rabczuk 2016, Dual-horizon peridynamics, Int. J.
+//! Numer. Methods Eng. 108, 1451–1476, eq. 13–16).
+//!
+//! A point pulls at those within its own horizon, and is pulled at by those in whose horizon it is (its dual horizon): force density on i
+//! `Σ_j ½ (c_i ν_i + c_j ν_j) V_j s (ξ+η)/|ξ+η|`, with `ν = clamp(½ + (δ − r0)/h, 0, 1)` the part of a cell of width h that is within δ, so
+//! that nothing jumps where a horizon passes a point. Either half is action and reaction, so momentum and angular momentum stay; with the
+//! micropotential `½ (…) s² r0` so does energy.
+
+use crate::execute::lane::Lane;
+use crate::law::Law;
+
+/// Micromodulus (field 0) and `½ + δ/h` (field 1) per point.
+#[derive(Debug, Clone, Copy)]
+pub struct DualHorizon {
+    /// `1/h` (1 / length).
+    pub rate: f64,
+}
+
+impl Law for DualHorizon {
+    const SHARES: bool = false;
+    const FIELDS: usize = 2;
+
+    #[inline(always)]
+    fn constant<L: Lane>(self, _r0: L, inv_r0: L, weight: L) -> L {
+        weight * inv_r0
+    }
+    #[inline(always)]
+    fn between_ends<L: Lane>(self, k: L, r0: L, i: [L; 2], j: [L; 2]) -> L {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let half = |end: [L; 2]| {
+            let part = r0.fma(L::splat(-self.rate), end[1]).min(one).max(zero);
+            end[0] * part
+        };
+        L::splat(0.5) * (half(i) + half(j)) * k
+    }
+    #[inline(always)]
+    fn pull<L: Lane>(self, k: L, g: L, _: [L; 2], _: [L; 2]) -> L {
+        k * g
+    }
+    #[inline(always)]
+    fn pair_energy<L: Lane>(self, x: L, _: [L; 2], _: [L; 2]) -> L {
+        L::splat(0.25) * x
+    }
+    #[inline(always)]
+    fn pressure_factor<L: Lane>(self, _: L) -> L {
+        L::splat(0.0)
+    }
+}

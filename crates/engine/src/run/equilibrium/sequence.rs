@@ -1,0 +1,302 @@
+//! Equilibria in the order in which bonds break: the load is what the next bond bears, however little that is (sequentially linear
+//! analysis: E. Schlangen and J. G. M. van Mier 1992, Simple lattice model for numerical simulation of fracture of concrete materials
+//! and structures, Mater. Struct. 25, 534–542; J. G. Rots 2001, Sequentially linear continuum model for concrete fracture).
+//!
+//! The body is linear about the reference and all that loads it is proportional to one factor λ, which is t: `u = λ u¹`. A bond whose
+//! stretch is `s¹` under the load 1 reaches its critical one at `λ = s_c/s¹`. The lowest of these factors is the next equilibrium;
+//! its bonds are cut, and the next factor may be lower, with both load and displacement (snap-back).
+//!
+//! What the loads do between two such equilibria: while the bond lets go slowly at its critical stretch, displacements and forces are
+//! linear in the force that is left in it (the equations are), from `λ u¹` to `λ' u'¹` of the body without it, `λ' = s_c/s'¹` at its
+//! two ends; then the body is elastic. So the trapezoidal rule over both parts is exact, and the energy that is released is that which the
+//! bond held.
+
+use super::state::{Critical, Sequence, StaticState};
+use crate::body::{Field, zeros};
+use crate::error::{BuildError, SolveError};
+use crate::interaction::bond::critical_stretch;
+use crate::interaction::{BondState, history};
+use crate::run::model::Model;
+use crate::spec::{Control, CrackKind, Method, Spec, Statics};
+use crate::statics::Solved;
+
+/// Factors that differ by this part are of bonds that break together.
+const TOGETHER: f64 = 1e-9;
+/// Bonds whose critical stretch is beyond the largest one of the body by this factor do not count: their points are at rest.
+const AT_REST: f64 = 1e-12;
+/// Deviation from proportional loads that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Linear stretch of a bond.
+fn stretch<const D: usize>(i: usize, j: usize, xi: &[f64; D], u: &Field<D>) -> f64 {
+    let square: f64 = xi.iter().map(|c| c * c).sum();
+    let longer: f64 = (0..D).map(|a| (u[a][j] - u[a][i]) * xi[a]).sum();
+    longer / square
+}
+
+impl<const D: usize> Model<D> {
+    /// Can bonds be broken one after the other?
+    pub(in crate::run) fn check_sequence(
+        &mut self,
+        options: Statics,
+        spec: &Spec,
+    ) -> Result<(), BuildError> {
+        let refused = |path: &str, message: &str, help: &str| {
+            Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
+        };
+        if options.method != Method::Linear {
+            return refused(
+                "statics.control",
+                "bonds are broken in turn where the body is linear about the reference",
+                "write method = \"linear\", or leave it out",
+            );
+        }
+        if !self.at_peace() || !spec.transfers.is_empty() {
+            return refused(
+                "statics.control",
+                "bonds are broken in turn where the reference is without forces, in which nothing spreads",
+                "leave control out",
+            );
+        }
+        if spec.periodic.iter().any(Option::is_some) {
+            return refused(
+                "statics.control",
+                "bonds through periodic faces are not broken one by one",
+                "leave periodic or control out",
+            );
+        }
+        if !self.loads_are_proportional() {
+            return refused(
+                "conditions",
+                "loads that are not proportional to t have no factor that grows or falls until the next bond breaks",
+                "write each as t times what it is at t = 1; what is held is held at 0",
+            );
+        }
+        let alpha = |m: &crate::spec::MaterialSpec| m.fracture.is_some_and(|f| f.alpha != 0.0);
+        if spec.materials.iter().any(alpha) {
+            return refused(
+                "materials[0].fracture",
+                "strengthening under compression (alpha) makes critical stretches follow the load",
+                "leave alpha out",
+            );
+        }
+        if self.toughness.as_ref().is_some_and(|t| t.changes()) {
+            return refused(
+                "toughness[0]",
+                "a toughness that changes with t has no place where t is the factor of the load",
+                "leave t out of it",
+            );
+        }
+        self.learn_strength();
+        if !self
+            .criticals()
+            .iter()
+            .any(|e| *e > 0.0 && *e < history::NEVER)
+        {
+            return Err(BuildError::missing(
+                "materials[0].fracture",
+                "no bond of this body breaks: nothing says how far the load goes",
+            )
+            .help("give a material a fracture, or leave control out"));
+        }
+        Ok(())
+    }
+
+    /// Critical values of `e` by slot; none where bonds do not break.
+    fn criticals(&self) -> Vec<f64> {
+        let mut out = vec![];
+        self.interaction
+            .read_column(&self.body, &self.u, history::ELONGATION, &mut out);
+        out
+    }
+
+    fn loads_are_proportional(&mut self) -> bool {
+        let mut at = |t: f64| {
+            let mut u = self.body.at_rest();
+            for c in &self.constraints {
+                c.place(&mut u, t);
+            }
+            let mut f = zeros(self.body.len);
+            let v = zeros(self.body.len);
+            for load in &mut self.loads {
+                load.add(&self.body, [&u, &v], &mut f, t, 0.0);
+            }
+            [u, f]
+        };
+        let [none, half, whole] = [0.0, 0.5, 1.0].map(&mut at);
+        (0..2).all(|of| {
+            (0..D).all(|a| {
+                let most = whole[of][a].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+                self.body.slots.iter().all(|s| {
+                    let [x, y, z] = [&none, &half, &whole].map(|w| w[of][a][*s as usize]);
+                    x.abs() <= ROUND_OFF * most && (y - 0.5 * z).abs() <= ROUND_OFF * most
+                })
+            })
+        })
+    }
+
+    /// Bonds that broke are cut; then on to the equilibrium in which the next ones are at their critical stretch.
+    pub(super) fn settle_sequence(
+        &mut self,
+        state: &mut StaticState<D>,
+    ) -> Result<Solved, SolveError> {
+        self.tell_toughness();
+        let (broken, released) = (self.broken, self.released);
+        let last = state.sequence.take();
+        let mut whole = vec![];
+        if let Some(last) = &last {
+            self.interaction
+                .read_column(&self.body, &self.u, history::WHOLE, &mut whole);
+            self.let_go_of(&last.next);
+            state.forget();
+        }
+        let found = self.next_equilibrium(state, last.as_ref());
+        if found.is_err() {
+            if !whole.is_empty() {
+                self.interaction
+                    .write_column(&self.body, history::WHOLE, &whole);
+            }
+            (self.broken, self.released) = (broken, released);
+            state.sequence = last;
+            state.forget();
+        }
+        found
+    }
+
+    fn let_go_of(&mut self, bonds: &[Critical<D>]) {
+        let held: f64 = self.quadratic_energy().iter().sum();
+        let near = 1e-6 * self.body.spacing;
+        let at = |slot: usize| -> [f64; D] {
+            let x = self.body.position(slot);
+            std::array::from_fn(|a| x[a])
+        };
+        let ends: Vec<[[f64; D]; 2]> = bonds.iter().map(|b| [at(b.i), at(b.j)]).collect();
+        let same = |x: &[f64; D], y: &[f64; D]| (0..D).all(|a| (x[a] - y[a]).abs() < near);
+        let is = |from: [f64; D], to: [f64; D]| {
+            ends.iter()
+                .any(|[a, b]| (same(a, &from) && same(b, &to)) || (same(b, &from) && same(a, &to)))
+        };
+        self.broken += self.interaction.cut(&self.body, CrackKind::Broken, &is);
+        let kept: f64 = self.quadratic_energy().iter().sum();
+        self.released += held - kept;
+    }
+
+    fn next_equilibrium(
+        &mut self,
+        state: &mut StaticState<D>,
+        last: Option<&Sequence<D>>,
+    ) -> Result<Solved, SolveError> {
+        let support = self.support();
+        let before = self.u.clone();
+        // under the load 1
+        self.origin = (self.step, 1.0);
+        for c in &self.constraints {
+            c.place(&mut self.u, 1.0);
+        }
+        let load = self.external();
+        let b = self.per_point(&load);
+        let mut x = self.values(&self.u);
+        let solved = self.solve_about_reference(state, &support, &b, &mut x)?;
+        self.set_values(&x);
+        self.linear_forces();
+        let (factor, next) = self.weakest()?;
+        self.account_sequence(&before, last, factor);
+        let f: Field<D> = std::array::from_fn(|a| {
+            let mut column = self.f[a].clone();
+            column.iter_mut().for_each(|f| *f *= factor);
+            column
+        });
+        for a in 0..D {
+            for &s in &self.body.slots {
+                self.u[a][s as usize] *= factor;
+            }
+        }
+        self.refresh_images();
+        self.f = f.clone();
+        self.origin = (self.step, factor);
+        for c in &self.constraints {
+            c.place(&mut self.u, factor);
+        }
+        self.other_forces(0.0);
+        state.sequence = Some(Sequence { next, f, factor });
+        Ok(solved)
+    }
+
+    /// The lowest factor of the load of now at which bonds are at their critical stretch, and which.
+    fn weakest(&self) -> Result<(f64, Vec<Critical<D>>), SolveError> {
+        let critical = self.criticals();
+        let mut all = vec![];
+        let mut most = 0.0f64;
+        self.interaction
+            .each_bond(&self.body, &mut |i, j, xi, state| {
+                if state != BondState::Whole {
+                    return;
+                }
+                let ends = [critical[i], critical[j]];
+                let limit = ends[0].min(ends[1]);
+                if ends.contains(&history::NEVER) || !limit.is_finite() {
+                    return;
+                }
+                let s = stretch(i, j, &xi, &self.u);
+                most = most.max(s.abs());
+                if s > 0.0 {
+                    let bond = Critical {
+                        i,
+                        j,
+                        xi,
+                        stretch: critical_stretch(limit),
+                    };
+                    all.push((bond.stretch / s, bond));
+                }
+            });
+        let least = all.iter().map(|(factor, _)| *factor);
+        let least = least.fold(f64::INFINITY, f64::min);
+        let largest = all.iter().map(|(_, b)| b.stretch).fold(0.0, f64::max);
+        if !(least.is_finite() && least * most > AT_REST * largest) {
+            return Err(SolveError::NothingBreaks);
+        }
+        let together = all
+            .into_iter()
+            .filter(|(f, _)| *f <= least * (1.0 + TOGETHER));
+        Ok((least, together.map(|(_, bond)| bond).collect()))
+    }
+
+    /// Work of loads and reactions from the last equilibrium to that at `factor`; displacements and forces are those under the load 1.
+    fn account_sequence(&mut self, u: &Field<D>, last: Option<&Sequence<D>>, factor: f64) {
+        let dot = |f: &dyn Fn(usize, usize) -> f64, x: &dyn Fn(usize, usize) -> f64| {
+            let each = self.body.slots.iter().map(|s| *s as usize);
+            each.map(|i| {
+                let along: f64 = (0..D).map(|a| f(a, i) * x(a, i)).sum();
+                self.body.volume.at(i) * along
+            })
+            .sum::<f64>()
+        };
+        // what acts from outside is what bonds pull against
+        let stiffness = -dot(&|a, i| self.f[a][i], &|a, i| self.u[a][i]);
+        let mut work = 0.0;
+        let mut from = 0.0;
+        if let Some(last) = last {
+            let each = last
+                .next
+                .iter()
+                .map(|b| b.stretch / stretch(b.i, b.j, &b.xi, &self.u));
+            let mean = each.sum::<f64>() / last.next.len() as f64;
+            // where the ends of a bond come nearer to each other under the load without it, it lets go at the load that it had
+            from = match mean > 0.0 && mean.is_finite() {
+                true => mean,
+                false => last.factor,
+            };
+            work -= 0.5
+                * dot(&|a, i| last.f[a][i] + from * self.f[a][i], &|a, i| {
+                    from * self.u[a][i] - u[a][i]
+                });
+        }
+        work += 0.5 * (factor * factor - from * from) * stiffness;
+        self.past_work[1] += work;
+    }
+
+    /// Is it an analysis of this kind?
+    pub(super) fn breaks_in_turn(options: Statics) -> bool {
+        options.control == Control::Breaking
+    }
+}

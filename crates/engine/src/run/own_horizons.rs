@@ -1,0 +1,112 @@
+//! Horizons of points: what each has, and what can have such.
+
+use crate::body::{Body, Layout};
+use crate::error::BuildError;
+use crate::spec::{Calibration, Criterion, Influence, LawSpec, Spec, Stepper};
+
+/// What is longer by this part is so by round-off.
+const ROUND_OFF: f64 = 1.0 + 1e-9;
+
+fn possible(spec: &Spec) -> Result<(), BuildError> {
+    let refused = |path: &str, message: &str, help: &str| {
+        Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
+    };
+    if !matches!(spec.materials[..], [ref m] if matches!(m.law, LawSpec::Pmb(_))) {
+        return refused(
+            "own_horizon",
+            "points with horizons of their own are a body of one material of the law pmb",
+            "leave own_horizon out, or write law = { pmb = { ... } }",
+        );
+    }
+    if spec.influence != Influence::Constant {
+        return refused(
+            "influence",
+            "an influence function of the horizon is not known where points have their own",
+            "leave influence out",
+        );
+    }
+    if !spec.volume_scaling {
+        return refused(
+            "volume_scaling",
+            "volumes fade at the horizon of a point: else its stiffness jumps wherever that passes another point",
+            "leave volume_scaling out",
+        );
+    }
+    if spec.calibration != Calibration::Continuum {
+        return refused(
+            "calibration",
+            "the constants of points with horizons of their own are those of the continuum",
+            "write calibration = \"continuum\"",
+        );
+    }
+    let fracture = spec.materials[0].fracture;
+    if fracture.is_some_and(|f| matches!(f.criterion, Criterion::Energy(_))) {
+        return refused(
+            "materials[0].fracture",
+            "the stretch that a fracture energy stands for depends on the horizon, of which every point has another",
+            "give critical_stretch",
+        );
+    }
+    if !spec.transfers.is_empty() {
+        return refused(
+            "own_horizon",
+            "what spreads through bonds knows one horizon",
+            "leave own_horizon out",
+        );
+    }
+    if spec.surface.is_some() || !spec.bonds.is_empty() || !spec.pairs.is_empty() {
+        return refused(
+            "own_horizon",
+            "factors of bonds belong to a body of one horizon",
+            "leave them or own_horizon out",
+        );
+    }
+    if spec.schedule.stepper == Stepper::Still {
+        return refused("own_horizon", "points stand still", "leave own_horizon out");
+    }
+    Ok(())
+}
+
+/// Gives the points of a cloud the horizons that the spec asks for, none longer than `longest`.
+pub(super) fn give<const D: usize>(
+    spec: &Spec,
+    body: &mut Body<D>,
+    longest: f64,
+) -> Result<(), BuildError> {
+    let Some(expression) = &spec.own_horizon else {
+        return Ok(());
+    };
+    if !matches!(body.layout, Layout::Cloud(_)) {
+        return Err(BuildError::unsupported(
+            "own_horizon",
+            "horizons of points belong to a single cloud: a lattice has one stencil",
+        )
+        .help("write family = \"list\", or take the points from a file"));
+    }
+    possible(spec)?;
+    if expression.depends_on_time() {
+        return Err(BuildError::invalid(
+            "own_horizon",
+            "horizons are those of the reference, and this one depends on t",
+        )
+        .help("write it with x, y, z alone"));
+    }
+    let mut own = vec![0.0; body.len];
+    for &s in &body.slots {
+        let x = body.position(s as usize);
+        let horizon = expression.eval(&x, 0.0);
+        if !(horizon > 0.0 && horizon <= longest * ROUND_OFF) {
+            return Err(BuildError::invalid(
+                "own_horizon",
+                format!(
+                    "the horizon of the point at {:?} is {horizon:e}, expected a positive length up to the horizon of the body, {longest:e}",
+                    &x[..D]
+                ),
+            )
+            .help("horizon is the longest of all"));
+        }
+        own[s as usize] = horizon;
+    }
+    body.horizon = own;
+    Ok(())
+}

@@ -1,0 +1,221 @@
+//! Points with horizons of their own: action and reaction, energy, what a uniform strain leaves, and what a wave sees of it.
+
+use peridyne::expression::Expression;
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::spec::*;
+
+fn text(e: &str) -> Option<Expression> {
+    Some(Expression::parse(e, &[]).unwrap())
+}
+
+fn solid(size: &[f64], longest: f64, own: Option<&str>) -> Spec {
+    let d = size.len();
+    let kind = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][d - 1];
+    let high = std::array::from_fn(|a| size.get(a).copied().unwrap_or(0.0));
+    let body = BodySpec::lattice(
+        kind,
+        1.0,
+        Region::Block {
+            low: [0.0; 3],
+            high,
+        },
+    );
+    let mut spec = Spec::new(d, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    spec.horizon = Horizon::Length(longest);
+    spec.family = FamilyChoice::List;
+    spec.calibration = Calibration::Continuum;
+    spec.volume_scaling = true;
+    spec.own_horizon = own.and_then(text);
+    spec
+}
+
+fn started(spec: &Spec) -> Box<dyn Simulation> {
+    let mut sim = build(spec, Options::default()).unwrap();
+    sim.start(true);
+    sim
+}
+
+fn bent(sim: &mut dyn Simulation) -> Vec<[f64; 3]> {
+    let d = sim.info().dimension;
+    let x = sim.vectors("reference");
+    let u = |x: &[f64; 3]| -> [f64; 3] {
+        let all = [
+            0.02 * (x[0] - 0.3 * x[1]).sin(),
+            0.03 * (0.7 * x[1] + x[2]).cos(),
+            0.01 * (x[0] * 0.4 + x[2]).sin(),
+        ];
+        std::array::from_fn(|a| if a < d { all[a] } else { 0.0 })
+    };
+    x.iter().map(u).collect()
+}
+
+const GRADED: &str = "2.05 + 1.5*clamp((x-3)/6, 0, 1)";
+
+#[test]
+fn alike_horizons_are_those_of_the_body() {
+    // no pair is further apart than the horizon by less than half a spacing
+    for (size, horizon, own) in [(&[20.0][..], 2.45, "2.45"), (&[9.0, 8.0], 2.3, "2.3")] {
+        let mut one = started(&solid(size, horizon, None));
+        let mut own = started(&solid(size, horizon, Some(own)));
+        assert_eq!(one.info().directed_bonds, own.info().directed_bonds);
+        let u = bent(one.as_mut());
+        let (f, g) = (one.forces_under(&u), own.forces_under(&u));
+        let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (f, g) in f.iter().zip(&g) {
+            for a in 0..3 {
+                assert!((f[a] - g[a]).abs() < 1e-12 * most, "{f:?} {g:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn unlike_horizons_keep_momentum_and_energy() {
+    for size in [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]] {
+        let mut sim = started(&solid(size, 3.6, Some(GRADED)));
+        let u = bent(sim.as_mut());
+        let x = sim.vectors("reference");
+        let f = sim.forces_under(&u);
+        let (mut force, mut moment, mut most) = ([0.0; 3], [0.0; 3], 0.0f64);
+        for ((f, x), u) in f.iter().zip(&x).zip(&u) {
+            let y: [f64; 3] = std::array::from_fn(|a| x[a] + u[a]);
+            for a in 0..3 {
+                let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+                force[a] += f[a];
+                moment[a] += y[b] * f[c] - y[c] * f[b];
+                most = most.max(f[a].abs());
+            }
+        }
+        let round_off = 1e-12 * most * f.len() as f64;
+        for a in 0..3 {
+            assert!(force[a].abs() < round_off, "{force:?}");
+            assert!(moment[a].abs() < 20.0 * round_off, "{moment:?}");
+        }
+        // forces are the slope of the energy: it is kept, and to second order in the step
+        let off = |fraction: f64| {
+            let mut spec = solid(size, 3.6, Some(GRADED));
+            spec.schedule.time_step = TimeStep::Fraction(fraction);
+            let mut sim = started(&spec);
+            sim.set_displacements(&u);
+            sim.start(true);
+            let mut worst = 0.0f64;
+            while sim.time() < 20.0 {
+                sim.step().unwrap();
+                let l = sim.ledger().unwrap();
+                worst = worst.max((l.residual() / l.initial).abs());
+            }
+            worst
+        };
+        let (coarse, fine) = (off(0.2), off(0.1));
+        assert!(coarse < 5e-2, "{coarse}");
+        assert!(fine < 0.35 * coarse, "{coarse} {fine}");
+    }
+}
+
+/// Tangents are those of the forces.
+#[test]
+fn a_body_of_unlike_horizons_has_an_equilibrium() {
+    let mut spec = solid(&[14.0, 6.0], 3.6, Some(GRADED));
+    let end = |name: &str, sign: f64, x: f64| SetSpec {
+        name: name.into(),
+        members: Members::Region(Region::HalfSpace {
+            point: [x, 0.0, 0.0],
+            normal: [sign, 0.0, 0.0],
+        }),
+    };
+    spec.sets = vec![end("low", 1.0, 1.1), end("high", -1.0, 12.9)];
+    for (set, u) in [("low", "0"), ("high", "0.2")] {
+        spec.conditions.push(ConditionSpec {
+            set: set.into(),
+            kind: ConditionKind::Displacement([text(u), text("0"), None]),
+        });
+    }
+    spec.schedule.steps = 1;
+    spec.schedule.time_step = TimeStep::Fixed(1.0);
+    spec.schedule.stepper = Stepper::Statics(Statics {
+        method: Method::Newton,
+        tolerance: 1e-11,
+        ..Statics::default()
+    });
+    let mut sim = started(&spec);
+    sim.step().unwrap();
+    // quadratic convergence takes a handful of steps
+    assert!(sim.solved().unwrap().iterations <= 8, "{:?}", sim.solved());
+}
+
+/// What a uniform strain leaves in the bulk, over the force of the strain at the end of the body, and what of a pulse comes back from
+/// where the horizon changes from 2 to 4 spacings.
+#[test]
+fn a_graded_bar_lets_a_wave_through() {
+    let graded = |over: f64| format!("2.05 + 2*clamp((x-200)/{over} + 0.5, 0, 1)");
+    for (over, patch, back) in [(1.0, 0.3, 2e-3), (40.0, 0.02, 5e-4)] {
+        let own = graded(over);
+        let mut spec = solid(&[400.0], 4.1, Some(&own));
+        spec.initial.push(InitialSpec {
+            set: "all".into(),
+            displacement: [text("0.01*exp(-((x-100)/12)^2)"), None, None],
+            velocity: [
+                text("-0.01*exp(-((x-100)/12)^2)*(-2*(x-100)/144)"),
+                None,
+                None,
+            ],
+        });
+        let mut sim = started(&spec);
+        let x = sim.vectors("reference");
+        let strained: Vec<[f64; 3]> = x.iter().map(|x| [1e-3 * x[0], 0.0, 0.0]).collect();
+        let f = sim.forces_under(&strained);
+        let inside = |x: &[f64; 3]| x[0] > 10.0 && x[0] < 390.0;
+        let bulk = x.iter().zip(&f).filter(|(x, _)| inside(x));
+        let bulk = bulk.fold(0.0f64, |m, (_, f)| m.max(f[0].abs()));
+        let left = bulk / f[0][0].abs();
+        let first = sim.ledger().unwrap().initial;
+        // long enough to be through, and back to where it came from
+        while sim.time() < 190.0 {
+            sim.step().unwrap();
+        }
+        let energy = |sim: &mut dyn Simulation, name: &str| {
+            let w = sim.scalars(name);
+            let of = x.iter().zip(&w).filter(|(x, _)| x[0] < 180.0);
+            of.map(|(_, w)| w).sum::<f64>()
+        };
+        let reflected = energy(sim.as_mut(), "kinetic_energy_density")
+            + energy(sim.as_mut(), "strain_energy_density");
+        println!(
+            "over {over}: a uniform strain leaves {left:.3e}, {:.3e} of the pulse come back",
+            reflected / first
+        );
+        assert!(left < patch, "{over}: {left}");
+        assert!(reflected < back * first, "{over}: {}", reflected / first);
+    }
+}
+
+#[test]
+fn what_knows_one_horizon_is_refused() {
+    let spec = solid(&[9.0, 9.0], 3.6, Some(GRADED));
+    let said = |change: &dyn Fn(&mut Spec)| {
+        let mut spec = spec.clone();
+        change(&mut spec);
+        build(&spec, Options::default()).err().unwrap().path
+    };
+    assert_eq!(said(&|s| s.own_horizon = text("5")), "own_horizon");
+    assert_eq!(said(&|s| s.own_horizon = text("x-1")), "own_horizon");
+    assert_eq!(said(&|s| s.own_horizon = text("2+t")), "own_horizon");
+    assert_eq!(said(&|s| s.family = FamilyChoice::Auto), "own_horizon");
+    assert_eq!(said(&|s| s.volume_scaling = false), "volume_scaling");
+    assert_eq!(
+        said(&|s| s.calibration = Calibration::Discrete),
+        "calibration"
+    );
+    assert_eq!(said(&|s| s.influence = Influence::Conical), "influence");
+    assert_eq!(
+        said(&|s| {
+            s.materials[0].law = LawSpec::Lps(Moduli {
+                young: 1.0,
+                poisson: 0.3,
+            });
+        }),
+        "own_horizon"
+    );
+}

@@ -1,0 +1,143 @@
+//! Bonds broken in turn: the load is what the next one bears, and may fall with its way.
+
+use super::*;
+
+fn breaking(spec: &mut Spec, critical: f64, equilibria: u64) {
+    spec.materials[0].fracture = Some(FractureSpec {
+        criterion: Criterion::Stretch(critical),
+        alpha: 0.0,
+    });
+    spec.schedule.steps = equilibria;
+    spec.schedule.stepper = Stepper::Statics(Statics {
+        control: Control::Breaking,
+        ..Statics::default()
+    });
+}
+
+#[test]
+fn a_chain_bears_the_critical_stretch_of_all_its_springs() {
+    let mut spec = block(
+        [20.0, 0.0, 0.0],
+        1,
+        LawSpec::Pmb(PmbStiffness::Micromodulus(1.0)),
+    );
+    hold(&mut spec, "low", [number(0.0), None, None]);
+    hold(&mut spec, "high", [text("3*t"), None, None]);
+    breaking(&mut spec, 0.01, 1);
+    let mut sim = solved(&spec);
+    // 20 springs, 3 at t = 1
+    assert!((sim.time() - 0.2 / 3.0).abs() < 1e-13, "{}", sim.time());
+    let l = sim.ledger().unwrap();
+    assert!((l.strain - 20.0 * 0.5e-4).abs() < 1e-14, "{l:?}");
+    assert!(l.residual().abs() < 1e-15, "{l:?}");
+    assert_eq!(sim.broken(), 0);
+    // all break together, and nothing is left: the state is that of before
+    let before = sim.displacements();
+    let error = sim.step().unwrap_err().to_string();
+    assert!(error.contains("increment 2"), "{error}");
+    assert_eq!((sim.step_number(), sim.broken()), (1, 0));
+    assert_eq!(sim.displacements(), before);
+    assert!((sim.time() - 0.2 / 3.0).abs() < 1e-13);
+    assert_eq!(sim.ledger().unwrap().released, 0.0);
+}
+
+/// A bar five times as long as it is wide, with a notch.
+fn slender() -> Spec {
+    let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    spec.horizon = Horizon::Ratio(2);
+    spec.precracks.push(PrecrackSpec {
+        shape: CrackShape::Segment {
+            from: [20.5, -1.0, 0.0],
+            to: [20.5, 1.5, 0.0],
+        },
+        kind: CrackKind::Broken,
+    });
+    hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+    hold(&mut spec, "high", [text("t"), number(0.0), None]);
+    breaking(&mut spec, 0.01, 12);
+    spec
+}
+
+/// Energy to round-off through every break, and a curve that turns back.
+#[test]
+fn a_slender_bar_snaps_back_and_its_ledger_closes() {
+    let spec = slender();
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let mut curve: Vec<(f64, f64)> = vec![];
+    let mut released = 0.0;
+    for n in 1..=12 {
+        sim.step().unwrap();
+        let l = sim.ledger().unwrap();
+        let off = l.residual().abs() / l.work_conditions.abs().max(l.strain);
+        println!("{n}: t {} {l:?}, broken {}", sim.time(), sim.broken());
+        assert!(off < 1e-9, "{n}: {off:e} {l:?}");
+        // ½ P Δ of a linear body
+        curve.push((sim.time(), 2.0 * l.strain / sim.time()));
+        assert_eq!(sim.broken() > 0, n > 1);
+        assert!(l.released > released || n == 1);
+        released = l.released;
+    }
+    for pair in curve.windows(2) {
+        // every cut makes the bar softer
+        assert!(pair[1].1 / pair[1].0 < pair[0].1 / pair[0].0, "{curve:?}");
+    }
+    let first = curve[0];
+    let turned = curve.iter().filter(|c| c.0 < first.0 && c.1 < first.1);
+    assert!(turned.count() > 3, "{curve:?}");
+}
+
+/// The first equilibrium is that at which load control breaks the first bond, and the same bond.
+#[test]
+fn the_first_bond_is_that_of_load_control() {
+    let spec = slender();
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    sim.step().unwrap();
+    let factor = sim.time();
+    sim.step().unwrap();
+    let broken = sim.broken();
+    for (part, breaks) in [(0.99, false), (1.01, true)] {
+        let mut told = spec.clone();
+        told.conditions.pop();
+        hold(
+            &mut told,
+            "high",
+            [text(&format!("{:e}*t", part * factor)), number(0.0), None],
+        );
+        told.schedule.steps = 1;
+        told.schedule.stepper = Stepper::Statics(Statics::default());
+        let mut sim = build(&told, Options::default()).unwrap();
+        sim.start(true);
+        // what follows may take the bar apart
+        let _ = sim.step();
+        assert_eq!(sim.broken() >= broken, breaks, "{part}: {}", sim.broken());
+    }
+}
+
+#[test]
+fn what_has_no_factor_is_refused() {
+    let said = |change: &dyn Fn(&mut Spec)| {
+        let mut spec = slender();
+        change(&mut spec);
+        build(&spec, Options::default()).err().unwrap()
+    };
+    let newton = said(&|spec| {
+        spec.schedule.stepper = Stepper::Statics(Statics {
+            control: Control::Breaking,
+            method: Method::Newton,
+            ..Statics::default()
+        });
+    });
+    assert_eq!(newton.path, "statics.control");
+    let whole = said(&|spec| spec.materials[0].fracture = None);
+    assert_eq!(whole.path, "materials[0].fracture");
+    let constant = said(&|spec| {
+        let force = ConditionKind::BodyForce([None, number(1e-6), None]);
+        spec.conditions.push(ConditionSpec {
+            set: "all".into(),
+            kind: force,
+        });
+    });
+    assert_eq!(constant.path, "conditions");
+}
