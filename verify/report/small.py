@@ -107,6 +107,9 @@ class Check:
         page.goto(f"file://{self.out}/{name}/report.html{hash}")
         page.wait_for_selector("body[data-ready]")
         self.must(page.get_attribute("body", "data-ready") == "yes", f"{name}: the body is not drawn")
+        # the picture is as high as the words beside it, and fonts differ
+        page.add_style_tag(content=f"#stage {{ flex: none !important; width: {min(760, width - 60)}px !important; height: 480px !important; }}")
+        page.wait_for_function("() => viewer.canvas.height === Math.round(480 * viewer.ratio)")
         return page
 
     def look(self, page, name):

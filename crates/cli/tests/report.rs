@@ -173,11 +173,7 @@ fn a_script_has_a_report_of_its_dump_and_its_thermo_output() {
 fn loads_supports_cracks_free_balls_and_slices_are_in_reports() {
     let dir = tempfile::tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);
-    run(
-        &at("k"),
-        "kalthoff.toml",
-        &["body.spacing=5 mm", "run.steps=20"],
-    );
+    run(&at("k"), "kalthoff.toml", &["body.spacing=5 mm"]);
     let scene = &meta(&page(&at("k")).1)["scenes"][0];
     let loads = scene["marks"]["loads"].as_array().unwrap();
     assert_eq!((loads.len(), &loads[0]["toward"][0]), (7, &1.0.into()));

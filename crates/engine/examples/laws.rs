@@ -2,6 +2,7 @@
 //! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`. A word
 //! `cells=20` makes the cube smaller than the 60 cells along an edge that no cache holds.
 use peridyne::execute::simd::Simd;
+use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
@@ -67,6 +68,15 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         let all = elastic().with("stress", Parameter::Word(stress.into()));
         LawSpec::named("correspondence", all)
     };
+    // E = 1, ν = 0.3
+    let energy = Expression::of(
+        &["I1", "I2", "J"],
+        "mu/2*(I1 - 3) - mu*ln(J) + l/2*ln(J)^2",
+        &[("mu", 1.0 / 2.6), ("l", 0.3 / 0.52)],
+    )
+    .expect("an energy");
+    let written = Parameters::default().with("energy", Parameter::Formula(energy));
+    let fluid = [("bulk", 1.0), ("hugoniot_slope", 1.5), ("gruneisen", 2.0)];
     let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.1)]);
     vec![
         (
@@ -82,6 +92,18 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         ("viscoelastic, 4 branches", branches(4)),
         ("correspondence, linear", correspondence("linear")),
         ("correspondence, neo_hookean", correspondence("neo_hookean")),
+        (
+            "neo_hookean, written",
+            LawSpec::named("hyperelastic", written),
+        ),
+        (
+            "fluid",
+            LawSpec::named("fluid", Parameters::numbers(&fluid)),
+        ),
+        (
+            "position_aware",
+            LawSpec::named("position_aware", elastic()),
+        ),
         ("hypoelastic", LawSpec::named("hypoelastic", elastic())),
         ("metal, elastic yet", metal(1e3)),
         ("metal, flowing", metal(1e-9)),

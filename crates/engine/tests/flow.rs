@@ -15,7 +15,7 @@ const BULK: f64 = LAMBDA + 2.0 * MU / 3.0;
 const DENSITY: f64 = 2.0;
 
 type Matrix<const D: usize> = [[f64; D]; D];
-type Past<const D: usize> = ([Matrix<D>; 2], [f64; 9]);
+type Past<const D: usize> = ([Matrix<D>; 2], [f64; 10]);
 /// A deformation that F sees all of.
 const SEEN: Unseen<f64> = Unseen {
     stiffness: 0.0,
@@ -42,6 +42,7 @@ fn made(d: usize, mut parameters: Parameters) -> Result<HypoelasticPlastic, Stri
         critical_stretch: f64::INFINITY,
         density: DENSITY,
         weighted_volume: None,
+        horizon: 1.0,
     };
     HypoelasticPlastic::make(d, Plane::Strain, &[given]).map_err(|(_, message)| message)
 }
@@ -65,7 +66,7 @@ fn along<const D: usize>(
     path: impl Fn(f64) -> Matrix<D>,
 ) -> Vec<Past<D>> {
     let constants = Classical::<D>::constants(law, 0, dt);
-    let mut past = ([[[0.0; D]; D]; 2], [0.0; 9]);
+    let mut past = ([[[0.0; D]; D]; 2], [0.0; 10]);
     let mut all = vec![];
     for n in 1..=steps {
         past = law
@@ -199,7 +200,7 @@ fn the_yield_surface_holds() {
                 }
                 let law = made(3, parameters).unwrap();
                 let steps = 400;
-                let mut before: Past<3> = ([[[0.0; 3]; 3]; 2], [0.0; 9]);
+                let mut before: Past<3> = ([[[0.0; 3]; 3]; 2], [0.0; 10]);
                 let (mut flowed, mut worst, mut rises): (usize, f64, f64) = (0, 0.0, 0.0);
                 for past in along(&law, steps, dt, path) {
                     let more = past.1[STRAIN] - before.1[STRAIN];

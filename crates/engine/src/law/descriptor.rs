@@ -498,6 +498,8 @@ pub struct Given<'a> {
     pub density: f64,
     /// Of the full ball, where constants are those of the continuum (length² volume).
     pub weighted_volume: Option<f64>,
+    /// Radius of its families (length).
+    pub horizon: f64,
 }
 
 /// A law that can stand on a shelf.

@@ -90,7 +90,7 @@ impl Part for &Message {
     }
 }
 
-/// A [`Message`] of texts and quantities, one after the other.
+/// A [`Message`](crate::quantity::Message) of texts and quantities, one after the other.
 #[macro_export]
 macro_rules! message {
     ($($part:expr),* $(,)?) => {{

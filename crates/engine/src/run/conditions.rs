@@ -8,7 +8,7 @@ use crate::condition::load::{Load, LoadKind};
 use crate::error::BuildError;
 use crate::expression::Expression;
 use crate::message;
-use crate::quantity::{place, rounded};
+use crate::quantity::{Dimension, place};
 use crate::spec::{Carriers, ConditionKind, ConditionSpec};
 use std::collections::HashMap;
 
@@ -186,17 +186,23 @@ impl<const D: usize> Model<D> {
                         let (n, m) = (number[other], number[c]);
                         let x = self.body.position(slot);
                         let axis = ["x", "y", "z"][a];
+                        let dimension = match (&conditions[n].kind, &conditions[m].kind) {
+                            (ConditionKind::Displacement(_), ConditionKind::Displacement(_)) => {
+                                Dimension::LENGTH
+                            }
+                            // where one is a velocity both are told as such
+                            _ => Dimension::VELOCITY,
+                        };
                         let message = message![
                             format!(
                                 "two conditions, on `{}` and on `{}`, ask different motions of the point at ",
                                 conditions[n].set, conditions[m].set
                             ),
                             place(&x[..D]),
-                            format!(
-                                " along {axis}: {} and {}",
-                                rounded(first, 4),
-                                rounded(second, 4)
-                            ),
+                            format!(" along {axis}: "),
+                            dimension.of(first),
+                            " and ",
+                            dimension.of(second),
                         ];
                         return Err(BuildError::conflict(format!("conditions[{m}]"), message).help(
                             "make their sets disjoint, or leave this component out of one of them",

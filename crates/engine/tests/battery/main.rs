@@ -4,6 +4,7 @@
 
 mod accounts;
 mod calibration;
+mod constants;
 mod cracks;
 mod equivalence;
 mod mechanics;

@@ -75,6 +75,17 @@ pub fn materials() -> Vec<Material> {
             .with("dilatancy", Parameter::Number(0.5 * friction));
         LawSpec::named("hypoelastic_plastic", more)
     };
+    let shocked = |law: LawSpec| match law {
+        LawSpec::Named(mut law) => {
+            let parameters = &mut law.parameters;
+            parameters.set("equation_of_state", Parameter::Word("mie_gruneisen".into()));
+            // 2s − Γ/2 = 1: at rest pressure has no corner in its curvature either, which tangents by differences would see
+            parameters.set("hugoniot_slope", Parameter::Number(1.0));
+            parameters.set("gruneisen", Parameter::Number(2.0));
+            LawSpec::Named(law)
+        }
+        law => law,
+    };
     let of_energy = |text: &str| {
         let energy = Expression::of(&["I1", "I2", "J"], text, &[]).unwrap();
         LawSpec::named(
@@ -154,6 +165,15 @@ pub fn materials() -> Vec<Material> {
                 Influence::Gaussian,
             )
         },
+        Material {
+            lives: |d, _| d > 1,
+            ..two(
+                "position-aware",
+                LawSpec::named("position_aware", elastic(3.0, 0.2)),
+                LawSpec::named("position_aware", elastic(1.0, 0.4)),
+                Influence::Inverse,
+            )
+        },
         one("viscoelastic", relaxing(0.5), Influence::Conical),
         two(
             "viscoelastic mixed",
@@ -212,6 +232,15 @@ pub fn materials() -> Vec<Material> {
                 "metal and soil",
                 flowing(0.06, 0.3, 0.0),
                 flowing(0.08, 0.1, 0.3),
+                Influence::Inverse,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            potential: false,
+            ..one(
+                "metal under impact",
+                shocked(flowing(0.06, 0.3, 0.0)),
                 Influence::Inverse,
             )
         },

@@ -3,6 +3,7 @@
 mod compact;
 mod plastic;
 mod relaxing;
+mod shock;
 
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};

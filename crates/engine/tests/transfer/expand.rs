@@ -15,6 +15,11 @@ fn laws() -> Vec<LawSpec> {
     let solid = [("young", 1.0), ("poisson", 0.3)];
     vec![
         LawSpec::Pmb(PmbStiffness::Young(1.0)),
+        LawSpec::Lps(Moduli {
+            young: 1.0,
+            poisson: 0.3,
+        }),
+        law("position_aware", &solid),
         law(
             "elastic_plastic",
             &[solid[0], solid[1], ("yield_stress", 1e6)],
@@ -369,17 +374,17 @@ fn laws_without_temperature_refuse() {
         change(&mut spec);
         build(&spec, Options::default()).map(|_| ()).unwrap_err()
     };
-    let lps = LawSpec::Lps(Moduli {
-        young: 1.0,
-        poisson: 0.3,
-    });
-    let error = refused(lps, &|_| {});
+    let typed = LawSpec::LpsAsTyped {
+        bulk: 1.0,
+        shear: 0.5,
+    };
+    let error = refused(typed, &|_| {});
     assert_eq!(error.kind, BuildErrorKind::Unsupported);
     assert!(
         error.path == "heat" && error.message.contains("know no expansion"),
         "{error:?}"
     );
-    assert!(error.help.unwrap().contains("elastic_plastic"));
+    assert!(error.message.contains("elastic_plastic"));
     let pmb = LawSpec::Pmb(PmbStiffness::Young(1.0));
     let error = refused(pmb, &|spec| {
         spec.schedule.stepper = Stepper::Statics(Statics::default());

@@ -9,7 +9,7 @@ use crate::execute::lane::{Lane, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::{Tally, Toughness, history};
-use crate::law::material::{Material, Numbers};
+use crate::law::material::{Kin, Material, Numbers, Partner};
 
 /// Most numbers that a form has.
 const FORM: usize = 32;
@@ -247,20 +247,20 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
 
     /// Of one point.
     pub fn form_of(&self, group: usize, bits: &[u8], l: usize, body: &Body<D>) -> M::Form<f64> {
-        let mut shape = [[0.0; D]; D];
         let at = self.family.rows(group).from(l);
-        for (k, bits) in bits.iter().enumerate() {
-            if bits >> l & 1 == 0 {
-                continue;
-            }
-            let r = self.family.plain(group, k, l);
-            let weight = r.omega * r.weight;
-            for a in 0..D {
-                for b in 0..D {
-                    shape[a][b] += weight * r.xi[a] * r.xi[b];
+        let each = |visit: &mut dyn FnMut(&Partner<D>)| {
+            for (k, bits) in bits.iter().enumerate() {
+                if bits >> l & 1 == 0 {
+                    continue;
                 }
+                let r = self.family.plain(group, k, l);
+                visit(&Partner {
+                    xi: r.xi,
+                    omega: r.omega,
+                    volume: r.weight,
+                });
             }
-        }
-        self.law.form(body.material_of(at.slot(0)), shape)
+        };
+        self.law.form(body.material_of(at.slot(0)), Kin::new(&each))
     }
 }

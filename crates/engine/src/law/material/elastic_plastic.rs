@@ -10,7 +10,7 @@
 //! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`,
 //! which points near a surface have, too, where constants are those of the continuum. Perfect plasticity is H = 0. Step by step the energy is the incremental potential, whose derivative is the force.
 
-use super::{Along, Bond, Columns, End, Material, Site};
+use super::{Along, Bond, Columns, End, Kin, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Memory, Shelved};
 use crate::law::number::Number;
@@ -114,8 +114,8 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         ]
     }
 
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> f64 {
-        super::inverse_weight(&shape)
+    fn form(&self, _: usize, kin: Kin<D>) -> f64 {
+        kin.inverse_weight()
     }
 
     #[inline(always)]

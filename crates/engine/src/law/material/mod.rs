@@ -8,6 +8,7 @@ pub mod bonds;
 pub mod elastic_plastic;
 pub mod non_ordinary;
 pub mod numbers;
+pub mod position_aware;
 pub mod softening;
 pub mod tensor;
 pub mod thermoelastic;
@@ -30,6 +31,7 @@ pub fn each(kinds: &mut impl Kinds) {
         viscoelastic::one_branch,
     );
     non_ordinary::each(kinds);
+    kinds.solid::<position_aware::PositionAware>();
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
     kinds.law::<ThermoelasticSolid>();
@@ -199,6 +201,54 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
     }
 }
 
+/// A bond of a reference family.
+#[derive(Debug, Clone, Copy)]
+pub struct Partner<const D: usize> {
+    /// ξ (length).
+    pub xi: [f64; D],
+    /// Influence function ω(|ξ|).
+    pub omega: f64,
+    /// `ν V_j`
+    pub volume: f64,
+}
+
+/// The reference family of a point, as a law may ask for it: any sum over its bonds.
+#[derive(Clone, Copy)]
+pub struct Kin<'a, const D: usize> {
+    each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>)),
+}
+
+impl<'a, const D: usize> Kin<'a, D> {
+    /// Of what visits every bond, always in the same order.
+    pub fn new(each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>))) -> Self {
+        Kin { each }
+    }
+
+    /// Visit every bond.
+    pub fn each(&self, mut visit: impl FnMut(&Partner<D>)) {
+        (self.each)(&mut visit);
+    }
+
+    /// The shape tensor `K = Σ ω ν V_j ξ⊗ξ` (length² volume); its trace is the weighted volume m.
+    pub fn shape(&self) -> [[f64; D]; D] {
+        let mut shape = [[0.0; D]; D];
+        self.each(|p| {
+            let weight = p.omega * p.volume;
+            for a in 0..D {
+                for b in 0..D {
+                    shape[a][b] += weight * p.xi[a] * p.xi[b];
+                }
+            }
+        });
+        shape
+    }
+
+    /// 1/m; 0 without bonds.
+    pub fn inverse_weight(&self) -> f64 {
+        inverse_weight(&self.shape())
+    }
+}
+
 /// 1/m of a family from its shape tensor; 0 without bonds.
 pub(crate) fn inverse_weight<const D: usize>(shape: &[[f64; D]; D]) -> f64 {
     let m = tensor::trace(shape);
@@ -272,8 +322,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
 
-    /// From the shape tensor `K = Σ ω ν V_j ξ⊗ξ` of its family (length² volume); its trace is the weighted volume m.
-    fn form(&self, _material: usize, _shape: [[f64; D]; D]) -> Self::Form<f64> {
+    /// From its reference family.
+    fn form(&self, _material: usize, _kin: Kin<D>) -> Self::Form<f64> {
         <Self::Form<f64> as Numbers<f64>>::constant(0.0)
     }
 

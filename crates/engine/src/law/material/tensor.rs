@@ -202,9 +202,14 @@ const POLAR_STEPS: usize = 9;
 /// Inverse of a symmetric matrix that is not negative, by its eigenvalues: of those below 1e-6 of the largest the inverse is 0. False: there
 /// are such, or all are 0.
 pub fn inverse<const D: usize>(a: Matrix<f64, D>) -> (Matrix<f64, D>, bool) {
+    inverse_within(a, 1e-6)
+}
+
+/// The same with the part of the largest eigenvalue below which a direction is none.
+pub fn inverse_within<const D: usize>(a: Matrix<f64, D>, part: f64) -> (Matrix<f64, D>, bool) {
     let (values, vectors) = eigen(a);
     let most = values.iter().fold(0.0f64, |m, x| m.max(*x));
-    let counts = |x: f64| most > 0.0 && x > 1e-6 * most;
+    let counts = |x: f64| most > 0.0 && x > part * most;
     let mut out = [[0.0; D]; D];
     for (k, value) in values.iter().enumerate() {
         if counts(*value) {

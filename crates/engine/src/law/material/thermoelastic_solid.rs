@@ -2,7 +2,7 @@
 //! [`Solid`], with the extension e counted, as for every law of this folder, from the length that the ends' temperature or concentration gives a bond.
 //! `T⟨ξ⟩ = ω ((nκθ/m) |ξ| + α e)` along the bond, over its whole bonds, with the m of the family as it was.
 
-use super::{Along, Bond, End, Material, Site};
+use super::{Along, Bond, End, Kin, Material, Site};
 use crate::law::descriptor::{self, Descriptor, Given, MODULI, Shelved};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
@@ -46,8 +46,8 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
         [m.n * m.n * m.kappa, m.beta]
     }
 
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> f64 {
-        super::inverse_weight(&shape)
+    fn form(&self, _: usize, kin: Kin<D>) -> f64 {
+        kin.inverse_weight()
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@
 //! can gain energy.
 //! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`.
 
-use super::{Along, Bond, Columns, End, Material, Site};
+use super::{Along, Bond, Columns, End, Kin, Material, Site};
 use crate::columns::{Declaration, Dimension};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
 use crate::law::number::Number;
@@ -149,8 +149,8 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         )
     }
 
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> f64 {
-        super::inverse_weight(&shape)
+    fn form(&self, _: usize, kin: Kin<D>) -> f64 {
+        kin.inverse_weight()
     }
 
     #[inline(always)]

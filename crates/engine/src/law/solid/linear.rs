@@ -234,6 +234,13 @@ impl Linear for EamLike {
 
     fn law(p: &Parameters) -> Result<LawSpec, String> {
         let [pair, volume] = p.all(["pair", "volume"])?;
+        // of a swelling ε in any dimension: W = (9κ + β) ε²/2
+        let bulk = (3.0 * volume + 0.5 * pair) / 9.0;
+        if !(bulk > 0.0) {
+            return Err(format!(
+                "pair and volume give a bulk modulus of {bulk:e}, expected a positive one: `volume` is above −pair/6"
+            ));
+        }
         Ok(LawSpec::EamLike { pair, volume })
     }
 

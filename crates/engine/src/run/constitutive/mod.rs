@@ -151,7 +151,7 @@ impl ConstitutiveModel {
             None => None,
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
-        let named = shelf::chosen::<D>(spec, shelf, moments, &toughness)?;
+        let named = shelf::chosen::<D>(spec, shelf, (horizon, moments), &toughness)?;
         Ok(ConstitutiveModel {
             laws,
             toughness,

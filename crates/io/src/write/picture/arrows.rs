@@ -23,7 +23,7 @@ pub struct Arrows {
     pub name: String,
     pub dimension: Dimension,
     pub vectors: Vec<[f64; 3]>,
-    /// What is drawn [`LONGEST`] pixels long.
+    /// What is drawn as long as an arrow may be.
     pub longest: f64,
 }
 

@@ -257,6 +257,7 @@ mod tests {
             critical_stretch: f64::INFINITY,
             density: 1.0,
             weighted_volume: None,
+            horizon: 1.0,
         };
         Anisotropic::make(d, plane, &[given]).map_err(|(_, message)| message)
     }

@@ -18,7 +18,7 @@ use super::{Asked, Classical, GRADIENT, Stressed, Unseen, on_a_family, takes_bon
 use crate::columns::{Declaration, Halo, On};
 use crate::law::descriptor::{Descriptor, Given, Shelved};
 use crate::law::material::tensor::{self, Matrix};
-use crate::law::material::{Bond, Columns, End, Free, Material, Numbers, Site};
+use crate::law::material::{Bond, Columns, End, Free, Kin, Material, Numbers, Site};
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
 
@@ -182,8 +182,8 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         self.law.constants(material, dt)
     }
 
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
-        let (inverse, whole) = tensor::inverse(shape);
+    fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {
+        let (inverse, whole) = tensor::inverse(kin.shape());
         (inverse, if whole { 1.0 } else { 0.0 })
     }
 

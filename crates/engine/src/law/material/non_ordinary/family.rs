@@ -12,7 +12,7 @@ use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::material::{
-    Bond, Columns, End, Free, Material, Numbers, Site, Source, inverse_weight,
+    Bond, Columns, End, Free, Kin, Material, Numbers, Site, Source, inverse_weight,
 };
 use crate::law::number::Number;
 use crate::spec::{LawSpec, Parameters, Plane};
@@ -138,7 +138,8 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         (control, self.law.constants(material, dt))
     }
 
-    fn form(&self, _: usize, shape: [[f64; D]; D]) -> Form<f64, D> {
+    fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {
+        let shape = kin.shape();
         let (inverse, whole) = tensor::inverse(shape);
         let sound = if whole { 1.0 } else { 0.0 };
         (inverse, [inverse_weight(&shape), sound])
@@ -276,6 +277,7 @@ impl<L: Shelved> Shelved for NonOrdinary<L> {
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let control = |m: &Given| m.parameters.number(CONTROL.name).unwrap_or(USUAL);
+        let law = L::make(d, plane, materials)?;
         if let Some(n) = materials
             .iter()
             .position(|m| super::takes_bonds(m.parameters))
@@ -289,7 +291,7 @@ impl<L: Shelved> Shelved for NonOrdinary<L> {
             ));
         }
         Ok(NonOrdinary {
-            law: L::make(d, plane, materials)?,
+            law,
             control: materials.iter().map(control).collect(),
         })
     }

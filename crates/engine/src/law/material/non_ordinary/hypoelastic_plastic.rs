@@ -6,9 +6,13 @@
 //! flow (Wilkins 1964; Simo & Hughes 1998, 3.3): `q′ + a p′ − (3μ + aKb) Δε̄ = σ_y(ε̄ + Δε̄, Δε̄/Δt, T)`, in plane strain with the deviator
 //! across. Where that leaves no deviator the stress is the apex, `p = σ_y(ε̄ + q′/3μ)/a`.
 //!
+//! With an [equation of state](super::equation_of_state) the mean stress is `−p(J, E) − q` of the volume and of the internal energy E, which is all work that
+//! was done on the point, and the viscosity of shocks: metals under impact (Wilkins 1964). Flow then is von Mises's.
+//!
 //! Plastic work, by the trapezoidal rule, is what is dissipated; a part β of it heats the point, which keeps that heat: `ρ c ΔT = β Δw_p`. Damage of Johnson & Cook (1985):
 //! `ΔD = Δε̄/ε_f`, `ε_f = (D₁ + D₂ exp(D₃ p/q)) (1 + D₄ ln(ε̄̇/ε̇₀)) (1 + D₅ T*)`; what it does to bonds is a matter of their fracture.
 
+use super::equation_of_state::{self, EQUATION, EquationOfState, HUGONIOT, VISCOSITY};
 use super::hardening::{self, Hardening, Kind};
 use super::rate::{self, INCREMENT, Increment, Step};
 use super::{Classical, Stressed, Unseen};
@@ -34,15 +38,17 @@ pub struct HypoelasticPlasticConstants {
     /// D₁ to D₅.
     pub damage: [f64; 5],
     pub hardening: Hardening,
+    pub state: EquationOfState,
 }
 
-/// See the module. All materials have the same kind of increment and of hardening.
+/// See the module. All materials have the same kind of increment, of hardening and of equation of state.
 #[derive(Debug, Clone)]
 pub struct HypoelasticPlastic {
     pub increment: Increment,
     pub kind: Kind,
     /// Do they have damage?
     pub damages: bool,
+    pub state: equation_of_state::Kind,
     /// Per material.
     pub materials: Vec<HypoelasticPlasticConstants>,
 }
@@ -53,7 +59,10 @@ const FRICTION: usize = 2;
 const DILATANCY: usize = 3;
 const HEATING: usize = 4;
 const DAMAGE: usize = 5;
-type Constants<N> = ([N; 10], hardening::Constants<N>);
+type Constants<N> = (
+    [N; 10],
+    (hardening::Constants<N>, equation_of_state::Constants<N>),
+);
 
 /// Numbers that a point remembers.
 const WORK: usize = 0;
@@ -66,8 +75,9 @@ const DAMAGED: usize = 5;
 const SOFTENED: usize = 6;
 const UNSEEN: usize = 7;
 const LOST: usize = 8;
+const SHOCK: usize = 9;
 /// U − 1 and σ_u, and the rest.
-type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 9]);
+type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 10]);
 
 /// Most steps of the search for Δε̄; from the elastic estimate it takes 2 to 8.
 const STEPS: usize = 80;
@@ -117,8 +127,8 @@ impl HypoelasticPlastic {
     #[inline(always)]
     fn flow<N: Number, const D: usize>(
         &self,
-        (c, hard): &Constants<N>,
-        memory: &[N; 9],
+        (c, (hard, _)): &Constants<N>,
+        memory: &[N; 10],
         trial: &Trial<N, D>,
     ) -> Flow<N> {
         let (zero, one, third) = (N::constant(0.0), N::constant(1.0), N::constant(1.0 / 3.0));
@@ -180,11 +190,31 @@ impl HypoelasticPlastic {
         }
     }
 
+    /// The mean stress −p − q of the equation of state, and q, at the end of a step that has this deviator there.
+    #[inline(always)]
+    fn pressed<N: Number, const D: usize>(
+        &self,
+        c: &equation_of_state::Constants<N>,
+        ([before, s0], memory): &Past<N, D>,
+        step: &Step<N, D>,
+        deviator: &Matrix<N, D>,
+    ) -> (N, N) {
+        let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
+        let ends = [tensor::dilation(before), tensor::dilation(&step.stretch)];
+        let q = self.state.viscosity(c, ends, memory[WORK], memory[SHOCK]);
+        let state = self.state.at(c, ends[1]);
+        // E′ = E + the work of all but the new mean stress m, and ½ J′ m tr Δε of that: linear in m = −a − q − b E′
+        let known = memory[WORK] + step.work(s0, deviator);
+        let spread = half * step.volumes[1] * tensor::trace(&step.mean);
+        let mean = zero - (state.pressure(known) + q);
+        (mean.div(state.per_energy.fma(spread, one)), q)
+    }
+
     /// What a growth of the plastic strain adds to the damage, at this p/q.
     #[inline(always)]
     fn damaged<N: Number>(
         &self,
-        (c, hard): &Constants<N>,
+        (c, (hard, _)): &Constants<N>,
         rise: N,
         strain: N,
         triaxiality: N,
@@ -254,6 +284,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
                 Dimension::PRESSURE,
                 "Energy per reference volume that went with the control's stiffness, which is dissipated.",
             ),
+            equation_of_state::column(),
         ]);
         all
     }
@@ -278,7 +309,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
             d4,
             d5,
         ];
-        (own, m.hardening.constants(dt))
+        (own, (m.hardening.constants(dt), m.state.constants(dt)))
     }
 
     fn shear(&self, material: usize) -> f64 {
@@ -326,12 +357,16 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
             p: bulk.fma(spread, memory[MEAN]),
             deviator,
         };
-        let flow = self.flow(constants, memory, &trial);
+        let mut flow = self.flow(constants, memory, &trial);
         let mut s = trial.deviator;
         for r in 0..D {
             for k in 0..D {
                 s[r][k] = flow.rest * trial.deviator[r][k];
             }
+        }
+        let mut shock = memory[SHOCK];
+        if self.state != equation_of_state::Kind::Elastic {
+            (flow.mean, shock) = self.pressed(&constants.1.1, past, &step, &s);
         }
         let q = flow.rest * trial.q;
         // plastic work at both ends, Δε^p : s = 3/2 Δε̄ s′:s/q′
@@ -361,6 +396,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         let mean = half * (memory[UNSEEN] + unseen.square);
         let lost = half * unseen.stiffness * (now[SOFTENED] - memory[SOFTENED]) * mean;
         now[LOST] = memory[LOST] + lost;
+        now[SHOCK] = shock;
         Stressed {
             stress: step.nominal(&s),
             energy: now[WORK] - memory[PLASTIC_WORK] + lost,
@@ -413,9 +449,12 @@ impl Shelved for HypoelasticPlastic {
         keys.push(INCREMENT);
         keys.extend(hardening::KEYS);
         keys.extend(KEYS);
+        keys.push(EQUATION);
+        keys.extend(HUGONIOT);
+        keys.extend(VISCOSITY);
         Descriptor {
             name: "hypoelastic_plastic".into(),
-            doc: "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            doc: "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman; under impact with an equation of state. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
             source: "Simo & Hughes 1998; Johnson & Cook 1983, 1985; Drucker & Prager 1952; Silling et al. 2007".into(),
             example: "{ young = \"117 GPa\", poisson = 0.35, yield_stress = \"400 MPa\", hardening = \"100 MPa\" }".into(),
             influence: Influence::Constant,
@@ -432,12 +471,21 @@ impl Shelved for HypoelasticPlastic {
         let words = |m: &Given| {
             let kind = hardening::kind(m.parameters)?;
             let increment = Increment::of(m.parameters).ok_or("the increment is middle or end")?;
-            Ok((kind, increment, m.parameters.list("damage").is_some()))
+            let state = match m.parameters.word(EQUATION.name) {
+                Some("mie_gruneisen") => equation_of_state::Kind::MieGruneisen,
+                Some(_) | None => equation_of_state::Kind::Elastic,
+            };
+            Ok((
+                (kind, increment),
+                m.parameters.list("damage").is_some(),
+                state,
+            ))
         };
         let first = materials
             .first()
             .ok_or((0, "there is no material".into()))?;
-        let (kind, increment, damages) = words(first).map_err(|m: String| (0, m))?;
+        let all = words(first).map_err(|m: String| (0, m))?;
+        let ((kind, increment), damages, equation) = all;
         let mut made = vec![];
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: String| (n, message);
@@ -446,9 +494,9 @@ impl Shelved for HypoelasticPlastic {
                     "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\"".into(),
                 ));
             }
-            if words(m).map_err(refused)? != (kind, increment, damages) {
+            if words(m).map_err(refused)? != all {
                 return Err(refused(
-                    "all materials of a body have the same increment, hardening_law and rate_law, and all melt or none, are damaged or none".into(),
+                    "all materials of a body have the same increment, hardening_law, rate_law and equation_of_state, and all melt or none, are damaged or none".into(),
                 ));
             }
             let moduli = descriptor::moduli(m.parameters).map_err(refused)?;
@@ -467,6 +515,22 @@ impl Shelved for HypoelasticPlastic {
                     "a dilatancy of {dilatancy} above a friction of {friction} would give energy away"
                 )));
             }
+            let state = match equation {
+                equation_of_state::Kind::Elastic => match equation_of_state::stray(m.parameters) {
+                    Some(key) => {
+                        return Err(refused(format!(
+                            "`{key}` is of an equation of state: write equation_of_state = \"mie_gruneisen\", or leave it out"
+                        )));
+                    }
+                    None => EquationOfState::NONE,
+                },
+                _ if friction > 0.0 => {
+                    return Err(refused(
+                        "`friction` reads the elastic mean stress: with an equation of state flow is von Mises's; leave it out".into(),
+                    ));
+                }
+                _ => EquationOfState::of_hugoniot(m, moduli.bulk()).map_err(refused)?,
+            };
             made.push(HypoelasticPlasticConstants {
                 lame: moduli.lame(),
                 shear: moduli.shear(),
@@ -475,12 +539,14 @@ impl Shelved for HypoelasticPlastic {
                 heating,
                 damage: damage(m.parameters, kind.heats).map_err(refused)?,
                 hardening,
+                state,
             });
         }
         Ok(HypoelasticPlastic {
             increment,
             kind,
             damages,
+            state: equation,
             materials: made,
         })
     }

@@ -5,7 +5,9 @@ pub mod anisotropic;
 mod bond;
 pub mod correspondence;
 pub mod energy;
+pub mod equation_of_state;
 mod family;
+pub mod fluid;
 pub mod hardening;
 pub mod hyperelastic;
 pub mod hypoelastic;
@@ -123,6 +125,8 @@ pub(super) fn each(kinds: &mut impl Kinds) {
     both::<hypoelastic::Hypoelastic>(kinds);
     both::<hypoelastic_plastic::HypoelasticPlastic>(kinds);
     both::<anisotropic::Anisotropic>(kinds);
+    // its bonds see no more than their family
+    kinds.solid::<NonOrdinary<fluid::Fluid>>();
 }
 
 /// Which deformation gradient a law takes.

@@ -102,6 +102,7 @@ pub(crate) struct Chosen {
     plane: Plane,
     /// Of the full ball, where constants are those of the continuum.
     weighted_volume: Option<f64>,
+    horizon: f64,
 }
 
 #[derive(Clone)]
@@ -120,7 +121,7 @@ struct Made {
 pub(in crate::run::constitutive) fn chosen<const D: usize>(
     spec: &Spec,
     shelf: &Shelf,
-    moments: Moments,
+    (horizon, moments): (f64, Moments),
     toughness: &[Toughness],
 ) -> Result<Option<Chosen>, BuildError> {
     let named = |law: &LawSpec| match law {
@@ -167,6 +168,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
             Calibration::Continuum => Some(moments.second),
             Calibration::Discrete => None,
         },
+        horizon,
     };
     Ok(Some(chosen))
 }
@@ -221,6 +223,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 critical_stretch: made.critical_stretch,
                 density: made.density,
                 weighted_volume: chosen.weighted_volume,
+                horizon: chosen.horizon,
             }
         })
         .collect();

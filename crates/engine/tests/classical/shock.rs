@@ -1,0 +1,273 @@
+//! Shocks: Sod's tube against the exact solution of its Riemann problem, an impact of copper against its Hugoniot, and where their energy goes.
+
+use super::e;
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::spec::*;
+
+/// A strip of square cells without ends across, its middle at x = 0; two materials meet there.
+fn strip(cells: i32, spacing: f64, left: (f64, LawSpec), right: (f64, LawSpec)) -> Spec {
+    let across = 6;
+    let mut quarters = vec![];
+    for y in 0..across {
+        for x in -cells / 2..cells / 2 {
+            quarters.push([4 * x, 4 * y, 0]);
+        }
+    }
+    let body = BodySpec::Sites {
+        kind: LatticeKind::Square,
+        spacing,
+        origin: [0.5 * spacing, 0.0, 0.0],
+        quarters,
+        volume: None,
+    };
+    let mut spec = Spec::new(2, body, left.0, left.1);
+    spec.plane = Plane::Strain;
+    spec.horizon = Horizon::Ratio(2);
+    spec.volume_scaling = true;
+    spec.periodic[1] = Some(f64::from(across) * spacing);
+    let half = |name: &str, sign: f64| SetSpec {
+        name: name.into(),
+        members: Members::Region(Region::HalfSpace {
+            point: [0.0; 3],
+            normal: [sign, 0.0, 0.0],
+        }),
+    };
+    spec.sets = vec![half("left", 1.0), half("right", -1.0)];
+    spec.materials[0].set = "left".into();
+    spec.materials[0].name = "left".into();
+    spec.materials.push(MaterialSpec {
+        name: "right".into(),
+        set: "right".into(),
+        density: right.0,
+        law: right.1,
+        fracture: None,
+    });
+    // walls
+    let far = (0.5 * f64::from(cells) - 3.0) * spacing;
+    for (name, sign) in [("west", 1.0), ("east", -1.0)] {
+        spec.sets.push(SetSpec {
+            name: name.into(),
+            members: Members::Region(Region::HalfSpace {
+                point: [-sign * far, 0.0, 0.0],
+                normal: [sign, 0.0, 0.0],
+            }),
+        });
+    }
+    spec
+}
+
+fn held(spec: &mut Spec) {
+    for wall in ["west", "east"] {
+        spec.conditions.push(ConditionSpec {
+            set: wall.into(),
+            kind: ConditionKind::Displacement([Some(e("0")), None, None]),
+        });
+    }
+}
+
+fn gas(pressure: f64) -> LawSpec {
+    let all = Parameters::numbers(&[("initial_pressure", pressure), ("heat_ratio", 1.4)])
+        .with("equation_of_state", Parameter::Word("perfect_gas".into()));
+    LawSpec::named("fluid", all)
+}
+
+fn start(spec: &Spec) -> Box<dyn Simulation> {
+    let mut sim = build(spec, Options::default()).unwrap();
+    sim.start(true);
+    sim
+}
+
+fn go(sim: &mut dyn Simulation, time: f64) {
+    while sim.time() < time {
+        sim.step().unwrap();
+    }
+}
+
+/// Of the first row: place, velocity, pressure with that of viscosity, J, and the place in the reference.
+fn profile(sim: &mut dyn Simulation) -> Vec<[f64; 5]> {
+    let (x, u, v) = (
+        sim.vectors("reference"),
+        sim.displacements(),
+        sim.velocities(),
+    );
+    // a fluid remembers p, a solid its mean stress −p − q and its stretch
+    let solid = sim.column("mean_stress").is_some();
+    let (p, j) = match solid {
+        true => {
+            let p = sim.scalars("mean_stress").into_iter().map(|p| -p).collect();
+            let across = sim.column("biot_strain").unwrap().values;
+            (p, (0..x.len()).map(|n| across.at(n, 0)).collect())
+        }
+        false => {
+            let (p, q) = (sim.scalars("pressure"), sim.scalars("shock_pressure"));
+            let all = p.iter().zip(&q).map(|(p, q)| p + q).collect();
+            (all, sim.scalars("volume_change"))
+        }
+    };
+    let (p, j): (Vec<f64>, Vec<f64>) = (p, j);
+    let mut row: Vec<[f64; 5]> = (0..x.len())
+        .filter(|n| x[*n][1] == 0.0)
+        .map(|n| [x[n][0] + u[n][0], v[n][0], p[n], 1.0 + j[n], x[n][0]])
+        .collect();
+    row.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    row
+}
+
+/// The exact solution of Sod's problem at `x/t`: velocity, pressure, density (Toro 2009, 4.3).
+fn sod(s: f64) -> [f64; 3] {
+    let g = 1.4f64;
+    let (pl, pr, rl, rr) = (1.0, 0.1, 1.0, 0.125f64);
+    let (al, ar) = ((g * pl / rl).sqrt(), (g * pr / rr).sqrt());
+    let fan = |p: f64| 2.0 * al / (g - 1.0) * ((p / pl).powf((g - 1.0) / (2.0 * g)) - 1.0);
+    let shock = |p: f64| {
+        let (a, b) = (2.0 / ((g + 1.0) * rr), (g - 1.0) / (g + 1.0) * pr);
+        (p - pr) * (a / (p + b)).sqrt()
+    };
+    let (mut low, mut high) = (pr, pl);
+    for _ in 0..200 {
+        let p = 0.5 * (low + high);
+        if fan(p) + shock(p) > 0.0 {
+            high = p;
+        } else {
+            low = p;
+        }
+    }
+    let p = 0.5 * (low + high);
+    let u = 0.5 * (shock(p) - fan(p));
+    let k = (g - 1.0) / (g + 1.0);
+    let front = ar * ((g + 1.0) / (2.0 * g) * p / pr + (g - 1.0) / (2.0 * g)).sqrt();
+    let behind = al * (p / pl).powf((g - 1.0) / (2.0 * g));
+    if s > front {
+        [0.0, pr, rr]
+    } else if s > u {
+        [u, p, rr * (p / pr + k) / (k * p / pr + 1.0)]
+    } else if s > u - behind {
+        [u, p, rl * (p / pl).powf(1.0 / g)]
+    } else if s > -al {
+        let u = 2.0 / (g + 1.0) * (al + s);
+        let a = (al - 0.5 * (g - 1.0) * u) / al;
+        [
+            u,
+            pl * a.powf(2.0 * g / (g - 1.0)),
+            rl * a.powf(2.0 / (g - 1.0)),
+        ]
+    } else {
+        [0.0, pl, rl]
+    }
+}
+
+/// Mean differences of velocity, pressure and density from the exact solution, and how far energy is from that at first over the
+/// kinetic energy.
+fn tube(cells: i32, part: f64) -> [f64; 4] {
+    let h = 1.0 / f64::from(cells);
+    let mut spec = strip(cells, h, (1.0, gas(1.0)), (0.125, gas(0.1)));
+    held(&mut spec);
+    spec.schedule.time_step = TimeStep::Fraction(part);
+    let mut sim = start(&spec);
+    go(sim.as_mut(), 0.2);
+    let t = sim.time();
+    let mut off = [0.0; 4];
+    for [x, v, p, j, reference] in profile(sim.as_mut()) {
+        let own = if reference < 0.0 { 1.0 } else { 0.125 };
+        let exact = sod(x / t);
+        // what a point stands for now
+        for (n, found) in [v, p, own / j].into_iter().enumerate() {
+            off[n] += h * j * (found - exact[n]).abs();
+        }
+    }
+    let ledger = sim.ledger().unwrap();
+    off[3] = ledger.residual().abs() / ledger.kinetic;
+    off
+}
+
+/// Discontinuities spread over the horizon: differences fall with it. Bounds of size were set after the first run, which had 0.0161, 0.0086
+/// and 0.0070 of 200 cells; that they halve is theory.
+#[test]
+fn sods_tube_goes_to_the_exact_solution() {
+    let [coarse, fine, slow] = [(100, 0.3), (200, 0.3), (100, 0.15)].map(|(n, p)| tube(n, p));
+    println!("Sod's tube: {coarse:?}, {fine:?}, {slow:?}");
+    for (n, most) in [0.018, 0.010, 0.008].into_iter().enumerate() {
+        assert!(fine[n] < most, "{n}: {fine:?}");
+        assert!(coarse[n] / fine[n] > 1.7, "{n}: {coarse:?} {fine:?}");
+    }
+    // the balance of energy is of second order in the step
+    assert!(
+        coarse[3] < 5e-3 && coarse[3] / slow[3] > 3.0,
+        "{coarse:?} {slow:?}"
+    );
+}
+
+/// Pressure behind the shock and its speed: `p = ρ₀ U u`, `U = c₀ + s u` (copper: c₀ = 3940 m/s, s = 1.489; Marsh 1980). Bounds were set after a first
+/// run, which had 0.5 % of pressure.
+#[test]
+fn an_impact_of_copper_lies_on_its_hugoniot() {
+    let (rho, c0, s) = (8930.0, 3940.0, 1.489);
+    let hugoniot = [
+        ("bulk", rho * c0 * c0),
+        ("hugoniot_slope", s),
+        ("gruneisen", 1.96),
+    ];
+    let fluid = || LawSpec::named("fluid", Parameters::numbers(&hugoniot));
+    // metal that flows at once: the same, but for its strength
+    let metal = || {
+        let shear = 47.7e9;
+        let more = [("shear", shear), ("yield_stress", 90e6)];
+        let all = [&hugoniot[..], &more[..]].concat();
+        let all = Parameters::numbers(&all)
+            .with("equation_of_state", Parameter::Word("mie_gruneisen".into()));
+        LawSpec::named("hypoelastic_plastic", all)
+    };
+    for (law, speed) in [(fluid(), 100.0), (fluid(), 1000.0), (metal(), 500.0)] {
+        let h = 1e-3;
+        let mut spec = strip(160, h, (rho, law.clone()), (rho, law));
+        spec.initial = [("left", speed), ("right", -speed)]
+            .map(|(set, v)| InitialSpec {
+                set: set.into(),
+                displacement: [None, None, None],
+                velocity: [Some(e(&format!("{v}"))), None, None],
+            })
+            .to_vec();
+        spec.schedule.time_step = TimeStep::Fraction(0.3);
+        let shock = c0 + s * speed;
+        let exact = rho * shock * speed;
+        let mut sim = start(&spec);
+        // half the pressure is where the front is; between the middle and it all is behind the shock
+        let mut seen = vec![];
+        let mut mean = 0.0;
+        for time in [5e-6, 9e-6] {
+            go(sim.as_mut(), time);
+            let row = profile(sim.as_mut());
+            let right: Vec<&[f64; 5]> = row.iter().filter(|r| r[4] > 0.0).collect();
+            let n = right.iter().position(|r| r[2] < 0.5 * exact).unwrap();
+            let [a, b] = [right[n - 1], right[n]];
+            let part = (a[2] - 0.5 * exact) / (a[2] - b[2]);
+            seen.push([sim.time(), a[4] + part * h]);
+            let behind: Vec<f64> = { right.iter() }
+                .filter(|r| r[4] > 0.008 && r[4] < 0.018)
+                .map(|r| r[2])
+                .collect();
+            mean = behind.iter().sum::<f64>() / behind.len() as f64;
+        }
+        let fast = (seen[1][1] - seen[0][1]) / (seen[1][0] - seen[0][0]);
+        let ledger = sim.ledger().unwrap();
+        let balance = ledger.residual().abs() / ledger.initial;
+        println!(
+            "copper at {speed} m/s: pressure {:.4}, speed {:.4} of the Hugoniot's; balance {balance:.1e}",
+            mean / exact,
+            fast / shock
+        );
+        assert!(
+            (mean / exact - 1.0).abs() < 0.015,
+            "{speed}: {}",
+            mean / exact
+        );
+        assert!(
+            (fast / shock - 1.0).abs() < 0.015,
+            "{speed}: {}",
+            fast / shock
+        );
+        assert!(balance < 2e-3, "{speed}: {balance:e}");
+    }
+}
