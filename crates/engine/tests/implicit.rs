@@ -272,6 +272,8 @@ fn what_has_no_tangent_is_refused() {
     breaking.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.1),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     assert_eq!(said(&breaking).path, "materials[0].fracture");
     let mut touching = spec.clone();

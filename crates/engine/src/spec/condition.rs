@@ -47,6 +47,21 @@ pub enum ConditionKind {
     Own(String),
 }
 
+impl ConditionKind {
+    /// Does any of its expressions?
+    pub fn depends_on_time(&self) -> bool {
+        match self {
+            ConditionKind::Displacement(all)
+            | ConditionKind::Velocity(all)
+            | ConditionKind::BodyForce(all)
+            | ConditionKind::Traction { value: all, .. }
+            | ConditionKind::SetForce(all) => all.iter().flatten().any(Expression::depends_on_time),
+            ConditionKind::Damping(one) => one.depends_on_time(),
+            ConditionKind::Own(_) => true,
+        }
+    }
+}
+
 /// A rigid sphere that pushes points out with force density `K (r − R)²` (`lammps-peri` item 13).
 #[derive(Debug, Clone)]
 pub struct IndenterSpec {

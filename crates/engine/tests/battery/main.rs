@@ -5,6 +5,7 @@
 mod accounts;
 mod calibration;
 mod cracks;
+mod criteria;
 mod equivalence;
 mod mechanics;
 mod motion;

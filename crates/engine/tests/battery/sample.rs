@@ -243,6 +243,14 @@ pub fn materials() -> Vec<Material> {
             LawSpec::named("thermoelastic", Parameters::numbers(&[("young", 3.0)])),
             Influence::Constant,
         ),
+        one(
+            "linear solid",
+            LawSpec::named(
+                "linear_solid",
+                Parameters::numbers(&[("young", 3.0), ("poisson", 0.2)]),
+            ),
+            Influence::Inverse,
+        ),
         two(
             "a user's, mixed",
             stiffening(3.0, 4.0),
@@ -403,6 +411,8 @@ impl Case {
                     fracture: self.material.fracture.map(|s| FractureSpec {
                         criterion: Criterion::Stretch(s),
                         alpha: 0.0,
+                        rate: None,
+                        fatigue: None,
                     }),
                 })
                 .collect(),
@@ -452,6 +462,8 @@ pub fn breaking(spec: &mut Spec, s00: f64) {
         m.fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(s00),
             alpha: 0.25,
+            rate: None,
+            fatigue: None,
         });
     }
 }

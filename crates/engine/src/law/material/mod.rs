@@ -6,6 +6,7 @@
 
 pub mod bonds;
 pub mod elastic_plastic;
+pub mod linear_solid;
 pub mod non_ordinary;
 pub mod numbers;
 pub mod softening;
@@ -17,6 +18,7 @@ use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
 use crate::spec::Parameters;
+pub use linear_solid::LinearSolid;
 pub use non_ordinary::{BondAssociated, NonOrdinary};
 pub use numbers::{Numbers, Sink, Source};
 pub use thermoelastic::Thermoelastic;
@@ -30,6 +32,7 @@ pub fn each(kinds: &mut impl Kinds) {
     non_ordinary::each(kinds);
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
+    kinds.law::<linear_solid::LinearSolid>();
 }
 
 /// Who wants to see all of them ([`each`]).

@@ -18,6 +18,7 @@ impl<const D: usize> Implicit<D> {
             method: Method::Newton,
             solver: options.solver,
             tolerance: options.tolerance,
+            cycles: None,
             most_iterations: options.most_iterations,
         });
         Implicit {
