@@ -15,6 +15,7 @@ mod compact_tension;
 mod creep;
 #[path = "double-cantilever/mod.rs"]
 mod double_cantilever;
+mod fatigue;
 #[path = "fibre-composite/mod.rs"]
 mod fibre_composite;
 #[path = "fragmenting-cylinder/mod.rs"]
@@ -28,6 +29,8 @@ mod spall;
 mod sphere_on_plate;
 #[path = "taylor-bar/mod.rs"]
 mod taylor_bar;
+#[path = "thermal-quench/mod.rs"]
+mod thermal_quench;
 #[path = "thin-film/mod.rs"]
 mod thin_film;
 #[path = "three-point-bend/mod.rs"]
@@ -58,5 +61,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &fragmenting_cylinder::FragmentingCylinder,
         &taylor_bar::TaylorBar,
         &creep::Creep,
+        &fatigue::Fatigue,
+        &thermal_quench::ThermalQuench,
     ]
 }
