@@ -52,6 +52,8 @@ fn main() {
             fracture: Some(FractureSpec {
                 criterion: Criterion::Stretch(0.0005),
                 alpha: 0.25,
+                rate: None,
+                fatigue: None,
             }),
         }],
         interface: InterfaceRule::Series,

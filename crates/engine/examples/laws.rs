@@ -35,6 +35,8 @@ fn spec(cells: i32, law: LawSpec, breaks: bool, family: FamilyChoice) -> Spec {
         spec.materials[0].fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(0.5),
             alpha: 0.0,
+            rate: None,
+            fatigue: None,
         });
     }
     spec

@@ -272,6 +272,16 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "what lps becomes where bodies expand",
     ),
     (
+        "Thermoelastic",
+        "engine/src/run/constitutive/criteria.rs",
+        "what pmb becomes where bonds remember",
+    ),
+    (
+        "ThermoelasticSolid",
+        "engine/src/run/constitutive/criteria.rs",
+        "what lps becomes where bonds remember",
+    ),
+    (
         "elastic_plastic",
         "lammps/src/model/types.rs",
         "the law of LAMMPS's peri/eps",

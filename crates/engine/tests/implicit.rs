@@ -277,6 +277,8 @@ fn what_has_no_tangent_is_refused() {
     late.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.1),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     assert!(build(&late, Options::default()).is_ok());
     late.release = Release::AfterForce;

@@ -205,6 +205,8 @@ fn pulled() -> Spec {
         Some(FractureSpec {
             criterion: Criterion::Stretch(s),
             alpha: 0.0,
+            rate: None,
+            fatigue: None,
         })
     };
     spec.materials[0].fracture = breaks(0.05);

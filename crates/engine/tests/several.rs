@@ -146,6 +146,8 @@ fn one_of_several_is_the_body_itself() {
         spec.materials[0].fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(0.02),
             alpha: 0.25,
+            rate: None,
+            fatigue: None,
         });
         spec.horizon = Horizon::Ratio(2);
         spec.contact = Some(CONTACT);
@@ -451,6 +453,8 @@ fn steel_on_epoxy() -> Spec {
         m.fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(s),
             alpha: 0.0,
+            rate: None,
+            fatigue: None,
         });
     }
     spec.horizon = Horizon::Ratio(3);

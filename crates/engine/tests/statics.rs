@@ -299,6 +299,8 @@ fn a_notched_plate_breaks_increment_by_increment() {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.02),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {

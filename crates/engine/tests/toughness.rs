@@ -37,6 +37,8 @@ fn plate(law: LawSpec, family: FamilyChoice) -> Spec {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.02),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.sets = [
         ("left", rows(-0.5, 1.5)),
@@ -154,6 +156,8 @@ fn factors_are_those_of_the_critical_stretch() {
             s.materials[0].fracture = Some(FractureSpec {
                 criterion: Criterion::Stretch(0.02 * 1.5),
                 alpha: 0.0,
+                rate: None,
+                fatigue: None,
             });
         });
         assert_ne!(stronger.0, plain.0, "{law:?} {family:?}");
@@ -192,6 +196,8 @@ fn a_bond_breaks_at_the_stretch_of_its_time() {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.5),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.toughness = vec![toughness("all", ToughnessFactor::Stretch(text("1 - t")))];
     spec.initial = vec![InitialSpec {

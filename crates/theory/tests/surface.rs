@@ -315,6 +315,8 @@ fn worn() -> Vec<(Spec, Vec<Point>)> {
         spec.materials[0].fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(0.06),
             alpha: 0.25,
+            rate: None,
+            fatigue: None,
         });
         spec.contact = Some(ContactSpec {
             bonded: 0.9,

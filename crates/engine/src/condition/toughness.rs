@@ -1,4 +1,4 @@
-//! Toughness that depends on place and time: critical values of points, by factors of what their materials bear.
+//! Toughness that depends on place, time and temperature: critical values of points, by factors of what their materials bear.
 
 use crate::body::Body;
 use crate::expression::Expression;
@@ -7,12 +7,20 @@ use crate::spec::ToughnessFactor;
 
 /// Critical stretches of points.
 pub struct ToughnessField {
-    /// `[slots]`: s00 of the material; ∞ never breaks.
+    bears: Bears,
+    /// `[slots]`: s00 of the material, or the root of its critical work; ∞ never breaks.
     base: Vec<f64>,
     /// Slots, and what they have.
     factors: Vec<(Vec<u32>, ToughnessFactor)>,
-    /// `[slots]`: critical values of `e`.
+    /// `[slots]`: critical values of `e`, or critical works.
     values: Vec<f64>,
+}
+
+/// What bonds break by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bears {
+    Stretch,
+    Work,
 }
 
 /// A factor that is not positive.
@@ -27,14 +35,15 @@ pub struct Unfit {
 fn expression(factor: &ToughnessFactor) -> Option<&Expression> {
     match factor {
         ToughnessFactor::Stretch(e) | ToughnessFactor::Energy(e) => Some(e),
-        ToughnessFactor::NoFailure => None,
+        ToughnessFactor::Temperature(_) | ToughnessFactor::NoFailure => None,
     }
 }
 
 impl ToughnessField {
-    /// Of critical stretches of slots, and factors of sets of them; [`set`](Self::set) gives values.
-    pub fn new(base: Vec<f64>, factors: Vec<(Vec<u32>, ToughnessFactor)>) -> Self {
+    /// Of critical stretches of slots, or roots of their critical works, and factors of sets of them; [`set`](Self::set) gives values.
+    pub fn new(bears: Bears, base: Vec<f64>, factors: Vec<(Vec<u32>, ToughnessFactor)>) -> Self {
         ToughnessField {
+            bears,
             values: vec![f64::INFINITY; base.len()],
             base,
             factors,
@@ -43,22 +52,51 @@ impl ToughnessField {
 
     /// Do values differ from time to time?
     pub fn changes(&self) -> bool {
-        let mut all = self.factors.iter().filter_map(|(_, f)| expression(f));
-        all.any(Expression::depends_on_time)
+        let timely = |f: &ToughnessFactor| expression(f).is_some_and(Expression::depends_on_time);
+        self.factors.iter().any(|(_, f)| timely(f)) || self.feels_heat()
     }
 
-    /// Critical values of `e`, by slot.
+    /// Do they differ from temperature to temperature?
+    pub fn feels_heat(&self) -> bool {
+        let heat = |f: &ToughnessFactor| matches!(f, ToughnessFactor::Temperature(_));
+        self.factors.iter().any(|(_, f)| heat(f))
+    }
+
+    /// Does it count in the first evaluation of a run? Critical stretches are known after it.
+    pub fn at_once(&self) -> bool {
+        self.bears == Bears::Work
+    }
+
+    /// The column that the values are of.
+    pub fn column(&self) -> &'static str {
+        match self.bears {
+            Bears::Stretch => history::ELONGATION,
+            Bears::Work => history::WORK,
+        }
+    }
+
+    /// Critical values of `e` or critical works, by slot.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Values of a time.
+    /// Values of a time, and of a temperature for each slot where anybody feels it.
     ///
     /// # Errors
     /// A factor that is not positive; nothing is changed.
-    pub fn set<const D: usize>(&mut self, body: &Body<D>, t: f64) -> Result<(), Unfit> {
+    pub fn set<const D: usize>(
+        &mut self,
+        body: &Body<D>,
+        t: f64,
+        temperature: impl Fn(usize) -> f64,
+    ) -> Result<(), Unfit> {
         let mut stretch = self.base.clone();
         for (number, (slots, factor)) in self.factors.iter().enumerate() {
+            if let ToughnessFactor::Temperature(rows) = factor {
+                for &s in slots {
+                    stretch[s as usize] *= between(rows, temperature(s as usize));
+                }
+            }
             let Some(expression) = expression(factor) else {
                 continue;
             };
@@ -75,18 +113,35 @@ impl ToughnessField {
                 }
                 stretch[slot] *= match factor {
                     ToughnessFactor::Energy(_) => value.sqrt(),
-                    ToughnessFactor::Stretch(_) | ToughnessFactor::NoFailure => value,
+                    ToughnessFactor::Stretch(_)
+                    | ToughnessFactor::Temperature(_)
+                    | ToughnessFactor::NoFailure => value,
                 };
             }
         }
         for &s in &body.slots {
             let s0 = stretch[s as usize];
-            self.values[s as usize] = s0 * (2.0 + s0);
+            self.values[s as usize] = match self.bears {
+                Bears::Stretch => s0 * (2.0 + s0),
+                Bears::Work => s0 * s0,
+            };
         }
-        let spared = self.factors.iter().filter(|f| expression(&f.1).is_none());
+        let never = |f: &ToughnessFactor| matches!(f, ToughnessFactor::NoFailure);
+        let spared = self.factors.iter().filter(|f| never(&f.1));
         for &s in spared.flat_map(|f| &f.0) {
             self.values[s as usize] = history::NEVER;
         }
         Ok(())
+    }
+}
+
+/// Lines between rows `[x, y]`, the outer values beyond.
+fn between(rows: &[[f64; 2]], x: f64) -> f64 {
+    let above = rows.partition_point(|r| r[0] <= x);
+    match (above.checked_sub(1).map(|n| rows[n]), rows.get(above)) {
+        (Some([x0, y0]), Some([x1, y1])) => y0 + (x - x0) / (x1 - x0) * (y1 - y0),
+        (Some([_, y]), None) => y,
+        (None, Some([_, y])) => *y,
+        (None, None) => 1.0,
     }
 }

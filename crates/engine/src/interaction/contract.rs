@@ -5,7 +5,7 @@ use crate::body::{Body, Field, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::law::BondFactors;
-use crate::spec::CrackKind;
+use crate::spec::{CrackKind, Cycles};
 
 /// A law on a family, made for one body.
 ///
@@ -235,6 +235,22 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// If the body is another one, or the number of strains is not that of its slots.
     fn expand(&mut self, _body: &Body<D>, _strain: &[f64]) -> bool {
         false
+    }
+
+    /// Bonds wear as long as it takes until some are worn out, at most so many cycles: of a load under which the displacements are `u`, images
+    /// of which are fresh, and whose least is a part of it. Those that are worn out break in the next sweep. How many cycles; `None`: none
+    /// of them wears.
+    ///
+    /// # Panics
+    /// As for [`forces`](Interaction::forces).
+    fn wear(
+        &mut self,
+        _body: &Body<D>,
+        _u: &Field<D>,
+        _cycles: &Cycles,
+        _left: f64,
+    ) -> Option<f64> {
+        None
     }
 
     /// Directed bonds of the reference family.

@@ -13,6 +13,8 @@ pub const WHOLE: &str = "whole";
 pub const ELONGATION: &str = "critical_elongation";
 /// Critical `e` of points whose bonds never break, whatever their partners say. (∞ leaves it to them.)
 pub const NEVER: f64 = f64::MAX;
+/// Column of critical works of bonds, of laws that break by it.
+pub const WORK: &str = "critical_bond_work";
 const CRITICAL: &str = "critical_stretch";
 
 /// What peridynamic laws of bits remember; `breaks`: do bonds break?
@@ -45,7 +47,7 @@ pub fn read_critical<const D: usize>(
 ) -> bool {
     out.clear();
     let of: fn(f64) -> f64 = match name {
-        ELONGATION => |e| e,
+        ELONGATION | WORK => |e| e,
         CRITICAL => |e| match e {
             NEVER => f64::INFINITY,
             e => critical_stretch(e),
@@ -69,7 +71,7 @@ pub fn write_critical<const D: usize>(
     name: &str,
     values: &[f64],
 ) -> bool {
-    if name != ELONGATION || critical.is_empty() || values.len() != body.len {
+    if !matches!(name, ELONGATION | WORK) || critical.is_empty() || values.len() != body.len {
         return false;
     }
     for &s in &body.slots {

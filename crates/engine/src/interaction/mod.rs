@@ -5,6 +5,7 @@ pub(crate) mod atoms;
 pub(crate) mod bond;
 pub mod contact;
 mod contract;
+pub(crate) mod criterion;
 pub mod friction;
 pub(crate) mod history;
 pub(crate) mod interface;

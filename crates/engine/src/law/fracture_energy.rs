@@ -9,12 +9,23 @@ use std::f64::consts::{FRAC_2_PI, PI};
 /// A unit area is crossed by bonds of energy `½ Σ |ξ_n| w dV` (each once), `w = ½ c ω s0² r0`, and
 /// `⟨|n_z|⟩ = 1, 2/π, ½` in 1, 2, 3 dimensions. Silling & Askari 2005, Ha & Bobaru 2010 are the full ball and disk.
 pub fn bond_based(dimension: usize, c: f64, moments: Moments) -> f64 {
-    let mean = match dimension {
+    0.25 * c * mean_across(dimension) * moments.second
+}
+
+/// `G0 / w_c` (volume² / area): `½ ⟨|n_z|⟩ Σ ν V r0`, where every bond takes the work w_c (energy / volume²)
+/// whatever its length. Foster, Silling & Chen 2011: `w_c = 4 G0/(πδ⁴)` of the full ball; of the disk `3 G0/(2tδ³)`, of the line
+/// `2 G0/(Aδ²)`.
+pub fn of_unit_work(dimension: usize, moments: Moments) -> f64 {
+    0.5 * mean_across(dimension) * moments.bare
+}
+
+/// `⟨|n_z|⟩` over all directions.
+fn mean_across(dimension: usize) -> f64 {
+    match dimension {
         1 => 1.0,
         2 => FRAC_2_PI,
         _ => 0.5,
-    };
-    0.25 * c * mean * moments.second
+    }
 }
 
 /// Of the linear peridynamic solid in two and three dimensions: Madenci & Oterkus 2014 (6.19),
@@ -33,6 +44,24 @@ pub fn state_based(dimension: usize, plane: Plane, moduli: &Moduli, horizon: f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spec::Influence;
+
+    /// The full ball, the disk of thickness t and the line of cross-section A.
+    #[test]
+    fn work_of_a_bond_is_the_published_one() {
+        let (d, section) = (0.003f64, 0.7);
+        let published = [
+            2.0 / (section * d * d),
+            1.5 / (section * d.powi(3)),
+            4.0 / (PI * d.powi(4)),
+        ];
+        for (n, w) in published.into_iter().enumerate() {
+            let section = if n == 2 { 1.0 } else { section };
+            let moments = Moments::continuum(n + 1, d, section, Influence::Inverse);
+            let found = 1.0 / of_unit_work(n + 1, moments);
+            assert!((found / w - 1.0).abs() < 1e-13, "{n}: {found} {w}");
+        }
+    }
 
     /// With ν = ¼ the two solids are one.
     #[test]

@@ -6,11 +6,12 @@
 use crate::law::influence::influence;
 use crate::spec::{Influence, Plane, PmbStiffness};
 
-/// Sums over a full bulk family: `first = Σ ω ν V r0`, `second = Σ ω ν V r0²`.
+/// Sums over a full bulk family: `first = Σ ω ν V r0`, `second = Σ ω ν V r0²`, `bare = Σ ν V r0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     pub first: f64,
     pub second: f64,
+    pub bare: f64,
 }
 
 impl Moments {
@@ -22,7 +23,7 @@ impl Moments {
             2 => 2.0 * std::f64::consts::PI * r * section,
             _ => 4.0 * std::f64::consts::PI * r * r,
         };
-        let integral = |p: i32| {
+        let integral = |p: i32, kind: Influence| {
             // five-point Gauss on 64 pieces; the spline's knot at δ/2 is a border
             const X: [f64; 5] = [
                 -0.906179845938664,
@@ -50,8 +51,9 @@ impl Moments {
                 .sum()
         };
         Moments {
-            first: integral(1),
-            second: integral(2),
+            first: integral(1, kind),
+            second: integral(2, kind),
+            bare: integral(1, Influence::Constant),
         }
     }
 }

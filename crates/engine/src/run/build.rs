@@ -3,7 +3,7 @@
 use super::atoms;
 use super::bind::{bind, names};
 use super::clouds::{own_densities, own_velocities};
-use super::constitutive::Shelf;
+use super::constitutive::{Shelf, criteria};
 use super::equilibrium::state::StaticState;
 use super::feasible::{consistent, enough_memory, possible};
 use super::implicit;
@@ -68,7 +68,8 @@ pub fn build_in<const D: usize>(
 ) -> Result<Model<D>, BuildError> {
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
-    if transfers::expanding(&mut resolved) {
+    let expanding = transfers::expanding(&mut resolved);
+    if criteria::remembering(&mut resolved)? || expanding {
         shelf.resolve(&mut resolved)?;
     }
     let spec = &resolved;
@@ -282,6 +283,7 @@ pub fn build_in<const D: usize>(
         part: None,
         pending: false,
         broken: 0,
+        cycles: 0.0,
         released: 0.0,
         past_work: [0.0; 3],
         numerical: 0.0,

@@ -30,6 +30,7 @@ pub(super) fn cloud_moments<const D: usize>(
     Ok((!bulk.is_empty()).then(|| Moments {
         first: mean(|m| m.first),
         second: mean(|m| m.second),
+        bare: mean(|m| m.bare),
     }))
 }
 
@@ -59,6 +60,7 @@ fn family<const D: usize>(
     let mut sum = Moments {
         first: 0.0,
         second: 0.0,
+        bare: 0.0,
     };
     for (_, j) in list.partners(row) {
         let y = body.position(j);
@@ -69,6 +71,7 @@ fn family<const D: usize>(
         let w = weight.at(r0, 1.0 / r0) * body.volume.at(j);
         sum.first += w * r0;
         sum.second += w * r0 * r0;
+        sum.bare += weight.volume_fraction(r0) * body.volume.at(j) * r0;
         for (s, d) in support.iter_mut().zip(directions) {
             *s = s.max((0..D).map(|a| xi[a] * d[a]).sum());
         }

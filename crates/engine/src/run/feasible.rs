@@ -1,5 +1,6 @@
 //! Can a spec be built at all? What is looked at before anything is made.
 
+use super::constitutive::criteria;
 use super::preload;
 use crate::body::Body;
 use crate::error::BuildError;
@@ -82,6 +83,7 @@ pub(super) fn enough_memory<const D: usize>(
 
 /// Do lists that the spec gives belong to each other?
 pub(super) fn consistent(spec: &Spec) -> Result<(), BuildError> {
+    criteria::consistent(spec)?;
     for (n, m) in spec.materials.iter().enumerate() {
         let fits = match &m.law {
             LawSpec::Micromoduli(body) => body.check(),

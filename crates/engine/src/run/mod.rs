@@ -210,6 +210,8 @@ pub trait Simulation: Steered + Examined + Send {
     fn indenters(&self) -> Vec<(Point, f64)>;
     /// What came in of every quantity that spreads since the start, and what is there.
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)>;
+    /// Cycles of load since the start; `None`: increments are no cycles.
+    fn cycles(&self) -> Option<f64>;
     /// What the solver did in the last increment; `None`: steps are steps in time.
     fn solved(&self) -> Option<Solved>;
 }

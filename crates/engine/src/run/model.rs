@@ -97,6 +97,8 @@ pub struct Model<const D: usize> {
     /// Has somebody had enough of a search for an equilibrium?
     pub(super) stop: fn() -> bool,
     pub(super) broken: u64,
+    /// Cycles of load so far, where increments are these.
+    pub(super) cycles: f64,
     pub(super) released: f64,
     /// Work of conditions that were replaced since.
     pub(super) past_work: [f64; 3],
@@ -308,6 +310,11 @@ impl<const D: usize> Simulation for Model<D> {
 
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {
         self.transfer_accounts()
+    }
+
+    fn cycles(&self) -> Option<f64> {
+        let options = self.statics.as_ref().map(|s| s.options);
+        options.and_then(|o| o.cycles).map(|_| self.cycles)
     }
 
     fn solved(&self) -> Option<Solved> {

@@ -63,6 +63,7 @@ fn stencil_moments<const D: usize>(
     let mut sum = Moments {
         first: 0.0,
         second: 0.0,
+        bare: 0.0,
     };
     for o in stencil.offsets.iter().flatten() {
         let r0 = grid.lattice.spacing * (o.squared as f64).sqrt() / 4.0;
@@ -72,6 +73,7 @@ fn stencil_moments<const D: usize>(
             1.0
         };
         let w = nu * influence(spec.influence, r0, horizon) * volume / stencil.offsets.len() as f64;
+        sum.bare += nu * volume / stencil.offsets.len() as f64 * r0;
         sum.first += w * r0;
         sum.second += w * r0 * r0;
     }

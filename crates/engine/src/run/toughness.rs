@@ -2,12 +2,13 @@
 
 use super::constitutive::Shelf;
 use super::model::Model;
-use crate::condition::toughness::ToughnessField;
+use crate::condition::toughness::{Bears, ToughnessField};
 use crate::error::{BuildError, RunError};
-use crate::interaction::history;
 use crate::message;
 use crate::quantity::place;
-use crate::spec::{LawSpec, Spec};
+use crate::spec::{
+    Criterion, LawSpec, MaterialSpec, Quantity, Spec, ToughnessFactor, ToughnessSpec,
+};
 
 /// What has no toughness of places.
 fn refused(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
@@ -20,6 +21,52 @@ fn refused(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
     if !spec.pairs.is_empty() {
         let message = "critical stretches of pairs of materials have no factors of points";
         return unsupported("toughness[0]", message);
+    }
+    let factor = |t: &ToughnessSpec| !matches!(t.factor, ToughnessFactor::NoFailure);
+    if let Some(n) = spec.toughness.iter().position(factor)
+        && spec.materials.iter().any(|m| {
+            m.fracture.is_some_and(|f| {
+                matches!(
+                    f.criterion,
+                    Criterion::VonMises(_) | Criterion::PlasticStrain(_)
+                )
+            })
+        })
+    {
+        return unsupported(
+            &format!("toughness[{n}]"),
+            "a limit of stress or of plastic strain has no factors: only no_failure goes with it",
+        );
+    }
+    let works = |m: &MaterialSpec| {
+        m.fracture
+            .map(|f| matches!(f.criterion, Criterion::BondEnergy(_)))
+    };
+    let mut kinds = spec.materials.iter().filter_map(works);
+    let first = kinds.next();
+    if kinds.any(|k| Some(k) != first) {
+        return unsupported(
+            "toughness[0]",
+            "one body breaks by the work on its bonds, another by their stretch: factors are of one of both",
+        );
+    }
+    for (n, t) in spec.toughness.iter().enumerate() {
+        if let ToughnessFactor::Temperature(rows) = &t.factor {
+            let rises = rows.windows(2).all(|r| r[0][0] < r[1][0]);
+            if rows.is_empty() || !rises || !rows.iter().all(|r| r[1] > 0.0 && r[1].is_finite()) {
+                return Err(BuildError::invalid(
+                    format!("toughness[{n}]"),
+                    "factors of temperatures are rows [T, factor] with T rising and factors above 0",
+                ));
+            }
+            if !spec.transfers.iter().any(|t| t.quantity == Quantity::Heat) {
+                return Err(BuildError::unsupported(
+                    format!("toughness[{n}]"),
+                    "this body has no temperature",
+                )
+                .help("add [heat], or write the factor as an expression of x, y, z, t"));
+            }
+        }
     }
     for (n, m) in spec.materials.iter().enumerate() {
         if m.fracture.is_some_and(|f| f.alpha != 0.0) {
@@ -57,11 +104,13 @@ impl<const D: usize> Model<D> {
         }
         refused(spec, shelf)?;
         let mut base = vec![f64::INFINITY; self.body.len];
+        let works = self.constitutive.critical_works(spec.materials.len());
+        let (bears, of) = match works.is_empty() {
+            true => (Bears::Stretch, self.info.critical_stretch.clone()),
+            false => (Bears::Work, works.iter().map(|w| w.sqrt()).collect()),
+        };
         for &s in &self.body.slots {
-            let of = self
-                .info
-                .critical_stretch
-                .get(self.body.material_of(s as usize));
+            let of = of.get(self.body.material_of(s as usize));
             base[s as usize] = of.copied().unwrap_or(f64::INFINITY);
         }
         let mut factors = vec![];
@@ -70,8 +119,10 @@ impl<const D: usize> Model<D> {
                 { self.slots_of(&t.set, sets) }.map_err(|e| e.at(format!("toughness[{n}].set")))?;
             factors.push((slots, t.factor.clone()));
         }
-        let mut field = ToughnessField::new(base, factors);
-        field.set(&self.body, 0.0).map_err(|unfit| {
+        let mut field = ToughnessField::new(bears, base, factors);
+        let heat = self.temperatures(field.feels_heat());
+        let at = |s: usize| heat.get(s).copied().unwrap_or(0.0);
+        field.set(&self.body, 0.0, at).map_err(|unfit| {
             let message = message![
                 format!("the factor is {} at ", unfit.value),
                 place(&self.body.position(unfit.slot)[..D]),
@@ -85,11 +136,17 @@ impl<const D: usize> Model<D> {
 
     /// What points bear at a time, of which they are told before the next forces.
     pub(super) fn update_toughness(&mut self, t: f64) -> Result<(), RunError> {
+        let feels = self
+            .toughness
+            .as_ref()
+            .is_some_and(ToughnessField::feels_heat);
+        let heat = self.temperatures(feels);
         let Some(field) = self.toughness.as_mut().filter(|f| f.changes()) else {
             return Ok(());
         };
+        let at = |s: usize| heat.get(s).copied().unwrap_or(0.0);
         field
-            .set(&self.body, t)
+            .set(&self.body, t, at)
             .map_err(|unfit| RunError::Toughness {
                 step: self.step + 1,
                 position: self.body.position(unfit.slot),
@@ -97,14 +154,25 @@ impl<const D: usize> Model<D> {
             })
     }
 
+    /// The temperature of every slot of now; none where nobody asks.
+    fn temperatures(&self, asked: bool) -> Vec<f64> {
+        let mut all = vec![0.0; if asked { self.body.len } else { 0 }];
+        if let (true, Some(values)) = (asked, self.transferred(Quantity::Heat.column())) {
+            for (&s, value) in self.body.slots.iter().zip(values) {
+                all[s as usize] = value;
+            }
+        }
+        all
+    }
+
     /// Tell points what they bear, before bonds are tested: laws answer every test with what their materials bear. At the start of a run nothing
     /// breaks yet.
     pub(super) fn tell_toughness(&mut self) {
         if let Some(field) = &self.toughness
-            && self.initial_energy.is_some()
+            && (field.at_once() || self.initial_energy.is_some())
         {
             self.interaction
-                .write_column(&self.body, history::ELONGATION, field.values());
+                .write_column(&self.body, field.column(), field.values());
         }
     }
 }

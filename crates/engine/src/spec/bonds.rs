@@ -27,6 +27,8 @@ pub enum ToughnessFactor {
     Stretch(Expression),
     /// Of the fracture energy: its root of the critical stretch.
     Energy(Expression),
+    /// Of the critical stretch by the temperature: rows `[T, factor]`, T rising; lines between them, and the outer ones beyond.
+    Temperature(Vec<[f64; 2]>),
     /// Bonds of these points never break, whatever their other end says.
     NoFailure,
 }

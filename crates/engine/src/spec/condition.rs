@@ -46,3 +46,18 @@ pub enum ConditionKind {
     /// The force of this name on the shelf that the model is built with.
     Own(String),
 }
+
+impl ConditionKind {
+    /// Does any of its expressions?
+    pub fn depends_on_time(&self) -> bool {
+        match self {
+            ConditionKind::Displacement(all)
+            | ConditionKind::Velocity(all)
+            | ConditionKind::BodyForce(all)
+            | ConditionKind::Traction { value: all, .. }
+            | ConditionKind::SetForce(all) => all.iter().flatten().any(Expression::depends_on_time),
+            ConditionKind::Damping(one) => one.depends_on_time(),
+            ConditionKind::Own(_) => true,
+        }
+    }
+}

@@ -102,6 +102,50 @@ pub struct FractureSpec {
     pub criterion: Criterion,
     /// Dependence of the critical stretch on compression: `s0 = s00 − α s_min`.
     pub alpha: f64,
+    /// How the critical stretch grows with the rate of the stretch; `None`: it does not.
+    pub rate: Option<RateSpec>,
+    /// How bonds wear in cycles of load; `None`: they do not.
+    pub fatigue: Option<FatigueSpec>,
+}
+
+impl FractureSpec {
+    /// Of a criterion alone.
+    pub fn new(criterion: Criterion) -> FractureSpec {
+        FractureSpec {
+            criterion,
+            alpha: 0.0,
+            rate: None,
+            fatigue: None,
+        }
+    }
+
+    /// Is it decided by more than the stretch that a bond has now? Kernels of `pmb` and `lps` look at no more.
+    pub fn remembers(&self) -> bool {
+        let stretch = matches!(self.criterion, Criterion::Stretch(_) | Criterion::Energy(_));
+        !stretch || self.rate.is_some() || self.fatigue.is_some()
+    }
+}
+
+/// `s0 (1 + C ln(ṡ/ṡ0))` where a bond is stretched faster than ṡ0, as the flow stress of Johnson & Cook 1983 grows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RateSpec {
+    /// C (–).
+    pub coefficient: f64,
+    /// ṡ0 (1 / time).
+    pub reference: f64,
+}
+
+/// What a cycle of load takes of the life of a bond, 1 at first: `dλ/dN = −A ε^m` of the range ε of its stretch (Silling & Askari 2014).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FatigueSpec {
+    /// A1 and m1 far from any crack, of ε − ε_∞; `None`: no cracks begin there.
+    pub nucleation: Option<[f64; 2]>,
+    /// ε_∞, up to which bonds far from any crack live for ever.
+    pub limit: f64,
+    /// A2 and m2 near a crack; `None`: no crack grows.
+    pub growth: Option<[f64; 2]>,
+    /// Damage that is a crack: near it are bonds of points in whose family there is one that has it.
+    pub crack: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,6 +154,12 @@ pub enum Criterion {
     Stretch(f64),
     /// Fracture energy (energy / area).
     Energy(f64),
+    /// The work that is done on a bond, by the fracture energy (energy / area; Foster, Silling & Chen 2011).
+    BondEnergy(f64),
+    /// Von Mises stress of the points, the mean of both ends (pressure).
+    VonMises(f64),
+    /// Equivalent plastic strain of the points, the mean of both ends (–).
+    PlasticStrain(f64),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -35,15 +35,17 @@ pub use family::{Calibration, FamilyChoice, Horizon, Influence};
 pub use indenter::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 pub use interface::InterfaceSpec;
 pub use law::{
-    Criterion, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw, PairSpec,
-    Parameter, Parameters, PmbStiffness, Release,
+    Criterion, FatigueSpec, FractureSpec, InterfaceRule, LawSpec, MaterialSpec, Moduli, NamedLaw,
+    PairSpec, Parameter, Parameters, PmbStiffness, RateSpec, Release,
 };
 pub(crate) use linear_body::add_alike;
 pub use linear_body::{AnyLinearBody, LinearBody};
 pub use potential::{End, PartnerTable, PotentialSpec, TableSpec};
 pub use preload::PreloadSpec;
 pub use probe::{ContourSpec, Fold, Measure, Part, ProbeSpec, RigidQuantity};
-pub use schedule::{Control, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep};
+pub use schedule::{
+    Control, Cycles, Method, Newmark, Schedule, Solver, Statics, Stepper, TimeStep,
+};
 use std::sync::Arc;
 pub use surface::{SurfaceFactors, SurfaceMethod};
 pub use transfer::{

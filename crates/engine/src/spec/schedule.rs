@@ -89,6 +89,20 @@ pub struct Statics {
     pub tolerance: f64,
     /// Of conjugate gradients or relaxation, per solution.
     pub most_iterations: usize,
+    /// Increments are cycles of load; `None`: they are increments of load.
+    pub cycles: Option<Cycles>,
+}
+
+/// Cycles of a load whose greatest is what the conditions say, and whose least is R times that. An increment is as many cycles as it takes
+/// until some bonds are worn out (Silling & Askari 2014).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cycles {
+    /// R.
+    pub load_ratio: f64,
+    /// So many bonds are worn out in an increment, and those that last no longer.
+    pub bonds: usize,
+    /// Number of cycles at which all ends; ∞: never.
+    pub most: f64,
 }
 
 impl Default for Statics {
@@ -100,6 +114,7 @@ impl Default for Statics {
             solver: Solver::Auto,
             tolerance: 1e-10,
             most_iterations: 100_000,
+            cycles: None,
         }
     }
 }

@@ -6,6 +6,7 @@ mod accounts;
 mod calibration;
 mod constants;
 mod cracks;
+mod criteria;
 mod equivalence;
 mod mechanics;
 mod motion;

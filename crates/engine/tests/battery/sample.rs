@@ -454,6 +454,8 @@ impl Case {
                     fracture: self.material.fracture.map(|s| FractureSpec {
                         criterion: Criterion::Stretch(s),
                         alpha: 0.0,
+                        rate: None,
+                        fatigue: None,
                     }),
                 })
                 .collect(),
@@ -505,6 +507,8 @@ pub fn breaking(spec: &mut Spec, s00: f64) {
         m.fracture = Some(FractureSpec {
             criterion: Criterion::Stretch(s00),
             alpha: 0.25,
+            rate: None,
+            fatigue: None,
         });
     }
 }

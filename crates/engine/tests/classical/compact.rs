@@ -25,6 +25,8 @@ fn plate(sites: [i32; 3]) -> Spec {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Energy(ENERGY),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec
 }

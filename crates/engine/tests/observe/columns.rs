@@ -14,6 +14,8 @@ fn every_declared_column_can_be_read() {
             spec.materials[0].fracture = Some(FractureSpec {
                 criterion: Criterion::Stretch(0.1),
                 alpha: 0.0,
+                rate: None,
+                fatigue: None,
             });
             spec.schedule.time_step = TimeStep::Fixed(1e-3);
             let mut sim = made(&spec);
@@ -99,6 +101,8 @@ fn memory_goes_from_one_model_to_another() {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.02),
         alpha: 0.25,
+        rate: None,
+        fatigue: None,
     });
     spec.schedule.time_step = TimeStep::Fixed(1e-3);
     for family in [FamilyChoice::Stencil, FamilyChoice::List] {

@@ -169,6 +169,8 @@ pub fn pairs_that_part(law: LawSpec) -> Vec<Off> {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.02),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.schedule.time_step = TimeStep::Fixed(1e-8);
     let mut sim = model(&spec);
@@ -212,6 +214,8 @@ pub fn bond_breaking_in_time() -> Vec<Off> {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(50.0),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.toughness = vec![ToughnessSpec {
         set: "all".into(),

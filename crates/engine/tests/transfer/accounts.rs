@@ -172,6 +172,8 @@ fn breaking(across: bool) {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.1),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.conditions = vec![
         ConditionSpec {

@@ -276,6 +276,8 @@ fn cold_bonds_break() {
     spec.materials[0].fracture = Some(FractureSpec {
         criterion: Criterion::Stretch(0.05),
         alpha: 0.0,
+        rate: None,
+        fatigue: None,
     });
     spec.conditions = vec![ConditionSpec {
         set: "all".into(),

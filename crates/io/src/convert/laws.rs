@@ -205,7 +205,7 @@ pub fn fracture(damage: &Entry, remarks: &mut Vec<String>) -> Option<String> {
         }
         ("critical energy", Some(g)) => {
             remarks.push(format!(
-                "line {}: Critical Energy compares the energy of each bond with a critical one; fracture.energy makes a critical stretch of it, which is not the same",
+                "line {}: Critical Energy compares the energy of each bond with a critical one; fracture.energy makes a critical stretch of it, which is not the same; with criterion = \"bond_energy\" it is the work of both force states, of which PeriLab counts half: write 2 G (in a plane 4 G/pi) for the same limit",
                 damage.line
             ));
             damage.idle(&["Only Tension"]);

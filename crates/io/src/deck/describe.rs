@@ -120,6 +120,7 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             Some(Criterion::Energy(e)) => {
                 format!("fracture energy {}", units.write(e, Dim::FRACTURE_ENERGY))
             }
+            Some(other) => criterion(other, units),
         };
         lines.push(format!(
             "interface  {} bonds {} and {} within {}, {fracture}",
@@ -169,6 +170,12 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         let of = match &t.factor {
             ToughnessFactor::Stretch(e) => format!("critical stretch times {}", e.source()),
             ToughnessFactor::Energy(e) => format!("fracture energy times {}", e.source()),
+            ToughnessFactor::Temperature(rows) => {
+                let row =
+                    |[t, x]: &[f64; 2]| format!("{x} at {}", units.write(*t, Dim::TEMPERATURE));
+                let rows: Vec<String> = rows.iter().map(row).collect();
+                format!("critical stretch times {}", rows.join(", "))
+            }
             ToughnessFactor::NoFailure => "bonds never break".to_string(),
         };
         lines.push(format!("toughness  on {}: {of}", t.set));
@@ -548,22 +555,47 @@ fn constants(law: &LawSpec, units: UnitSystem) -> String {
     said
 }
 
+/// When bonds break.
+fn criterion(criterion: Criterion, units: UnitSystem) -> String {
+    match criterion {
+        Criterion::Stretch(s) => format!("breaks at stretch {s}"),
+        Criterion::Energy(g) => format!("breaks at {}", units.write(g, Dim::FRACTURE_ENERGY)),
+        Criterion::BondEnergy(g) => format!(
+            "bonds break by their work at {}",
+            units.write(g, Dim::FRACTURE_ENERGY)
+        ),
+        Criterion::VonMises(s) => {
+            format!(
+                "breaks at the von Mises stress {}",
+                units.write(s, Dim::PRESSURE)
+            )
+        }
+        Criterion::PlasticStrain(e) => format!("breaks at the plastic strain {e}"),
+    }
+}
+
 fn material(m: &MaterialSpec, units: UnitSystem) -> String {
     let law = law(&m.law, units);
     let fracture = match m.fracture {
         None => "unbreakable".to_string(),
         Some(f) => {
-            let criterion = match f.criterion {
-                Criterion::Stretch(s) => format!("breaks at stretch {s}"),
-                Criterion::Energy(g) => {
-                    format!("breaks at {}", units.write(g, Dim::FRACTURE_ENERGY))
-                }
-            };
-            if f.alpha == 0.0 {
-                criterion
-            } else {
-                format!("{criterion}, α = {}", f.alpha)
+            let mut said = criterion(f.criterion, units);
+            if f.alpha != 0.0 {
+                said += &format!(", α = {}", f.alpha);
             }
+            if let Some(rate) = f.rate {
+                let reference = units.write(rate.reference, Dim::FREQUENCY);
+                said += &format!(", times 1 + {} ln(rate/({reference}))", rate.coefficient);
+            }
+            if let Some(fatigue) = f.fatigue {
+                let law = |[a, m]: [f64; 2]| format!("{a} ε^{m}");
+                let of = |law: String, place: &str| format!(", {law} of a life a cycle {place}");
+                let far = format!("far from any crack above {}", fatigue.limit);
+                let growth = fatigue.growth.map(|x| of(law(x), "near a crack"));
+                let nucleation = fatigue.nucleation.map(|x| of(law(x), &far));
+                said += &[growth, nucleation].map(Option::unwrap_or_default).concat();
+            }
+            said
         }
     };
     format!(

@@ -24,7 +24,7 @@ pub use molecules::Molecules;
 pub use names::*;
 pub use output::{Output, Picture};
 pub use region::{Mark, Periodic, Set, Shape};
-pub use run::{MethodName, Probe, ReleaseName, Run, Safety, SolverName, Statics};
+pub use run::{LoadCycles, MethodName, Probe, ReleaseName, Run, Safety, SolverName, Statics};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -254,7 +254,7 @@ pub struct Material {
     pub species: Option<At<SpeciesMaterial>>,
 }
 
-/// One of critical_stretch and energy.
+/// One of critical_stretch, energy, von_mises, plastic_strain; the same kind in all materials of a body.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fracture {
@@ -264,11 +264,54 @@ pub struct Fracture {
     /// Fracture energy per area.
     #[schemars(extend("dimension" = Dim::FRACTURE_ENERGY.name()))]
     pub energy: Option<Number>,
+    /// What the energy is made of: stretch when left out.
+    pub criterion: Option<At<CriterionName>>,
+    /// Von Mises stress, the mean of both ends, at which a bond breaks.
+    #[schemars(extend("dimension" = Dim::PRESSURE.name()))]
+    pub von_mises: Option<Number>,
+    /// Equivalent plastic strain, the mean of both ends, at which a bond breaks; of elastic_plastic and hypoelastic_plastic.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub plastic_strain: Option<Number>,
+    /// Growth of the critical stretch with the rate at which a bond is stretched.
+    pub rate: Option<FractureRate>,
+    /// Wear of bonds in cycles of load, with [statics] cycles.
+    pub fatigue: Option<At<Fatigue>>,
     /// Strengthening under compression, s0 = s00 − α s_min; 0 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub alpha: Option<Number>,
     /// at_once when left out; the same for all materials.
     pub release: Option<At<ReleaseName>>,
+}
+
+/// The critical stretch of a bond is s0 (1 + C ln(ṡ/ṡ0)) where it is stretched faster than ṡ0.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FractureRate {
+    /// C.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub coefficient: Number,
+    /// ṡ0.
+    #[schemars(extend("dimension" = Dim::FREQUENCY.name()))]
+    pub reference: Number,
+}
+
+/// Cycles take A ε^m each of the life of a bond, 1 at first, ε the range of its stretch (Silling & Askari 2014).
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fatigue {
+    /// [A, m] far from any crack, of the part of ε that is above the limit; no cracks begin when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub nucleation: Option<At<Vec<Number>>>,
+    /// Range of stretch up to which bonds far from any crack live for ever; 0 when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub limit: Option<Number>,
+    /// [A, m] near a crack; none grows when left out. m is the exponent of Paris's law.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub growth: Option<At<Vec<Number>>>,
+    /// Part of a family's volume that is cut off at a crack: bonds of points with such a point in their family are near one. 0.35 when left
+    /// out, of a straight crack through a lattice it is 0.39.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub crack: Option<Number>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

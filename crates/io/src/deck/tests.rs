@@ -50,7 +50,9 @@ fn a_deck_becomes_a_spec() {
         spec.materials[0].fracture,
         Some(FractureSpec {
             criterion: Criterion::Stretch(0.0005),
-            alpha: 0.25
+            alpha: 0.25,
+            rate: None,
+            fatigue: None,
         })
     );
     assert_eq!(spec.horizon, Horizon::Ratio(3));

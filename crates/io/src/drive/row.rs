@@ -27,6 +27,9 @@ pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
         columns.push(Column::new("iterations", ""));
         columns.push(Column::new("solver_residual", ""));
     }
+    if sim.cycles().is_some() {
+        columns.push(Column::new("cycles", ""));
+    }
     for (quantity, _) in sim.transfers() {
         columns.extend(transfer_columns(quantity, &plan.energy_unit));
     }
@@ -56,6 +59,7 @@ pub(super) fn row(sim: &mut dyn Simulation, plan: &Plan, ledger: &Ledger) -> Vec
     if let Some(solved) = sim.solved() {
         row.extend([solved.iterations as f64, solved.residual]);
     }
+    row.extend(sim.cycles());
     for (_, account) in sim.transfers() {
         row.extend(transfer_values(&account));
     }

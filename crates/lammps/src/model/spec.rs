@@ -46,6 +46,8 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
             fracture: Some(FractureSpec {
                 criterion: Criterion::Stretch(own.critical_stretch),
                 alpha: own.alpha,
+                rate: None,
+                fatigue: None,
             }),
         }
     };

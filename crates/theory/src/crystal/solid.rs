@@ -58,25 +58,30 @@ impl LatticeSolid {
 
     /// `ω ν V` of a bond.
     fn weight(&self, r0: f64) -> f64 {
-        let fraction = if self.volume_scaling {
-            volume_fraction(r0, self.delta(), self.point())
-        } else {
-            1.0
-        };
-        influence(self.influence, r0, self.delta()) * fraction * self.volume()
+        influence(self.influence, r0, self.delta()) * self.fraction(r0) * self.volume()
     }
 
-    /// Sums over a family: `Σ ω ν V r0`, `Σ ω ν V r0²`.
+    /// ν
+    fn fraction(&self, r0: f64) -> f64 {
+        match self.volume_scaling {
+            true => volume_fraction(r0, self.delta(), self.point()),
+            false => 1.0,
+        }
+    }
+
+    /// Sums over a family: `Σ ω ν V r0`, `Σ ω ν V r0²`, `Σ ν V r0`.
     pub fn moments<const D: usize>(&self) -> Result<Moments, CrystalError> {
         let bare = self.bonds::<D>(|_| [0.0; 2])?;
         let mut m = Moments {
             first: 0.0,
             second: 0.0,
+            bare: 0.0,
         };
         for b in bare.bonds.iter().filter(|b| b.from == 0) {
             let r = b.length();
             m.first += self.weight(r) * r;
             m.second += self.weight(r) * r * r;
+            m.bare += self.fraction(r) * self.volume() * r;
         }
         Ok(m)
     }

@@ -5,17 +5,18 @@ use super::sweeps::EnergyOf;
 use super::view::{BLOCK, Drift, View, grown, save};
 use crate::body::{Body, Field};
 use crate::execute::blocks::Shared;
-use crate::execute::lane::{Lane, TILE};
+use crate::execute::lane::{Lane, TILE, elementary};
 use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
+use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::material::{Kin, Material, Numbers, Partner};
 
 /// Most numbers that a form has.
 const FORM: usize = 32;
 
-/// Which bonds are beyond their critical stretch, or between points whose mean damage has reached 1; they break later. Knows nothing
-/// of laws.
+/// Which bonds are beyond their critical stretch or work, between points whose mean damage has reached 1, or worn out; they break later.
+/// Knows nothing of laws.
 pub struct Test<'a, const D: usize, F> {
     pub family: &'a F,
     pub moved: Moved<'a, D>,
@@ -28,6 +29,13 @@ pub struct Test<'a, const D: usize, F> {
     pub expansion: &'a [f64],
     pub next: Shared,
     pub toughness: &'a [Toughness],
+    pub criteria: &'a Criteria,
+    /// Work done on each directed bond; empty: it does not matter.
+    pub work: &'a [f64],
+    /// What is left of the life of each; empty: none wears.
+    pub life: &'a [f64],
+    /// Velocities, for rates.
+    pub v: &'a Field<D>,
     /// Do points without whole bonds keep the critical stretch that they had?
     pub keeps: bool,
     /// A bit for every bond that breaks, and a mark for every group that has any.
@@ -74,7 +82,36 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                     let e = relative_square_stretch(eta, r.xi, r.two_by_square).nan_if(dead);
                     lowest = e.min(lowest);
                     let other = ends.one::<L>(self.critical.as_ptr());
-                    let mut breaks = L::bits(history::limit(other, own).lt(e)) as u8;
+                    let mut breaks = if !self.work.is_empty() {
+                        let work = L::load(self.work.as_ptr().add(f.own(group, k, 0, 1)));
+                        // a bond that is shorter than in the reference is not torn
+                        let longer = L::bits(L::splat(0.0).lt(e)) as u8;
+                        L::bits(history::limit(other, own).lt(work)) as u8 & longer
+                    } else if self.criteria.rate.is_empty() {
+                        L::bits(history::limit(other, own).lt(e)) as u8
+                    } else {
+                        let mut opening = L::splat(0.0);
+                        for a in 0..D {
+                            let column = self.v[a].as_ptr();
+                            let rate = ends.one::<L>(column) - rows.one::<L>(column);
+                            opening = (r.xi[a] + eta[a]).fma(rate.zero_if(dead), opening);
+                        }
+                        // ṡ = (ξ+η)·η̇/(|ξ+η| |ξ|)
+                        let current = r.length * (L::splat(1.0) + e.zero_if(dead)).sqrt();
+                        let mut speed = opening.div(current * r.length);
+                        if !self.expansion.is_empty() {
+                            let [_, per_length] = grown(self.expansion, rows, ends);
+                            speed = speed * per_length;
+                        }
+                        let own = self.quicker(own, rows, speed);
+                        let other = self.quicker(other, ends, speed);
+                        L::bits(history::limit(other, own).lt(e)) as u8
+                    };
+                    if !self.life.is_empty() {
+                        let life = L::load(self.life.as_ptr().add(f.own(group, k, 0, 1)));
+                        let spent = L::bits(L::splat(0.0).ge(life)) as u8 & alive;
+                        breaks |= spent & !(L::bits(history::spared(other, own)) as u8);
+                    }
                     if fails {
                         let both = damaged + ends.one::<L>(self.damage.as_ptr());
                         let fail = L::bits(both.ge(L::splat(2.0))) as u8 & alive;
@@ -90,10 +127,47 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                 } else {
                     L::splat(f64::INFINITY)
                 };
-                let next = history::next_critical(self.toughness, material, lowest, alone);
+                let next = match &self.criteria.measure {
+                    Measure::Work(limit) => {
+                        let of: [f64; TILE] = std::array::from_fn(|l| limit[material(l)]);
+                        L::load(of.as_ptr())
+                    }
+                    Measure::Stretch | Measure::VonMises { .. } | Measure::PlasticStrain(_) => {
+                        history::next_critical(self.toughness, material, lowest, alone)
+                    }
+                };
                 put(next, self.next, rows);
             }
         }
+    }
+}
+
+impl<const D: usize, F: Family<D>> Test<'_, D, F> {
+    /// The critical `e` of points where a bond is stretched at this rate.
+    #[inline(always)]
+    fn quicker<L: Lane>(&self, critical: L, slots: F::Slots, speed: L) -> L {
+        let rate = |l: usize| {
+            let material = self.body.material_of(slots.slot(l));
+            self.criteria.rate.get(material).copied().flatten()
+        };
+        let of: [[f64; TILE]; 2] = {
+            let each: [Option<[f64; 2]>; TILE] = std::array::from_fn(|l| {
+                (l < L::N)
+                    .then(|| rate(l))
+                    .flatten()
+                    .map(|r| [r.coefficient, r.reference])
+            });
+            [0, 1].map(|n| each.map(|r| r.unwrap_or([0.0, 1.0])[n]))
+        };
+        // SAFETY: a number per lane
+        let [coefficient, reference] = of.map(|x| unsafe { L::load(x.as_ptr()) });
+        let one = L::splat(1.0);
+        let beyond = elementary::ln(speed.div(reference).max(one));
+        let factor = coefficient.fma(beyond, one);
+        // ∞ and never are left alone
+        let known = critical.lt(L::splat(1e100));
+        let s0 = history::stretch(L::select(known, critical, one));
+        L::select(known, history::critical(s0 * factor), critical)
     }
 }
 

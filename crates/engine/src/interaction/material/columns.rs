@@ -4,10 +4,16 @@ use super::MaterialInteraction;
 use super::family::{Family, Slots};
 use super::store::Store;
 use crate::body::{Body, Field};
-use crate::columns::{Declaration, On};
+use crate::columns::{Declaration, Dimension, On, Shape};
 use crate::execute::lane::TILE;
 use crate::interaction::history;
 use crate::law::material::{Columns, Material, Numbers};
+
+/// Columns of criteria.
+const WORK: &str = "bond_work";
+const LIFE: &str = "remaining_life";
+/// Energy / volume².
+const OF_BONDS: Dimension = Dimension([-4, 1, -2, 0]);
 
 /// Where a column lies among the numbers of a law.
 enum Place {
@@ -23,8 +29,46 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             past,
             point,
         } = self.law.columns();
-        let breaks = history::columns(!self.critical.is_empty());
+        let mut breaks = history::columns(!self.critical.is_empty() && self.work.is_empty());
+        if !self.work.is_empty() {
+            breaks.push(Declaration::of_bonds(
+                WORK,
+                OF_BONDS,
+                "Work ∫ (T_i − T_j)·dη that force states have done on a bond (Foster, Silling & Chen 2011).",
+            ));
+            breaks.push(Declaration::of_points(
+                history::WORK,
+                Shape::Scalar,
+                OF_BONDS,
+                "Work at which a bond of the point breaks, the lower one of both ends.",
+            ));
+        }
+        if !self.life.is_empty() {
+            breaks.push(Declaration::of_bonds(
+                LIFE,
+                Dimension::NUMBER,
+                "What cycles of load have left of the life of a bond, 1 at first (Silling & Askari 2014).",
+            ));
+        }
         [breaks, memory, past, point].concat()
+    }
+
+    /// Where a number of points of this name is among what the law remembers of them.
+    pub(super) fn past_of(&self, name: &str) -> Option<usize> {
+        match self.place(name) {
+            Some((_, Place::Past(n))) => Some(n),
+            Some((_, Place::Memory(_) | Place::Point(_))) | None => None,
+        }
+    }
+
+    /// What a directed bond has beside the law's memory.
+    fn beside(&self, name: &str) -> Option<&Vec<f64>> {
+        let found = match name {
+            WORK => &self.work,
+            LIFE => &self.life,
+            _ => return None,
+        };
+        Some(found).filter(|x| !x.is_empty())
     }
 
     /// A column by its name, and its first number.
@@ -63,7 +107,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             out.extend(self.bits().into_iter().map(bit));
             return true;
         }
+        if let Some(values) = self.beside(name) {
+            let places = self.places_of(0, 1, 1);
+            out.extend(places.into_iter().map(|at| values[at]));
+            return true;
+        }
         let Some((declaration, place)) = self.place(name) else {
+            if (name == history::WORK) == self.work.is_empty() {
+                return false;
+            }
             return history::read_critical(body, &self.critical, name, out);
         };
         let numbers = declaration.shape.stored(D);
@@ -101,7 +153,28 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
             return true;
         }
+        if self.beside(name).is_some() {
+            let places = self.places_of(0, 1, 1);
+            if values.len() != places.len() {
+                return false;
+            }
+            let into = match name {
+                LIFE => &mut self.life,
+                _ => {
+                    // work is counted from here on
+                    self.before = None;
+                    &mut self.work
+                }
+            };
+            for (at, x) in places.into_iter().zip(values) {
+                into[at] = *x;
+            }
+            return true;
+        }
         let Some((declaration, place)) = self.place(name) else {
+            if (name == history::WORK) == self.work.is_empty() {
+                return false;
+            }
             let known = history::write_critical(body, &mut self.critical, name, values);
             if known {
                 body.fill_images(&mut self.critical);
@@ -162,7 +235,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// Places of what they remember.
     fn memory_of(&self, first: usize, numbers: usize) -> Vec<usize> {
-        let count = <M::Memory<f64> as Numbers<f64>>::COUNT;
+        self.places_of(first, numbers, <M::Memory<f64> as Numbers<f64>>::COUNT)
+    }
+
+    /// The same of `count` numbers for each.
+    fn places_of(&self, first: usize, numbers: usize, count: usize) -> Vec<usize> {
         let of = |(group, k, l): (usize, usize, usize)| {
             (0..numbers).map(move |n| self.family.own(group, k, first + n, count) + l)
         };

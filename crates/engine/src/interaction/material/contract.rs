@@ -11,7 +11,7 @@ use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
 use crate::law::material::Material;
-use crate::spec::{CrackKind, Release};
+use crate::spec::{CrackKind, Cycles, Release};
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialInteraction<D, F, M> {
     fn made_for(&self) -> Identity {
@@ -39,7 +39,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             .as_ref()
             .map(|_| (self.alive.clone(), self.form.clone()));
         let mut total = Tally::default();
+        if motion.is_some() {
+            self.work_before(body, u, &room);
+        }
         if let Some(m) = breaks.filter(|m| m.release == Release::AtOnce) {
+            if self.measures() {
+                self.settle(body, u, &room);
+                self.measure(body, u, &room);
+            }
             total += self.tear(body, u, &room, m.v, -m.steps[0]);
         }
         self.settle(body, u, &room);
@@ -50,10 +57,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         };
         run_blocks(self.simd, &kernel, self.sums.blocks());
         if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
+            self.measure(body, u, &room);
             total += self.tear(body, u, &room, m.v, m.steps[1]);
         }
         if motion.is_some() {
             total += self.remember(body, u, &room);
+            self.keep(u, &room);
         }
         if let (Some(seen), Some(whole)) = (seen, &mut whole) {
             // what the step remembers is part of this instant, what breaks in it is of the next
@@ -245,6 +254,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         true
     }
 
+    fn wear(&mut self, body: &Body<D>, u: &Field<D>, cycles: &Cycles, left: f64) -> Option<f64> {
+        self.check(body, &[u]);
+        let wears = !self.life.is_empty();
+        wears.then(|| self.wear_bonds(body, u, cycles, left))
+    }
+
     fn columns(&self) -> Vec<Declaration> {
         self.declared()
     }
@@ -276,5 +291,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + 8 * (self.memory.len() + self.room.records.len())
             + 8 * (self.critical.len() + self.next.len())
             + 8 * (self.damage.len() + self.expansion.len())
+            + 8 * (self.work.len() + self.life.len())
     }
 }

@@ -7,6 +7,7 @@ mod columns;
 mod contract;
 mod family;
 mod lattice;
+mod measured;
 mod plain;
 mod repulsion;
 mod store;
@@ -17,6 +18,7 @@ mod view;
 pub use cloud::CloudFamily;
 pub use lattice::LatticeFamily;
 
+use super::criterion::{Criteria, Measure};
 use super::{EnergyFields, PointEnergies, Repulsion, Tally, Toughness};
 use crate::body::{Body, Column, Field, Identity, field};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
@@ -25,11 +27,15 @@ use crate::execute::simd::Simd;
 use crate::law::material::{Material, Numbers};
 use breaking::{Tear, Test};
 use family::{Family, Moved, Slots};
+use measured::Before;
 use repulsion::Pushed;
 use std::ops::AddAssign;
 use store::Store;
 use sweeps::{Energies, Remember, Sums};
 use view::{BLOCK, View};
+
+/// The column of laws that flow.
+pub(crate) const PLASTIC_STRAIN: &str = "plastic_strain";
 
 /// A law on a family.
 pub struct MaterialInteraction<const D: usize, F, M> {
@@ -51,12 +57,18 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     past: Store,
     memory: Vec<f64>,
     toughness: Vec<Toughness>,
+    criteria: Criteria,
     repulsion: Option<Repulsion>,
-    /// Critical `e` per slot, now and next; empty: nothing breaks.
+    /// Critical `e` per slot, or critical work, now and next; empty: nothing breaks.
     critical: Column,
     next: Column,
-    /// Damage per slot of a law that fails by it ([`Material::failure`]); empty: none does.
+    /// Damage per slot of a law that fails by it ([`Material::failure`]), or a measure over its limit; empty: none does.
     damage: Column,
+    /// Work done on each directed bond (energy / volume²), and where the step began; empty: nobody asks.
+    work: Vec<f64>,
+    before: Option<Before<D>>,
+    /// What is left of the life of each directed bond; empty: none wears.
+    life: Vec<f64>,
     /// Strain by temperature or swelling per slot; empty: none.
     expansion: Column,
     /// Bits of bonds that break in a sweep, and marks of their groups.
@@ -90,6 +102,7 @@ pub struct MaterialParts<'a, const D: usize, F, M> {
     pub near_horizon: u64,
     /// One per material.
     pub toughness: Vec<Toughness>,
+    pub criteria: Criteria,
     pub repulsion: Option<Repulsion>,
     pub simd: Simd,
 }
@@ -103,6 +116,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             kind,
             near_horizon,
             toughness,
+            criteria,
             repulsion,
             simd,
         } = parts;
@@ -118,13 +132,28 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 }
             }
         }
-        let fails = law.failure().is_some();
-        let breaks = fails || toughness.iter().any(|t| t.s00.is_finite());
+        let measured = matches!(
+            criteria.measure,
+            Measure::VonMises { .. } | Measure::PlasticStrain(_)
+        );
+        let fails = measured || law.failure().is_some();
+        let works = matches!(criteria.measure, Measure::Work(_));
+        let wears = !criteria.fatigue.is_empty();
+        let breaks = fails || works || wears || toughness.iter().any(|t| t.s00.is_finite());
+        let bonds = |is: bool, x: f64| vec![x; if is { family.memory() } else { 0 }];
         let column = |is: bool, x: f64| match is {
             true => Column::new(body.len, x, field::line(3)),
             false => Column::default(),
         };
-        let critical = || column(breaks, f64::INFINITY);
+        let critical = || {
+            let mut critical = column(breaks, f64::INFINITY);
+            if let Measure::Work(limit) = &criteria.measure {
+                for (slot, x) in critical.iter_mut().enumerate() {
+                    *x = limit[body.material_of(slot)];
+                }
+            }
+            critical
+        };
         let several = toughness.len() > 1;
         let store = |numbers| Store::zeros(family.layout(numbers));
         let blocks = family.groups().div_ceil(BLOCK);
@@ -147,6 +176,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             critical: critical(),
             next: critical(),
             damage: column(fails, 0.0),
+            work: bonds(works, 0.0),
+            before: works.then(|| Before {
+                u: crate::body::zeros(body.len),
+                records: vec![0.0; if gathers { 4 * body.len } else { 0 }],
+                expansion: Column::default(),
+            }),
+            life: bonds(wears, 1.0),
             expansion: Column::default(),
             breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
             torn: vec![0; if breaks { family.groups() } else { 0 }],
@@ -163,6 +199,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             simd,
             kind,
             toughness,
+            criteria,
             repulsion,
         }
     }
@@ -299,6 +336,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             expansion: &self.expansion,
             next,
             toughness: &self.toughness,
+            criteria: &self.criteria,
+            work: &self.work,
+            life: &self.life,
+            v,
             keeps: M::PASSES > 0,
             breaks,
             torn,
@@ -325,9 +366,20 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// Damage as the points remember it.
     fn look_damage(&mut self, body: &Body<D>) {
-        let Some(n) = self.law.failure() else { return };
-        for &slot in &body.slots {
-            self.damage[slot as usize] = self.past.get(n, slot as usize);
+        if let Measure::PlasticStrain(limit) = &self.criteria.measure {
+            let Some(n) = self.past_of(PLASTIC_STRAIN) else {
+                return;
+            };
+            for &slot in &body.slots {
+                let of = limit[body.material_of(slot as usize)];
+                self.damage[slot as usize] = self.past.get(n, slot as usize) / of;
+            }
+        } else if let Some(n) = self.law.failure() {
+            for &slot in &body.slots {
+                self.damage[slot as usize] = self.past.get(n, slot as usize);
+            }
+        } else {
+            return;
         }
         body.fill_images(&mut self.damage);
     }

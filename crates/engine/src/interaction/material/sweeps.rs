@@ -89,6 +89,35 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
 ) -> [L; D] {
     // SAFETY: the caller's promise
     unsafe {
+        let (mut pull, _, weight) = pull_of::<L, D, F, M>(v, at, point, k, part);
+        for a in 0..D {
+            pull[a] = weight * pull[a];
+        }
+        if !v.expansion.is_empty() {
+            let ends = v.family.ends(at.number, k).from(part);
+            let per_length = v.per_length::<L>(at, ends);
+            for a in 0..D {
+                pull[a] = per_length * pull[a];
+            }
+        }
+        pull
+    }
+}
+
+/// `T_i⟨ξ⟩ − T_j⟨−ξ⟩` of bond `k` of a group (force / volume²), the bond, and `ν V_j`.
+///
+/// # Safety
+/// As of [`pull`].
+#[inline(always)]
+pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
+    v: &View<D, F, M>,
+    at: &GroupOf<L, D, F, M>,
+    point: &M::Point<L>,
+    k: usize,
+    part: usize,
+) -> ([L; D], Bond<L, D>, L) {
+    // SAFETY: the caller's promise
+    unsafe {
         let ends = v.family.ends(at.number, k).from(part);
         let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
         let (bond, weight) = v.bond::<L>(at, k, ends, dead);
@@ -124,18 +153,31 @@ pub unsafe fn pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 },
             )
         };
-        let mut pull = own.pull(other, &bond);
-        for a in 0..D {
-            pull[a] = weight * pull[a];
-        }
-        if !v.expansion.is_empty() {
-            let per_length = v.per_length::<L>(at, ends);
-            for a in 0..D {
-                pull[a] = per_length * pull[a];
-            }
-        }
-        pull
+        (own.pull(other, &bond), bond, weight)
     }
+}
+
+/// The force state of the group's end of its bond `k`.
+///
+/// # Safety
+/// As of [`pull`].
+#[inline(always)]
+pub unsafe fn answers<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
+    v: &View<D, F, M>,
+    at: &GroupOf<L, D, F, M>,
+    point: &M::Point<L>,
+    k: usize,
+    part: usize,
+    bond: &Bond<L, D>,
+) -> M::State<L> {
+    // SAFETY: the caller's promise
+    let memory = unsafe { v.memory::<L>(at.number, k, part) };
+    let end = End {
+        constants: &at.constants,
+        point,
+        memory: &memory,
+    };
+    v.law.answer(bond, &end)
 }
 
 /// What of it is the point's own force state; `pull` has the rest.
@@ -155,13 +197,7 @@ pub unsafe fn own_pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
         let ends = v.family.ends(at.number, k).from(part);
         let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
         let (bond, weight) = v.bond::<L>(at, k, ends, dead);
-        let memory = v.memory::<L>(at.number, k, part);
-        let end = End {
-            constants: &at.constants,
-            point,
-            memory: &memory,
-        };
-        let own = v.law.answer(&bond, &end).alone(&bond);
+        let own = answers::<L, D, F, M>(v, at, point, k, part, &bond).alone(&bond);
         let weight = weight * v.per_length::<L>(at, ends);
         own.map(|x| weight * x)
     }

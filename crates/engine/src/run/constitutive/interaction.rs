@@ -47,6 +47,10 @@ impl ConstitutiveModel {
                 horizon: self.reach(),
                 weight: BondWeight::new(self.influence, self.horizon, self.scaling()),
                 toughness,
+                criteria: match only {
+                    Some(n) => self.criteria.only(n),
+                    None => self.criteria.clone(),
+                },
                 repulsion,
                 simd: self.simd,
                 only,

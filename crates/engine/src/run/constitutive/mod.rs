@@ -1,6 +1,7 @@
 //! The constitutive model of a body, apart from its points: laws with their constants, weights of bonds, toughness.
 
 mod constants;
+pub(super) mod criteria;
 mod interaction;
 mod pairs;
 pub(super) mod shelf;
@@ -10,6 +11,7 @@ use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::family::volume_fraction;
+use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::pairs::BondTable;
 use crate::interaction::{PairTable, Repulsion, Toughness};
 use crate::law::influence::influence;
@@ -27,6 +29,8 @@ use toughness::toughness;
 pub(super) struct ConstitutiveModel {
     pub laws: Laws,
     pub toughness: Vec<Toughness>,
+    /// What bonds break by beside that.
+    pub criteria: Criteria,
     pub repulsion: Option<Repulsion>,
     /// Stiffness of contact between points of a material, from its law (force / volume² / length).
     pub contact: Vec<f64>,
@@ -111,6 +115,14 @@ impl ConstitutiveModels {
         self.per_material(count, |r| vec![(r.horizon, r.influence); r.toughness.len()])
     }
 
+    /// Works at which bonds break (energy / volume²), where they break by these; else empty.
+    pub fn critical_works(&self, count: usize) -> Vec<f64> {
+        self.per_material(count, |r| match &r.criteria.measure {
+            Measure::Work(limit) => limit.clone(),
+            Measure::Stretch | Measure::VonMises { .. } | Measure::PlasticStrain(_) => vec![],
+        })
+    }
+
     pub fn critical_stretches(&self, count: usize) -> Vec<f64> {
         self.per_material(count, |r| r.toughness.iter().map(|t| t.s00).collect())
     }
@@ -142,6 +154,7 @@ impl ConstitutiveModel {
                 toughness::<D>(spec, m, horizon, moments, shelf, &path)
             })
             .collect::<Result<Vec<_>, _>>()?;
+        let criteria = criteria::criteria::<D>(spec, moments, shelf)?;
         let repulsion = match &spec.contact {
             Some(contact_spec) => Some(Repulsion {
                 stiffness: contact_stiffness(&contact_spec.stiffness, &contact)?,
@@ -152,9 +165,17 @@ impl ConstitutiveModel {
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
         let named = shelf::chosen::<D>(spec, shelf, (horizon, moments), &toughness)?;
+        if named.is_none() && !criteria.is_plain() {
+            return Err(BuildError::unsupported(
+                "materials[0].fracture",
+                "these bonds break by their critical stretch alone",
+            )
+            .help("give critical_stretch or energy, without criterion, rate and fatigue"));
+        }
         Ok(ConstitutiveModel {
             laws,
             toughness,
+            criteria,
             repulsion,
             contact,
             stencil,

@@ -24,6 +24,12 @@ pub(super) fn toughness<const D: usize>(
     };
     let s00 = match fracture.criterion {
         Criterion::Stretch(s) => s,
+        Criterion::BondEnergy(_) | Criterion::VonMises(_) | Criterion::PlasticStrain(_) => {
+            return Ok(Toughness {
+                s00: f64::INFINITY,
+                alpha: 0.0,
+            });
+        }
         Criterion::Energy(energy) => {
             if let LawSpec::Named(law) = &m.law
                 && !law.isotropic

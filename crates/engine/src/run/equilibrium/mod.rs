@@ -22,7 +22,7 @@ use crate::quantity::rounded;
 use crate::run::Simulation;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
-use crate::spec::{LinearBody, Method, Solver, Statics};
+use crate::spec::{Cycles, LinearBody, Method, Solver, Statics};
 use crate::statics::modes::{self, Mode};
 use crate::statics::{self, Solved, Support};
 
@@ -244,11 +244,13 @@ impl<const D: usize> Model<D> {
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.
     pub(super) fn increment(&mut self) -> Result<(), RunError> {
+        self.update_toughness(self.time() + self.dt)?;
         self.spread(self.time(), self.dt)?;
         self.pay(0.5, 0.0);
         let Some(mut state) = self.statics.take() else {
             return Ok(());
         };
+        self.wear(state.options.cycles);
         let (u, f) = (self.u.clone(), self.f.clone());
         // nothing acts before the first increment
         let external = match self.step == self.origin.0 {
@@ -321,6 +323,17 @@ impl<const D: usize> Model<D> {
             _ => None,
         };
         place.map(|n| self.body.position(self.body.slots[n] as usize))
+    }
+
+    /// Cycles of the load that holds the body where it is; bonds that are worn out break at the first look for the next equilibrium.
+    fn wear(&mut self, cycles: Option<Cycles>) {
+        let Some(cycles) = cycles.filter(|_| self.step > self.origin.0) else {
+            return;
+        };
+        self.refresh_images();
+        let left = (cycles.most - self.cycles).max(0.0);
+        let passed = self.interaction.wear(&self.body, &self.u, &cycles, left);
+        self.cycles += passed.unwrap_or(0.0);
     }
 
     /// Equilibrium, and again after bonds broke, until none breaks.

@@ -23,6 +23,7 @@ impl<const D: usize> Implicit<D> {
             control: Control::Load,
             solver: options.solver,
             tolerance: options.tolerance,
+            cycles: None,
             most_iterations: options.most_iterations,
         });
         Implicit {

@@ -17,7 +17,7 @@ pub struct BondFactor {
     pub crossing: Option<At<FlatShape>>,
 }
 
-/// Toughness that depends on place and time: one of stretch_factor, energy_factor, no_failure.
+/// Toughness that depends on place, time and temperature: one of stretch_factor, energy_factor, temperature, no_failure.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Toughness {
@@ -29,6 +29,9 @@ pub struct Toughness {
     /// Factor of the fracture energy, a number or an expression of x, y, z, t: the critical stretch is multiplied with its root.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub energy_factor: Option<Number>,
+    /// Rows [T, factor] of the critical stretch, T rising: lines between them, and the outer factors beyond. With [heat].
+    #[schemars(extend("dimension" = Dim::TEMPERATURE.name()))]
+    pub temperature: Option<At<Vec<Vec<Number>>>>,
     /// true: bonds of these points never break, whatever their other ends bear.
     pub no_failure: Option<At<bool>>,
 }

@@ -14,6 +14,13 @@ macro_rules! names {
 
 names! {
     PlaneName { Stress, Strain }
+    /// What a fracture energy is made of.
+    CriterionName {
+        /// A critical stretch, the same for all bonds.
+        Stretch,
+        /// A critical work, the same for all bonds: a bond breaks where the force states of both ends have done that work on it (Foster, Silling & Chen 2011).
+        BondEnergy,
+    }
     LatticeName { Chain, Square, Triangular, Cubic, Bcc, Fcc, Diamond }
     AxisName { X, Y, Z }
     MixingName {

@@ -65,6 +65,8 @@ pub struct Statics {
     /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only. With control =
     /// "breaking" so many equilibria, in each of which the next bonds are about to break.
     pub increments: Option<At<u64>>,
+    /// Increments are cycles of load, for materials with fatigue: conditions are the greatest load and stay as they are.
+    pub cycles: Option<At<LoadCycles>>,
     /// t is a time that goes to this one, in which heat or a species spreads; t is a number that goes to 1 when left out. Before [run] the
     /// stage is as long in records, which count time from the beginning of motion; when left out an increment is as long as a step.
     #[schemars(extend("dimension" = Dim::TIME.name()))]
@@ -78,6 +80,20 @@ pub struct Statics {
     pub modes: Option<At<usize>>,
     /// All cores when left out; results do not depend on it.
     pub threads: Option<At<usize>>,
+}
+
+/// Every increment is as many cycles as it takes until some bonds are worn out.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadCycles {
+    /// Least over greatest load, R, from -1 to below 1; 0 when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub load_ratio: Option<Number>,
+    /// Bonds that are worn out in an increment, with those that last no longer; 1 when left out.
+    pub bonds: Option<At<usize>>,
+    /// Number of cycles after which no bond wears any more; no end when left out.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub most: Option<Number>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]

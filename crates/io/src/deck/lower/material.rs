@@ -3,14 +3,16 @@
 use super::atoms::AtomsPotentials;
 use super::bodies;
 use super::context::{Context, Result};
-use crate::deck::document::{Document, Fracture, Law, Material, ReleaseName};
+use crate::deck::document::{
+    CriterionName, Document, Fatigue, Fracture, Law, Material, ReleaseName,
+};
 use crate::deck::units::{Dim, short};
-use crate::deck::value::At;
+use crate::deck::value::{At, Number};
 use peridyne::law::solid::linear::{Linear, Micromoduli};
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, Cloud, Criterion, FractureSpec, LawSpec, MaterialSpec, Members, PieceSpec, Release,
-    SetSpec,
+    BodySpec, Cloud, Criterion, FatigueSpec, FractureSpec, LawSpec, MaterialSpec, Members,
+    PieceSpec, RateSpec, Release, SetSpec,
 };
 use std::collections::BTreeMap;
 
@@ -268,19 +270,50 @@ pub(super) fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<Fra
     let given = [
         ("critical_stretch", f.critical_stretch.is_some()),
         ("energy", f.energy.is_some()),
+        ("von_mises", f.von_mises.is_some()),
+        ("plastic_strain", f.plastic_strain.is_some()),
     ];
     context.one_of(&fracture.span, "fracture", &given)?;
-    let criterion = match (&f.critical_stretch, &f.energy) {
-        (Some(stretch), _) => {
-            Criterion::Stretch(context.positive(stretch, Dim::NUMBER, "the critical stretch")?)
+    let criterion = if let Some(stretch) = &f.critical_stretch {
+        Criterion::Stretch(context.positive(stretch, Dim::NUMBER, "the critical stretch")?)
+    } else if let Some(energy) = &f.energy {
+        let energy = context.positive(energy, Dim::FRACTURE_ENERGY, "the fracture energy")?;
+        match f.criterion.as_ref().map(|c| c.value) {
+            None | Some(CriterionName::Stretch) => Criterion::Energy(energy),
+            Some(CriterionName::BondEnergy) => Criterion::BondEnergy(energy),
         }
-        (_, Some(energy)) => Criterion::Energy(context.positive(
-            energy,
-            Dim::FRACTURE_ENERGY,
-            "the fracture energy",
-        )?),
-        (None, None) => return Err(context.error(&fracture.span, "fracture needs a criterion")),
+    } else if let Some(stress) = &f.von_mises {
+        Criterion::VonMises(context.positive(stress, Dim::PRESSURE, "the von Mises stress")?)
+    } else if let Some(strain) = &f.plastic_strain {
+        Criterion::PlasticStrain(context.positive(strain, Dim::NUMBER, "the plastic strain")?)
+    } else {
+        return Err(context.error(&fracture.span, "fracture needs a criterion"));
     };
+    if let (Some(name), None) = (&f.criterion, &f.energy) {
+        return Err(context.error_with(
+            &name.span,
+            "criterion says what a fracture energy is made of, and there is none",
+            "give energy, or leave criterion out",
+        ));
+    }
+    let stretch = matches!(criterion, Criterion::Stretch(_) | Criterion::Energy(_));
+    let rate = match &f.rate {
+        Some(rate) if !stretch => {
+            return Err(context.error_with(
+                &rate.coefficient.span,
+                "a rate is of the critical stretch",
+                "give critical_stretch, or energy without criterion",
+            ));
+        }
+        Some(rate) => Some(RateSpec {
+            coefficient: context.positive(&rate.coefficient, Dim::NUMBER, "the coefficient")?,
+            reference: context.positive(&rate.reference, Dim::FREQUENCY, "the reference rate")?,
+        }),
+        None => None,
+    };
+    let fatigue = { f.fatigue.as_ref() }
+        .map(|fatigue| wear(context, fatigue))
+        .transpose()?;
     let alpha = f
         .alpha
         .as_ref()
@@ -292,5 +325,59 @@ pub(super) fn fracture(context: &Context, fracture: &At<Fracture>) -> Result<Fra
             format!("alpha must not be negative, it is {}", short(alpha)),
         ));
     }
-    Ok(FractureSpec { criterion, alpha })
+    Ok(FractureSpec {
+        criterion,
+        alpha,
+        rate,
+        fatigue,
+    })
 }
+
+/// How bonds wear.
+fn wear(context: &Context, at: &At<Fatigue>) -> Result<FatigueSpec> {
+    let written = &at.value;
+    let law = |list: &Option<At<Vec<Number>>>| match list {
+        None => Ok(None),
+        Some(At {
+            value: list, span, ..
+        }) => {
+            let [a, m] = &list[..] else {
+                let message = format!("expected [A, m], there are {} numbers", list.len());
+                return Err(context.error(span, message));
+            };
+            Ok(Some([
+                context.positive(a, Dim::NUMBER, "A")?,
+                context.positive(m, Dim::NUMBER, "m")?,
+            ]))
+        }
+    };
+    let number = |written: &Option<Number>, or: f64| match written {
+        Some(number) => context.finite(number, Dim::NUMBER),
+        None => Ok(or),
+    };
+    let (nucleation, growth) = (law(&written.nucleation)?, law(&written.growth)?);
+    if nucleation.is_none() && growth.is_none() {
+        return Err(context.error_with(
+            &at.span,
+            "fatigue without nucleation and growth wears nothing",
+            "write for example fatigue = { growth = [1e6, 4] }",
+        ));
+    }
+    let limit = number(&written.limit, 0.0)?;
+    if let Some(at) = { written.limit.as_ref() }.filter(|_| limit < 0.0) {
+        return Err(context.error(&at.span, "the limit must not be negative"));
+    }
+    let crack = number(&written.crack, CRACK)?;
+    if let Some(at) = { written.crack.as_ref() }.filter(|_| !(crack > 0.0 && crack < 1.0)) {
+        return Err(context.error(&at.span, "the damage of a crack lies between 0 and 1"));
+    }
+    Ok(FatigueSpec {
+        nucleation,
+        limit,
+        growth,
+        crack,
+    })
+}
+
+/// Damage that is a crack where nobody says: a straight one through a lattice has a little more.
+const CRACK: f64 = 0.35;

@@ -8,7 +8,8 @@ use crate::deck::document::{
     BondFactor, Condition, CrackName, FlatShape, Initial, Precrack, Shape, Toughness,
 };
 use crate::deck::units::Dim;
-use crate::deck::value::At;
+use crate::deck::value::{At, Number};
+use peridyne::expression::Expression;
 use peridyne::spec::{
     BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, InitialSpec, Members,
     PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec, TransferCondition,
@@ -221,12 +222,34 @@ pub(super) fn toughness(
     let given = [
         ("stretch_factor", written.stretch_factor.is_some()),
         ("energy_factor", written.energy_factor.is_some()),
+        ("temperature", written.temperature.is_some()),
         ("no_failure", written.no_failure.is_some()),
     ];
     context.one_of(&at.span, "the toughness", &given)?;
     let factor = match (&written.stretch_factor, &written.energy_factor) {
         (Some(n), _) => ToughnessFactor::Stretch(context.expression(n, Dim::NUMBER)?),
         (_, Some(n)) => ToughnessFactor::Energy(context.expression(n, Dim::NUMBER)?),
+        (None, None) if let Some(rows) = &written.temperature => {
+            let row = |row: &Vec<Number>| {
+                let [t, x] = &row[..] else {
+                    let message = format!("a row of temperature has {} numbers", row.len());
+                    let help = "expected [T, factor]";
+                    return Err(context.error_with(&rows.span, message, help));
+                };
+                let factor = context.positive(x, Dim::NUMBER, "the factor")?;
+                Ok([context.finite(t, Dim::TEMPERATURE)?, factor])
+            };
+            let made: Vec<[f64; 2]> = rows.value.iter().map(row).collect::<Result<_>>()?;
+            if made.is_empty() || made.windows(2).any(|r| r[0][0] >= r[1][0]) {
+                let message = "temperatures must rise from row to row";
+                return Err(context.error_with(
+                    &rows.span,
+                    message,
+                    "write for example temperature = [[\"300 K\", 1], [\"900 K\", 0.6]]",
+                ));
+            }
+            ToughnessFactor::Temperature(made)
+        }
         (None, None) => match &written.no_failure {
             Some(no) if !no.value => {
                 let message = "no_failure = false says nothing: leave this table out";

@@ -2,15 +2,15 @@
 
 use super::context::{Context, Result};
 use crate::deck::document::{
-    ControlName, Document, IntegratorName, MethodName, Output, Picture, Run, Safety, SolverName,
-    Statics,
+    ControlName, Document, IntegratorName, LoadCycles, MethodName, Output, Picture, Run, Safety,
+    SolverName, Statics,
 };
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or, Written};
 use crate::deck::{OutputSpec, PictureSpec};
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
-use peridyne::spec::{Control, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
+use peridyne::spec::{Control, Cycles, Method, Newmark, Schedule, Solver, Stepper, TimeStep};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -132,12 +132,42 @@ fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<Ru
                 solver: solver(written.solver),
                 tolerance,
                 most_iterations: written.iterations.as_ref().map_or(100_000, |n| n.value),
+                cycles: { written.cycles.as_ref() }
+                    .map(|c| cycles(context, &c.value))
+                    .transpose()?,
             }),
         },
         threads: threads(context, &written.threads)?,
         duration: None,
         modes,
         preload: None,
+    })
+}
+
+fn cycles(context: &Context, written: &LoadCycles) -> Result<Cycles> {
+    let load_ratio = match &written.load_ratio {
+        Some(number) => context.finite(number, Dim::NUMBER)?,
+        None => 0.0,
+    };
+    if let Some(number) =
+        { written.load_ratio.as_ref() }.filter(|_| !(-1.0..1.0).contains(&load_ratio))
+    {
+        return Err(context.error_with(
+            &number.span,
+            format!("a load ratio of {} is outside -1 to 1", short(load_ratio)),
+            "it is the least load over the greatest: 0 pulls and lets go, -1 turns round",
+        ));
+    }
+    if let Some(bonds) = written.bonds.as_ref().filter(|n| n.value == 0) {
+        return Err(context.error(&bonds.span, "an increment wears a bond out at least"));
+    }
+    Ok(Cycles {
+        load_ratio,
+        bonds: written.bonds.as_ref().map_or(1, |n| n.value),
+        most: match &written.most {
+            Some(number) => context.positive(number, Dim::NUMBER, "the number of cycles")?,
+            None => f64::INFINITY,
+        },
     })
 }
 

@@ -6,8 +6,9 @@ use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::family::stencil::Stencil;
+use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::material::{
-    CloudFamily, LatticeFamily, MaterialInteraction, MaterialParts,
+    CloudFamily, LatticeFamily, MaterialInteraction, MaterialParts, PLASTIC_STRAIN,
 };
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
@@ -27,6 +28,7 @@ pub(crate) struct Place<'a, const D: usize> {
     pub horizon: f64,
     pub weight: BondWeight,
     pub toughness: Vec<Toughness>,
+    pub criteria: Criteria,
     pub repulsion: Option<Repulsion>,
     pub simd: Simd,
     /// Everything is of this material.
@@ -237,10 +239,12 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         horizon,
         weight,
         toughness,
+        criteria,
         repulsion,
         simd,
         ..
     } = place;
+    able(&law, &criteria)?;
     match (&body.layout, stencil) {
         (Layout::Grid(grid), Some(stencil)) => {
             let of = |r: f64| [weight.influence(r, 1.0 / r), weight.volume_fraction(r)];
@@ -251,6 +255,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 kind: "stencil",
                 near_horizon: 0,
                 toughness,
+                criteria,
                 repulsion,
                 simd,
             })))
@@ -266,9 +271,36 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 kind: "list",
                 near_horizon,
                 toughness,
+                criteria,
                 repulsion,
                 simd,
             })))
         }
+    }
+}
+
+/// Has the law what its bonds shall break by?
+fn able<const D: usize, M: Material<D>>(law: &M, criteria: &Criteria) -> Result<(), BuildError> {
+    let refused = |message: &str| Err(BuildError::unsupported("materials[0].fracture", message));
+    let measured = match &criteria.measure {
+        Measure::Stretch | Measure::Work(_) => return Ok(()),
+        Measure::VonMises { .. } => true,
+        Measure::PlasticStrain(_) => {
+            let past = law.columns().past;
+            past.iter().any(|c| c.name == PLASTIC_STRAIN)
+        }
+    };
+    if !measured {
+        return Err(BuildError::unsupported(
+            "materials[0].fracture",
+            "this law has no plastic strain to break by",
+        )
+        .help("take elastic_plastic or hypoelastic_plastic, or another criterion"));
+    }
+    match law.failure() {
+        Some(_) => {
+            refused("the law has a damage of its own, by which its bonds break: give one of both")
+        }
+        None => Ok(()),
     }
 }

@@ -1,0 +1,242 @@
+//! What materials break by beside their critical stretch.
+
+use super::Shelf;
+use crate::error::BuildError;
+use crate::interaction::criterion::{Criteria, Measure};
+use crate::law::descriptor::Memory;
+use crate::law::fracture_energy;
+use crate::law::material::{Thermoelastic, ThermoelasticSolid};
+use crate::law::micromodulus::Moments;
+use crate::law::solid::linear::{Linear, Lps, of_stiffness};
+use crate::spec::{
+    BodySpec, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, NamedLaw, Plane, Spec,
+};
+
+fn unsupported(n: usize, key: &str, message: impl Into<String>) -> BuildError {
+    BuildError::unsupported(format!("materials[{n}].{key}"), message)
+}
+
+/// Where bonds break by more than the stretch of now, `pmb` is `thermoelastic` and `lps` `thermoelastic_solid`: their own kernels know no more. Were
+/// laws changed?
+///
+/// # Errors
+/// Laws whose bonds cannot remember.
+pub(in crate::run) fn remembering(spec: &mut Spec) -> Result<bool, BuildError> {
+    let remembers = |m: &MaterialSpec| m.fracture.is_some_and(|f| f.remembers());
+    let Some(first) = spec.materials.iter().position(remembers) else {
+        return Ok(false);
+    };
+    if !spec.pairs.is_empty() {
+        return Err(unsupported(
+            first,
+            "fracture",
+            "pairs of materials with constants of their own break by critical stretches alone",
+        ));
+    }
+    for (n, m) in spec.materials.iter_mut().enumerate() {
+        let (name, parameters) = match &m.law {
+            LawSpec::Pmb(stiffness) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
+            law @ LawSpec::Lps(_) => {
+                let parameters = Lps::parameters(law).unwrap_or_default();
+                (ThermoelasticSolid::NAME, parameters)
+            }
+            LawSpec::Named(_) => continue,
+            LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. } => {
+                return Err(unsupported(
+                    n,
+                    "law",
+                    "bonds of this law remember nothing: they break by their critical stretch alone",
+                )
+                .help("take lps with the same moduli, or give critical_stretch without rate and fatigue"));
+            }
+            LawSpec::Springs(_) | LawSpec::Atoms(_) | LawSpec::Micromoduli(_) => {
+                return Err(unsupported(n, "law", "bonds of this law never break")
+                    .help("remove fracture, or take pmb or lps"));
+            }
+        };
+        m.law = LawSpec::Named(NamedLaw {
+            name: name.into(),
+            parameters,
+            isotropic: true,
+            linear: None,
+        });
+    }
+    Ok(true)
+}
+
+/// Of all materials of a body.
+pub(super) fn criteria<const D: usize>(
+    spec: &Spec,
+    moments: Moments,
+    shelf: &Shelf,
+) -> Result<Criteria, BuildError> {
+    let all = || spec.materials.iter().enumerate();
+    let breaking = || all().filter_map(|(n, m)| Some((n, m.fracture?)));
+    for (n, fracture) in breaking().filter(|(_, f)| f.remembers()) {
+        if fracture.alpha != 0.0 {
+            return Err(unsupported(
+                n,
+                "fracture",
+                "strengthening under compression (alpha) is of critical stretches alone",
+            )
+            .help("leave alpha out"));
+        }
+        if let LawSpec::Named(law) = &spec.materials[n].law
+            && shelf.ends(&law.name)
+        {
+            let message = format!(
+                "the law {} has its critical stretch among its constants: its bonds break by nothing else",
+                law.name
+            );
+            return Err(unsupported(n, "fracture", message));
+        }
+    }
+    let kind = |f: &FractureSpec| match f.criterion {
+        Criterion::Energy(_) => std::mem::discriminant(&Criterion::Stretch(0.0)),
+        other => std::mem::discriminant(&other),
+    };
+    let Some((_, first)) = breaking().next() else {
+        return Ok(Criteria::default());
+    };
+    if let Some((n, _)) = breaking().find(|(_, f)| kind(f) != kind(&first)) {
+        return Err(unsupported(
+            n,
+            "fracture",
+            "materials of one body break by different measures, and bonds across by neither",
+        )
+        .help("give all materials of a body a critical stretch (or energy), or all the same other criterion"));
+    }
+    let limits = |of: &dyn Fn(Criterion) -> Option<f64>| -> Vec<f64> {
+        let limit = |m: &MaterialSpec| m.fracture.and_then(|f| of(f.criterion));
+        spec.materials
+            .iter()
+            .map(|m| limit(m).unwrap_or(f64::INFINITY))
+            .collect()
+    };
+    let measure = match first.criterion {
+        Criterion::Stretch(_) | Criterion::Energy(_) => Measure::Stretch,
+        Criterion::BondEnergy(_) => {
+            let per = fracture_energy::of_unit_work(D, moments);
+            Measure::Work(limits(&|c| match c {
+                Criterion::BondEnergy(energy) => Some(energy / per),
+                _ => None,
+            }))
+        }
+        Criterion::PlasticStrain(_) => Measure::PlasticStrain(limits(&|c| match c {
+            Criterion::PlasticStrain(strain) => Some(strain),
+            _ => None,
+        })),
+        Criterion::VonMises(_) => Measure::VonMises {
+            limit: limits(&|c| match c {
+                Criterion::VonMises(stress) => Some(stress),
+                _ => None,
+            }),
+            across: all()
+                .map(|(n, m)| across::<D>(spec, n, m, shelf))
+                .collect::<Result<_, _>>()?,
+        },
+    };
+    let rates = || all().map(|(_, m)| m.fracture.and_then(|f| f.rate));
+    let fatigues = || all().map(|(_, m)| m.fracture.and_then(|f| f.fatigue));
+    Ok(Criteria {
+        measure,
+        rate: match rates().any(|r| r.is_some()) {
+            true => rates().collect(),
+            false => vec![],
+        },
+        fatigue: match fatigues().any(|f| f.is_some()) {
+            true => fatigues().collect(),
+            false => vec![],
+        },
+    })
+}
+
+/// σ_zz over σ_xx + σ_yy of a material in the plane.
+fn across<const D: usize>(
+    spec: &Spec,
+    n: usize,
+    m: &MaterialSpec,
+    shelf: &Shelf,
+) -> Result<f64, BuildError> {
+    if D != 2 || spec.plane == Plane::Stress {
+        return Ok(0.0);
+    }
+    let elastic = match &m.law {
+        LawSpec::Named(law) => {
+            let of = shelf.descriptor(&law.name);
+            law.isotropic && of.is_some_and(|d| d.memory == Memory::Nothing)
+        }
+        _ => true,
+    };
+    match m.law.linear() {
+        LawSpec::Lps(moduli) if elastic => Ok(moduli.poisson),
+        LawSpec::Pmb(_) if elastic => Ok(0.25),
+        _ => Err(unsupported(
+            n,
+            "fracture",
+            "the stress across plane strain is known of isotropic elastic laws alone",
+        )
+        .help("give plastic_strain, or take three dimensions")),
+    }
+}
+
+/// What criteria and the way in which a body moves have to do with each other.
+///
+/// # Errors
+/// Rates without time, cycles without bonds that wear, and the other way round.
+pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
+    let find = |has: &dyn Fn(&FractureSpec) -> bool| {
+        let mut all = spec.materials.iter();
+        all.position(|m| m.fracture.as_ref().is_some_and(has))
+    };
+    let statics = spec.schedule.statics();
+    if let (Some(n), Some(_)) = (find(&|f| f.rate.is_some()), statics) {
+        return Err(unsupported(
+            n,
+            "fracture.rate",
+            "in equilibrium nothing is stretched at any rate",
+        )
+        .help("write [run], or leave rate out"));
+    }
+    let cycles = statics.and_then(|s| s.cycles);
+    match (find(&|f| f.fatigue.is_some()), cycles) {
+        (None, None) => return Ok(()),
+        (Some(n), None) => {
+            return Err(unsupported(
+                n,
+                "fracture.fatigue",
+                "bonds wear in cycles of load, and this run has none",
+            )
+            .help("write [statics] with method = \"newton\", increments and cycles = { load_ratio = 0.1 }"));
+        }
+        (None, Some(_)) => {
+            return Err(BuildError::unsupported(
+                "statics.cycles",
+                "no material wears in cycles of load",
+            )
+            .help("give a material fracture.fatigue"));
+        }
+        (Some(_), Some(_)) => {}
+    }
+    if statics.is_some_and(|s| s.method == Method::Linear) {
+        return Err(BuildError::unsupported(
+            "statics.method",
+            "cycles of load wear bonds out, and linear statics is of the whole body",
+        )
+        .help("write method = \"newton\""));
+    }
+    if matches!(spec.body, BodySpec::Several(_)) || !spec.indenters.is_empty() {
+        return Err(BuildError::unsupported(
+            "statics.cycles",
+            "cycles of load are of a single body without indenters",
+        ));
+    }
+    if let Some(n) = (spec.conditions.iter()).position(|c| c.kind.depends_on_time()) {
+        return Err(BuildError::unsupported(
+            format!("conditions[{n}]"),
+            "this condition depends on t: in cycles of load conditions are the greatest of each cycle, and stay as they are",
+        )
+        .help("leave t out of it; increments count cycles, whose number is in history.csv"));
+    }
+    Ok(())
+}
