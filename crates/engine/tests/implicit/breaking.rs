@@ -12,10 +12,7 @@ const CONTACT: ContactSpec = ContactSpec {
 /// A notched plate, pulled apart.
 fn notched(law: LawSpec) -> Spec {
     let mut spec = block([24.0, 16.0, 0.0], 2, law, 2);
-    spec.materials[0].fracture = Some(FractureSpec {
-        criterion: Criterion::Stretch(0.02),
-        alpha: 0.0,
-    });
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.02)));
     spec.precracks.push(PrecrackSpec {
         shape: CrackShape::Segment {
             from: [12.5, -1.0, 0.0],

@@ -410,10 +410,7 @@ fn damage(moved: f64, stored: f64) -> Vec<Off> {
     let at = [[-1.5, 0.0, 0.0], [0.5, 0.0, 0.0]];
     let [soft, _] = lps();
     let mut spec = cells(&at, VOLUME, 2.7e-9, HORIZON, soft);
-    spec.materials[0].fracture = Some(FractureSpec {
-        criterion: Criterion::Stretch(0.1),
-        alpha: 0.0,
-    });
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
     let mut sim = model(&spec);
     sim.set_displacements(&[[moved, 0.0, 0.0], [0.0; 3]]);
     sim.start(true);

@@ -8,11 +8,12 @@ use crate::law::fracture_energy;
 use crate::law::material::{Thermoelastic, ThermoelasticSolid};
 use crate::law::micromodulus::Moments;
 use crate::law::solid::linear::{Linear, Lps, of_stiffness};
+use crate::quantity::Message;
 use crate::spec::{
     BodySpec, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, NamedLaw, Plane, Spec,
 };
 
-fn unsupported(n: usize, key: &str, message: impl Into<String>) -> BuildError {
+fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
     BuildError::unsupported(format!("materials[{n}].{key}"), message)
 }
 

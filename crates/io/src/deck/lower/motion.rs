@@ -9,7 +9,6 @@ use crate::deck::document::{
 };
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number};
-use peridyne::expression::Expression;
 use peridyne::spec::{
     BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, InitialSpec, Members,
     PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec, TransferCondition,
