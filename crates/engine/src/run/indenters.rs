@@ -9,6 +9,25 @@ use crate::spec::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, Spec};
 
 /// Refuses rigid bodies that are none in this dimension, or of numbers without meaning.
 pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
+    for (n, indenter) in { spec.preload.iter() }
+        .flat_map(|p| p.indenters.iter())
+        .enumerate()
+    {
+        let path = format!("preload.indenters[{n}]");
+        let moves = matches!(indenter.motion, IndenterMotion::Free(_));
+        if moves || indenter.friction.is_some() {
+            return Err(BuildError::unsupported(
+                path,
+                "in statics rigid bodies go where they are told, and slide without friction",
+            )
+            .help("leave mass, density and friction out, or write stage = \"motion\""));
+        }
+        one::<D>(indenter, spec, &path)?;
+        recurs(indenter, body, &path)?;
+        if let Some(cohesion) = &indenter.cohesion {
+            sticks(cohesion, body, &path)?;
+        }
+    }
     let mut names: Vec<&str> = vec![];
     for (n, indenter) in spec.indenters.iter().enumerate() {
         let path = format!("indenters[{n}]");

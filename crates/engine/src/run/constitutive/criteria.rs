@@ -10,7 +10,8 @@ use crate::law::micromodulus::Moments;
 use crate::law::solid::linear::{Linear, Lps, of_stiffness};
 use crate::quantity::Message;
 use crate::spec::{
-    BodySpec, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, NamedLaw, Plane, Spec,
+    BodySpec, Control, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, NamedLaw, Plane,
+    Spec, Stepper,
 };
 
 fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
@@ -191,6 +192,42 @@ pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
         all.position(|m| m.fracture.as_ref().is_some_and(has))
     };
     let statics = spec.schedule.statics();
+    if let Some(n) = find(&FractureSpec::remembers) {
+        let else_where = if spec.preload.is_some() {
+            Some(("statics before motion", "leave [statics] out"))
+        } else if matches!(spec.schedule.stepper, Stepper::Newmark(_)) {
+            Some(("implicit steps", "take integrator = \"verlet\""))
+        } else if statics.is_some_and(|s| s.control != Control::Load) {
+            Some(("bonds that break in turn", "leave control out"))
+        } else if spec.own_horizon.is_some() {
+            Some(("horizons of points", "leave own_horizon out"))
+        } else {
+            None
+        };
+        if let Some((what, instead)) = else_where {
+            return Err(unsupported(
+                n,
+                "fracture",
+                format!(
+                    "{what} know no bonds that break by more than the stretch that they have now"
+                ),
+            )
+            .help(format!(
+                "give critical_stretch or energy without criterion, rate and fatigue; or {instead}"
+            )));
+        }
+    }
+    if spec
+        .preload
+        .as_ref()
+        .is_some_and(|p| p.statics.cycles.is_some())
+    {
+        return Err(BuildError::unsupported(
+            "preload.statics.cycles",
+            "cycles of load are statics alone, no motion follows",
+        )
+        .help("leave [run] or cycles out"));
+    }
     if let (Some(n), Some(_)) = (find(&|f| f.rate.is_some()), statics) {
         return Err(unsupported(
             n,

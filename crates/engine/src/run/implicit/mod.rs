@@ -26,7 +26,7 @@ use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::quantity::rounded;
-use crate::spec::{Newmark, Release, Solver, Spec};
+use crate::spec::{IndenterSpec, Newmark, Release, Solver, Spec};
 use crate::statics::{self, Support};
 
 /// Can bonds break?
@@ -101,6 +101,14 @@ impl<const D: usize> Model<D> {
                 "an indenter with a mass moves by explicit steps",
             )
             .help("leave mass out and write center as a function of t, or take integrator = \"verlet\""));
+        }
+        let sticks = |i: &IndenterSpec| i.friction.is_some() || i.cohesion.is_some();
+        if let Some(n) = spec.indenters.iter().position(sticks) {
+            return Err(BuildError::unsupported(
+                format!("indenters[{n}]"),
+                "friction and cohesion of an indenter have no tangent, which an implicit step needs",
+            )
+            .help("leave them out, or take integrator = \"verlet\""));
         }
         if let Err(SolveError::NoTangent { what }) = self.all_have_tangents() {
             return Err(BuildError::unsupported(
