@@ -344,8 +344,8 @@ fn single(name: &str, count: usize) -> Result<Expression, Misfit> {
         (true, _) => format!("{name}(x, y, z)"),
     };
     Expression::parse(&text, &[]).map_err(|e| Misfit {
-        message: e.message.into(),
-        help: e.help.map(Into::into),
+        message: e.message,
+        help: e.help,
     })
 }
 

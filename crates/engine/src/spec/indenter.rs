@@ -49,6 +49,7 @@ impl CohesionSpec {
     }
 }
 
+#[expect(clippy::large_enum_variant, reason = "a spec has few of them")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum IndenterMotion {
     /// Centre as a function of t (x, y, z in the expressions are 0).

@@ -55,10 +55,7 @@ pub fn torn_in_two() -> Vec<Off> {
     at.iter_mut().flatten().for_each(|x| *x += 0.3);
     let solid = law(&[("young", 200e9), ("poisson", 0.3)]);
     let mut spec = cells(&at, 0.008, 7000.0, 0.28285, solid);
-    spec.materials[0].fracture = Some(FractureSpec {
-        criterion: Criterion::Stretch(0.1),
-        alpha: 0.0,
-    });
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
     set(&mut spec, "still", &at, |x| x[0] < 0.3);
     set(&mut spec, "gone", &at, |x| x[0] > 0.3);
     hold(&mut spec, "still", ["0", "0", "0"]);

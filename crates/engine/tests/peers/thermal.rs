@@ -79,10 +79,7 @@ pub fn bonds_that_fail() -> Vec<Off> {
     ];
     let solid = LawSpec::Lps(Moduli::from_bulk_shear(130e9, 60e9));
     let mut spec = cells(&at, 1.05, 7800.0, 1.02, solid);
-    spec.materials[0].fracture = Some(FractureSpec {
-        criterion: Criterion::Stretch(0.05),
-        alpha: 0.0,
-    });
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.05)));
     set(&mut spec, "held", &at, |x| x[0] < 1.0 || x[1] < 1.0);
     set(&mut spec, "gliding", &at, |x| x[0] > 1.0 && x[1] > 1.0);
     hold(&mut spec, "held", ["0", "0", "0"]);

@@ -3,10 +3,7 @@
 use super::*;
 
 fn breaking(spec: &mut Spec, critical: f64, equilibria: u64) {
-    spec.materials[0].fracture = Some(FractureSpec {
-        criterion: Criterion::Stretch(critical),
-        alpha: 0.0,
-    });
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(critical)));
     spec.schedule.steps = equilibria;
     spec.schedule.stepper = Stepper::Statics(Statics {
         control: Control::Breaking,
