@@ -72,7 +72,10 @@ impl Factors {
             .map(|f| Factors::Symmetric(Box::new(f)))
             .map_err(|e| match e {
                 LltError::Numeric(Pivot::NonPositivePivot { index }) => {
-                    FactorError::NotPositive { row: index }
+                    // of faer's own order, and counted from 1
+                    FactorError::NotPositive {
+                        row: index.clamp(1, n) - 1,
+                    }
                 }
                 LltError::Generic(_) => FactorError::TooLarge,
             })
@@ -156,7 +159,7 @@ mod tests {
             }
         }
         let refused = Factors::symmetric(2, &[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)], |_| true);
-        assert!(matches!(refused, Err(FactorError::NotPositive { .. })));
+        assert!(matches!(refused, Err(FactorError::NotPositive { row: 1 })));
     }
 
     /// Second differences in a square of `n` by `n`, so stiff from place to place that every sum rounds; unsymmetric with `skew`.

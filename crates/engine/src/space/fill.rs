@@ -287,7 +287,7 @@ mod tests {
         assert!(
             error(block([0.0; 3], [1e6; 3]))
                 .message
-                .contains("spans 1.000e21 lattice cells")
+                .contains("spans 1e21 lattice cells")
         );
         assert!(error(block([0.0; 3], [1e12; 3])).message.contains("5e8"));
         let flat = fill(

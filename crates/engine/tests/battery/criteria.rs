@@ -141,11 +141,12 @@ fn the_work_on_bonds_is_what_they_store_and_dissipate() {
             assert!(held > 0.0);
             0.5 * volume * volume * work / held - 1.0
         };
-        let [coarse, fine] = [0.5, 0.25].map(miss);
+        // either of the coarse ones may be small by chance
+        let [coarse, fine, finest] = [0.5, 0.25, 0.125].map(miss);
         assert!(coarse.abs() < 0.03, "{}: {coarse:e}", case.name());
         assert!(
-            fine.abs() < 0.6 * coarse.abs() + 1e-6,
-            "{}: {coarse:e} {fine:e}",
+            finest.abs() < 0.35 * coarse.abs().max(fine.abs()) + 1e-6,
+            "{}: {coarse:e} {fine:e} {finest:e}",
             case.name()
         );
         tried += 1;
@@ -515,7 +516,8 @@ fn a_bar_lasts_as_its_line_says() {
         };
         assert!(whole.iter().all(|w| *w == 0.0), "{strain}");
     }
-    let endures = bar(limit / (1.0 - ratio), 3);
+    // a little below the limit, which is met to round-off only
+    let endures = bar(0.999 * limit / (1.0 - ratio), 3);
     assert_eq!((endures.cycles(), endures.broken()), (Some(0.0), 0));
 }
 

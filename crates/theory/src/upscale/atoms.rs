@@ -8,7 +8,7 @@ use crate::crystal::{Atom, Crystal, CrystalError, Reference, kinds};
 use peridyne::law::fan;
 use peridyne::law::potential::mixture::Given;
 use peridyne::run::Shelf;
-use peridyne::spec::{Horizon, LawSpec, Spec};
+use peridyne::spec::{FamilyChoice, Horizon, LawSpec, Spec};
 
 /// What is at a horizon is within it.
 const INCLUSIVE: f64 = 1.0 + 1e-9;
@@ -132,10 +132,9 @@ pub(super) fn grow(fine: &Spec, coarse: &mut Spec, n: f64) -> Result<(), Upscale
         let scaled = acting.potential.scaled(n, energy);
         acting.potential = scaled.map_err(CrystalError::Potential)?;
     }
-    coarse.family = fine.family;
-    if let Horizon::Length(d) = &mut coarse.horizon
-        && !current(fine)
-    {
+    if current(fine) {
+        coarse.family = FamilyChoice::Neighbours;
+    } else if let Horizon::Length(d) = &mut coarse.horizon {
         *d *= n;
     }
     let alike = match fine.dimension {

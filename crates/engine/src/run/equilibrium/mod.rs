@@ -223,6 +223,10 @@ impl<const D: usize> Model<D> {
 
     /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
     pub(super) fn learn_strength(&mut self) {
+        // asking is a step of no length, which laws remember
+        if self.criticals().is_empty() {
+            return;
+        }
         let rest = match self.is_linear() {
             true => self.body.at_rest(),
             false => self.u.clone(),

@@ -103,7 +103,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Critical values of `e` by slot; none where bonds do not break.
-    fn criticals(&self) -> Vec<f64> {
+    pub(super) fn criticals(&self) -> Vec<f64> {
         let mut out = vec![];
         self.interaction
             .read_column(&self.body, &self.u, history::ELONGATION, &mut out);
