@@ -339,6 +339,12 @@ fn a_chain_of_two_kinds_on_fixed_neighbours() {
             assert!((x - y).abs() < 1e-8 * y.abs().max(1.0), "{wave}: {x} {y}");
         }
     }
+    let stretches = peridyne_theory::gradient::nonlinear::of_spec(&spec, &[1.0], 2);
+    assert_eq!(
+        stretches.unwrap().len(),
+        0,
+        "the equation is that of one kind"
+    );
     // kinds by an expression do not lie there as they lie here
     let refused = upscale::upscale(&spec, 2).unwrap_err();
     assert_eq!(refused, upscale::UpscaleError::OtherArrangement);

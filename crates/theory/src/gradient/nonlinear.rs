@@ -290,7 +290,8 @@ impl<P: Potential> Chain<f64> for PotentialChain<P> {
 }
 
 /// The equation of a chain of atoms at those of the stretches at which its law has a value, per volume of the
-/// three-dimensional body. Springs and solids answer linearly, [`LinearChain`] says all about them.
+/// three-dimensional body. Springs and solids answer linearly, [`LinearChain`] says all about them. None of a chain of several kinds, or with
+/// several potentials: the equation is that of one.
 ///
 /// # Errors
 /// Not a chain of atoms on a lattice.
@@ -319,6 +320,9 @@ pub fn of_spec(
             };
             Ok(self.stretches.iter().filter_map(at).collect())
         }
+    }
+    if upscale::has_basis_or_fans(spec) {
+        return Ok(vec![]);
     }
     let (kind, spacing) = upscale::lattice(spec)?;
     match (spec.potential(), kind) {
