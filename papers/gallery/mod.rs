@@ -16,7 +16,6 @@ mod compact_tension;
 mod creep;
 #[path = "double-cantilever/mod.rs"]
 mod double_cantilever;
-mod fatigue;
 #[path = "fibre-composite/mod.rs"]
 mod fibre_composite;
 #[path = "fragmenting-cylinder/mod.rs"]
@@ -30,8 +29,6 @@ mod spall;
 mod sphere_on_plate;
 #[path = "taylor-bar/mod.rs"]
 mod taylor_bar;
-#[path = "thermal-quench/mod.rs"]
-mod thermal_quench;
 #[path = "thin-film/mod.rs"]
 mod thin_film;
 #[path = "three-point-bend/mod.rs"]
@@ -66,7 +63,5 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &creep::Creep,
         &touching_bars::TouchingBars,
         &bimetal::Bimetal,
-        &fatigue::Fatigue,
-        &thermal_quench::ThermalQuench,
     ]
 }

@@ -331,10 +331,13 @@ pub fn build_in<const D: usize>(
             made.breaks = implicit::breaks(spec);
             let reach = model.info.horizon / model.info.spacing;
             if made.breaks && dt > reach * limits.bond {
-                model.info.warnings.push(format!(
-                    "bonds break at the end of a step: a crack grows by no more than a horizon in each, and a wave goes further than that in {dt:.3e}; where cracks run, steps of {:.3e} follow them",
-                    reach * limits.bond
-                ));
+                model.info.warnings.push(message![
+                    "bonds break at the end of a step: a crack grows by no more than a horizon in each, and a wave goes further than that in ",
+                    Dimension::TIME.of(dt),
+                    "; where cracks run, steps of ",
+                    Dimension::TIME.of(reach * limits.bond),
+                    " follow them",
+                ]);
             }
             model.implicit = Some(made);
         }

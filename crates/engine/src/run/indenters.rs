@@ -4,8 +4,14 @@ use super::contact::check_friction;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::law::material::tensor;
+use crate::message;
+use crate::quantity::{Dimension, Quantity};
 use crate::space::rigid::RigidShape;
 use crate::spec::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, Spec};
+
+fn length(x: f64) -> Quantity {
+    Dimension::LENGTH.of(x)
+}
 
 /// Refuses rigid bodies that are none in this dimension, or of numbers without meaning.
 pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), BuildError> {
@@ -141,10 +147,13 @@ fn recurs<const D: usize>(
         None => Ok(()),
         Some(period) => Err(BuildError::conflict(
             format!("{path}.shape"),
-            format!(
-                "the rigid {} reaches {reach:e} from its centre, more than half of the period {period:e}: it would meet its own image",
-                indenter.shape.name()
-            ),
+            message![
+                format!("the rigid {} reaches ", indenter.shape.name()),
+                length(reach),
+                " from its centre, more than half of the period ",
+                length(*period),
+                ": it would meet its own image",
+            ],
         )),
     }
 }
@@ -169,14 +178,19 @@ fn sticks<const D: usize>(
     if range > least {
         return Err(BuildError::conflict(
             path,
-            format!(
-                "cohesion reaches 16 energy/(9 strength) = {range:e}, more than the spacing {least:e}: it would pull the points below the surface, too"
-            ),
+            message![
+                "cohesion reaches 16 energy/(9 strength), ",
+                length(range),
+                ", more than the spacing ",
+                length(least),
+                ": it would pull the points below the surface, too",
+            ],
         )
-        .help(format!(
-            "write a strength of at least {:e}, or a larger spacing",
-            16.0 / 9.0 * cohesion.energy / least
-        )));
+        .help(message![
+            "write a strength of at least ",
+            Dimension::PRESSURE.of(16.0 / 9.0 * cohesion.energy / least),
+            ", or a larger spacing",
+        ]));
     }
     Ok(())
 }

@@ -126,7 +126,9 @@ impl<const D: usize> Model<D> {
         let [none, half, whole] = [0.0, 0.5, 1.0].map(&mut at);
         (0..2).all(|of| {
             (0..D).all(|a| {
-                let most = whole[of][a].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+                // absent sites are far away
+                let all = self.body.slots.iter().map(|s| whole[of][a][*s as usize]);
+                let most = all.fold(0.0f64, |m, x| m.max(x.abs()));
                 self.body.slots.iter().all(|s| {
                     let [x, y, z] = [&none, &half, &whole].map(|w| w[of][a][*s as usize]);
                     x.abs() <= ROUND_OFF * most && (y - 0.5 * z).abs() <= ROUND_OFF * most

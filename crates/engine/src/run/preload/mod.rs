@@ -12,6 +12,8 @@ use crate::condition::constraint::Constraint;
 use crate::condition::indenter::Indenter;
 use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
+use crate::message;
+use crate::quantity::{Dimension, place};
 use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Stepper};
 use crate::statics::Solved;
 
@@ -163,10 +165,14 @@ impl<const D: usize> Model<D> {
         let axis = ["x", "y", "z"][a];
         Err(BuildError::conflict(
             "conditions",
-            format!(
-                "motion begins with a displacement of {x:e} along {axis} at the point {:?}, the statics before it ends with {from:e}",
-                &self.body.position(slot)[..D]
-            ),
+            message![
+                "motion begins with a displacement of ",
+                Dimension::LENGTH.of(x),
+                format!(" along {axis} at the point "),
+                place(&self.body.position(slot)[..D]),
+                ", the statics before it ends with ",
+                Dimension::LENGTH.of(from),
+            ],
         )
         .help("t of the motion begins at 0 again: write the last displacement of the statics as the first of the motion, or a velocity"))
     }
