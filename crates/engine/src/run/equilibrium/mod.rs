@@ -344,6 +344,7 @@ impl<const D: usize> Model<D> {
     fn settle_increment(&mut self, state: &mut StaticState<D>) -> Result<Solved, SolveError> {
         let support = self.support();
         let mut total = Solved::default();
+        let mut torn: Option<[Field<D>; 2]> = None;
         for _ in 0..ROUNDS {
             let t = self.time();
             for c in &self.constraints {
@@ -367,12 +368,30 @@ impl<const D: usize> Model<D> {
             };
             total.iterations += solved.iterations;
             total.residual = solved.residual;
+            if let Some([u, f]) = torn.take() {
+                self.lose(&support, &u, &f);
+            }
             if self.broken == before {
                 return Ok(total);
             }
+            torn = Some([self.u.clone(), self.f.clone()]);
             state.forget();
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
+    }
+
+    /// What the way from a state whose bonds have just let go to its equilibrium sets free, by the trapezoidal rule: in motion it would fly,
+    /// here it is lost. `f` are the forces of that state.
+    fn lose(&mut self, support: &Support<D>, u: &Field<D>, f: &Field<D>) {
+        let mut lost = 0.0;
+        for (n, &s) in self.body.slots.iter().enumerate() {
+            let i = s as usize;
+            for a in (0..D).filter(|a| support.free[n][*a]) {
+                let missing = f[a][i] + self.f[a][i];
+                lost += 0.5 * self.body.volume.at(i) * missing * (self.u[a][i] - u[a][i]);
+            }
+        }
+        self.past_work[0] += lost;
     }
 
     /// Work of loads and reactions over the increment, by the trapezoidal rule.
