@@ -83,36 +83,6 @@ fn breaks(h: &str) -> Result<[f64; 2], Failure> {
     Err(Failure::new("nothing breaks"))
 }
 
-/// Opening and load of a crack that grows as bonds break by the work on them, from 40 mm on.
-fn falls() -> Result<[Vec<f64>; 2], Failure> {
-    let set = [
-        ("constants.h", "1 mm"),
-        ("constants.a", "40 mm"),
-        ("constants.L", "110 mm"),
-        ("constants.opening", "2 mm"),
-        ("material.fracture.energy", "50 J/m^2"),
-        ("material.fracture.criterion", "bond_energy"),
-        ("statics.method", "newton"),
-        ("statics.tolerance", "1e-6"),
-        ("statics.increments", "24"),
-    ];
-    let mut bench = Bench::new(DECK, &set)?;
-    let [mut opening, mut load] = [vec![0.0], vec![0.0]];
-    let steps = bench.steps();
-    for n in 1..=steps {
-        bench.step()?;
-        opening.push(2e-3 * n as f64 / steps as f64);
-        load.push(bench.probe("load_y")?);
-    }
-    Ok([opening, load])
-}
-
-/// Load of beams whose crack grows at G, for an opening: `√(8/EBH³) (G E B² H³/12)^¾ opening^(−½)`, whatever the root.
-fn falling(opening: f64) -> f64 {
-    let stiff = E * B * H.powi(3);
-    (8.0 / stiff).sqrt() * (G * B * stiff / 12.0).powf(0.75) / opening.sqrt()
-}
-
 fn run(context: &Context) -> Result<Findings, Failure> {
     let mut found = Findings::new();
     let spacings: &[&str] = if context.small {
@@ -171,29 +141,6 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let [before, now] = breaks("1 mm")?;
         found.measured("J over G before the first bonds break", before, "");
         found.number("first", now);
-        context.say("a crack that grows");
-        let [opening, force] = falls()?;
-        let grows = opening.iter().zip(&force).filter(|(d, _)| **d > 1.2e-3);
-        let over: Vec<f64> = grows.map(|(d, f)| f / falling(*d)).collect();
-        let mean = over.iter().sum::<f64>() / over.len() as f64;
-        found.number("falls", mean);
-        found.measured(
-            "load over that of the beams as it falls",
-            format!("{over:.3?}"),
-            "",
-        );
-        let milli: Vec<f64> = opening.iter().map(|d| 1e3 * d).collect();
-        let beams: Vec<f64> = opening[1..].iter().map(|d| falling(*d)).collect();
-        let ends = [0.0, 0.9];
-        let elastic = ends.map(|d| 1e-3 * d * stiffness(0.04));
-        let plot = Plot::new("Load over opening, bonds that break by their work")
-            .x("opening", "mm")
-            .y("load", "N")
-            .y_range(0.0, 1.2 * force.iter().fold(0.0, |a: f64, f| a.max(*f)))
-            .line("load", &milli, &force)
-            .dashed("beams, a = 40 mm", &ends, &elastic)
-            .dashed("beams at G", &milli[1..], &beams);
-        found.picture(plot.save(&context.out, "falls")?);
     }
     Ok(found)
 }

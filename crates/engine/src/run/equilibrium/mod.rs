@@ -29,6 +29,15 @@ use crate::statics::{self, Solved, Support};
 /// Rounds of breaking and new equilibrium within one increment.
 const ROUNDS: usize = 10_000;
 
+/// What an increment does.
+#[derive(Debug, Clone, Copy, Default)]
+struct Way {
+    /// Of loads and reactions (energy).
+    work: f64,
+    /// What bonds that let go set free beside their own energy.
+    lost: f64,
+}
+
 impl<const D: usize> Model<D> {
     /// Which components the conditions leave free.
     pub(super) fn support(&self) -> Support<D> {
@@ -266,7 +275,7 @@ impl<const D: usize> Model<D> {
         if Self::breaks_in_turn(state.options) {
             return self.break_next(state, u, f);
         }
-        let result = self.settle_increment(&mut state);
+        let result = self.settle_increment(&mut state, [&u, &f, &external]);
         if let Err(error) = result {
             self.step -= 1;
             self.retreat_transfers();
@@ -277,12 +286,15 @@ impl<const D: usize> Model<D> {
             self.statics = Some(state);
             return Err(self.unsolved(error));
         }
-        state.solved = result.unwrap_or_default();
+        let (solved, way) = result.unwrap_or_default();
+        state.solved = solved;
+        self.past_work[0] += way.lost;
+        self.past_work[1] += way.work;
         self.statics = Some(state);
         for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
             indenter.account(before, &self.body, [&u, &self.u]);
         }
-        self.account(&u, &f, &external);
+
         self.pay(0.5, 0.0);
         Ok(())
     }
@@ -340,12 +352,18 @@ impl<const D: usize> Model<D> {
         self.cycles += passed.unwrap_or(0.0);
     }
 
-    /// Equilibrium, and again after bonds broke, until none breaks.
-    fn settle_increment(&mut self, state: &mut StaticState<D>) -> Result<Solved, SolveError> {
+    /// Equilibrium, and again after bonds broke, until none breaks; what it did is counted from the displacements, forces and loads before.
+    fn settle_increment(
+        &mut self,
+        state: &mut StaticState<D>,
+        [u, f, external]: [&Field<D>; 3],
+    ) -> Result<(Solved, Way), SolveError> {
         let support = self.support();
+        let breaks = !self.criticals().is_empty();
         let mut total = Solved::default();
-        let mut torn: Option<[Field<D>; 2]> = None;
-        for _ in 0..ROUNDS {
+        let mut way = Way::default();
+        let mut from = [u.clone(), f.clone(), external.clone()];
+        for round in 0..ROUNDS {
             let t = self.time();
             for c in &self.constraints {
                 c.place(&mut self.u, t);
@@ -355,63 +373,68 @@ impl<const D: usize> Model<D> {
             let before = self.broken;
             let solved = match state.options.method {
                 Method::Linear => self.settle_linear(state, &support)?,
-                Method::Newton => {
-                    let solved = self.solve_newton(state, &support)?;
-                    self.forces(true, 0.0);
-                    solved
-                }
-                Method::Relaxation => {
-                    let solved = self.relax(state, &support)?;
-                    self.forces(true, 0.0);
-                    solved
-                }
+                Method::Newton => self.solve_newton(state, &support)?,
+                Method::Relaxation => self.relax(state, &support)?,
             };
             total.iterations += solved.iterations;
             total.residual = solved.residual;
-            if let Some([u, f]) = torn.take() {
-                self.lose(&support, &u, &f);
+            if state.options.method == Method::Linear {
+                self.follow(&support, &from, round > 0, &mut way);
+                return Ok((total, way));
+            }
+            // what bonds pull that are about to break counts up to here
+            if breaks {
+                self.hold();
+                self.follow(&support, &from, round > 0, &mut way);
+                self.forces(true, 0.0);
+            } else {
+                self.forces(true, 0.0);
+                self.follow(&support, &from, round > 0, &mut way);
             }
             if self.broken == before {
-                return Ok(total);
+                return Ok((total, way));
             }
-            torn = Some([self.u.clone(), self.f.clone()]);
+            from = [self.u.clone(), self.f.clone(), self.external()];
             state.forget();
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
     }
 
-    /// What the way from a state whose bonds have just let go to its equilibrium sets free, by the trapezoidal rule: in motion it would fly,
-    /// here it is lost. `f` are the forces of that state.
-    fn lose(&mut self, support: &Support<D>, u: &Field<D>, f: &Field<D>) {
-        let mut lost = 0.0;
-        for (n, &s) in self.body.slots.iter().enumerate() {
-            let i = s as usize;
-            for a in (0..D).filter(|a| support.free[n][*a]) {
-                let missing = f[a][i] + self.f[a][i];
-                lost += 0.5 * self.body.volume.at(i) * missing * (self.u[a][i] - u[a][i]);
-            }
-        }
-        self.past_work[0] += lost;
+    /// Forces of now, of which no bond lets go.
+    fn hold(&mut self) {
+        self.refresh_images();
+        self.interaction
+            .forces(&self.body, &self.u, &mut self.f, Sweep::Hold, None);
+        self.other_forces(0.0);
     }
 
-    /// Work of loads and reactions over the increment, by the trapezoidal rule.
-    fn account(&mut self, u: &Field<D>, f: &Field<D>, external: &Field<D>) {
-        let support = self.support();
+    /// The way from a state to that of now, by the trapezoidal rule: work of loads and reactions, and, `torn`, what sets free on its way to
+    /// equilibrium a state whose bonds have just let go. In motion that would fly, here it is lost.
+    fn follow(
+        &mut self,
+        support: &Support<D>,
+        [u, f, external]: &[Field<D>; 3],
+        torn: bool,
+        way: &mut Way,
+    ) {
         let now = self.external();
-        let mut work = 0.0;
         for (n, &s) in self.body.slots.iter().enumerate() {
             let i = s as usize;
             for a in 0..D {
-                let force = if support.free[n][a] {
-                    external[a][i] + now[a][i]
+                let moved = 0.5 * self.body.volume.at(i) * (self.u[a][i] - u[a][i]);
+                let all = f[a][i] + self.f[a][i];
+                let loads = external[a][i] + now[a][i];
+                if support.free[n][a] {
+                    way.work += loads * moved;
+                    if torn {
+                        way.lost += all * moved;
+                    }
                 } else {
                     // loads and reaction together hold what the bonds pull
-                    external[a][i] + now[a][i] - f[a][i] - self.f[a][i]
-                };
-                work += 0.5 * self.body.volume.at(i) * force * (self.u[a][i] - u[a][i]);
+                    way.work += (loads - all) * moved;
+                }
             }
         }
-        self.past_work[1] += work;
     }
 
     /// The lowest modes of vibration about the state of now; of a body that was loaded those of the motion that follows.
