@@ -245,7 +245,7 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
     hold(&mut jump, "low", [number(0.1), None, None]);
     let jump = said(&jump);
     assert!(
-        jump.message.contains("begins with a displacement of 1e-1"),
+        jump.message.contains("begins with a displacement of 0.1"),
         "{jump:?}"
     );
     // where statics leaves a point nobody knows before
