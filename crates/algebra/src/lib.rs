@@ -7,7 +7,8 @@ mod plan;
 use faer::linalg::cholesky::llt::factor::LltError as Pivot;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::solvers::{Llt, Lu};
 use faer::sparse::linalg::{LltError, LuError};
@@ -42,12 +43,24 @@ fn matrix(
     SparseColMat::try_new_from_triplets(n, n, &triplets).map_err(|_| FactorError::TooLarge)
 }
 
-/// Bytes of the numbers of a factor, by the places of the matrix's entries alone.
-fn filled(lower: &SparseColMat<usize, f64>) -> Result<f64, FactorError> {
+/// The order of the rows of a factor and where its numbers are, by the places of the matrix's entries alone.
+fn symbolic(lower: &SparseColMat<usize, f64>) -> Result<SymbolicCholesky<usize>, FactorError> {
     let (order, how) = (SymmetricOrdering::Amd, CholeskySymbolicParams::default());
     factorize_symbolic_cholesky(lower.symbolic(), Side::Lower, order, how)
-        .map(|symbolic| 8.0 * symbolic.len_val() as f64)
         .map_err(|_| FactorError::TooLarge)
+}
+
+/// The row of the matrix that pivot `index` of its factor belongs to: faer counts pivots in its own order, from 1 where it goes row by row.
+fn row_of(lower: &SparseColMat<usize, f64>, index: usize) -> Option<usize> {
+    let symbolic = symbolic(lower).ok()?;
+    let pivot = match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(_) => index.checked_sub(1)?,
+        SymbolicCholeskyRaw::Supernodal(_) => index,
+    };
+    match symbolic.perm() {
+        Some(order) => order.arrays().0.get(pivot).copied(),
+        None => Some(pivot),
+    }
 }
 
 impl Factors {
@@ -55,7 +68,7 @@ impl Factors {
     /// `room` is asked before: is there memory for so many bytes?
     ///
     /// # Errors
-    /// A pivot that is not positive, by its row (in an order that may be the solver's own); no memory.
+    /// A pivot that is not positive, by its row; no memory.
     pub fn symmetric(
         n: usize,
         entries: &[(usize, usize, f64)],
@@ -64,19 +77,17 @@ impl Factors {
         plan::fix();
         let matrix = matrix(n, entries)?;
         // where a full triangle would fit nothing needs to be counted
-        if !room(4.0 * n as f64 * n as f64) && !room(filled(&matrix)?) {
+        if !room(4.0 * n as f64 * n as f64) && !room(8.0 * symbolic(&matrix)?.len_val() as f64) {
             return Err(FactorError::TooLarge);
         }
         let factors = matrix.sp_cholesky(Side::Lower);
         factors
             .map(|f| Factors::Symmetric(Box::new(f)))
             .map_err(|e| match e {
-                LltError::Numeric(Pivot::NonPositivePivot { index }) => {
-                    // of faer's own order, and counted from 1
-                    FactorError::NotPositive {
-                        row: index.clamp(1, n) - 1,
-                    }
-                }
+                LltError::Numeric(Pivot::NonPositivePivot { index }) => row_of(&matrix, index)
+                    .map_or(FactorError::Singular, |row| FactorError::NotPositive {
+                        row,
+                    }),
                 LltError::Generic(_) => FactorError::TooLarge,
             })
     }
@@ -254,6 +265,29 @@ mod tests {
             let angle = 2.0 * std::f64::consts::PI * k as f64 / n as f64;
             let apart = |z: &[f64; 2]| (z[0] - angle.cos()).hypot(z[1] - angle.sin());
             assert!(values.iter().any(|z| apart(z) < 1e-13), "{values:?}");
+        }
+    }
+
+    /// Chains, which are factored row by row, and full matrices, in blocks; with their rows in any order.
+    #[test]
+    fn the_row_of_a_pivot_that_is_not_positive_is_named() {
+        for (n, near) in [(300, 1), (300, 299)] {
+            let mixed = |i: usize| 7 * i % n;
+            for bad in [0, 1, 150, 299] {
+                let mut entries = vec![];
+                for i in 0..n {
+                    let own = if mixed(i) == bad { -1.0 } else { 1e3 };
+                    entries.push((mixed(i), mixed(i), own));
+                    for j in i.saturating_sub(near)..i {
+                        let (r, c) = (mixed(i).max(mixed(j)), mixed(i).min(mixed(j)));
+                        entries.push((r, c, 1e-3));
+                    }
+                }
+                match Factors::symmetric(n, &entries, |_| true) {
+                    Err(e) => assert_eq!(e, FactorError::NotPositive { row: bad }, "{near}"),
+                    Ok(_) => panic!("{near}: row {bad} has a factor"),
+                }
+            }
         }
     }
 }

@@ -40,6 +40,7 @@ fn made(d: usize, mut parameters: Parameters) -> Result<HypoelasticPlastic, Stri
         solid: None,
         micromodulus: None,
         critical_stretch: f64::INFINITY,
+        breaks: false,
         density: DENSITY,
         weighted_volume: None,
         horizon: 1.0,

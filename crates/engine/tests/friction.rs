@@ -92,12 +92,24 @@ fn mean_velocity(sim: &mut dyn Simulation) -> [f64; 2] {
 #[test]
 fn a_block_slides_with_mu_times_its_weight() {
     let mu = 0.3;
-    let mut sim = build(&sliding(FrictionSpec::constant(mu)), Options::default()).unwrap();
+    let spec = sliding(FrictionSpec::constant(mu));
+    let mut sim = build(&spec, Options::default()).unwrap();
     sim.start(true);
     let mut dissipated = 0.0f64;
+    let mut renewed = false;
     while sim.time() < 60.0 {
         sim.step().unwrap();
         let l = sim.ledger().unwrap();
+        if sim.time() > 30.0 && !renewed {
+            renewed = true;
+            let members = |name: &str| (name.to_string(), sim.members(name).unwrap());
+            let sets = ["block", "plate"].map(members);
+            sim.set_conditions(&spec.conditions, &sets, &[]).unwrap();
+            // what was rubbed off before counts once
+            let after = sim.ledger().unwrap();
+            assert!(l.dissipated > 0.0);
+            assert!((after.dissipated - l.dissipated).abs() < 1e-12 * l.dissipated);
+        }
         // a pair whose sliding is turned round by bonds is pushed by half a step of its friction, no more
         assert!(l.dissipated >= dissipated - 1e-4 * l.initial.abs(), "{l:?}");
         dissipated = l.dissipated;

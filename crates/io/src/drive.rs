@@ -459,10 +459,9 @@ pub fn drive(
 /// Where indenters are that move by themselves.
 fn follow(balls: &mut [MovingBall], sim: &dyn Simulation) {
     let t = sim.time();
-    for (ball, (center, radius)) in balls.iter_mut().zip(sim.indenters()) {
+    for (ball, center) in balls.iter_mut().zip(sim.indenters()) {
         // of those that are moved the path is known
         if ball.path.last().is_none_or(|p| p[0] < t) {
-            ball.radius = radius;
             ball.path.push([t, center[0], center[1], center[2]]);
         }
     }

@@ -7,113 +7,10 @@
 
 use crate::expression::Expression;
 use crate::law::material::tensor;
-use crate::space::Point;
 use crate::space::rigid::RigidShape;
+use crate::space::rotation::{Axes, Quaternion, times, transposed_times};
+use crate::space::{Point, cross, dot, length};
 use crate::spec::{FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
-
-/// Rows of a rotation, from axes of the shape to space.
-pub type Axes = [Point; 3];
-
-pub(super) fn times(m: &Axes, x: &Point) -> Point {
-    std::array::from_fn(|r| m[r][0] * x[0] + m[r][1] * x[1] + m[r][2] * x[2])
-}
-
-pub(super) fn transposed_times(m: &Axes, x: &Point) -> Point {
-    std::array::from_fn(|c| m[0][c] * x[0] + m[1][c] * x[1] + m[2][c] * x[2])
-}
-
-pub(super) fn cross(a: &Point, b: &Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-/// A turn: cos(φ/2), and sin(φ/2) along its axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Quaternion([f64; 4]);
-
-impl Quaternion {
-    const ONE: Quaternion = Quaternion([1.0, 0.0, 0.0, 0.0]);
-
-    fn about(axis: &Point, angle: f64) -> Quaternion {
-        let (sine, cosine) = (0.5 * angle).sin_cos();
-        Quaternion([cosine, sine * axis[0], sine * axis[1], sine * axis[2]])
-    }
-
-    /// First `other`, then this.
-    fn after(self, other: Quaternion) -> Quaternion {
-        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
-        Quaternion([
-            a * e - b * f - c * g - d * h,
-            a * f + b * e + c * h - d * g,
-            a * g - b * h + c * e + d * f,
-            a * h + b * g - c * f + d * e,
-        ])
-    }
-
-    fn normalized(self) -> Quaternion {
-        let size = self.0.iter().map(|c| c * c).sum::<f64>().sqrt();
-        Quaternion(self.0.map(|c| c / size))
-    }
-
-    fn axes(self) -> Axes {
-        let [w, x, y, z] = self.0;
-        [
-            [
-                1.0 - 2.0 * (y * y + z * z),
-                2.0 * (x * y - w * z),
-                2.0 * (x * z + w * y),
-            ],
-            [
-                2.0 * (x * y + w * z),
-                1.0 - 2.0 * (x * x + z * z),
-                2.0 * (y * z - w * x),
-            ],
-            [
-                2.0 * (x * z - w * y),
-                2.0 * (y * z + w * x),
-                1.0 - 2.0 * (x * x + y * y),
-            ],
-        ]
-    }
-
-    /// Of a rotation (Shepperd 1978).
-    fn of(m: &Axes) -> Quaternion {
-        let trace = m[0][0] + m[1][1] + m[2][2];
-        let k = (0..3)
-            .max_by(|a, b| m[*a][*a].total_cmp(&m[*b][*b]))
-            .unwrap_or(0);
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let mut q = [0.0; 4];
-        if trace > m[k][k] {
-            q[0] = 1.0 + trace;
-            for a in 0..3 {
-                let (b, c) = ((a + 1) % 3, (a + 2) % 3);
-                q[1 + a] = m[c][b] - m[b][c];
-            }
-        } else {
-            q[0] = m[j][i] - m[i][j];
-            q[1 + k] = 1.0 + 2.0 * m[k][k] - trace;
-            q[1 + i] = m[i][k] + m[k][i];
-            q[1 + j] = m[j][k] + m[k][j];
-        }
-        Quaternion(q).normalized()
-    }
-
-    /// Axis times angle, which is from 0 to π.
-    fn vector(self) -> Point {
-        let [w, x, y, z] = self.0;
-        let sine = (x * x + y * y + z * z).sqrt();
-        if sine == 0.0 {
-            return [0.0; 3];
-        }
-        let angle = 2.0 * sine.atan2(w.abs());
-        let sign = if w < 0.0 { -1.0 } else { 1.0 };
-        [x, y, z].map(|c| sign * angle * c / sine)
-    }
-}
 
 #[derive(Debug, Clone)]
 enum Motion {
@@ -316,7 +213,7 @@ impl<const D: usize> Rigid<D> {
             Motion::Kinematic { .. } => {
                 self.look_ahead(t - dt, dt);
                 self.place(t);
-                angle = dt * self.turning.iter().map(|c| c * c).sum::<f64>().sqrt();
+                angle = dt * length(&self.turning);
             }
             Motion::Driven(next) => self.center = *next,
             Motion::Free(free) => {
@@ -327,10 +224,7 @@ impl<const D: usize> Rigid<D> {
                 self.look();
             }
         }
-        let way = (0..3)
-            .map(|a| (self.center[a] - before[a]).powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let way = length(&std::array::from_fn(|a| self.center[a] - before[a]));
         Path { way, angle }
     }
 
@@ -388,7 +282,7 @@ impl<const D: usize> Rigid<D> {
         match &self.motion {
             Motion::Kinematic { .. } | Motion::Driven(_) => 0.0,
             Motion::Free(free) => {
-                let straight: f64 = self.velocity.iter().map(|v| v * v).sum();
+                let straight = dot(&self.velocity, &self.velocity);
                 let about = transposed_times(&free.turned.axes(), &free.spin);
                 let turn = (0..3).map(|k| about[k] * about[k] / free.moments[k]);
                 0.5 * (free.mass * straight + turn.sum::<f64>())
@@ -563,7 +457,7 @@ mod tests {
             let motion = IndenterMotion::Free(free);
             let mut rigid = Rigid::<3>::new(&IndenterSpec::new(1.0, shape, motion));
             let l = rigid.spin();
-            let size = l.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let size = length(&l);
             let time = 5.0;
             (0..(time / dt) as usize).for_each(|_| {
                 rigid.advance(0.0, dt);
@@ -573,10 +467,7 @@ mod tests {
             let turned = Quaternion::about(&n, size / across * time).axes();
             let exact = times(&turned, &[0.0, 0.0, 1.0]);
             let axis = times(&rigid.axes, &[0.0, 0.0, 1.0]);
-            (0..3)
-                .map(|a| (axis[a] - exact[a]).powi(2))
-                .sum::<f64>()
-                .sqrt()
+            length(&std::array::from_fn(|a| axis[a] - exact[a]))
         };
         let (coarse, fine) = (end(0.05), end(0.025));
         println!("axis of a free top: {coarse:.1e} {fine:.1e}");
@@ -584,23 +475,5 @@ mod tests {
             fine < 1e-2 && (3.5..4.5).contains(&(coarse / fine)),
             "{coarse} {fine}"
         );
-    }
-
-    #[test]
-    fn turns_go_to_axes_and_back() {
-        for (axis, angle) in [
-            ([0.0, 0.6, 0.8], 0.4),
-            ([1.0, 0.0, 0.0], 3.1),
-            ([-0.6, 0.0, 0.8], 2.0),
-        ] {
-            let q = Quaternion::about(&axis, angle);
-            let back = Quaternion::of(&q.axes()).vector();
-            for a in 0..3 {
-                assert!(
-                    (back[a] - angle * axis[a]).abs() < 1e-12,
-                    "{axis:?} {angle}: {back:?}"
-                );
-            }
-        }
     }
 }

@@ -492,8 +492,10 @@ pub struct Given<'a> {
     pub solid: Option<Solid>,
     /// Micromodulus of the linear law of the same elasticity, if that is bond-based (force / volume²).
     pub micromodulus: Option<f64>,
-    /// ∞: bonds never break.
+    /// ∞: bonds never break by their stretch.
     pub critical_stretch: f64,
+    /// Do bonds break, by whatever?
+    pub breaks: bool,
     /// Mass per reference volume.
     pub density: f64,
     /// Of the full ball, where constants are those of the continuum (length² volume).

@@ -206,8 +206,8 @@ pub trait Simulation: Steered + Examined + Send {
     fn set_velocities(&mut self, v: &[Point]);
     /// Ids of the points of a named set; `"all"` always exists.
     fn members(&self, set: &str) -> Option<Vec<u32>>;
-    /// Centres and radii of the indenters of the specification, as they are now.
-    fn indenters(&self) -> Vec<(Point, f64)>;
+    /// Centres of the indenters of the specification, as they are now.
+    fn indenters(&self) -> Vec<Point>;
     /// What came in of every quantity that spreads since the start, and what is there.
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)>;
     /// Cycles of load since the start; `None`: increments are no cycles.

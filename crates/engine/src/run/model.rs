@@ -302,10 +302,8 @@ impl<const D: usize> Simulation for Model<D> {
         named.map(|(_, ids)| ids.clone())
     }
 
-    fn indenters(&self) -> Vec<(Point, f64)> {
-        { self.indenters.iter() }
-            .map(|i| (i.rigid.center, i.radius()))
-            .collect()
+    fn indenters(&self) -> Vec<Point> {
+        self.indenters.iter().map(|i| i.rigid.center).collect()
     }
 
     fn transfers(&self) -> Vec<(Quantity, TransferAccount)> {

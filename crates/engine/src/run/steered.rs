@@ -75,6 +75,10 @@ impl<const D: usize> Steered for Model<D> {
         self.finish();
         let now = self.energy_now();
         self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
+        // it goes on; what it took is in the past now
+        if let Some(friction) = &mut self.friction {
+            friction.work = 0.0;
+        }
         self.driven.clear();
         self.loads = loads;
         self.constraints = constraints;

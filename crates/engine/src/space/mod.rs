@@ -1,14 +1,31 @@
-//! Space: lattices, regions, rigid shapes and surfaces of triangles. Everything here is three numbers wide; unused axes are 0.
+//! Space: lattices, regions, rotations, rigid shapes and surfaces of triangles. Everything here is three numbers wide; unused axes are 0.
 
 pub mod fill;
 pub mod lattice;
 pub mod membership;
 pub mod region;
 pub mod rigid;
+pub mod rotation;
 pub mod triangles;
 
 /// A point or vector of physical space; unused axes are 0.
 pub type Point = [f64; 3];
+
+pub fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub fn cross(a: &Point, b: &Point) -> Point {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub fn length(a: &Point) -> f64 {
+    dot(a, a).sqrt()
+}
 
 /// Volume of a ball in `d` dimensions (length^d).
 pub fn ball_volume(d: usize, radius: f64) -> f64 {

@@ -2,8 +2,8 @@
 //!
 //! Coordinates are those of the shape: its centre is the origin, on the axis of a cylinder and on the surface of a plane.
 
-use super::Point;
 use super::triangles::Solid;
+use super::{Point, dot, length};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -134,10 +134,6 @@ impl RigidShape {
     }
 }
 
-fn dot(a: &Point, b: &Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// A direction across an axis.
 fn aside(axis: &Point) -> Point {
     let least = (1..3).fold(0, |m, a| if axis[a].abs() < axis[m].abs() { a } else { m });
@@ -145,7 +141,7 @@ fn aside(axis: &Point) -> Point {
     e[least] = 1.0;
     let along = dot(&e, axis);
     let way: Point = std::array::from_fn(|a| e[a] - along * axis[a]);
-    let size = dot(&way, &way).sqrt();
+    let size = length(&way);
     way.map(|c| c / size)
 }
 

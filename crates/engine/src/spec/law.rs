@@ -162,6 +162,19 @@ pub enum Criterion {
     PlasticStrain(f64),
 }
 
+impl Criterion {
+    /// Its number.
+    pub fn limit(self) -> f64 {
+        match self {
+            Criterion::Stretch(x)
+            | Criterion::Energy(x)
+            | Criterion::BondEnergy(x)
+            | Criterion::VonMises(x)
+            | Criterion::PlasticStrain(x) => x,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InterfaceRule {
     /// Harmonic mean: the two half bonds in series.
@@ -249,10 +262,10 @@ impl Parameters {
     }
 
     pub fn number(&self, key: &str) -> Option<f64> {
-        match self.get(key)? {
-            Parameter::Number(x) => Some(*x),
-            _ => None,
-        }
+        let Parameter::Number(x) = self.get(key)? else {
+            return None;
+        };
+        Some(*x)
     }
 
     /// Numbers of the keys in order.
@@ -270,37 +283,37 @@ impl Parameters {
     }
 
     pub fn list(&self, key: &str) -> Option<&[f64]> {
-        match self.get(key)? {
-            Parameter::List(list) => Some(list),
-            _ => None,
-        }
+        let Parameter::List(list) = self.get(key)? else {
+            return None;
+        };
+        Some(list)
     }
 
     pub fn rows(&self, key: &str) -> Option<&[Vec<f64>]> {
-        match self.get(key)? {
-            Parameter::Rows(rows) => Some(rows),
-            _ => None,
-        }
+        let Parameter::Rows(rows) = self.get(key)? else {
+            return None;
+        };
+        Some(rows)
     }
 
     pub fn word(&self, key: &str) -> Option<&str> {
-        match self.get(key)? {
-            Parameter::Word(word) => Some(word),
-            _ => None,
-        }
+        let Parameter::Word(word) = self.get(key)? else {
+            return None;
+        };
+        Some(word)
     }
 
     pub fn formula(&self, key: &str) -> Option<&Expression> {
-        match self.get(key)? {
-            Parameter::Formula(formula) => Some(formula),
-            _ => None,
-        }
+        let Parameter::Formula(formula) = self.get(key)? else {
+            return None;
+        };
+        Some(formula)
     }
 
     pub fn table(&self, key: &str) -> Option<&Arc<TableSpec>> {
-        match self.get(key)? {
-            Parameter::Table(table) => Some(table),
-            _ => None,
-        }
+        let Parameter::Table(table) = self.get(key)? else {
+            return None;
+        };
+        Some(table)
     }
 }

@@ -108,31 +108,20 @@ pub(super) fn criteria<const D: usize>(
         )
         .help("give all materials of a body a critical stretch (or energy), or all the same other criterion"));
     }
-    let limits = |of: &dyn Fn(Criterion) -> Option<f64>| -> Vec<f64> {
-        let limit = |m: &MaterialSpec| m.fracture.and_then(|f| of(f.criterion));
-        spec.materials
-            .iter()
-            .map(|m| limit(m).unwrap_or(f64::INFINITY))
-            .collect()
+    // all of one kind; what has none never breaks
+    let limits = |per: f64| -> Vec<f64> {
+        let limit = |m: &MaterialSpec| m.fracture.map(|f| f.criterion.limit() / per);
+        let each = spec.materials.iter();
+        each.map(|m| limit(m).unwrap_or(f64::INFINITY)).collect()
     };
     let measure = match first.criterion {
         Criterion::Stretch(_) | Criterion::Energy(_) => Measure::Stretch,
         Criterion::BondEnergy(_) => {
-            let per = fracture_energy::of_unit_work(D, moments);
-            Measure::Work(limits(&|c| match c {
-                Criterion::BondEnergy(energy) => Some(energy / per),
-                _ => None,
-            }))
+            Measure::Work(limits(fracture_energy::of_unit_work(D, moments)))
         }
-        Criterion::PlasticStrain(_) => Measure::PlasticStrain(limits(&|c| match c {
-            Criterion::PlasticStrain(strain) => Some(strain),
-            _ => None,
-        })),
+        Criterion::PlasticStrain(_) => Measure::PlasticStrain(limits(1.0)),
         Criterion::VonMises(_) => Measure::VonMises {
-            limit: limits(&|c| match c {
-                Criterion::VonMises(stress) => Some(stress),
-                _ => None,
-            }),
+            limit: limits(1.0),
             across: all()
                 .map(|(n, m)| across::<D>(spec, n, m, shelf))
                 .collect::<Result<_, _>>()?,
@@ -168,7 +157,13 @@ fn across<const D: usize>(
             let of = shelf.descriptor(&law.name);
             law.isotropic && of.is_some_and(|d| d.memory == Memory::Nothing)
         }
-        _ => true,
+        LawSpec::Pmb(_)
+        | LawSpec::Springs(_)
+        | LawSpec::Lps(_)
+        | LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Micromoduli(_)
+        | LawSpec::Atoms(_) => true,
     };
     match m.law.linear() {
         LawSpec::Lps(moduli) if elastic => Ok(moduli.poisson),

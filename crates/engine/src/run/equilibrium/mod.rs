@@ -394,6 +394,8 @@ impl<const D: usize> Model<D> {
             if self.broken == before {
                 return Ok((total, way));
             }
+            // without what let go, whatever it did in the evaluation that found it
+            self.hold();
             from = [self.u.clone(), self.f.clone(), self.external()];
             state.forget();
         }

@@ -12,12 +12,13 @@ impl RigidQuantity {
     /// Names of what it consists of in D dimensions: components, or energies.
     fn parts<const D: usize>(self) -> &'static [&'static str] {
         let axes = Shape::Vector.components();
-        match (self, D) {
-            (RigidQuantity::Energy, _) => &["kinetic", "dissipated"],
-            (of, 1) if of.is_turn() => &[],
-            (of, 2) if of.is_turn() => &axes[2..3],
-            (of, _) if of.is_turn() => axes,
-            _ => &axes[..D],
+        match self {
+            RigidQuantity::Energy => &["kinetic", "dissipated"],
+            // in a plane about z, on a line about nothing
+            RigidQuantity::Torque | RigidQuantity::Turn | RigidQuantity::Spin => {
+                &axes[[3, 3, 2, 0][D]..]
+            }
+            RigidQuantity::Force | RigidQuantity::Center | RigidQuantity::Velocity => &axes[..D],
         }
     }
 
@@ -51,10 +52,8 @@ impl RigidQuantity {
             RigidQuantity::Spin => rigid.turning,
         };
         let count = self.parts::<D>().len();
-        match (self.is_turn(), count) {
-            (true, 1) => vec![vector[2]],
-            _ => vector[..count].to_vec(),
-        }
+        let first = if self.is_turn() { 3 - count } else { 0 };
+        vector[first..first + count].to_vec()
     }
 }
 

@@ -7,7 +7,7 @@
 
 mod tree;
 
-use super::Point;
+use super::{Point, cross, dot, length};
 use std::collections::HashMap;
 pub use tree::Tree;
 
@@ -29,22 +29,6 @@ enum Feature {
 
 fn sub(a: &Point, b: &Point) -> Point {
     std::array::from_fn(|k| a[k] - b[k])
-}
-
-fn dot(a: &Point, b: &Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: &Point, b: &Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn length(a: &Point) -> f64 {
-    dot(a, a).sqrt()
 }
 
 fn place(x: &Point) -> String {

@@ -255,6 +255,7 @@ mod tests {
             solid: None,
             micromodulus: None,
             critical_stretch: f64::INFINITY,
+            breaks: false,
             density: 1.0,
             weighted_volume: None,
             horizon: 1.0,

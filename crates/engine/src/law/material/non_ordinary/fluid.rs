@@ -142,11 +142,13 @@ const KEYS: [Key; 4] = [
     .need(Need::Optional),
 ];
 
+const NONE: &str = "the equation of state is mie_gruneisen or perfect_gas";
+
 fn kind(parameters: &Parameters) -> Result<Kind, String> {
     match parameters.word(KEYS[0].name) {
         Some("mie_gruneisen") => Ok(Kind::MieGruneisen),
         Some("perfect_gas") => Ok(Kind::PerfectGas),
-        _ => Err("the equation of state is mie_gruneisen or perfect_gas".into()),
+        _ => Err(NONE.into()),
     }
 }
 
@@ -218,7 +220,7 @@ impl Shelved for Fluid {
                     "in the plane a fluid keeps its thickness: write plane = \"strain\"".into(),
                 ));
             }
-            if m.critical_stretch.is_finite() {
+            if m.breaks {
                 return Err(refused(
                     "a fluid has no bonds that break: its volume is that of its family, whole or not; leave `fracture` out".into(),
                 ));
@@ -236,7 +238,8 @@ impl Shelved for Fluid {
             let [first, second] = numbers(m.parameters).map_err(refused)?;
             made.push(match kind_of {
                 Kind::PerfectGas => EquationOfState::of_gas(m, first, second),
-                _ => EquationOfState::of_hugoniot(m, first).map_err(refused)?,
+                Kind::MieGruneisen => EquationOfState::of_hugoniot(m, first).map_err(refused)?,
+                Kind::Elastic => return Err(refused(NONE.into())),
             });
         }
         Ok(Fluid {

@@ -113,6 +113,7 @@ struct Made {
     solid: Option<Solid>,
     micromodulus: Option<f64>,
     critical_stretch: f64,
+    breaks: bool,
     density: f64,
 }
 
@@ -152,6 +153,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
                 _ => None,
             },
             critical_stretch: toughness[n].s00,
+            breaks: spec.materials[n].fracture.is_some(),
             density: spec.materials[n].density,
         });
     }
@@ -223,6 +225,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 solid: made.solid,
                 micromodulus: made.micromodulus,
                 critical_stretch: made.critical_stretch,
+                breaks: made.breaks,
                 density: made.density,
                 weighted_volume: chosen.weighted_volume,
                 horizon: chosen.horizon,

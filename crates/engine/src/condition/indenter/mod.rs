@@ -6,100 +6,17 @@
 //! face of a point, so the force density is that over its spacing. What points feel the body feels with the other sign, at the place of the
 //! point: momentum and angular momentum of both together stay as they are.
 
+mod surface;
+
 use super::reaction::Reaction;
-use super::rigid::{Kept, Rigid, cross, times, transposed_times};
+use super::rigid::{Kept, Rigid};
 use crate::body::{Body, Field};
 use crate::interaction::friction::Coefficients;
-use crate::space::Point;
 use crate::space::rigid::RigidShape;
+use crate::space::{Point, cross};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
-
-/// The surface of an indenter along the axes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// About a centre.
-    Sphere,
-    /// About the line through the centre along this axis.
-    Cylinder(usize),
-    /// Across this axis, through the centre.
-    Plane(usize),
-}
-
-/// The surface of an indenter.
-#[derive(Debug, Clone)]
-enum Surface {
-    /// Along the axes, whatever the body's own.
-    Aligned(Form, Push),
-    /// Turns with the body.
-    Turned(RigidShape),
-}
-
-/// Which way an indenter pushes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Push {
-    /// Out of a sphere or cylinder; up what is below a plane.
-    Out,
-    /// Back into a sphere or cylinder; down what is above a plane.
-    In,
-}
-
-impl Form {
-    /// Length of `d`, the way from the centre, across the form; `aside` is squared on axes that the body does not have.
-    fn distance<const D: usize>(self, d: &[f64; D], aside: f64) -> f64 {
-        match self {
-            Form::Sphere => (d.iter().map(|c| c * c).sum::<f64>() + aside).sqrt(),
-            Form::Cylinder(axis) => {
-                let across = (0..D).filter(|a| *a != axis).map(|a| d[a] * d[a]);
-                (across.sum::<f64>() + aside).sqrt()
-            }
-            Form::Plane(axis) => d.get(axis).copied().unwrap_or(0.0),
-        }
-    }
-
-    /// The way from the centre to a point, and its length across the form.
-    fn offset<const D: usize>(
-        self,
-        center: &[f64; 3],
-        body: &Body<D>,
-        u: &Field<D>,
-        i: usize,
-    ) -> ([f64; D], f64) {
-        // the centre may lie off a plane or line of points
-        let off = (D..3).filter(|a| self != Form::Cylinder(*a));
-        let aside: f64 = off.map(|a| center[a] * center[a]).sum();
-        let x = body.position(i);
-        let d: [f64; D] = std::array::from_fn(|a| {
-            let d = x[a] + u[a][i] - center[a];
-            match (self, body.period[a]) {
-                (Form::Sphere | Form::Cylinder(_), Some(p)) => d - p * (d / p).round(),
-                (Form::Plane(_), _) | (_, None) => d,
-            }
-        });
-        (d, self.distance(&d, aside))
-    }
-}
-
-impl Push {
-    /// From a surface of this radius to a point at this distance; negative where it is pushed.
-    fn gap(self, distance: f64, radius: f64) -> f64 {
-        match self {
-            Push::Out => distance - radius,
-            Push::In => radius - distance,
-        }
-    }
-}
-
-/// A point near a surface.
-#[derive(Debug, Clone, Copy)]
-struct Near<const D: usize> {
-    /// From the centre, and how long that is across a form along the axes (1 of others).
-    arm: [f64; D],
-    r: f64,
-    /// Negative where it is pushed.
-    gap: f64,
-    /// Along which it is pushed out, of length 1.
-    normal: [f64; D],
-}
+pub use surface::{Form, Push};
+use surface::{Near, Surface};
 
 /// A point touched at the last evaluation.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +32,6 @@ pub struct Indenter<const D: usize> {
     pub name: String,
     stiffness: f64,
     surface: Surface,
-    radius: f64,
     friction: Option<FrictionSpec>,
     cohesion: Option<CohesionSpec>,
     pub rigid: Rigid<D>,
@@ -145,24 +61,24 @@ pub struct Indenter<const D: usize> {
 
 impl<const D: usize> Indenter<D> {
     pub fn new(spec: &IndenterSpec) -> Self {
-        let (surface, radius) = match (&spec.shape, &spec.cohesion) {
-            // as it always was, to the last bit
+        let surface = match (&spec.shape, &spec.cohesion) {
+            // in the order of operations of LAMMPS, to the last bit
             (RigidShape::Sphere { radius }, None) => {
-                (Surface::Aligned(Form::Sphere, Push::Out), *radius)
+                Surface::Aligned(Form::Sphere, Push::Out, *radius)
             }
             (shape, _) => {
                 let mut shape = shape.clone();
                 if let RigidShape::Box { half } = &mut shape {
                     half[D..].fill(f64::INFINITY);
                 }
-                (Surface::Turned(shape), 0.0)
+                Surface::Turned(shape)
             }
         };
         Indenter {
             name: spec.name.clone(),
             friction: spec.friction.clone(),
             cohesion: spec.cohesion,
-            ..Self::with(spec.stiffness, surface, radius, Rigid::new(spec))
+            ..Self::with(spec.stiffness, surface, Rigid::new(spec))
         }
     }
 
@@ -174,19 +90,18 @@ impl<const D: usize> Indenter<D> {
         radius: f64,
         members: Vec<u32>,
     ) -> Self {
-        let surface = Surface::Aligned(form, push);
+        let surface = Surface::Aligned(form, push, radius);
         Indenter {
             members: Some(members),
-            ..Self::with(stiffness, surface, radius, Rigid::steered(center))
+            ..Self::with(stiffness, surface, Rigid::steered(center))
         }
     }
 
-    fn with(stiffness: f64, surface: Surface, radius: f64, rigid: Rigid<D>) -> Self {
+    fn with(stiffness: f64, surface: Surface, rigid: Rigid<D>) -> Self {
         Indenter {
             name: String::new(),
             stiffness,
             surface,
-            radius,
             friction: None,
             cohesion: None,
             rigid,
@@ -208,16 +123,18 @@ impl<const D: usize> Indenter<D> {
 
     /// Values for the coming force evaluation.
     pub fn drive(&mut self, stiffness: f64, center: [f64; 3], radius: f64) {
-        self.slack -= (radius - self.radius).abs();
+        if let Surface::Aligned(_, _, old) = &mut self.surface {
+            self.slack -= (radius - *old).abs();
+            *old = radius;
+        }
         self.stiffness = stiffness;
-        self.radius = radius;
         self.rigid.steer(center);
     }
 
     /// Its form and which way it pushes, of one that is driven.
     pub fn form(&self) -> Option<(Form, Push)> {
         match self.surface {
-            Surface::Aligned(form, push) => Some((form, push)),
+            Surface::Aligned(form, push, _) => Some((form, push)),
             Surface::Turned(_) => None,
         }
     }
@@ -231,61 +148,6 @@ impl<const D: usize> Indenter<D> {
         self.rubbed.clear();
         self.rubs.clear();
         self.look_again();
-    }
-
-    /// Where a point is beside the surface; `None`: further away than `most` for sure.
-    fn near(&self, body: &Body<D>, u: &Field<D>, i: usize, most: f64) -> Option<Near<D>> {
-        let center = &self.rigid.center;
-        match &self.surface {
-            Surface::Aligned(form, push) => {
-                let (arm, r) = form.offset(center, body, u, i);
-                let normal = match form {
-                    // a point in the centre has no direction
-                    Form::Sphere | Form::Cylinder(_) if r == 0.0 => [0.0; D],
-                    Form::Sphere => arm.map(|c| c / r),
-                    Form::Cylinder(axis) => {
-                        std::array::from_fn(|a| if a == *axis { 0.0 } else { arm[a] / r })
-                    }
-                    Form::Plane(axis) => {
-                        std::array::from_fn(|a| if a == *axis { 1.0 } else { 0.0 })
-                    }
-                };
-                Some(Near {
-                    arm,
-                    r,
-                    gap: push.gap(r, self.radius),
-                    normal: match push {
-                        Push::Out => normal,
-                        Push::In => normal.map(|c| -c),
-                    },
-                })
-            }
-            Surface::Turned(shape) => {
-                let x = body.position(i);
-                let plane = matches!(shape, RigidShape::Plane { .. });
-                let arm: [f64; D] = std::array::from_fn(|a| {
-                    let d = x[a] + u[a][i] - center[a];
-                    match body.period[a] {
-                        Some(p) if !plane => d - p * (d / p).round(),
-                        Some(_) | None => d,
-                    }
-                });
-                let square: f64 = arm.iter().map(|c| c * c).sum();
-                let far = shape.reach(D) + most;
-                if square > far * far {
-                    return None;
-                }
-                let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
-                let (gap, normal) = shape.distance(&transposed_times(&self.rigid.axes, &full));
-                let normal = times(&self.rigid.axes, &normal);
-                Some(Near {
-                    arm,
-                    r: 1.0,
-                    gap,
-                    normal: std::array::from_fn(|a| normal[a]),
-                })
-            }
-        }
     }
 
     /// The gap below which the surface does something.
@@ -345,7 +207,7 @@ impl<const D: usize> Indenter<D> {
         let candidates = std::mem::take(&mut self.candidates);
         for &s in &candidates {
             let i = s as usize;
-            let Some(near) = self.near(body, u, i, range) else {
+            let Some(near) = self.surface.near(&self.rigid, body, u, i, range) else {
                 continue;
             };
             let Near {
@@ -372,8 +234,7 @@ impl<const D: usize> Indenter<D> {
                 false => self.pull(body, i, gap),
             };
             let force: [f64; D] = match &self.surface {
-                // as it always was, to the last bit
-                Surface::Aligned(form, push) => self.aligned(*form, *push, &near),
+                Surface::Aligned(form, push, _) => form.force(*push, self.stiffness, &near),
                 Surface::Turned(_) => normal.map(|c| along * c),
             };
             reaction.energy += energy;
@@ -419,27 +280,11 @@ impl<const D: usize> Indenter<D> {
         candidates.clear();
         let all = self.members.as_ref().unwrap_or(&body.slots);
         let close = |s: &&u32| {
-            let near = self.near(body, u, **s as usize, most);
+            let near = self.surface.near(&self.rigid, body, u, **s as usize, most);
             near.is_some_and(|n| n.gap < most)
         };
         candidates.extend(all.iter().filter(close));
         self.candidates = candidates;
-    }
-
-    /// Force density of a surface along the axes.
-    fn aligned(&self, form: Form, push: Push, near: &Near<D>) -> [f64; D] {
-        let Near { arm, r, gap, .. } = *near;
-        let strength = match push {
-            Push::Out => self.stiffness * gap * gap,
-            Push::In => -self.stiffness * gap * gap,
-        };
-        std::array::from_fn(|a| match form {
-            Form::Sphere => strength / r * arm[a],
-            Form::Cylinder(axis) if a == axis => 0.0,
-            Form::Cylinder(_) => strength / r * arm[a],
-            Form::Plane(axis) if a == axis => strength,
-            Form::Plane(_) => 0.0,
-        })
     }
 
     /// Energy density that cohesion holds below that of a point out of its range where the point touches: w/h of a point of spacing h.
@@ -561,7 +406,7 @@ impl<const D: usize> Indenter<D> {
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
         for &s in self.members.as_ref().unwrap_or(&body.slots) {
             let i = s as usize;
-            let Some(near) = self.near(body, u, i, self.range()) else {
+            let Some(near) = self.surface.near(&self.rigid, body, u, i, self.range()) else {
                 continue;
             };
             let mut slope = 2.0 * self.stiffness * (-near.gap).max(0.0);
@@ -573,10 +418,6 @@ impl<const D: usize> Indenter<D> {
     }
 
     /// Does it move by the forces on it?
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
     pub fn is_free(&self) -> bool {
         self.rigid.is_free()
     }
