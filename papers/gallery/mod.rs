@@ -24,6 +24,7 @@ mod hertz;
 mod kalthoff;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
+mod quench;
 mod spall;
 #[path = "sphere-on-plate/mod.rs"]
 mod sphere_on_plate;
@@ -63,5 +64,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &creep::Creep,
         &touching_bars::TouchingBars,
         &bimetal::Bimetal,
+        &quench::Quench,
     ]
 }

@@ -150,6 +150,7 @@ impl Kernel {
 
 /// `erf(b) − erf(a)`, a ≤ b, to a few units of the last digit of what is larger, of both tails too.
 fn erf_between(a: f64, b: f64) -> f64 {
+    use libm::{erf, erfc};
     if a > 0.5 {
         erfc(a) - erfc(b)
     } else if b < -0.5 {
@@ -157,36 +158,6 @@ fn erf_between(a: f64, b: f64) -> f64 {
     } else {
         erf(b) - erf(a)
     }
-}
-
-fn erf(x: f64) -> f64 {
-    if x.abs() < 2.0 {
-        // 2/√π x e^(−x²) Σ (2x²)^k / (2k + 1)!!: terms of one sign
-        let q = 2.0 * x * x;
-        let (mut term, mut sum, mut k) = (1.0, 1.0, 0.0);
-        while term > 1e-17 * sum {
-            k += 1.0;
-            term *= q / (2.0 * k + 1.0);
-            sum += term;
-        }
-        std::f64::consts::FRAC_2_SQRT_PI * x * (-x * x).exp() * sum
-    } else if x > 0.0 {
-        1.0 - erfc(x)
-    } else {
-        erfc(-x) - 1.0
-    }
-}
-
-fn erfc(x: f64) -> f64 {
-    if x < 2.0 {
-        return 1.0 - erf(x);
-    }
-    // continued fraction, from the end: x + (1/2)/(x + 1/(x + (3/2)/(x + …)))
-    let mut tail = x;
-    for k in (1..=60).rev() {
-        tail = x + 0.5 * f64::from(k) / tail;
-    }
-    (-x * x).exp() / (std::f64::consts::PI.sqrt() * tail)
 }
 
 #[cfg(test)]

@@ -30,21 +30,9 @@ fn contact() -> f64 {
     HOT * a / (a + b)
 }
 
-/// 2/√π ∫₀^z e^(−s²) ds: its series, which is exact to round-off where z is below 3.
-fn erf(z: f64) -> f64 {
-    let z = z.clamp(-3.0, 3.0);
-    let (mut term, mut sum) = (z, z);
-    for n in 1..60 {
-        let n = f64::from(n);
-        term *= -z * z / n;
-        sum += term / (2.0 * n + 1.0);
-    }
-    sum * 2.0 / std::f64::consts::PI.sqrt()
-}
-
 /// On each side what spreads from a face of that temperature.
 fn exact(x: f64, t: f64) -> f64 {
-    let part = |[k, rho, c]: [f64; 3]| erf(x.abs() / (2.0 * (k / (rho * c) * t).sqrt()));
+    let part = |[k, rho, c]: [f64; 3]| libm::erf(x.abs() / (2.0 * (k / (rho * c) * t).sqrt()));
     match x > 0.0 {
         true => contact() * (1.0 - part(STEEL)),
         false => contact() + (HOT - contact()) * part(COPPER),

@@ -63,6 +63,7 @@ pub fn write(found: &Findings) -> String {
             "quantity": t.quantity.name(), "diffusivity": t.diffusivity, "stable_step": t.stable_step, "over_the_body": t.spread,
         })).collect::<Vec<_>>(),
         "contact_step": info.contact_step.is_finite().then_some(info.contact_step),
+        "contact_stiffness": info.contact_stiffness,
         "bodies": info.bodies.iter().map(|(name, points)| json!({"name": name, "points": points})).collect::<Vec<_>>(),
         "gaps": info.gaps.iter().map(|g| json!({
             "bodies": g.bodies.map(|b| info.bodies[b].0.as_str()), "distance": g.distance, "contact": g.contact,

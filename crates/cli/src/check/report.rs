@@ -16,7 +16,7 @@ use points::{families, points};
 use spread::spread;
 use std::fmt::Write;
 use stiffness::stiffness;
-use waves::{fracture, waves};
+use waves::{contact, fracture, waves};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -42,6 +42,7 @@ pub fn write(found: &Findings) -> String {
         waves(found),
         spread(found),
         fracture(found),
+        contact(found),
         continuum::fields(found),
         cost(found),
         warnings(found),

@@ -229,6 +229,7 @@ pub fn build_in<const D: usize>(
             stepper: spec.schedule.stepper,
             stable_step: limits.stable(),
             contact_step: limits.contact,
+            contact_stiffness: repulsion.as_ref().map_or(vec![], |r| r.stiffness()),
             parts: 1,
             conserves: asymmetry <= SYMMETRIC && !spec.schedule.force_unstable,
             bodies: names(spec, &body),

@@ -98,6 +98,19 @@ pub(super) fn repulsion<const D: usize>(
 }
 
 impl Rules {
+    /// Of points of a material among themselves (force / volume² / length), per material of the spec that a body is made of, as the first
+    /// body has it.
+    pub fn stiffness(&self) -> Vec<f64> {
+        let mut of: Vec<(usize, f64)> = vec![];
+        for (n, kind) in self.kinds.iter().enumerate() {
+            if of.iter().all(|(material, _)| *material != kind.material) {
+                of.push((kind.material, self.repulsion.stiffness.at(n, n)));
+            }
+        }
+        of.sort_by_key(|(material, _)| *material);
+        of.into_iter().map(|(_, stiffness)| stiffness).collect()
+    }
+
     /// Name of the material of a kind.
     pub fn name<'a>(&self, spec: &'a Spec, kind: usize) -> &'a str {
         let material = self.kinds.get(kind).map_or(0, |k| k.material);

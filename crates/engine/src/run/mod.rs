@@ -88,6 +88,8 @@ pub struct Info {
     pub stable_step: f64,
     /// Of points in contact alone; ∞ without contact.
     pub contact_step: f64,
+    /// Of contact between points of a material, per material (force / volume² / length); empty: none touch.
+    pub contact_stiffness: Vec<f64>,
     /// Most parts in which a step was done so far, as bonds became shorter and stiffer.
     pub parts: u32,
     /// Has it an energy that is kept, as action is reaction? (Where a step that is too long was asked for, nobody says so.)

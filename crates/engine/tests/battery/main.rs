@@ -16,6 +16,7 @@ mod motion;
 mod own_law;
 mod repeat;
 mod sample;
+mod scale;
 mod shifted;
 mod stability;
 mod tangents;

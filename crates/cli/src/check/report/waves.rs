@@ -185,3 +185,34 @@ pub(super) fn fracture(found: &Findings) -> String {
         format!("Fracture\n{out}")
     }
 }
+
+pub(super) fn contact(found: &Findings) -> String {
+    let Some(contact) = &found.spec.contact else {
+        return String::new();
+    };
+    let units = found.units;
+    let mut out = String::new();
+    let stiffness = &found.sim.info().contact_stiffness;
+    let alike = stiffness.windows(2).all(|two| two[0] == two[1]);
+    for (m, k) in found.materials.iter().zip(stiffness) {
+        let of = if alike {
+            String::new()
+        } else {
+            format!("{}: ", m.name)
+        };
+        let k = units.show(*k, Dim::CONTACT_STIFFNESS);
+        row(&mut out, "stiffness", format!("{of}{k}"));
+        if alike {
+            break;
+        }
+    }
+    row(
+        &mut out,
+        "touch",
+        format!(
+            "nearer than {} of their distance in the reference and than {} spacings",
+            contact.bonded, contact.free
+        ),
+    );
+    format!("Contact\n{out}")
+}

@@ -60,12 +60,17 @@ pub(super) fn constants<const D: usize>(
             )
             .help("remove fracture, contact and pre-cracks, or take pmb or lps"));
         }
-        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, continuum);
+        // contact knows no influence function: its c is that of bonds that weigh alike
+        let alike = |moments: Moments| Moments {
+            first: moments.bare,
+            ..moments
+        };
+        let hard = |stiffness| micromodulus(D, spec.plane, stiffness, alike(continuum));
         let (value, contact) = match m.law.linear() {
             LawSpec::Pmb(stiffness) => {
                 let stiffness = *stiffness;
                 bond.push(c(stiffness));
-                (c(stiffness), c(stiffness))
+                (c(stiffness), c(stiffness) * (moments.first / moments.bare))
             }
             LawSpec::Lps(moduli) => {
                 let k = if D == 1 { moduli.young } else { moduli.bulk() };
