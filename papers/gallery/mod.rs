@@ -24,6 +24,8 @@ mod hertz;
 mod kalthoff;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
+#[path = "shock-tube/mod.rs"]
+mod shock_tube;
 mod spall;
 #[path = "sphere-on-plate/mod.rs"]
 mod sphere_on_plate;
@@ -63,5 +65,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &creep::Creep,
         &touching_bars::TouchingBars,
         &bimetal::Bimetal,
+        &shock_tube::ShockTube,
     ]
 }
