@@ -16,6 +16,7 @@ mod compact_tension;
 mod creep;
 #[path = "double-cantilever/mod.rs"]
 mod double_cantilever;
+mod fatigue;
 #[path = "fibre-composite/mod.rs"]
 mod fibre_composite;
 #[path = "fragmenting-cylinder/mod.rs"]
@@ -65,6 +66,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &creep::Creep,
         &touching_bars::TouchingBars,
         &bimetal::Bimetal,
+        &fatigue::Fatigue,
         &shock_tube::ShockTube,
     ]
 }
