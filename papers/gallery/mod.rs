@@ -16,6 +16,7 @@ mod compact_tension;
 mod creep;
 #[path = "double-cantilever/mod.rs"]
 mod double_cantilever;
+mod fatigue;
 #[path = "fibre-composite/mod.rs"]
 mod fibre_composite;
 #[path = "fragmenting-cylinder/mod.rs"]
@@ -25,6 +26,8 @@ mod kalthoff;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
 mod quench;
+#[path = "shock-tube/mod.rs"]
+mod shock_tube;
 mod spall;
 #[path = "sphere-on-plate/mod.rs"]
 mod sphere_on_plate;
@@ -65,5 +68,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &touching_bars::TouchingBars,
         &bimetal::Bimetal,
         &quench::Quench,
+        &fatigue::Fatigue,
+        &shock_tube::ShockTube,
     ]
 }

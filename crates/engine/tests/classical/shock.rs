@@ -1,4 +1,4 @@
-//! Shocks: Sod's tube against the exact solution of its Riemann problem, an impact of copper against its Hugoniot, and where their energy goes.
+//! Shocks: an impact of copper against its Hugoniot, and where the energy of it and of Sod's tube goes.
 
 use super::e;
 use peridyne::run::{Options, Simulation, build};
@@ -115,88 +115,25 @@ fn profile(sim: &mut dyn Simulation) -> Vec<[f64; 5]> {
     row
 }
 
-/// The exact solution of Sod's problem at `x/t`: velocity, pressure, density (Toro 2009, 4.3).
-fn sod(s: f64) -> [f64; 3] {
-    let g = 1.4f64;
-    let (pl, pr, rl, rr) = (1.0, 0.1, 1.0, 0.125f64);
-    let (al, ar) = ((g * pl / rl).sqrt(), (g * pr / rr).sqrt());
-    let fan = |p: f64| 2.0 * al / (g - 1.0) * ((p / pl).powf((g - 1.0) / (2.0 * g)) - 1.0);
-    let shock = |p: f64| {
-        let (a, b) = (2.0 / ((g + 1.0) * rr), (g - 1.0) / (g + 1.0) * pr);
-        (p - pr) * (a / (p + b)).sqrt()
-    };
-    let (mut low, mut high) = (pr, pl);
-    for _ in 0..200 {
-        let p = 0.5 * (low + high);
-        if fan(p) + shock(p) > 0.0 {
-            high = p;
-        } else {
-            low = p;
-        }
-    }
-    let p = 0.5 * (low + high);
-    let u = 0.5 * (shock(p) - fan(p));
-    let k = (g - 1.0) / (g + 1.0);
-    let front = ar * ((g + 1.0) / (2.0 * g) * p / pr + (g - 1.0) / (2.0 * g)).sqrt();
-    let behind = al * (p / pl).powf((g - 1.0) / (2.0 * g));
-    if s > front {
-        [0.0, pr, rr]
-    } else if s > u {
-        [u, p, rr * (p / pr + k) / (k * p / pr + 1.0)]
-    } else if s > u - behind {
-        [u, p, rl * (p / pl).powf(1.0 / g)]
-    } else if s > -al {
-        let u = 2.0 / (g + 1.0) * (al + s);
-        let a = (al - 0.5 * (g - 1.0) * u) / al;
-        [
-            u,
-            pl * a.powf(2.0 * g / (g - 1.0)),
-            rl * a.powf(2.0 / (g - 1.0)),
-        ]
-    } else {
-        [0.0, pl, rl]
-    }
-}
-
-/// Mean differences of velocity, pressure and density from the exact solution, and how far energy is from that at first over the
-/// kinetic energy.
-fn tube(cells: i32, part: f64) -> [f64; 4] {
+/// How far energy is from that at first over the kinetic energy, in Sod's tube with such a part of the stable step.
+fn tube(part: f64) -> f64 {
+    let cells = 100;
     let h = 1.0 / f64::from(cells);
     let mut spec = strip(cells, h, (1.0, gas(1.0)), (0.125, gas(0.1)));
     held(&mut spec);
     spec.schedule.time_step = TimeStep::Fraction(part);
     let mut sim = start(&spec);
     go(sim.as_mut(), 0.2);
-    let t = sim.time();
-    let mut off = [0.0; 4];
-    for [x, v, p, j, reference] in profile(sim.as_mut()) {
-        let own = if reference < 0.0 { 1.0 } else { 0.125 };
-        let exact = sod(x / t);
-        // what a point stands for now
-        for (n, found) in [v, p, own / j].into_iter().enumerate() {
-            off[n] += h * j * (found - exact[n]).abs();
-        }
-    }
     let ledger = sim.ledger().unwrap();
-    off[3] = ledger.residual().abs() / ledger.kinetic;
-    off
+    ledger.residual().abs() / ledger.kinetic
 }
 
-/// Discontinuities spread over the horizon: differences fall with it. Bounds of size were set after the first run, which had 0.0161, 0.0086
-/// and 0.0070 of 200 cells; that they halve is theory.
+/// The balance is of second order in the step. What the gas does is beside the exact solution in `papers/gallery/shock-tube`.
 #[test]
-fn sods_tube_goes_to_the_exact_solution() {
-    let [coarse, fine, slow] = [(100, 0.3), (200, 0.3), (100, 0.15)].map(|(n, p)| tube(n, p));
-    println!("Sod's tube: {coarse:?}, {fine:?}, {slow:?}");
-    for (n, most) in [0.018, 0.010, 0.008].into_iter().enumerate() {
-        assert!(fine[n] < most, "{n}: {fine:?}");
-        assert!(coarse[n] / fine[n] > 1.7, "{n}: {coarse:?} {fine:?}");
-    }
-    // the balance of energy is of second order in the step
-    assert!(
-        coarse[3] < 5e-3 && coarse[3] / slow[3] > 3.0,
-        "{coarse:?} {slow:?}"
-    );
+fn the_energy_of_sods_tube_is_balanced() {
+    let [coarse, slow] = [0.3, 0.15].map(tube);
+    println!("Sod's tube: {coarse:e}, {slow:e}");
+    assert!(coarse < 5e-3 && coarse / slow > 3.0, "{coarse} {slow}");
 }
 
 /// Pressure behind the shock and its speed: `p = ρ₀ U u`, `U = c₀ + s u` (copper: c₀ = 3940 m/s, s = 1.489; Marsh 1980). Bounds were set after a first
