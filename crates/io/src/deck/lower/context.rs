@@ -328,11 +328,16 @@ impl<'a> Context<'a> {
             all.push((expression, kind, &number.span));
         }
         let dim = measured.unwrap_or(Dim::NUMBER);
-        for (_, kind, span) in &all {
-            if !(kind.can_be(dim) || measured.is_none() && !kind.unit) {
+        for (expression, kind, span) in &all {
+            // a number beside a length is none, but 0
+            let stray = dim != Dim::NUMBER
+                && !kind.unit
+                && expression.as_constant().is_some_and(|x| x != 0.0);
+            if measured.is_some() && (stray || !kind.can_be(dim)) {
                 let message =
                     format!("the components of `{name}` measure the same, and another is {dim}");
-                return Err(self.error(span, message));
+                let help = "write lengths, as -y and x, or numbers, as -y/hypot(x, y)";
+                return Err(self.error_with(span, message, help));
             }
         }
         let constants: Option<Vec<f64>> = all.iter().map(|(e, ..)| e.as_constant()).collect();

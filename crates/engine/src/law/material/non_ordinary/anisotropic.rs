@@ -5,10 +5,10 @@
 //! In the plane the third axis is across: plane strain leaves out what is across, plane stress is condensed,
 //! `Q = C_pp − C_pa C_aa⁻¹ C_ap`.
 
+use super::direction::{Axes, FIBRE, NORMAL};
 use super::stiffness::{
     self, ACROSS, PAIRS, PLANE, Stiffness, in_plane, mean, orthotropic, symmetric, turned,
 };
-use super::direction::{Axes, FIBRE, NORMAL};
 use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Halo, Shape};
 use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};

@@ -264,7 +264,9 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         };
         let place = quantity::place(&body.position(slot)[..D]);
         let message = message!["at ", place, ": ", why];
-        BuildError::invalid(format!("materials[{n}].law"), message)
+        BuildError::invalid(format!("materials[{n}].law"), message).help(
+            "give this place another direction (`a ? b : c` chooses), another material, or leave it out of the body",
+        )
     };
     match (&body.layout, stencil) {
         (Layout::Grid(grid), Some(stencil)) => {
