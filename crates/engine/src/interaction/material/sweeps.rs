@@ -139,7 +139,7 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 v.memory_back::<L>(at.number, k, part)
             };
             let partner = v.point::<L>(ends);
-            let constants = if v.alike {
+            let constants = if v.alike || !M::READS {
                 at.constants
             } else {
                 v.constants_at::<L>(ends)

@@ -303,6 +303,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const STRETCHES: bool = true;
     /// Is a bond of one material in the same state at both its ends: do answers and memory know nothing of points? True saves half.
     const ALIKE: bool = false;
+    /// Does an answer read constants? False saves finding those of the other end.
+    const READS: bool = true;
     /// Are its force states slopes of its energy? Laws of rates have no potential.
     const POTENTIAL: bool = true;
     /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?

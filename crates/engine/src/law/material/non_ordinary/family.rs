@@ -126,6 +126,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     const STIFFENS: bool = true;
     const FORM_OF_WHOLE: bool = true;
     const PLACED: bool = L::PLACED;
+    const READS: bool = false;
 
     fn columns(&self) -> Columns {
         let answers = Declaration::of_points(
