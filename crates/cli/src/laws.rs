@@ -140,6 +140,7 @@ fn explain(key: &Key) -> String {
                 .map(|(name, d, b)| format!("{name} ({})", number(*d, b)));
             format!("rows of {}", each.collect::<Vec<_>>().join(", "))
         }
+        Value::Direction => "three numbers or expressions of x, y, z".into(),
         Value::Word(words) => {
             let words: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
             format!("one of {}", words.join(", "))

@@ -79,6 +79,21 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
     .expect("an energy");
     let written = Parameters::default().with("energy", Parameter::Formula(energy));
     let fluid = [("bulk", 1.0), ("hugoniot_slope", 1.5), ("gruneisen", 2.0)];
+    let ply = |fibre: Parameter, gradient: &str| {
+        let list = |x: [f64; 3]| Parameter::List(x.to_vec());
+        let all = Parameters::default()
+            .with("young", list([4.0, 1.0, 0.8]))
+            .with("poisson", list([0.3, 0.25, 0.4]))
+            .with("shear", list([0.5, 0.4, 0.35]))
+            .with("fibre", fibre)
+            .with("gradient", Parameter::Word(gradient.into()));
+        LawSpec::named("anisotropic", all)
+    };
+    let straight = || Parameter::List(vec![1.0, 1.0, 0.0]);
+    let bent = || {
+        let component = |text: &str| Expression::parse(text, &[]).expect("an expression");
+        Parameter::Direction(["-y - 1", "x + 1", "0"].map(component))
+    };
     let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.1)]);
     vec![
         (
@@ -110,6 +125,10 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         ("metal, elastic yet", metal(1e3)),
         ("metal, flowing", metal(1e-9)),
         ("softening", LawSpec::named("softening", softening)),
+        ("ply, straight", ply(straight(), "family")),
+        ("ply, bent", ply(bent(), "family")),
+        ("ply of bonds, straight", ply(straight(), "bond")),
+        ("ply of bonds, bent", ply(bent(), "bond")),
     ]
 }
 

@@ -2,6 +2,7 @@
 //! reference pages follow; and how constants come of them.
 
 use crate::columns::Dimension;
+use crate::expression::Expression;
 use crate::law::solid::eam_like::Solid;
 use crate::quantity::rounded;
 use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
@@ -48,6 +49,8 @@ pub enum Value {
     Number(Dimension, Bounds),
     /// So many numbers.
     List(usize, Dimension, Bounds),
+    /// Three components, numbers or expressions of x, y, z: where to, however long.
+    Direction,
     /// Rows of numbers, a dimension and bounds for each column.
     Rows(&'static [(&'static str, Dimension, Bounds)]),
     /// Rows of constants for triples of kinds: three kinds of atom, counted from 0, and a number for each column; in decks the name of a
@@ -226,9 +229,12 @@ impl Key {
             Value::Number(dimension, _)
             | Value::List(_, dimension, _)
             | Value::Formula(_, dimension) => Some(dimension),
-            Value::Rows(_) | Value::Entries(_) | Value::Word(_) | Value::Name | Value::Table => {
-                None
-            }
+            Value::Direction
+            | Value::Rows(_)
+            | Value::Entries(_)
+            | Value::Word(_)
+            | Value::Name
+            | Value::Table => None,
         }
     }
 }
@@ -428,6 +434,21 @@ impl Value {
                     Some(x) => Err(format!("`{name}` has {x}, expected {}", bounds.words())),
                 }
             }
+            (Value::Direction, Parameter::List(list)) => match list[..] {
+                [0.0, 0.0, 0.0] => Err(format!("`{name}` is a direction: it cannot be 0")),
+                [_, _, _] if list.iter().all(|x| x.is_finite()) => Ok(()),
+                [_, _, _] => Err(format!("`{name}` has {list:?}, expected finite numbers")),
+                _ => {
+                    let found = list.len();
+                    Err(format!("`{name}` has {found} components, expected 3"))
+                }
+            },
+            (Value::Direction, Parameter::Direction(components)) => {
+                match components.iter().any(Expression::depends_on_time) {
+                    true => Err(format!("`{name}` is one of the reference: it knows no t")),
+                    false => Ok(()),
+                }
+            }
             (Value::Rows(columns), Parameter::Rows(rows)) => {
                 let fits = |row: &&Vec<f64>| {
                     let each = || row.iter().zip(*columns).all(|(x, c)| c.2.hold(*x));
@@ -471,6 +492,9 @@ impl Value {
             (Value::Table, Parameter::Table(table)) => table.check(),
             (Value::Number(..), _) => Err(format!("`{name}` is a number")),
             (Value::List(..), _) => Err(format!("`{name}` is a list of numbers")),
+            (Value::Direction, _) => Err(format!(
+                "`{name}` is a direction, three numbers or expressions of x, y, z"
+            )),
             (Value::Entries(_), _) => Err(format!("`{name}` is a list of rows")),
             (Value::Rows(_), _) => Err(format!("`{name}` is a list of rows")),
             (Value::Formula(variables, _), _) => Err(format!(

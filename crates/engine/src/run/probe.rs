@@ -28,8 +28,8 @@ pub(super) fn bonds<const D: usize>(
     cell_volume: Option<f64>,
 ) -> Result<f64, BuildError> {
     let lambda = match &body.layout {
-        // no block has all the factors of a body
-        Layout::Grid(grid) if body.points() > LARGE && spec.bonds.is_empty() => {
+        // no block has all the factors of a body, nor all its places
+        Layout::Grid(grid) if body.points() > LARGE && spec.bonds.is_empty() && !model.varies() => {
             let reach = model.stencil.as_ref().map_or(1, |s| s.reach);
             // in the plane and in space a block of many large families would cost more than the run
             let block = match D {

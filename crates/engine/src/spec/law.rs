@@ -232,6 +232,8 @@ pub enum Parameter {
     Word(String),
     /// An expression of the variables that the law's key names.
     Formula(Expression),
+    /// Components of a direction, expressions of x, y, z; one that is the same everywhere is a list of three numbers.
+    Direction([Expression; 3]),
     /// The tables of an embedded-atom model.
     Table(Arc<TableSpec>),
 }
@@ -308,6 +310,14 @@ impl Parameters {
             return None;
         };
         Some(formula)
+    }
+
+    /// Of a direction that differs from place to place.
+    pub fn direction(&self, key: &str) -> Option<&[Expression; 3]> {
+        let Parameter::Direction(components) = self.get(key)? else {
+            return None;
+        };
+        Some(components)
     }
 
     pub fn table(&self, key: &str) -> Option<&Arc<TableSpec>> {

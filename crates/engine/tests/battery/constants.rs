@@ -17,8 +17,6 @@ const FREE: &[(&str, &str, &str)] = &[
         "with `young`: the compliance is positive",
     ),
     ("anisotropic", "stiffness", "it is that of a stable solid"),
-    ("anisotropic", "fibre", "a direction"),
-    ("anisotropic", "normal", "a direction"),
     (
         "hypoelastic_plastic",
         "damage",
@@ -84,6 +82,14 @@ fn numbers_out_of_bounds_are_refused_by_their_key() {
                     }
                 }
                 Value::Word(_) => refused(key.name, Parameter::Word("no such word".into())),
+                Value::Direction => {
+                    for list in [[0.0; 3], [1.0, f64::NAN, 0.0], [f64::INFINITY, 0.0, 0.0]] {
+                        refused(key.name, Parameter::List(list.to_vec()));
+                        asked += 1;
+                    }
+                    refused(key.name, Parameter::List(vec![1.0; 2]));
+                    refused(key.name, Parameter::Number(1.0));
+                }
                 Value::Formula(..) => refused(key.name, Parameter::Number(1.0)),
                 Value::Entries(_) | Value::Name | Value::Table => {}
             }

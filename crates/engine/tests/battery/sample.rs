@@ -110,6 +110,14 @@ pub fn materials() -> Vec<Material> {
             .with("fibre", list(fibre));
         LawSpec::named("anisotropic", all)
     };
+    let bent = |law: LawSpec| match law {
+        LawSpec::Named(mut law) => {
+            let fibre = ["1", "sin(3*x) + y", "0"].map(e);
+            law.parameters.set("fibre", Parameter::Direction(fibre));
+            LawSpec::Named(law)
+        }
+        law => law,
+    };
     let softening = |young: f64| {
         let all = Parameters::numbers(&[("young", young), ("onset", 0.1)]);
         LawSpec::named("softening", all)
@@ -268,6 +276,15 @@ pub fn materials() -> Vec<Material> {
                 "plies",
                 ply(3.0, [1.0, 2.0, 0.0]),
                 ply(2.0, [2.0, -1.0, 0.0]),
+                Influence::Inverse,
+            )
+        },
+        Material {
+            lives: |d, _| d > 1,
+            ..two(
+                "wound",
+                bent(of_bonds(ply(3.0, [1.0, 0.0, 0.0]))),
+                of_bonds(ply(2.0, [2.0, -1.0, 0.0])),
                 Influence::Inverse,
             )
         },

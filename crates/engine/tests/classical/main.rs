@@ -1,9 +1,10 @@
-//! Answers of classical mechanics that laws with memory must give.
+//! Answers of classical mechanics that laws with memory or tensors must give.
 
 mod compact;
 mod plastic;
 mod relaxing;
 mod shock;
+mod wound;
 
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};

@@ -44,6 +44,7 @@ fn file_key(of: &Descriptor) -> Option<(&'static str, bool)> {
         Value::Entries(_) => Some((k.name, false)),
         Value::Number(..)
         | Value::List(..)
+        | Value::Direction
         | Value::Rows(_)
         | Value::Word(_)
         | Value::Formula(..)

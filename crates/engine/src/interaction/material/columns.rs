@@ -20,6 +20,7 @@ enum Place {
     Memory(usize),
     Past(usize),
     Point(usize),
+    Reference(usize),
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
@@ -28,6 +29,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             memory,
             past,
             point,
+            places,
         } = self.law.columns();
         let mut breaks = history::columns(!self.critical.is_empty() && self.work.is_empty());
         if !self.work.is_empty() {
@@ -50,14 +52,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 "What cycles of load have left of the life of a bond, 1 at first (Silling & Askari 2014).",
             ));
         }
-        [breaks, memory, past, point].concat()
+        [breaks, memory, past, point, places].concat()
     }
 
     /// Where a number of points of this name is among what the law remembers of them.
     pub(super) fn past_of(&self, name: &str) -> Option<usize> {
         match self.place(name) {
             Some((_, Place::Past(n))) => Some(n),
-            Some((_, Place::Memory(_) | Place::Point(_))) | None => None,
+            Some((_, Place::Memory(_) | Place::Point(_) | Place::Reference(_))) | None => None,
         }
     }
 
@@ -77,6 +79,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             memory,
             past,
             point,
+            places,
         } = self.law.columns();
         let found = |all: Vec<Declaration>| {
             let mut first = 0;
@@ -91,7 +94,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let memory = found(memory).map(|(d, n)| (d, Place::Memory(n)));
         let past = || found(past).map(|(d, n)| (d, Place::Past(n)));
         let point = || found(point).map(|(d, n)| (d, Place::Point(n)));
-        memory.or_else(past).or_else(point)
+        let places = || found(places).map(|(d, n)| (d, Place::Reference(n)));
+        memory.or_else(past).or_else(point).or_else(places)
     }
 
     pub(super) fn read_named(
@@ -130,6 +134,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         match place {
             Place::Past(first) => of(&self.past, first, out),
             Place::Point(first) => of(&self.point, first, out),
+            Place::Reference(first) => {
+                out.resize(body.len * numbers, 0.0);
+                for slot in body.slots.iter().map(|s| *s as usize) {
+                    let all = (self.law).at_place(body.material_of(slot), &body.position(slot));
+                    let own = &mut out[slot * numbers..][..numbers];
+                    own.copy_from_slice(&all[first..first + numbers]);
+                }
+            }
             Place::Memory(first) => {
                 for at in self.memory_of(first, numbers) {
                     out.push(self.memory[at]);
@@ -205,7 +217,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     .fill_images(&body.images, &mut self.memory, count);
                 true
             }
-            (Place::Past(_) | Place::Point(_), _) | (Place::Memory(_), On::Points) => false,
+            (Place::Past(_) | Place::Point(_) | Place::Reference(_), _)
+            | (Place::Memory(_), On::Points) => false,
         }
     }
 

@@ -285,6 +285,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + self.breaks.len()
             + self.torn.len()
             + self.material.len()
+            + self.placed.bytes()
             + self.form.bytes()
             + self.point.bytes()
             + self.past.bytes()

@@ -52,6 +52,8 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     materials: usize,
     /// Material per slot; empty: one.
     material: Vec<u8>,
+    /// Constants of every point of a law that [varies](Material::varies); else empty.
+    placed: Store,
     form: Store,
     point: Store,
     past: Store,
@@ -107,8 +109,32 @@ pub struct MaterialParts<'a, const D: usize, F, M> {
     pub simd: Simd,
 }
 
+/// Constants of every point; empty where those of the materials say it all.
+fn placed<const D: usize, F: Family<D>, M: Material<D>>(
+    law: &M,
+    family: &F,
+    body: &Body<D>,
+) -> Result<Store, (usize, String)> {
+    let count = <M::Constants<f64> as Numbers<f64>>::COUNT;
+    if !(M::PLACED && law.varies()) {
+        return Ok(Store::zeros(family.layout(0)));
+    }
+    let mut all = Store::zeros(family.layout(count));
+    for &s in &body.slots {
+        let slot = s as usize;
+        let of = law
+            .constants_at(body.material_of(slot), &body.position(slot))
+            .map_err(|why| (slot, why))?;
+        (0..count).for_each(|n| all.set(n, slot, of.get(n)));
+    }
+    all.fill_images(&body.images);
+    Ok(all)
+}
+
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
-    pub fn new(parts: MaterialParts<D, F, M>) -> Self {
+    /// # Errors
+    /// The slot whose place has no constants, and why.
+    pub fn new(parts: MaterialParts<D, F, M>) -> Result<Self, (usize, String)> {
         let MaterialParts {
             body,
             family,
@@ -158,7 +184,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let store = |numbers| Store::zeros(family.layout(numbers));
         let blocks = family.groups().div_ceil(BLOCK);
         let gathers = family.layout(1).records;
-        MaterialInteraction {
+        let placed = placed(&law, &family, body)?;
+        Ok(MaterialInteraction {
             body: body.identity,
             counted: alive.clone(),
             alive,
@@ -169,6 +196,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 true => (0..body.len).map(|s| body.material_of(s) as u8).collect(),
                 false => vec![],
             },
+            placed,
             form: store(<M::Form<f64> as Numbers<f64>>::COUNT),
             point: store(<M::Point<f64> as Numbers<f64>>::COUNT),
             past: store(<M::Past<f64> as Numbers<f64>>::COUNT),
@@ -201,7 +229,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             toughness,
             criteria,
             repulsion,
-        }
+        })
     }
 
     /// `[materials][numbers]` for a step of this length.
@@ -252,6 +280,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             alive: Shared(self.alive.as_ptr().cast_mut()),
             constants: &room.constants,
             material: &self.material,
+            placed: self.placed.view(),
+            alike: self.material.is_empty() && self.placed.data.is_empty(),
             form: self.form.view(),
             point: self.point.view(),
             past: self.past.view(),

@@ -130,7 +130,7 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 memory: &memory,
             },
         );
-        let other = if M::ALIKE && v.material.is_empty() {
+        let other = if M::ALIKE && v.alike {
             own.mirrored()
         } else {
             let back = if M::ALIKE {
@@ -139,7 +139,7 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 v.memory_back::<L>(at.number, k, part)
             };
             let partner = v.point::<L>(ends);
-            let constants = if v.material.is_empty() {
+            let constants = if v.alike || !M::READS {
                 at.constants
             } else {
                 v.constants_at::<L>(ends)

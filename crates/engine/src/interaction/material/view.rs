@@ -23,6 +23,10 @@ pub struct View<'a, const D: usize, F, M> {
     pub constants: &'a [f64],
     /// Material per slot; empty: one.
     pub material: &'a [u8],
+    /// Constants of every point, of laws whose constants differ from place to place.
+    pub placed: Rows,
+    /// Are those of all points the same?
+    pub alike: bool,
     pub form: Rows,
     pub point: Rows,
     pub past: Rows,
@@ -79,17 +83,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         }
     }
 
-    /// Constants of the materials at some slots.
+    /// Constants of the materials at some slots, or of the slots.
     #[inline(always)]
     pub unsafe fn constants_at<L: Lane>(&self, slots: F::Slots) -> M::Constants<L> {
         let count = <M::Constants<L> as Numbers<L>>::COUNT;
         let mut out = <M::Constants<L> as Numbers<L>>::constant(0.0);
-        if self.material.is_empty() {
+        if self.alike {
             for n in 0..count {
                 // SAFETY: a row per material
                 out.set(n, L::splat(unsafe { *self.constants.get_unchecked(n) }));
             }
             return out;
+        }
+        if M::PLACED && self.placed.layout.numbers > 0 {
+            // SAFETY: slots of the family, constants for each
+            return unsafe { slots.load::<L, M::Constants<L>>(self.placed) };
         }
         for n in 0..count {
             let mut all = [0.0; TILE];

@@ -98,6 +98,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
                 "Equivalent plastic strain ε̄, work-conjugate to the yield stress.",
             )],
             point: vec![],
+            ..Columns::default()
         }
     }
 

@@ -18,6 +18,7 @@ pub mod viscoelastic;
 use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
+use crate::space::Point;
 use crate::spec::Parameters;
 pub use non_ordinary::{BondAssociated, NonOrdinary};
 pub use numbers::{Numbers, Sink, Source};
@@ -264,6 +265,8 @@ pub struct Columns {
     pub past: Vec<Declaration>,
     /// Of the first numbers of [`Material::Point`]; others are nobody's business.
     pub point: Vec<Declaration>,
+    /// Of [`Material::at_place`].
+    pub places: Vec<Declaration>,
 }
 
 /// A law.
@@ -300,6 +303,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const STRETCHES: bool = true;
     /// Is a bond of one material in the same state at both its ends: do answers and memory know nothing of points? True saves half.
     const ALIKE: bool = false;
+    /// Does an answer read constants? False saves finding those of the other end.
+    const READS: bool = true;
     /// Are its force states slopes of its energy? Laws of rates have no potential.
     const POTENTIAL: bool = true;
     /// Does [`Material::form`] see the bonds that are whole now, or the family as it was?
@@ -308,6 +313,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const STIFFENS: bool = false;
     /// Does a point remember the sum of what its bonds do ([`Material::gathered`])?
     const GATHERS: bool = false;
+    /// May its constants differ from place to place ([`Material::varies`])?
+    const PLACED: bool = false;
 
     /// Names of what the law remembers and makes.
     fn columns(&self) -> Columns {
@@ -321,6 +328,24 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
 
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
+
+    /// Do constants of any material differ from place to place? Then they know no step, and every point has its own.
+    fn varies(&self) -> bool {
+        false
+    }
+
+    /// Constants of a material at a place of the reference (length).
+    ///
+    /// # Errors
+    /// What is wrong there.
+    fn constants_at(&self, material: usize, _: &Point) -> Result<Self::Constants<f64>, String> {
+        Ok(self.constants(material, 0.0))
+    }
+
+    /// Numbers of the columns that a law makes of a material and a place of the reference (length), one after the other.
+    fn at_place(&self, _material: usize, _place: &Point) -> Vec<f64> {
+        vec![]
+    }
 
     /// From its reference family.
     fn form(&self, _material: usize, _kin: Kin<D>) -> Self::Form<f64> {

@@ -191,6 +191,11 @@ impl ConstitutiveModel {
         })
     }
 
+    /// Are there constants that differ from place to place?
+    pub fn varies(&self) -> bool {
+        self.named.as_ref().is_some_and(shelf::Chosen::varies)
+    }
+
     /// `ω ν` of a bond of length r0.
     pub fn weight(&self, r0: f64) -> f64 {
         let nu = if self.scaling {

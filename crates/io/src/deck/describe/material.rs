@@ -61,6 +61,10 @@ fn constants(law: &LawSpec, units: UnitSystem) -> String {
             (_, Parameter::List(list)) => format!("{list:?}"),
             (_, Parameter::Rows(rows)) => format!("{rows:?}"),
             (_, Parameter::Formula(formula)) => formula.source().into(),
+            (_, Parameter::Direction(components)) => {
+                let each = components.iter().map(|e| e.source());
+                format!("[{}]", each.collect::<Vec<_>>().join(", "))
+            }
             (_, Parameter::Table(_)) => "tables".into(),
         };
         said += &format!(", {} = {value}", key.replace('_', " "));

@@ -1,6 +1,7 @@
 //! The law of a material as written: a name of the shelf, and its keys by its descriptor.
 
 use crate::deck::value::{At, Number, Written};
+use peridyne::columns::Dimension;
 use peridyne::law::descriptor::{Descriptor, Key, Need, Value};
 use peridyne::run::Shelf;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -125,7 +126,7 @@ impl<'de> Visitor<'de> for Constants<'_> {
             }
             let given = match key.value {
                 Value::Number(..) => Given::Number(map.next_value()?),
-                Value::List(..) => Given::List(map.next_value()?),
+                Value::List(..) | Value::Direction => Given::List(map.next_value()?),
                 Value::Rows(_) => Given::Rows(map.next_value()?),
                 Value::Name | Value::Formula(..) | Value::Table | Value::Entries(_) => {
                     Given::Word(map.next_value()?)
@@ -170,7 +171,7 @@ impl JsonSchema for Law {
             let key = |k: &Key| {
                 let mut value = match k.value {
                     Value::Number(..) => number.clone().to_value(),
-                    Value::List(..) => json!({
+                    Value::List(..) | Value::Direction => json!({
                         "type": "array",
                         "items": number.clone().to_value(),
                     }),
@@ -192,6 +193,10 @@ impl JsonSchema for Law {
                     Value::Formula(variables, d) => {
                         (Some(d), format!("an expression of {}", variables.join(", ")))
                     }
+                    Value::Direction => (
+                        Some(Dimension::NUMBER),
+                        "three, numbers or expressions of x, y, z".into(),
+                    ),
                     Value::Rows(_) | Value::Word(_) | Value::Name => (None, String::new()),
                     Value::Table | Value::Entries(_) => (None, String::new()),
                 };

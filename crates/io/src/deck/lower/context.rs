@@ -6,7 +6,7 @@ use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem};
 use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
 use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
-use peridyne::spec::AnyLinearBody;
+use peridyne::spec::{AnyLinearBody, Parameter};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -311,6 +311,50 @@ impl<'a> Context<'a> {
             return Ok(Expression::constant(self.finite(number, dim)?));
         };
         self.meaning(text, &number.span, dim)
+    }
+
+    /// Where to: three components, expressions of x, y, z that measure the same, whatever it is. Numbers where none asks for the place.
+    pub fn direction(&self, name: &str, list: &At<Vec<Number>>) -> Result<Parameter> {
+        let mut all = vec![];
+        let mut measured = None;
+        for number in &list.value {
+            let (expression, kind) = match &number.value {
+                Written::Plain(x) => (Expression::constant(*x), Kind::bare(*x == 0.0)),
+                Written::Text(text) => self.compile(text, &number.span)?,
+            };
+            if kind.unit && !kind.takes_any() {
+                measured.get_or_insert(kind.dim());
+            }
+            all.push((expression, kind, &number.span));
+        }
+        let dim = measured.unwrap_or(Dim::NUMBER);
+        for (expression, kind, span) in &all {
+            // a number beside a length is none, but 0
+            let stray = dim != Dim::NUMBER
+                && !kind.unit
+                && expression.as_constant().is_some_and(|x| x != 0.0);
+            if measured.is_some() && (stray || !kind.can_be(dim)) {
+                let message =
+                    format!("the components of `{name}` measure the same, and another is {dim}");
+                let help = "write lengths, as -y and x, or numbers, as -y/hypot(x, y)";
+                return Err(self.error_with(span, message, help));
+            }
+        }
+        let constants: Option<Vec<f64>> = all.iter().map(|(e, ..)| e.as_constant()).collect();
+        if let Some(numbers) = constants {
+            return match numbers.iter().all(|x| x.is_finite()) {
+                true => Ok(Parameter::List(numbers)),
+                false => Err(self.error(&list.span, "these components must be finite")),
+            };
+        }
+        let components: Vec<Expression> = all.into_iter().map(|(e, ..)| e).collect();
+        match <[Expression; 3]>::try_from(components) {
+            Ok(components) => Ok(Parameter::Direction(components)),
+            Err(found) => Err(self.error(
+                &list.span,
+                format!("`{name}` has {} components, expected 3", found.len()),
+            )),
+        }
     }
 
     fn list<'v>(&self, numbers: &'v [Number], span: &Range<usize>) -> Result<&'v [Number]> {

@@ -43,6 +43,7 @@ pub(super) fn read<'a>(
                 let each = list.value.iter().map(|x| context.finite(x, dimension));
                 Parameter::List(each.collect::<Result<_>>()?)
             }
+            (Given::List(list), Value::Direction) => context.direction(name, list)?,
             (Given::Rows(rows), Value::Rows(columns)) => {
                 let rows = rows
                     .value

@@ -1,35 +1,79 @@
 //! Anisotropic elasticity, `S = C : E` of Green's strain, `P = F S`: orthotropic solids by their engineering constants, any other by its
-//! stiffness, with axes of their own.
+//! stiffness, with axes of their own, the same everywhere or of each place.
 //!
 //! Voigt's order is 11, 22, 33, 23, 13, 12, with shears `2E₂₃, 2E₁₃, 2E₁₂` (Ting 1996, section 2.3; Jones 1999, sections 2.2 to 2.6).
 //! In the plane the third axis is across: plane strain leaves out what is across, plane stress is condensed,
 //! `Q = C_pp − C_pa C_aa⁻¹ C_ap`.
 
+use super::direction::{Axes, FIBRE, NORMAL};
 use super::stiffness::{
     self, ACROSS, PAIRS, PLANE, Stiffness, in_plane, mean, orthotropic, symmetric, turned,
 };
 use super::{Classical, Stressed, Unseen};
-use crate::columns::Dimension;
+use crate::columns::{Declaration, Dimension, Halo, Shape};
 use crate::law::descriptor::{Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
+use crate::space::Point;
 use crate::spec::{Influence, LawSpec, Parameters, Plane};
 
 /// See the module.
 #[derive(Debug, Clone)]
 pub struct Anisotropic {
-    /// Per material, about the axes of the body: the upper triangle line by line; in the plane that of 11, 22, 12 first.
+    /// Per material, about the axes of the body, of those whose axes are the same everywhere; else zeros.
     materials: Vec<[f64; 21]>,
     /// Mean shear modulus of each.
     shear: Vec<f64>,
+    /// About its own axes, and these.
+    solids: Vec<(Stiffness, Axes)>,
+    plane: Plane,
 }
 
 impl<const D: usize> Classical<D> for Anisotropic {
     type Constants<N: Number> = [N; 21];
     type Past<N: Number> = [N; 0];
+    const PLACED: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> [f64; 21] {
         self.materials[material]
+    }
+
+    fn varies(&self) -> bool {
+        self.solids.iter().any(|(_, axes)| axes.varies())
+    }
+
+    fn constants_at(&self, material: usize, place: &Point) -> Result<[f64; 21], String> {
+        let (own, axes) = &self.solids[material];
+        upper(own, &axes.at(place)?, (D, self.plane))
+    }
+
+    fn places(&self) -> Vec<Declaration> {
+        let axis = |name, doc| {
+            Declaration::of_points(name, Shape::Vector, Dimension::NUMBER, doc)
+                .derived()
+                .halo(Halo::None)
+        };
+        let mut all = vec![axis(
+            FIBRE.name,
+            "Axis 1 of the material in the reference, of length one.",
+        )];
+        if D == 3 {
+            all.push(axis(
+                NORMAL.name,
+                "Axis 3 of the material in the reference, of length one.",
+            ));
+        }
+        all
+    }
+
+    /// Axis 1, and axis 3 in space.
+    fn at_place(&self, material: usize, place: &Point) -> Vec<f64> {
+        let axes = self.solids[material].1.at(place);
+        let [first, _, third] = axes.unwrap_or([[f64::NAN; 3]; 3]);
+        match D {
+            3 => [first, third].concat(),
+            _ => first[..D].to_vec(),
+        }
     }
 
     fn shear(&self, material: usize) -> f64 {
@@ -91,35 +135,7 @@ impl<const D: usize> Classical<D> for Anisotropic {
     }
 }
 
-/// The axes of a material, each of length one.
-fn axes(parameters: &Parameters) -> Result<[[f64; 3]; 3], String> {
-    let of = |key: &str, default: [f64; 3]| match parameters.list(key) {
-        Some(list) => [list[0], list[1], list[2]],
-        None => default,
-    };
-    let size = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let [first, third] = [of("fibre", [1.0, 0.0, 0.0]), of("normal", [0.0, 0.0, 1.0])];
-    let [a, b] = [size(&first), size(&third)];
-    if !(a > 0.0 && b > 0.0) {
-        return Err("`fibre` and `normal` are directions: they cannot be 0".into());
-    }
-    let first = first.map(|x| x / a);
-    let along = (0..3).map(|k| first[k] * third[k]).sum::<f64>() / b;
-    let mut third: [f64; 3] = std::array::from_fn(|k| third[k] / b - along * first[k]);
-    let rest = size(&third);
-    if !(rest > 1e-6) {
-        return Err("`fibre` and `normal` are parallel: say another `normal`, the third axis of the material ([0, 0, 1] when left out)".into());
-    }
-    third = third.map(|x| x / rest);
-    // e₂ = e₃ × e₁
-    let second = std::array::from_fn(|k| {
-        let [l, m] = [(k + 1) % 3, (k + 2) % 3];
-        third[l] * first[m] - third[m] * first[l]
-    });
-    Ok([first, second, third])
-}
-
-/// About the axes of the body.
+/// About the axes of the solid.
 fn written(parameters: &Parameters) -> Result<Stiffness, String> {
     let three = |key: &str| match parameters.list(key) {
         Some(list) => Ok([list[0], list[1], list[2]]),
@@ -127,7 +143,7 @@ fn written(parameters: &Parameters) -> Result<Stiffness, String> {
             "with `young` = [E1, E2, E3] go `poisson` = [ν12, ν13, ν23] and `shear` = [G12, G13, G23]; `{key}` is missing"
         )),
     };
-    let own = match parameters.list("stiffness") {
+    match parameters.list("stiffness") {
         Some(list) => {
             for key in ["poisson", "shear"] {
                 if parameters.list(key).is_some() {
@@ -140,11 +156,39 @@ fn written(parameters: &Parameters) -> Result<Stiffness, String> {
             if !stiffness::is_positive(&c) {
                 return Err("the stiffness is not positive definite: no stable solid has it. It is the upper triangle, C11 to C16, C22 to C26, … C66, in the order 11, 22, 33, 23, 13, 12".into());
             }
-            c
+            Ok(c)
         }
-        None => orthotropic(three("young")?, three("poisson")?, three("shear")?)?,
+        None => orthotropic(three("young")?, three("poisson")?, three("shear")?),
+    }
+}
+
+/// The upper triangle about the axes of the body, line by line; in the plane that of 11, 22, 12 first.
+fn upper(
+    own: &Stiffness,
+    axes: &[Point; 3],
+    (d, plane): (usize, Plane),
+) -> Result<[f64; 21], String> {
+    let c = turned(own, axes);
+    let coupled = ACROSS[1..]
+        .iter()
+        .flat_map(|a| [0, 1, 2, 5].map(|p| c[*a][p].abs()));
+    if d == 2 && coupled.fold(0.0, f64::max) > 1e-9 * c[0][0] {
+        return Err("in the plane the third axis of a material is across: `fibre` lies in the plane and `normal` is [0, 0, 1], and no stiffness couples it to shear across".into());
+    }
+    let mut upper = [0.0; 21];
+    let mut at = upper.iter_mut();
+    let mut next = |x: f64| {
+        if let Some(place) = at.next() {
+            *place = x;
+        }
     };
-    Ok(turned(&own, &axes(parameters)?))
+    if d == 2 {
+        let q = in_plane(&c, plane);
+        (0..3).for_each(|r| (r..3).for_each(|s| next(q[r][s])));
+    } else {
+        (0..6).for_each(|r| (r..6).for_each(|s| next(c[r][s])));
+    }
+    Ok(upper)
 }
 
 const fn list(
@@ -171,7 +215,7 @@ impl Shelved for Anisotropic {
     fn descriptor() -> Descriptor {
         Descriptor {
             name: "anisotropic".into(),
-            doc: "Non-ordinary: S = C : E of Green's strain, orthotropic by engineering constants or with any stiffness, about axes of its own. For plies a material each.".into(),
+            doc: "Non-ordinary: S = C : E of Green's strain, orthotropic by engineering constants or with any stiffness, about axes of its own. For plies a material each; fibres that bend follow expressions of the place.".into(),
             source: "Ting 1996; Jones 1999; Silling et al. 2007".into(),
             example: "{ young = [\"140 GPa\", \"10 GPa\", \"10 GPa\"], poisson = [0.3, 0.3, 0.4], shear = [\"5 GPa\", \"5 GPa\", \"3.5 GPa\"], fibre = [1, 1, 0] }".into(),
             influence: Influence::Constant,
@@ -181,46 +225,36 @@ impl Shelved for Anisotropic {
                 list("poisson", NUMBERS, Need::Optional, "ν12, ν13, ν23: contraction along the second axis under a stress along the first; with young."),
                 list("shear", MODULI, Need::Optional, "Shear moduli G12, G13, G23; with young."),
                 list("stiffness", (21, Dimension::PRESSURE, Bounds::ANY), Need::OneOf, "Upper triangle of the stiffness, C11 to C16, C22 to C26, … C66, in the order 11, 22, 33, 23, 13, 12."),
-                list("fibre", NUMBERS, Need::Optional, "Direction of axis 1; [1, 0, 0] when left out."),
-                list("normal", NUMBERS, Need::Optional, "Direction of axis 3, from which its part along the fibre is taken; [0, 0, 1] when left out."),
+                FIBRE,
+                NORMAL,
             ],
         }
     }
 
     /// The isotropic solid of Voigt's mean.
     fn linear(parameters: &Parameters) -> Result<LawSpec, String> {
-        Ok(LawSpec::Lps(mean(&written(parameters)?)))
+        let own = written(parameters)?;
+        Axes::written(parameters).everywhere()?;
+        Ok(LawSpec::Lps(mean(&own)))
     }
 
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let mut law = Anisotropic {
             materials: vec![],
             shear: vec![],
+            solids: vec![],
+            plane,
         };
         for (n, m) in materials.iter().enumerate() {
             let wrong = |message: String| (n, message);
-            let c = written(m.parameters).map_err(wrong)?;
-            let coupled = ACROSS[1..]
-                .iter()
-                .flat_map(|a| [0, 1, 2, 5].map(|p| c[*a][p].abs()));
-            if d == 2 && coupled.fold(0.0, f64::max) > 1e-9 * c[0][0] {
-                return Err(wrong("in the plane the third axis of a material is across: `fibre` lies in the plane and `normal` is [0, 0, 1], and no stiffness couples it to shear across".into()));
-            }
-            let mut upper = [0.0; 21];
-            let mut at = upper.iter_mut();
-            let mut next = |x: f64| {
-                if let Some(place) = at.next() {
-                    *place = x;
-                }
-            };
-            if d == 2 {
-                let q = in_plane(&c, plane);
-                (0..3).for_each(|r| (r..3).for_each(|s| next(q[r][s])));
-            } else {
-                (0..6).for_each(|r| (r..6).for_each(|s| next(c[r][s])));
-            }
-            law.materials.push(upper);
-            law.shear.push(mean(&c).shear());
+            let own = written(m.parameters).map_err(wrong)?;
+            let axes = Axes::written(m.parameters);
+            law.materials.push(match axes.everywhere().map_err(wrong)? {
+                Some(axes) => upper(&own, &axes, (d, plane)).map_err(wrong)?,
+                None => [0.0; 21],
+            });
+            law.shear.push(mean(&own).shear());
+            law.solids.push((own, axes));
         }
         Ok(law)
     }
@@ -427,7 +461,8 @@ mod tests {
     #[test]
     fn the_mean_is_that_of_all_directions() {
         let own = orthotropic([140.0, 10.0, 8.0], [0.3, 0.25, 0.4], [5.0, 4.0, 3.5]).unwrap();
-        let axes = axes(&ply([1.0, 2.0, -0.5], [0.3, 0.0, 1.0])).unwrap();
+        let axes = Axes::written(&ply([1.0, 2.0, -0.5], [0.3, 0.0, 1.0]));
+        let axes = axes.at(&[0.0; 3]).unwrap();
         let [a, b] = [mean(&own), mean(&turned(&own, &axes))];
         assert!((a.young / b.young - 1.0).abs() < 1e-14, "{a:?} {b:?}");
         assert!((a.poisson / b.poisson - 1.0).abs() < 1e-13, "{a:?} {b:?}");

@@ -20,6 +20,7 @@ use crate::law::descriptor::{Descriptor, Given, Shelved};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::material::{Bond, Columns, End, Free, Kin, Material, Numbers, Site};
 use crate::law::number::Number;
+use crate::space::Point as Place;
 use crate::spec::{LawSpec, Parameters, Plane};
 
 /// A classical law on the bonds of a family.
@@ -159,6 +160,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     const STIFFENS: bool = true;
     const FORM_OF_WHOLE: bool = true;
     const GATHERS: bool = true;
+    const PLACED: bool = L::PLACED;
 
     fn columns(&self) -> Columns {
         let of_bond = |column: Declaration| Declaration {
@@ -170,6 +172,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         Columns {
             memory: self.law.columns().into_iter().map(of_bond).collect(),
             past: self.law.columns(),
+            places: self.law.places(),
             ..Columns::default()
         }
     }
@@ -180,6 +183,18 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
 
     fn constants(&self, material: usize, dt: f64) -> L::Constants<f64> {
         self.law.constants(material, dt)
+    }
+
+    fn varies(&self) -> bool {
+        self.law.varies()
+    }
+
+    fn constants_at(&self, material: usize, place: &Place) -> Result<L::Constants<f64>, String> {
+        self.law.constants_at(material, place)
+    }
+
+    fn at_place(&self, material: usize, place: &Place) -> Vec<f64> {
+        self.law.at_place(material, place)
     }
 
     fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {

@@ -15,6 +15,7 @@ use crate::law::material::{
     Bond, Columns, End, Free, Kin, Material, Numbers, Site, Source, inverse_weight,
 };
 use crate::law::number::Number;
+use crate::space::Point as Place;
 use crate::spec::{LawSpec, Parameters, Plane};
 
 /// A classical law on a family.
@@ -99,6 +100,18 @@ impl<N: Number, P: Numbers<N>, const D: usize> Source<N> for Either<'_, N, P, D>
     }
 }
 
+impl<L> NonOrdinary<L> {
+    /// `G_z β` of a material (pressure).
+    fn resistance<const D: usize>(&self, material: usize) -> f64
+    where
+        L: Classical<D>,
+    {
+        let d = D as f64;
+        let beta = d * (d + 2.0) * self.law.shear(material);
+        self.control[material] * beta
+    }
+}
+
 impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     type Constants<N: Number> = Constants<N, L::Constants<N>>;
     type Form<N: Number> = Form<N, D>;
@@ -112,6 +125,8 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
     const FORM_OF_WHOLE: bool = true;
+    const PLACED: bool = L::PLACED;
+    const READS: bool = false;
 
     fn columns(&self) -> Columns {
         let answers = Declaration::of_points(
@@ -123,6 +138,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         Columns {
             past: self.law.columns(),
             point: vec![answers.derived()],
+            places: self.law.places(),
             ..Columns::default()
         }
     }
@@ -132,10 +148,21 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     }
 
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64> {
-        let d = D as f64;
-        let beta = d * (d + 2.0) * self.law.shear(material);
-        let control = self.control[material] * beta;
+        let control = self.resistance::<D>(material);
         (control, self.law.constants(material, dt))
+    }
+
+    fn varies(&self) -> bool {
+        self.law.varies()
+    }
+
+    fn constants_at(&self, material: usize, place: &Place) -> Result<Self::Constants<f64>, String> {
+        let control = self.resistance::<D>(material);
+        Ok((control, self.law.constants_at(material, place)?))
+    }
+
+    fn at_place(&self, material: usize, place: &Place) -> Vec<f64> {
+        self.law.at_place(material, place)
     }
 
     fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {

@@ -4,6 +4,7 @@
 pub mod anisotropic;
 mod bond;
 pub mod correspondence;
+mod direction;
 pub mod energy;
 pub mod equation_of_state;
 mod family;
@@ -25,6 +26,7 @@ use crate::columns::Declaration;
 use crate::execute::lane::Piece;
 use crate::law::descriptor::{Descriptor, Key, Need, Shelved, Value};
 use crate::law::number::Number;
+use crate::space::Point;
 use crate::spec::Parameters;
 
 /// A law of the deformation gradient alone. With [`Shelved`] it is on the shelf twice: [`NonOrdinary`], and [`BondAssociated`].
@@ -37,6 +39,8 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
     const POTENTIAL: bool = true;
     /// Does its control soften?
     const SOFTENS: bool = false;
+    /// [`Material::PLACED`](super::Material::PLACED)
+    const PLACED: bool = false;
 
     /// What a point remembers, in the order of its numbers.
     fn columns(&self) -> Vec<Declaration> {
@@ -50,6 +54,29 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
 
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
+
+    /// [`Material::varies`](super::Material::varies)
+    fn varies(&self) -> bool {
+        false
+    }
+
+    /// [`Material::constants_at`](super::Material::constants_at)
+    ///
+    /// # Errors
+    /// What is wrong there.
+    fn constants_at(&self, material: usize, _: &Point) -> Result<Self::Constants<f64>, String> {
+        Ok(self.constants(material, 0.0))
+    }
+
+    /// What it shows of a material and a place of the reference.
+    fn places(&self) -> Vec<Declaration> {
+        vec![]
+    }
+
+    /// [`Material::at_place`](super::Material::at_place)
+    fn at_place(&self, _material: usize, _place: &Point) -> Vec<f64> {
+        vec![]
+    }
 
     /// Shear modulus of small strains (pressure).
     fn shear(&self, material: usize) -> f64;

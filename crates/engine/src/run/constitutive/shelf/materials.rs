@@ -16,7 +16,9 @@ use crate::law::descriptor::{Given, Memory, Shelved};
 use crate::law::material::{Material, Numbers};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
-use crate::spec::{Calibration, LawSpec, NamedLaw, Parameters, Plane, Spec};
+use crate::message;
+use crate::quantity;
+use crate::spec::{Calibration, LawSpec, NamedLaw, Parameter, Parameters, Plane, Spec};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -184,6 +186,13 @@ impl Chosen {
         (of.memory, &of.name)
     }
 
+    /// Are constants of any of its materials those of a place?
+    pub fn varies(&self) -> bool {
+        let of_place = |p: &(String, Parameter)| matches!(p.1, Parameter::Direction(_));
+        let mut each = self.materials.iter().flat_map(|m| &m.parameters.0);
+        each.any(of_place)
+    }
+
     /// The law on a body.
     pub fn bind<const D: usize>(&self, place: Place<D>) -> Bound<D> {
         let binder = match &self.entry.runs {
@@ -248,10 +257,21 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         ..
     } = place;
     able(&law, &criteria)?;
+    let unfit = |(slot, why): (usize, String)| {
+        let n = match numbers[..] {
+            [one] => one,
+            _ => body.material_of(slot),
+        };
+        let place = quantity::place(&body.position(slot)[..D]);
+        let message = message!["at ", place, ": ", why];
+        BuildError::invalid(format!("materials[{n}].law"), message).help(
+            "give this place another direction (`a ? b : c` chooses), another material, or leave it out of the body",
+        )
+    };
     match (&body.layout, stencil) {
         (Layout::Grid(grid), Some(stencil)) => {
             let of = |r: f64| [weight.influence(r, 1.0 / r), weight.volume_fraction(r)];
-            Ok(Box::new(MaterialInteraction::new(MaterialParts {
+            let made = MaterialInteraction::new(MaterialParts {
                 body,
                 family: LatticeFamily::new(body, grid, stencil, &of),
                 law,
@@ -261,13 +281,14 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 criteria,
                 repulsion,
                 simd,
-            })))
+            });
+            Ok(Box::new(made.map_err(unfit)?))
         }
         _ => {
             let list = HorizonList::new(body, horizon)?;
             let remembers = <M::Memory<f64> as Numbers<f64>>::COUNT > 0;
             let near_horizon = list.near_horizon;
-            Ok(Box::new(MaterialInteraction::new(MaterialParts {
+            let made = MaterialInteraction::new(MaterialParts {
                 body,
                 family: CloudFamily::new(body, list, weight, remembers),
                 law,
@@ -277,7 +298,8 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 criteria,
                 repulsion,
                 simd,
-            })))
+            });
+            Ok(Box::new(made.map_err(unfit)?))
         }
     }
 }
