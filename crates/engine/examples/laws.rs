@@ -121,6 +121,13 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
             "position_aware",
             LawSpec::named("position_aware", elastic()),
         ),
+        (
+            "bond_rotation",
+            LawSpec::named(
+                "bond_rotation",
+                Parameters::numbers(&[("young", 1.0), ("poisson", 0.15)]),
+            ),
+        ),
         ("hypoelastic", LawSpec::named("hypoelastic", elastic())),
         ("metal, elastic yet", metal(1e3)),
         ("metal, flowing", metal(1e-9)),

@@ -43,6 +43,7 @@ fn made(d: usize, mut parameters: Parameters) -> Result<HypoelasticPlastic, Stri
         breaks: false,
         density: DENSITY,
         weighted_volume: None,
+        first_moment: 1.0,
         horizon: 1.0,
     };
     HypoelasticPlastic::make(d, Plane::Strain, &[given]).map_err(|(_, message)| message)

@@ -524,6 +524,8 @@ pub struct Given<'a> {
     pub density: f64,
     /// Of the full ball, where constants are those of the continuum (length² volume).
     pub weighted_volume: Option<f64>,
+    /// `Σ ω ν V |ξ|` of the family that stiffnesses are calibrated to (length volume).
+    pub first_moment: f64,
     /// Radius of its families (length).
     pub horizon: f64,
 }
@@ -534,6 +536,8 @@ pub trait Shelved: Sized {
     const ISOTROPIC: bool = true;
     /// Do its constants hold the critical stretch, so that toughness cannot depend on place and time?
     const ENDS: bool = false;
+    /// Do its bonds store energy by turning, too? Then a fracture energy gives no critical stretch.
+    const TURNS: bool = false;
 
     fn descriptor() -> Descriptor;
 

@@ -170,7 +170,8 @@ impl Part<'_> {
         let cell = cell(spec, body);
         let from_modulus = |m: &MaterialSpec| {
             use PmbStiffness::{Bulk, Young};
-            matches!(m.law.linear(), LawSpec::Pmb(Bulk(_) | Young(_)))
+            let turns = |law: &LawSpec| matches!(law, LawSpec::Named(l) if shelf.turns(&l.name));
+            matches!(m.law.linear(), LawSpec::Pmb(Bulk(_) | Young(_))) || turns(&m.law)
         };
         let mut bulk = self.bulk;
         if bulk.is_none()

@@ -3,6 +3,7 @@
 //! A line in [`sample::materials`] buys a material all of these tests.
 
 mod accounts;
+mod bond_rotation;
 mod calibration;
 mod constants;
 mod cracks;

@@ -182,6 +182,23 @@ pub fn materials() -> Vec<Material> {
                 Influence::Inverse,
             )
         },
+        Material {
+            lives: |d, _| d > 1,
+            ..one(
+                "bond rotation",
+                LawSpec::named("bond_rotation", elastic(3.0, 0.1)),
+                Influence::Constant,
+            )
+        },
+        Material {
+            lives: |d, _| d > 1,
+            ..two(
+                "bond rotation mixed",
+                LawSpec::named("bond_rotation", elastic(3.0, 0.2)),
+                LawSpec::named("bond_rotation", elastic(1.0, -0.3)),
+                Influence::Conical,
+            )
+        },
         one("viscoelastic", relaxing(0.5), Influence::Conical),
         two(
             "viscoelastic mixed",

@@ -4,6 +4,7 @@
 //! The force density on a point is `f_i = Σ_j ν V_j (T_i⟨ξ⟩ − T_j⟨−ξ⟩)` (Silling et al. 2007, (18)): each end answers for itself,
 //! so action is reaction whatever the law says.
 
+pub mod bond_rotation;
 pub mod bonds;
 pub mod elastic_plastic;
 pub mod non_ordinary;
@@ -33,6 +34,7 @@ pub fn each(kinds: &mut impl Kinds) {
     );
     non_ordinary::each(kinds);
     kinds.solid::<position_aware::PositionAware>();
+    kinds.solid::<bond_rotation::BondRotation>();
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
     kinds.law::<ThermoelasticSolid>();

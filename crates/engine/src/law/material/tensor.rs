@@ -168,8 +168,50 @@ pub fn cofactor_beyond<N: Number, const D: usize>(h: &Matrix<N, D>) -> Matrix<N,
 #[inline(always)]
 pub fn polar<N: Number, const D: usize>(h: &Matrix<N, D>) -> (Matrix<N, D>, Matrix<N, D>) {
     let half = N::constant(0.5);
+    let turn = orthogonal(h, POLAR_STEPS);
+    // Rᵀ(1 + H) − 1, of which rounding leaves only the symmetric part
+    let more = transposed_product(&turn, h);
+    let mut stretch = *h;
+    for r in 0..D {
+        for c in 0..D {
+            let ends = (h[r][c] + turn[c][r]) + (h[c][r] + turn[r][c]);
+            stretch[r][c] = half * (ends + (more[r][c] + more[c][r]));
+        }
+    }
+    (turn, stretch)
+}
+
+/// R − 1 of `1 + H = R U` by so many steps of [`polar`]'s iteration; exactly 0 of a symmetric H.
+#[inline(always)]
+pub fn rotation<N: Number, const D: usize>(h: &Matrix<N, D>, steps: usize) -> Matrix<N, D> {
+    let turn = orthogonal(h, steps);
+    let half = N::constant(0.5);
+    // R = 1 + A + A²/(1 + cos θ) of its antisymmetric part A (Rodrigues), in D = 2 and 3; good below a right angle
+    let cosine = half.fma(trace(&turn), N::constant(1.0));
+    let mut skew = turn;
+    for r in 0..D {
+        for c in 0..D {
+            skew[r][c] = half * (turn[r][c] - turn[c][r]);
+        }
+    }
+    let square = product(&skew, &skew);
+    let per = (N::constant(1.0) + cosine.most(N::constant(0.0))).recip();
+    let mut out = turn;
+    for r in 0..D {
+        for c in 0..D {
+            let near = per.fma(square[r][c], skew[r][c]);
+            out[r][c] = cosine.below(0.0, turn[r][c], near);
+        }
+    }
+    out
+}
+
+/// Newton's iteration of [`polar`].
+#[inline(always)]
+fn orthogonal<N: Number, const D: usize>(h: &Matrix<N, D>, steps: usize) -> Matrix<N, D> {
+    let half = N::constant(0.5);
     let mut turn = *h;
-    for _ in 0..POLAR_STEPS {
+    for _ in 0..steps {
         let beyond = dilation(&turn);
         let inverse = (N::constant(1.0) + beyond).recip();
         let cofactors = cofactor_beyond(&turn);
@@ -184,16 +226,7 @@ pub fn polar<N: Number, const D: usize>(h: &Matrix<N, D>) -> (Matrix<N, D>, Matr
             }
         }
     }
-    // Rᵀ(1 + H) − 1, of which rounding leaves only the symmetric part
-    let more = transposed_product(&turn, h);
-    let mut stretch = *h;
-    for r in 0..D {
-        for c in 0..D {
-            let ends = (h[r][c] + turn[c][r]) + (h[c][r] + turn[r][c]);
-            stretch[r][c] = half * (ends + (more[r][c] + more[c][r]));
-        }
-    }
-    (turn, stretch)
+    turn
 }
 
 /// From a stretch of 10 to round-off.

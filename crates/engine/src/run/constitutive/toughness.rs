@@ -40,6 +40,15 @@ pub(super) fn toughness<const D: usize>(
                 )
                 .help("give critical_stretch instead"));
             }
+            if let LawSpec::Named(law) = &m.law
+                && shelf.turns(&law.name)
+            {
+                return Err(BuildError::unsupported(
+                    path,
+                    format!("bonds of the law {} store energy by turning, too: a fracture energy gives no critical stretch", law.name),
+                )
+                .help("write criterion = \"bond_energy\" beside energy, or give critical_stretch"));
+            }
             let energy = shelf.brittle_energy(&m.law, energy);
             let bonds = |stiffness| {
                 let c = micromodulus(D, spec.plane, stiffness, moments);

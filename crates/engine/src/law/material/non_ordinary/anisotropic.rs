@@ -292,6 +292,7 @@ mod tests {
             breaks: false,
             density: 1.0,
             weighted_volume: None,
+            first_moment: 1.0,
             horizon: 1.0,
         };
         Anisotropic::make(d, plane, &[given]).map_err(|(_, message)| message)

@@ -48,6 +48,8 @@ pub(super) struct Materials {
     pub isotropic: bool,
     /// [`Shelved::ENDS`]
     pub ends: bool,
+    /// [`Shelved::TURNS`]
+    pub turns: bool,
     binders: Binders,
     /// Another law, and whether it fits the parameters of a material.
     other: Option<(fn(&Parameters) -> bool, Binders)>,
@@ -88,6 +90,7 @@ impl Materials {
             brittle_energy: M::brittle_energy,
             isotropic: M::ISOTROPIC,
             ends: M::ENDS,
+            turns: M::TURNS,
             binders: [
                 line,
                 Arc::new(bind::<2, M> as Binder<2>),
@@ -106,6 +109,7 @@ pub(crate) struct Chosen {
     plane: Plane,
     /// Of the full ball, where constants are those of the continuum.
     weighted_volume: Option<f64>,
+    first_moment: f64,
     horizon: f64,
 }
 
@@ -174,6 +178,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
             Calibration::Continuum => Some(moments.second),
             Calibration::Discrete => None,
         },
+        first_moment: moments.first,
         horizon,
     };
     Ok(Some(chosen))
@@ -237,6 +242,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 breaks: made.breaks,
                 density: made.density,
                 weighted_volume: chosen.weighted_volume,
+                first_moment: chosen.first_moment,
                 horizon: chosen.horizon,
             }
         })

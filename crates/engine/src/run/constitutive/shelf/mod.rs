@@ -317,6 +317,14 @@ impl Shelf {
         }
     }
 
+    /// Do its bonds store energy by turning, too?
+    pub(crate) fn turns(&self, name: &str) -> bool {
+        match self.entry(name).map(|e| &e.runs) {
+            Some(Runs::Material(material)) => material.turns,
+            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
+        }
+    }
+
     /// The fracture energy of a brittle bond with the critical stretch of this law's (see [`Shelved::brittle_energy`]).
     pub(crate) fn brittle_energy(&self, law: &LawSpec, energy: f64) -> f64 {
         match law {
