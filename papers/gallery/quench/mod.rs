@@ -48,10 +48,7 @@ fn exact(y: f64, t: f64) -> f64 {
 /// Where cracks cross a row (mm).
 fn crossings(x: &[[f64; 2]], damage: &[f64], row: f64, h: f64) -> Vec<f64> {
     let of_row = |k: &usize| (1e3 * x[*k][1] - row).abs() < 0.51 * h && damage[*k] > CRACKED;
-    let mut cracked: Vec<f64> = (0..x.len())
-        .filter(of_row)
-        .map(|k| 1e3 * x[k][0])
-        .collect();
+    let mut cracked: Vec<f64> = (0..x.len()).filter(of_row).map(|k| 1e3 * x[k][0]).collect();
     cracked.sort_by(f64::total_cmp);
     let cracks = cracked.chunk_by(|a, b| b - a < GAP);
     cracks
@@ -113,7 +110,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
     let here: Vec<f64> = column.iter().map(|k| temperature[*k]).collect();
     let deep = 3.0 * h;
     let off = depth.iter().zip(here.iter().zip(&closed));
-    let off = off.filter(|(y, _)| **y > deep).map(|(_, (a, b))| (a - b).abs());
+    let off = off
+        .filter(|(y, _)| **y > deep)
+        .map(|(_, (a, b))| (a - b).abs());
     found.number("temperature", off.fold(0.0, f64::max));
     let plot = Plot::new("Temperature below the edge")
         .x("y", "mm")
@@ -133,7 +132,9 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         let nearest = level(&LENGTHS, &NEAREST, depth).unwrap_or(f64::NAN);
         let between = [nearest, 2.0 * nearest];
         within &= between[0] <= apart && apart <= between[1];
-        said.push(format!("{apart:.2} mm at a depth of {depth} mm ({between:.2?})"));
+        said.push(format!(
+            "{apart:.2} mm at a depth of {depth} mm ({between:.2?})"
+        ));
     }
     found.holds("spacing", said.join(", "), within);
     let long = crossings(&x, &damage, DEPTHS[1], h);

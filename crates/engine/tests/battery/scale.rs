@@ -101,8 +101,8 @@ fn contact_is_that_of_bonds_of_the_same_bulk_modulus_whatever_the_influence() {
             }));
             // 48 E/(5π t δ³) · 15/δ of a full disk
             let horizon: f64 = made(&case.spec()).info().horizon;
-            let closed = 48.0 * 3.0 / (5.0 * std::f64::consts::PI * 0.25 * horizon.powi(3)) * 15.0
-                / horizon;
+            let closed =
+                48.0 * 3.0 / (5.0 * std::f64::consts::PI * 0.25 * horizon.powi(3)) * 15.0 / horizon;
             for k in [bonds, solid] {
                 assert!(
                     (k / closed - 1.0).abs() < 1e-12,
