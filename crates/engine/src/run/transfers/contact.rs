@@ -61,7 +61,8 @@ impl<const D: usize> Model<D> {
             faces[b as usize] = face(body, touch.j);
             pairs.push((a, b));
         });
-        for t in { self.transfers.all.iter_mut() }.filter(|t| t.quantity == Quantity::Heat) {
+        let heat = self.transfers.all.iter_mut();
+        for t in heat.filter(|t| t.quantity == Quantity::Heat) {
             t.touching.set(h, &pairs, |i| faces[i]);
         }
     }
