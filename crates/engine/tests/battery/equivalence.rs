@@ -9,7 +9,11 @@ fn a_stencil_is_a_list() {
     let mut worst: f64 = 0.0;
     // torn to pieces it does not stay together: families that lose their bonds take the volume of what is left, whose pressure has a pole,
     // and the run ends with an error
-    let whole = |c: &Case| c.material.name != "metal under impact";
+    let whole = |c: &Case| {
+        let pole = ["neo-hookean mixed", "of written energies"].contains(&c.material.name);
+        // the same of energies with a pole where a family has four bonds
+        c.material.name != "metal under impact" && !(pole && c.place.kind == LatticeKind::Diamond)
+    };
     for case in cases().into_iter().filter(whole) {
         let mut runs = vec![];
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {

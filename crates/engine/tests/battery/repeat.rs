@@ -180,7 +180,9 @@ fn a_step_allocates_nothing() {
                 spec.indenters[0].motion = IndenterMotion::Kinematic([x, e("-0.2"), e("0.3")]);
                 pool.install(|| {
                     let mut sim = at_rest(&spec);
-                    sim.set_time_step(0.05 * H);
+                    // an energy with a pole at no volume ends with an error once a family is pushed flat
+                    let pole = name.starts_with("neo") && kind == LatticeKind::Square;
+                    sim.set_time_step(if pole { 0.028 } else { 0.05 } * H);
                     let n = sim.vectors("reference").len();
                     let v = Random(47).vectors(n, spec.dimension, 0.05);
                     sim.set_velocities(&v);
