@@ -80,7 +80,6 @@ fn main() {
             free: 1.35,
             stiffness: ContactStiffness::Laws,
             friction: None,
-            conductance: None,
         }),
         initial: vec![],
         conditions: vec![],

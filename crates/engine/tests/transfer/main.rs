@@ -2,7 +2,6 @@
 
 mod accounts;
 mod bars;
-mod contact;
 mod expand;
 mod modes;
 mod repeat;
