@@ -54,7 +54,7 @@ pub fn lines(
 fn told(directional: &Directional, nominal: Option<f64>, number: &dyn Fn(f64) -> String) -> String {
     let d = directional.young.len();
     let young = directional.young.iter().zip(AXES).map(|(e, axis)| {
-        let percent = nominal.map_or(String::new(), |a| format!(" {:+.1} %", percent(*e, a)));
+        let percent = nominal.map_or(String::new(), |a| format!(" {}", percent(*e, a)));
         format!("E {axis} {}{percent}", number(*e))
     });
     let pairs: &[(usize, usize)] = if d == 2 {
@@ -80,15 +80,16 @@ fn told(directional: &Directional, nominal: Option<f64>, number: &dyn Fn(f64) ->
     .join("; ")
 }
 
-/// How many percent more than asked for, in tenths.
-fn percent(value: f64, nominal: f64) -> f64 {
+/// `+56.0 %` more than asked for; what is nothing in tenths has no sign of less.
+pub fn percent(value: f64, nominal: f64) -> String {
     // + 0.0 makes −0 and 0 one
-    0.1 * ((1000.0 * (value / nominal - 1.0)).round() + 0.0)
+    let tenths = (1000.0 * (value / nominal - 1.0)).round() + 0.0;
+    format!("{:+.1} %", 0.1 * tenths)
 }
 
 /// `x +56.0 %, y +56.0 %, z −20.1 %` of Young's moduli against one.
 pub fn against(young: &[f64], nominal: f64) -> String {
     let each = young.iter().zip(AXES);
-    let each = each.map(|(e, axis)| format!("{axis} {:+.1} %", percent(*e, nominal)));
+    let each = each.map(|(e, axis)| format!("{axis} {}", percent(*e, nominal)));
     each.collect::<Vec<_>>().join(", ")
 }

@@ -4,10 +4,14 @@ use super::lane::{Eight, Lane};
 #[cfg(target_arch = "x86_64")]
 use super::lane::{F64x4, F64x8, Pair};
 
-/// For work on the engine: built with PERIDYNE_AVX2_ALONE=1 it has one path, and compiles in a third of the time. So are its unit tests:
-/// that widths do not show is for the tests of the library as it is.
-const ALL: bool =
-    option_env!("PERIDYNE_AVX2_ALONE").is_none() && cfg!(not(all(test, target_arch = "x86_64")));
+/// A loop is compiled for every path it has, which is what most of a build is spent on. x86 processors have had AVX2 since 2013: what
+/// they run eight numbers by eight is not made for them unless the build asks for it (PERIDYNE_PORTABLE=1), which tests of widths do.
+const PORTABLE: bool =
+    cfg!(not(target_arch = "x86_64")) || option_env!("PERIDYNE_PORTABLE").is_some();
+
+/// For work on the engine: built with PERIDYNE_AVX2_ALONE=1 it has one path. So have its unit tests: that widths do not show is for the
+/// tests of the library as it is.
+const WIDE: bool = option_env!("PERIDYNE_AVX2_ALONE").is_none() && cfg!(not(test));
 
 /// Instruction sets with a path of their own. All give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +24,9 @@ pub enum Simd {
 /// A loop over blocks of work, written once over any [`Lane`] of eight numbers; implement `block` with `#[inline(always)]`.
 pub trait Kernel: Sync {
     type Out: Send;
+    /// Work that is done now and then, of which there are many (one for each law): it has no path of its own for AVX-512, and takes that
+    /// of AVX2.
+    const SELDOM: bool = false;
     /// Do block `b`.
     fn block<L: Lane>(&self, b: usize) -> Self::Out;
 }
@@ -30,19 +37,20 @@ impl Simd {
         *Simd::available().last().unwrap_or(&Simd::Portable)
     }
 
-    /// All instruction sets that this machine has, the widest last.
+    /// All instruction sets that this machine and this build have, the widest last. Empty on an x86 processor without AVX2, where
+    /// nothing can run.
     pub fn available() -> Vec<Simd> {
         #[allow(unused_mut)]
-        let mut all = vec![Simd::Portable];
-        if !ALL {
-            all.clear();
+        let mut all = Vec::new();
+        if PORTABLE {
+            all.push(Simd::Portable);
         }
         #[cfg(target_arch = "x86_64")]
         {
             if has_avx2() {
                 all.push(Simd::Avx2);
             }
-            if ALL && has_avx512() {
+            if WIDE && has_avx512() {
                 all.push(Simd::Avx512);
             }
         }
@@ -57,20 +65,20 @@ impl Simd {
         }
     }
 
-    /// Run block `b` of `kernel` with this instruction set.
+    /// Run block `b` of `kernel` with this instruction set. Detection is cached, and asked once per block.
     ///
-    /// A set that this machine lacks falls back to the portable path, which gives the same bits. Detection is cached,
-    /// and asked once per block.
+    /// # Panics
+    /// Where machine or build have no such path: what runs was asked for by `build`, which refuses it.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: &K, b: usize) -> K::Out {
         match self {
             // SAFETY, both: just detected
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx2 if has_avx2() => unsafe { pairs::run(kernel, b) },
+            Simd::Avx512 if WIDE && !K::SELDOM && has_avx512() => unsafe { wide::run(kernel, b) },
             #[cfg(target_arch = "x86_64")]
-            Simd::Avx512 if ALL && has_avx512() => unsafe { wide::run(kernel, b) },
-            _ if ALL => portable::run(kernel, b),
-            _ => panic!("built for machines that have AVX2 (unit tests, PERIDYNE_AVX2_ALONE)"),
+            Simd::Avx2 | Simd::Avx512 if has_avx2() => unsafe { pairs::run(kernel, b) },
+            _ if PORTABLE => portable::run(kernel, b),
+            _ => panic!("{}", NEITHER),
         }
     }
 
@@ -92,6 +100,9 @@ impl Simd {
         all
     }
 }
+
+/// Why nothing runs.
+pub(crate) const NEITHER: &str = "this program was built for processors with AVX2 and FMA, which this one lacks: build it with PERIDYNE_PORTABLE=1";
 
 #[cfg(target_arch = "x86_64")]
 fn has_avx2() -> bool {

@@ -248,6 +248,13 @@ impl<const D: usize> Crack<D> {
         })
     }
 
+    /// Is `x` on the crack, to `within` (length)? Of surfaces that is not known: no.
+    pub fn carries(&self, x: &[f64; D], within: f64) -> bool {
+        let beside = |way: f64| std::array::from_fn(|k| x[k] + way * within * self.normal[k]);
+        !matches!(self.outline, Outline::Surface { .. })
+            && self.crosses(&beside(-1.0), &beside(1.0))
+    }
+
     fn crosses_once(&self, a: &[f64; D], b: &[f64; D]) -> bool {
         let mut longest = 0.0;
         for k in 0..D {

@@ -137,11 +137,14 @@ pub fn critical<L: Lane>(s0: L) -> L {
 /// Ends whose bond never breaks.
 #[inline(always)]
 pub fn spared<L: Lane>(a: L, b: L) -> L::Mask {
-    let never = |x: L| {
-        let known = L::select(x.lt(L::splat(f64::INFINITY)), x, L::splat(0.0));
-        known.ge(L::splat(NEVER))
-    };
     L::or(never(a), never(b))
+}
+
+/// Not a closure: what is no function of its own is made without the instruction set, and would call every operation.
+#[inline(always)]
+fn never<L: Lane>(x: L) -> L::Mask {
+    let known = L::select(x.lt(L::splat(f64::INFINITY)), x, L::splat(0.0));
+    known.ge(L::splat(NEVER))
 }
 
 /// The critical `e` of a bond from those of its ends: the lower one, unless one of them never fails.

@@ -16,7 +16,7 @@ use super::time_step::{Limits, time_step};
 use super::transfers::state::Transfers;
 use super::{Info, Simulation, Steered};
 use super::{bonds, indenters, own_horizons, precracks, surface, transfers};
-use super::{contact, gaps};
+use super::{contact, gaps, meant};
 use crate::body::zeros;
 use crate::condition::carried::Carried;
 use crate::condition::still::Still;
@@ -140,10 +140,19 @@ pub fn build_in<const D: usize>(
             ": a larger or smaller number in its last digits changes the family; write the horizon as a whole number of spacings (m_ratio), or well between two distances",
         ]);
     }
-    if spec.potential().is_none() && spec.micromoduli().is_none() {
-        warnings.extend(gaps::across(spec, &body, interaction.as_ref()));
-    }
+    let solid = spec.potential().is_none() && spec.micromoduli().is_none();
+    let separate = match solid {
+        true => gaps::across(spec, &body, interaction.as_ref()),
+        false => vec![],
+    };
+    let solid = solid && separate.is_empty();
+    warnings.extend(separate);
     let cut = precracks::cut(spec, &body, interaction.as_mut(), &mut warnings)?;
+    if solid {
+        warnings.extend(gaps::bridged(&body, interaction.as_ref()));
+    }
+    warnings.extend(meant::regions(spec));
+    warnings.extend(meant::tractions(spec, &body, &sets));
     if spec.contact.as_ref().is_some_and(|c| c.friction.is_some())
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {

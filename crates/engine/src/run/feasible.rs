@@ -5,7 +5,7 @@ use super::preload;
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::execute::memory;
-use crate::execute::simd::Simd;
+use crate::execute::simd::{NEITHER, Simd};
 use crate::family::stencil::Stencil;
 use crate::message;
 use crate::quantity::{Dimension, rounded};
@@ -23,8 +23,12 @@ pub(super) fn possible(spec: &Spec, simd: Option<Simd>) -> Result<(), BuildError
     if let Some(preload) = &spec.preload {
         preload::possible(spec, preload)?;
     }
+    let available = Simd::available();
+    if available.is_empty() {
+        return Err(BuildError::unsupported("simd", NEITHER));
+    }
     if let Some(simd) = simd
-        && !Simd::available().contains(&simd)
+        && !available.contains(&simd)
     {
         return Err(BuildError::unsupported(
             "simd",

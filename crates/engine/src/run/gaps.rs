@@ -12,6 +12,12 @@ use crate::spec::{BodySpec, PieceSpec, Spec};
 /// Points further apart than so many spacings are not next to each other: diagonal neighbours are up to √3 apart, the
 /// other side of a missing layer is 2.
 const NEXT: f64 = 1.9;
+/// Bonds to the next points lead so far to one side, on the mean, of a point at a surface; 0.48 on the face of a square lattice.
+const SURFACE: f64 = 0.35;
+/// Cosine between a surface's normal and a bond that leads across a gap: at a right angle inside a body it is 0.71.
+const FACING: f64 = 0.85;
+/// Less bonds than these are a dent.
+const FEW: u64 = 4;
 /// Nearer than this part of a spacing, the cells of two points overlap.
 const OVERLAP: f64 = 0.9;
 
@@ -112,6 +118,63 @@ pub(super) fn warnings(spec: &Spec, gaps: &[Gap], spacing: impl Fn(usize) -> f64
         }
     });
     told.collect()
+}
+
+/// Whole bonds between surfaces that face each other: across a slot or hole that is narrower than the horizon. Call after bonds are cut.
+pub(super) fn bridged<const D: usize>(
+    body: &Body<D>,
+    interaction: &dyn Interaction<D>,
+) -> Option<Message> {
+    let length = |s: usize| body.spacing_at(s);
+    let square = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>();
+    // mean direction to the nearest neighbours
+    let mut inward = vec![[0.0; D]; body.len];
+    let mut count = vec![0u32; body.len];
+    interaction.each_bond(body, &mut |i, j, xi, _| {
+        let (reach, r2) = (NEXT * length(i).max(length(j)), square(&xi));
+        if r2 < reach * reach {
+            let r = r2.sqrt();
+            for (s, way) in [(i, 1.0), (j, -1.0)] {
+                count[s] += 1;
+                for a in 0..D {
+                    inward[s][a] += way * xi[a] / r;
+                }
+            }
+        }
+    });
+    for (x, n) in inward.iter_mut().zip(&count) {
+        let size = square(x).sqrt();
+        let surface = size > SURFACE * f64::from(*n);
+        *x = x.map(|c| if surface { c / size } else { 0.0 });
+    }
+    let mut shortest: Option<(f64, usize, usize)> = None;
+    let mut bonds = 0u64;
+    interaction.each_bond(body, &mut |i, j, xi, state| {
+        if state != BondState::Whole {
+            return;
+        }
+        let r = square(&xi).sqrt();
+        let along = |s: usize| (0..D).map(|a| inward[s][a] * xi[a]).sum::<f64>();
+        if along(i) < -FACING * r && along(j) > FACING * r && r > NEXT * length(i).max(length(j)) {
+            bonds += 1;
+            if shortest.is_none_or(|(least, ..)| r < least) {
+                shortest = Some((r, i, j));
+            }
+        }
+    });
+    let (r, i, j) = shortest.filter(|_| bonds >= FEW)?;
+    let at = |s: usize| place(&body.position(s)[..D]);
+    Some(message![
+        format!(
+            "{bonds} bonds reach across a gap in the body that is narrower than the horizon, the shortest of them ("
+        ),
+        Dimension::LENGTH.of(r),
+        ") from ",
+        at(i),
+        " to ",
+        at(j),
+        ": for them there is no gap. Cut them by a pre-crack in its middle, or choose a smaller spacing",
+    ])
 }
 
 /// Separate pieces of one body that bonds join; call before bonds are cut.

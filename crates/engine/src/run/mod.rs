@@ -20,6 +20,7 @@ mod gaps;
 mod implicit;
 mod indenters;
 mod interfaces;
+mod meant;
 mod model;
 mod motion;
 mod observation;

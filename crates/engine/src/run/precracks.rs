@@ -4,7 +4,8 @@ use crate::body::Body;
 use crate::error::BuildError;
 use crate::fracture::precrack::Crack;
 use crate::interaction::Interaction;
-use crate::quantity::Warnings;
+use crate::message;
+use crate::quantity::{Message, Warnings, place};
 use crate::spec::{CrackKind, Spec};
 
 /// Cuts the bonds that pre-cracks cross, and lets the interaction weigh its families between those that were never there and those
@@ -32,8 +33,33 @@ pub(super) fn cut<const D: usize>(
             if count == 0 {
                 warnings.push(format!("pre-crack {} cuts no bond", n + 1));
             }
+            warnings.extend(along_points(n + 1, &shape, body));
             cut += count;
         }
     }
     Ok(cut)
+}
+
+/// Points on a crack have lost the bonds on one of its sides only.
+fn along_points<const D: usize>(
+    number: usize,
+    shape: &Crack<D>,
+    body: &Body<D>,
+) -> Option<Message> {
+    let on = |slot: &&u32| {
+        let slot = **slot as usize;
+        let x = body.position(slot);
+        shape.carries(&std::array::from_fn(|a| x[a]), 1e-6 * body.spacing_at(slot))
+    };
+    let count = body.slots.iter().filter(on).count();
+    // a crack may meet a point or two
+    if count < if D == 1 { 1 } else { 3 } {
+        return None;
+    }
+    let first = *body.slots.iter().find(on)? as usize;
+    Some(message![
+        format!("pre-crack {number} runs through {count} points, "),
+        place(&body.position(first)[..D]),
+        " is one of them: they belong to one of its faces, and the crack is half a spacing beside where it was drawn. Move it, or the origin of the lattice, by half a spacing",
+    ])
 }

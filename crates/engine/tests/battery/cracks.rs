@@ -203,7 +203,7 @@ fn a_cut_of_one_image_cuts_both_directions() {
                 alpha: 0.0,
             }],
             repulsion: None,
-            simd: Simd::Portable,
+            simd: Simd::detect(),
         });
         let crosses = |a: [f64; 1], b: [f64; 1]| (a[0] < face) != (b[0] < face);
         // 0–11, 0–10, 1–11

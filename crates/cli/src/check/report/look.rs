@@ -1,6 +1,7 @@
 //! The three things to look at first.
 
 use super::advice;
+use crate::check::directions::percent;
 use crate::check::{Findings, mean};
 use crate::numbers::{digits, duration};
 use peridyne::spec::Stepper;
@@ -35,10 +36,10 @@ fn stiffness(found: &Findings) -> Option<String> {
     let real = mean(found, &patch.best(n)?.stiffness).young;
     real.is_finite().then(|| {
         format!(
-            "stiffness: `{}` has a Young's modulus of {}, {:+.1} % beside what was asked for",
+            "stiffness: `{}` has a Young's modulus of {}, {} beside what was asked for",
             m.name,
             found.units.show(real, Dim::PRESSURE),
-            100.0 * (real / nominal - 1.0)
+            percent(real, nominal)
         )
     })
 }

@@ -1,5 +1,6 @@
 //! What the body resists with.
 
+use crate::check::directions::percent;
 use crate::check::{Findings, Material, directions, mean};
 use crate::numbers::digits;
 use peridyne::spec::{LawSpec, Moduli, PmbStiffness};
@@ -59,11 +60,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
     let line = |name: &str, real: Moduli, nominal: Option<Moduli>, more: &str| {
         let cell = |value: f64, nominal: Option<f64>, width: usize, scale: f64| {
             let percent = match nominal {
-                // + 0.0 makes −0 and 0 one
-                Some(a) if value.is_finite() && a.is_finite() && a != 0.0 => {
-                    let tenths = (1000.0 * (value / a - 1.0)).round() + 0.0;
-                    format!("{:+.1} %", 0.1 * tenths)
-                }
+                Some(a) if value.is_finite() && a.is_finite() && a != 0.0 => percent(value, a),
                 _ => String::new(),
             };
             format!("{:>w$}{percent:>10}", digits(value / scale), w = width - 10)

@@ -150,17 +150,15 @@ impl<const D: usize, F: Family<D>> Test<'_, D, F> {
             let material = self.body.material_of(slots.slot(l));
             self.criteria.rate.get(material).copied().flatten()
         };
-        let of: [[f64; TILE]; 2] = {
-            let each: [Option<[f64; 2]>; TILE] = std::array::from_fn(|l| {
-                (l < L::N)
-                    .then(|| rate(l))
-                    .flatten()
-                    .map(|r| [r.coefficient, r.reference])
-            });
-            [0, 1].map(|n| each.map(|r| r.unwrap_or([0.0, 1.0])[n]))
-        };
-        // SAFETY: a number per lane
-        let [coefficient, reference] = of.map(|x| unsafe { L::load(x.as_ptr()) });
+        let (mut coefficient, mut reference) = ([0.0; TILE], [1.0; TILE]);
+        for l in 0..L::N {
+            if let Some(rate) = rate(l) {
+                (coefficient[l], reference[l]) = (rate.coefficient, rate.reference);
+            }
+        }
+        // SAFETY, both: a number per lane
+        let coefficient = unsafe { L::load(coefficient.as_ptr()) };
+        let reference = unsafe { L::load(reference.as_ptr()) };
         let one = L::splat(1.0);
         let beyond = elementary::ln(speed.div(reference).max(one));
         let factor = coefficient.fma(beyond, one);
@@ -228,6 +226,7 @@ pub struct Tear<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> {
     type Out = Tally;
+    const SELDOM: bool = true;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> Tally {
@@ -301,6 +300,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
 
 impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
     /// What the points of a group know of a family with these bonds.
+    #[inline(always)]
     fn forms<L: Lane>(&self, group: usize, bits: &[u8], body: &Body<D>) -> M::Form<L> {
         let count = <M::Form<L> as Numbers<L>>::COUNT;
         let mut out = <M::Form<L> as Numbers<L>>::constant(0.0);

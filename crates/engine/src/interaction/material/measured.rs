@@ -36,6 +36,7 @@ pub struct Work<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Work<'_, D, F, M> {
     type Out = ();
+    const SELDOM: bool = true;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {
@@ -77,6 +78,7 @@ pub struct VonMises<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for VonMises<'_, D, F, M> {
     type Out = ();
+    const SELDOM: bool = true;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) {

@@ -197,9 +197,12 @@ pub unsafe fn own_pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
         let ends = v.family.ends(at.number, k).from(part);
         let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
         let (bond, weight) = v.bond::<L>(at, k, ends, dead);
-        let own = answers::<L, D, F, M>(v, at, point, k, part, &bond).alone(&bond);
+        let mut own = answers::<L, D, F, M>(v, at, point, k, part, &bond).alone(&bond);
         let weight = weight * v.per_length::<L>(at, ends);
-        own.map(|x| weight * x)
+        for own in &mut own {
+            *own = weight * *own;
+        }
+        own
     }
 }
 
@@ -367,6 +370,7 @@ pub struct Energies<'a, const D: usize, F, M> {
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Energies<'_, D, F, M> {
     type Out = [f64; 2];
+    const SELDOM: bool = true;
 
     #[inline(always)]
     fn block<L: Lane>(&self, block: usize) -> [f64; 2] {

@@ -392,6 +392,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     ) -> N;
 
     /// What the point stores beside that (energy / volume), with the sum of the last pass.
+    #[inline(always)]
     fn point_energy<N: Number>(
         &self,
         _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
@@ -429,6 +430,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     }
 
     /// The point's memory at the end of a step; returns what that dissipated (energy / volume), to second order in the step.
+    #[inline(always)]
     fn remember<N: Number>(
         &self,
         _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,

@@ -7,11 +7,24 @@ use super::units::{Dim, UnitSystem};
 use material::{between_atoms, criterion, material, potentials};
 use peridyne::run::Shelf;
 use peridyne::spec::{
-    BodySpec, BondFactorSpec, Control, Criterion, FamilyChoice, Fold, Horizon, IndenterMotion,
-    LawSpec, Measure, Method, Part, PieceSpec, Plane, PotentialSpec, ProbeSpec, Release,
-    RigidQuantity, Spec, Statics, Stepper, TimeStep, ToughnessFactor, TransferMethod, TransferSpec,
+    BodySpec, BondFactorSpec, Calibration, Control, Criterion, FamilyChoice, Fold, Horizon,
+    IndenterMotion, LawSpec, Measure, Method, Part, PieceSpec, Plane, PotentialSpec, ProbeSpec,
+    Release, RigidQuantity, Spec, Statics, Stepper, TimeStep, ToughnessFactor, TransferMethod,
+    TransferSpec,
 };
 use shape::{body, rigid};
+
+/// The name of a choice as a deck has it, in words: `cubic spline`.
+fn words(choice: &impl std::fmt::Debug) -> String {
+    let mut out = String::new();
+    for (n, c) in format!("{choice:?}").chars().enumerate() {
+        if n > 0 && c.is_uppercase() {
+            out.push(' ');
+        }
+        out.extend(c.to_lowercase());
+    }
+    out
+}
 
 /// A short header: body, materials, horizon, what acts, schedule; numbers with units.
 pub fn describe(spec: &Spec, units: UnitSystem) -> String {
@@ -88,10 +101,13 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             )
         }
         None => format!(
-            "horizon    {horizon}, influence {:?}, volume scaling {}, constants {:?}",
-            spec.influence,
+            "horizon    {horizon}, influence {}, volume scaling {}, constants {}",
+            words(&spec.influence),
             if spec.volume_scaling { "on" } else { "off" },
-            spec.calibration
+            match spec.calibration {
+                Calibration::Continuum => "of the continuum",
+                Calibration::Discrete => "of this body's own sums",
+            }
         ),
     });
     if let BodySpec::Several(pieces) = &spec.body {
@@ -101,10 +117,10 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         };
         lines.extend(pieces.iter().filter(own).map(|p| {
             format!(
-                "           of {}: {}, influence {:?}",
+                "           of {}: {}, influence {}",
                 p.name,
                 length(p.horizon.unwrap_or(spec.horizon)),
-                p.influence.unwrap_or(spec.influence)
+                words(&p.influence.unwrap_or(spec.influence))
             )
         }));
     }
@@ -150,17 +166,17 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
             false => String::new(),
         };
         lines.push(format!(
-            "surface    {:?}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{shares}",
-            surface.method,
+            "surface    {}: {} kinds of points, factors of bonds {low:.2} to {high:.2}{shares}",
+            words(&surface.method),
             surface.rows.len() - 1
         ));
     }
     for bonds in &spec.bonds {
         lines.push(match bonds {
             BondFactorSpec::Field(field) => format!(
-                "bonds      stiffness times {}, between unlike ends {:?}",
+                "bonds      stiffness times {}, between unlike ends {}",
                 field.source(),
-                spec.interface
+                words(&spec.interface)
             ),
             BondFactorSpec::Crossing { factor, .. } => {
                 format!("bonds      stiffness times {factor} across a flat shape")

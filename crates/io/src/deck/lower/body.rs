@@ -4,13 +4,15 @@ use super::Files;
 use super::context::{Context, Result};
 use super::region::region;
 use crate::deck::document::{Body, LatticeName};
-use crate::deck::units::Dim;
+use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::At;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::{BodySpec, Perturbation};
 
 const INF: f64 = f64::INFINITY;
+/// A body that is longer than this (m) is likely one in millimetres.
+const LONG: f64 = 1.0;
 
 impl From<LatticeName> for LatticeKind {
     fn from(name: LatticeName) -> Self {
@@ -111,6 +113,30 @@ pub(super) fn body(
                     atoms.corner = atoms.corner.map(|c| c * unit);
                     atoms.cell = atoms.cell.map(|c| c * unit);
                 }
+            }
+            let longest = (0..3).map(|a| {
+                let all = cloud.position.iter().map(|x| x[a]);
+                let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                    (low.min(x), high.max(x))
+                });
+                ends.1 - ends.0
+            });
+            let longest = longest.fold(0.0, f64::max);
+            if context.units == UnitSystem::Si
+                && written.file_unit.is_none()
+                && context.atoms.is_none()
+                && context.micromoduli.is_none()
+                && longest > LONG
+                && let Some(file) = &written.file
+            {
+                let place = context.error(&file.span, "");
+                let line = place.line.map_or(String::new(), |l| format!(":{l}"));
+                context.notes.push(format!(
+                    "{}{line}: lengths of {} are taken as metres, which makes a body of {}: file_unit = \"1 mm\" says otherwise",
+                    place.file,
+                    file.value,
+                    context.units.show(longest, Dim::LENGTH),
+                ));
             }
             if let Some(atoms) = &mut context.atoms {
                 let mass = context.units.plain_factor(Dim::MASS);

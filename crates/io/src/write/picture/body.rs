@@ -7,6 +7,7 @@ use super::arrows::Arrows;
 use super::image::{Align, Font, GREY, INK, Image};
 use super::marks;
 use super::shown::Shown;
+use super::sizes;
 use super::view::{Camera, Frame, cross, draw as draw_view};
 use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
 
@@ -64,16 +65,30 @@ pub fn draw(
         let reach = REACH * longest(&bounds) + spacing;
         (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)
     };
+    let edges = sizes::edges(&s.reference, s.spacing);
+    let size = |i: usize| edges.as_ref().map_or(1.0, |e| e[i] / s.spacing);
     let shown = |cut: Option<Cut>| {
-        let points = moved(s, scale).zip(&s.reference).zip(&what.values).filter(
-            move |((x, reference), _)| near(x) && cut.is_none_or(|cut| cut.keeps(reference)),
-        );
-        points.map(|((x, _), value)| (x, what.part(*value)))
+        let all = moved(s, scale).zip(&s.reference).zip(&what.values);
+        let points = all.enumerate().filter(move |(_, ((x, reference), _))| {
+            near(x) && cut.is_none_or(|cut| cut.keeps(reference))
+        });
+        points.map(|(i, ((x, _), value))| (x, what.part(*value), size(i)))
+    };
+    // bodies beside a plate belong into its picture, as far as it reaches
+    let beside: Vec<[f64; 3]> = match s.dimension {
+        2 => (options.marks.rigid_places(s.time).into_iter())
+            .map(|x| {
+                let reach = REACH * longest(&bounds);
+                std::array::from_fn(|a| x[a].clamp(bounds[a][0] - reach, bounds[a][1] + reach))
+            })
+            .collect(),
+        _ => vec![],
     };
     let panels: Vec<Panel> = cameras(s, &bounds)
         .into_iter()
         .filter_map(|(camera, caption, cut)| {
-            let frame = Frame::around(&camera, shown(cut).map(|p| p.0), spacing)?;
+            let points = shown(cut).map(|p| p.0);
+            let frame = Frame::around(&camera, points.chain(beside.iter().copied()), spacing)?;
             Some(Panel {
                 camera,
                 frame,

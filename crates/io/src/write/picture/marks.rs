@@ -78,6 +78,24 @@ impl Marks {
         marks
     }
 
+    /// Ends of what is drawn of rigid bodies at this time.
+    pub fn rigid_places(&self, time: f64) -> Vec<Point> {
+        let mut all = vec![];
+        for (indenter, lines) in &self.rigid {
+            let mut body = Rigid::<3>::new(indenter);
+            body.place(time);
+            if let RigidShape::Sphere { radius } = indenter.shape {
+                for (a, way) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                    let mut x = body.center;
+                    x[a] += way * radius;
+                    all.push(x);
+                }
+            }
+            all.extend(lines.iter().flatten().map(|x| body.in_space(x)));
+        }
+        all
+    }
+
     /// What holds, what loads, and the corners of cracks.
     pub fn seen(&self) -> (&[Mark], &[Mark], &[Vec<Point>]) {
         (&self.supports, &self.loads, &self.cracks)

@@ -12,6 +12,7 @@ pub mod image;
 pub(super) mod label;
 pub mod marks;
 pub mod shown;
+mod sizes;
 mod view;
 
 use std::path::Path;

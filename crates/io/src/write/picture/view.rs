@@ -127,7 +127,13 @@ struct Buffer {
     edge: f64,
 }
 
-/// Draws points (position, place among the colours from 0 to 1) with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
+/// A point as it is drawn: where, its place among the colours from 0 to 1, and its edge in spacings.
+pub type Seen = ([f64; 3], f64, f64);
+
+/// Cells of points that lie anyhow overlap: what is nearer to a point shows that point. By this part of an edge only, which is no relief.
+const NEARER: f64 = 1e-4;
+
+/// Draws points with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
 /// length.
 pub fn draw(
     image: &mut Image,
@@ -136,7 +142,7 @@ pub fn draw(
     frame: &Frame,
     spacing: f64,
     map: Map,
-    points: impl Iterator<Item = ([f64; 3], f64)> + Clone,
+    points: impl Iterator<Item = Seen> + Clone,
 ) {
     let fine = scale * FINE as f64;
     let [w, h] = frame.size().map(|s| (s * fine).ceil() as usize + FINE);
@@ -159,14 +165,14 @@ pub fn draw(
             light: vec![0.0; w * height],
             edge,
         };
-        for (x, part) in points.clone() {
+        for (x, part, size) in points.clone() {
             let p = camera.project(x);
             let screen = [
                 (p[0] - frame.low[0]) * fine,
                 (frame.high[1] - p[1]) * fine - first as f64,
             ];
             let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
-            buffer.cube(screen, depth as f32, part as f32, camera);
+            buffer.cube(screen, (depth as f32, part as f32), size, camera);
         }
         let heights = buffer.heights(camera);
         if camera.cosine == 0.0 {
@@ -187,9 +193,9 @@ fn hollow_radius(edge: f64) -> usize {
 }
 
 impl Buffer {
-    /// A cube seen from `elevation`: its top face above its front face, each a rectangle.
-    fn cube(&mut self, [x, y]: [f64; 2], depth: f32, part: f32, camera: &Camera) {
-        let (e, s, c) = (self.edge, camera.sine, camera.cosine);
+    /// A cube of so many edges seen from `elevation`: its top face above its front face, each a rectangle.
+    fn cube(&mut self, [x, y]: [f64; 2], (depth, part): (f32, f32), size: f64, camera: &Camera) {
+        let (e, s, c) = (size * self.edge, camera.sine, camera.cosine);
         let whole = |from: f64, to: f64, end: usize| {
             let low = (from - 0.5).ceil().max(0.0) as usize;
             low..((to - 0.5).ceil().max(0.0) as usize).min(end)
@@ -197,17 +203,24 @@ impl Buffer {
         let top = y - 0.5 * e * (s + c);
         // the front upper edge of the cube is the part nearest to the viewer
         let ridge = top + e * s;
-        let nearest = depth + (0.5 * (s + c)) as f32;
+        let nearest = depth + (0.5 * (s + c) * size) as f32;
+        let overlaps = size != 1.0 && c == 0.0;
         for row in whole(top, top + e * (s + c), self.height) {
             let v = row as f64 + 0.5 - ridge;
             let (fall, light) = match (v < 0.0, c == 0.0) {
                 (_, true) => (0.0, 1.0),
-                (true, _) => (-v * c / s / e, TOP_LIGHT),
-                (false, _) => (v * s / c / e, SIDE_LIGHT),
+                (true, _) => (-v * c / s / self.edge, TOP_LIGHT),
+                (false, _) => (v * s / c / self.edge, SIDE_LIGHT),
             };
             let depth = nearest - fall as f32;
             for column in whole(x - 0.5 * e, x + 0.5 * e, self.width) {
                 let at = row * self.width + column;
+                let mut depth = depth;
+                if overlaps {
+                    let away = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
+                    let square = away[0] * away[0] + away[1] * away[1];
+                    depth -= (NEARER * square / (self.edge * self.edge)) as f32;
+                }
                 if depth > self.depth[at] {
                     self.depth[at] = depth;
                     self.part[at] = part;

@@ -305,7 +305,7 @@ impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
             let mut centre = [zero; 3];
             for (n, bond) in room.bonds.iter().enumerate() {
                 // on the end: −Σ G (x_end − x_other)
-                let mut force = [zero; 4];
+                let mut force = [zero; 3];
                 for a in 0..3 {
                     force[a] = bond.across[a] - bond.pull * bond.y[a];
                     centre[a] = centre[a] - force[a];
@@ -314,17 +314,25 @@ impl<F: Fan, const MANY: bool> Kernel for Centres<'_, F, MANY> {
                     *v = bond.y[m].fma(force[n], *v);
                 }
                 if let Some(ends) = view.ends {
-                    let all = force.map(L::to_array);
+                    let [x, y, z] = [
+                        force[0].to_array(),
+                        force[1].to_array(),
+                        force[2].to_array(),
+                    ];
                     for l in 0..TILE {
                         let at = view.back.place(t) + n * TILE + l;
                         // SAFETY: every tile has its own places, and no more current bonds than lines
-                        unsafe { *ends.force.at(at) = all.map(|f| f[l]) };
+                        unsafe { *ends.force.at(at) = [x[l], y[l], z[l], 0.0] };
                     }
                 }
             }
             let slots = view.list.slots(t);
             let energy = energy.to_array();
-            let centre = centre.map(L::to_array);
+            let centre = [
+                centre[0].to_array(),
+                centre[1].to_array(),
+                centre[2].to_array(),
+            ];
             for (l, &slot) in slots.iter().enumerate() {
                 let slot = slot as usize;
                 let scale = 1.0 / view.volume.at(slot);
