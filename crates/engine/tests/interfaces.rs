@@ -435,3 +435,67 @@ fn what_joins_nothing_is_refused() {
     whole.interfaces = glued.interfaces.clone();
     assert!(build(&whole, Options::default()).is_err());
 }
+
+/// Bonds that break in turn: those of the glue at the stretch of the glue, whatever the halves bear.
+#[test]
+fn glue_breaks_in_turn_at_its_own_stretch() {
+    let end = |set: &str, low: f64, high: f64| SetSpec {
+        name: set.into(),
+        members: Members::Within {
+            body: set.into(),
+            members: Box::new(Members::Region(Region::Block {
+                low: [low, -1.0, -1.0],
+                high: [high, 2.0, 1.0],
+            })),
+        },
+    };
+    let held = |set: &str, x: &str| ConditionSpec {
+        set: set.into(),
+        kind: ConditionKind::Displacement([text(x), text("0"), None]),
+    };
+    let [_, mut spec] = bars(2, &PMB);
+    spec.sets = vec![end("left", -0.1, 0.1), end("right", 5.4, 5.6)];
+    spec.conditions = vec![held("left", "0"), held("right", "t")];
+    spec.interfaces[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1e-3)));
+    spec.schedule.steps = 3;
+    let statics = |control: Control| {
+        Stepper::Statics(Statics {
+            control,
+            ..Statics::default()
+        })
+    };
+    let first = |halves: Option<f64>, glue: Option<f64>| {
+        let mut spec = spec.clone();
+        let at = |s: f64| FractureSpec::new(Criterion::Stretch(s));
+        spec.materials[0].fracture = halves.map(at);
+        spec.interfaces[0].fracture = glue.map(at);
+        spec.schedule.stepper = statics(Control::Breaking);
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        sim.step().unwrap();
+        let t = sim.time();
+        sim.step().unwrap();
+        let l = sim.ledger().unwrap();
+        assert!(l.residual().abs() < 1e-9 * l.work_conditions.abs(), "{l:?}");
+        assert!(sim.broken() > 0 && l.released > 0.0);
+        t
+    };
+    let t = first(None, Some(1e-3));
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-12 * b;
+    // tougher halves do not matter, weaker glue breaks so much earlier, and halves break where glue does not
+    assert!(near(first(Some(1.0), Some(1e-3)), t));
+    assert!(near(first(None, Some(5e-4)), 0.5 * t));
+    let halves = first(Some(1e-3), None);
+    assert!(near(first(Some(1e-3), Some(1.0)), halves));
+    // the load at which it breaks where the load is given
+    for (part, breaks) in [(0.99, false), (1.01, true)] {
+        let mut told = spec.clone();
+        told.conditions[1] = held("right", &format!("{:e}*t", part * t));
+        told.schedule.steps = 1;
+        told.schedule.stepper = statics(Control::Load);
+        let mut sim = build(&told, Options::default()).unwrap();
+        sim.start(true);
+        let _ = sim.step();
+        assert_eq!(sim.broken() > 0, breaks, "{part}: {}", sim.broken());
+    }
+}

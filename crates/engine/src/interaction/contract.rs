@@ -153,6 +153,11 @@ pub trait Interaction<const D: usize>: Send + Sync {
         0.0
     }
 
+    /// Critical values of `e` (see [`history`](super::history)) of bonds between bodies, by slot for each interface; NaN where it has no point.
+    fn criticals_between(&self) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
 

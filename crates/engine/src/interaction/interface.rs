@@ -1,6 +1,6 @@
 //! Bonds between two of several bodies: an interaction on the points of both that are near to the other, as a cloud of its own.
 
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
 use crate::body::{Body, Field, zeros};
 use crate::spec::CrackKind;
 
@@ -82,6 +82,21 @@ impl<const D: usize> Interface<D> {
                 whole,
             },
         }
+    }
+
+    /// Critical values of `e` by slot of the body of all: NaN where it has no point, [`history::NEVER`] of bonds that never break.
+    pub fn criticals(&self) -> Vec<f64> {
+        let points = &self.points;
+        let mut own = vec![];
+        let name = history::ELONGATION;
+        if !(self.bonds).read_column(&points.cloud, &self.u, name, &mut own) {
+            own = vec![history::NEVER; points.cloud.len];
+        }
+        let at = |place: &u32| match *place {
+            NONE => f64::NAN,
+            place => own[place as usize],
+        };
+        points.place.iter().map(at).collect()
     }
 
     /// Adds its forces to `f`.

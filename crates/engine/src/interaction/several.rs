@@ -285,6 +285,10 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         all
     }
 
+    fn criticals_between(&self) -> Vec<Vec<f64>> {
+        self.interfaces.iter().map(|i| i.criticals()).collect()
+    }
+
     /// Bodies that have no such column have 0 at their points, and no bonds in it.
     fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
         out.clear();

@@ -233,7 +233,7 @@ impl<const D: usize> Model<D> {
     /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
     pub(super) fn learn_strength(&mut self) {
         // asking is a step of no length, which laws remember
-        if self.criticals().is_empty() {
+        if self.criticals().is_empty() && self.interaction.criticals_between().is_empty() {
             return;
         }
         let rest = match self.is_linear() {

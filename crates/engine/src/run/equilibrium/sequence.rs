@@ -88,11 +88,9 @@ impl<const D: usize> Model<D> {
             );
         }
         self.learn_strength();
-        if !self
-            .criticals()
-            .iter()
-            .any(|e| *e > 0.0 && *e < history::NEVER)
-        {
+        let between = self.interaction.criticals_between();
+        let all = [self.criticals()].into_iter().chain(between);
+        if !all.flatten().any(|e| e > 0.0 && e < history::NEVER) {
             return Err(BuildError::missing(
                 "materials[0].fracture",
                 "no bond of this body breaks: nothing says how far the load goes",
@@ -227,6 +225,18 @@ impl<const D: usize> Model<D> {
     /// The lowest factor of the load of now at which bonds are at their critical stretch, and which.
     fn weakest(&self) -> Result<(f64, Vec<Critical<D>>), SolveError> {
         let critical = self.criticals();
+        let between = self.interaction.criticals_between();
+        let limits = |i: usize, j: usize| -> [f64; 2] {
+            if self.body.piece_of(i) == self.body.piece_of(j) {
+                // bodies whose bonds never break have no such column
+                let of = |s: usize| critical.get(s).copied().unwrap_or(history::NEVER);
+                return [of(i), of(j)];
+            }
+            let ends = between.iter().map(|of| [of[i], of[j]]);
+            ends.into_iter()
+                .find(|ends| !ends.iter().any(|e| e.is_nan()))
+                .unwrap_or([history::NEVER; 2])
+        };
         let mut all = vec![];
         let mut most = 0.0f64;
         self.interaction
@@ -234,7 +244,7 @@ impl<const D: usize> Model<D> {
                 if state != BondState::Whole {
                     return;
                 }
-                let ends = [critical[i], critical[j]];
+                let ends = limits(i, j);
                 let limit = ends[0].min(ends[1]);
                 if ends.contains(&history::NEVER) || !limit.is_finite() {
                     return;

@@ -1,12 +1,15 @@
 //! Time per directed bond and step of laws of the shelf beside the linear solid, whole steps in 3-D, on one thread or as many as asked for:
 //! `cargo run --release --example laws [threads] [words]`. Only rows with every word run, for example `laws avx2 stencil plastic`. A word
-//! `cells=20` makes the cube smaller than the 60 cells along an edge that no cache holds.
+//! `cells=20` makes the cube smaller than the 60 cells along an edge that no cache holds. The first rows are what such arithmetic costs alone
+//! ([`limit`]), on one thread.
 use peridyne::execute::simd::Simd;
 use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 use std::time::Instant;
+
+mod limit;
 
 /// A cube of so many cells along an edge, whose families have 122 bonds.
 fn spec(cells: i32, law: LawSpec, breaks: bool, family: FamilyChoice) -> Spec {
@@ -154,6 +157,8 @@ fn main() {
         .num_threads(threads.unwrap_or(1))
         .build()
         .expect("a pool of threads");
+    #[cfg(target_arch = "x86_64")]
+    limit::print();
     for simd in Simd::available() {
         for (name, law) in laws() {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
