@@ -53,12 +53,13 @@ pub(super) fn regions(spec: &Spec) -> Vec<Message> {
             // the first and the last point, in spacings from the origin
             let first = (sites(low[a]) - TOLERANCE).ceil();
             let last = (sites(high[a]) + TOLERANCE).floor();
-            let beyond = [sites(low[a]) - (first - 0.5), last + 0.5 - sites(high[a])];
-            let whole = |x: f64| x.abs() < TOLERANCE || (x - 0.5).abs() < TOLERANCE;
-            if last < first || beyond.into_iter().all(whole) {
+            let count = last - first + 1.0;
+            // filled, or with faces through points
+            let longer = count - (high[a] - low[a]) / spacing;
+            let whole = |x: f64| (longer - x).abs() < TOLERANCE;
+            if count < 1.0 || [0.0, 0.5, 1.0].into_iter().any(whole) {
                 return None;
             }
-            let count = last - first + 1.0;
             let axis = ["x", "y", "z"][a];
             let place = |n: f64| Dimension::LENGTH.of(origin[a] + n * spacing);
             let of = match name {
