@@ -7,6 +7,8 @@
 pub mod bond_rotation;
 pub mod bonds;
 pub mod elastic_plastic;
+pub mod fibres;
+pub mod lamina;
 pub mod non_ordinary;
 pub mod numbers;
 pub mod position_aware;
@@ -21,6 +23,7 @@ use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
 use crate::space::Point;
 use crate::spec::Parameters;
+use fibres::Fibres;
 pub use non_ordinary::{BondAssociated, NonOrdinary};
 pub use numbers::{Numbers, Sink, Source};
 pub use thermoelastic::Thermoelastic;
@@ -35,6 +38,7 @@ pub fn each(kinds: &mut impl Kinds) {
     non_ordinary::each(kinds);
     kinds.solid::<position_aware::PositionAware>();
     kinds.solid::<bond_rotation::BondRotation>();
+    kinds.solid::<lamina::Lamina>();
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
     kinds.law::<ThermoelasticSolid>();
@@ -326,6 +330,11 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Which number of [`Material::Past`] is a damage: a bond breaks when the mean of its ends reaches 1.
     fn failure(&self) -> Option<usize> {
         None
+    }
+
+    /// Fibres of every material: bonds along them break at a stretch of their own, all others at that of the material; empty: there are none.
+    fn fibres(&self) -> Vec<Fibres<D>> {
+        vec![]
     }
 
     /// Constants of a material for a step of length `dt`; 0: time stands still.

@@ -235,8 +235,8 @@ impl<const D: usize> Model<D> {
                     return;
                 }
                 let ends = [critical[i], critical[j]];
-                let limit = ends[0].min(ends[1]);
-                if ends.contains(&history::NEVER) || !limit.is_finite() {
+                let limit = self.interaction.bond_limit([i, j], &xi, ends);
+                if !limit.is_finite() {
                     return;
                 }
                 let s = stretch(i, j, &xi, &self.u);
