@@ -3,7 +3,7 @@
 
 use crate::columns::Dimension;
 use crate::expression::Expression;
-use crate::law::material::Partner;
+use crate::law::partner::Partner;
 use crate::law::solid::eam_like::Solid;
 use crate::quantity::rounded;
 use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};

@@ -141,7 +141,7 @@ fn row(family: &[Partner<3>], fibre: Point, d: usize) -> Result<Point, String> {
         let sizes = p.xi.iter().map(|x| x.abs());
         let least = sizes.filter(|x| *x > 1e-9 * length(&p.xi));
         let unit = least.fold(f64::INFINITY, f64::min);
-        let each = p.xi.map(|x| rounded(x / unit, 6).to_string());
+        let each = p.xi.map(|x| rounded(x / unit, 6));
         format!("[{}]", each.join(", "))
     });
     Err(format!(

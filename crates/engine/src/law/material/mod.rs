@@ -21,6 +21,7 @@ pub mod viscoelastic;
 use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
+pub use crate::law::partner::Partner;
 use crate::space::Point;
 use crate::spec::Parameters;
 use fibres::Fibres;
@@ -206,17 +207,6 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
         }
         self
     }
-}
-
-/// A bond of a reference family.
-#[derive(Debug, Clone, Copy)]
-pub struct Partner<const D: usize> {
-    /// ξ (length).
-    pub xi: [f64; D],
-    /// Influence function ω(|ξ|).
-    pub omega: f64,
-    /// `ν V_j`
-    pub volume: f64,
 }
 
 /// The reference family of a point, as a law may ask for it: any sum over its bonds.
