@@ -108,7 +108,7 @@ fn list(top: &str, page: &Page) -> String {
     }
     for key in &page.keys {
         let must = if key.must { " (must be given)" } else { "" };
-        let _ = writeln!(text, "  {:<18}{}{must}", key.name, key.doc);
+        let _ = writeln!(text, "  {:<17} {}{must}", key.name, key.doc);
     }
     text
 }

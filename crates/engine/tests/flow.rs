@@ -45,6 +45,7 @@ fn made(d: usize, mut parameters: Parameters) -> Result<HypoelasticPlastic, Stri
         weighted_volume: None,
         first_moment: 1.0,
         horizon: 1.0,
+        family: &[],
     };
     HypoelasticPlastic::make(d, Plane::Strain, &[given]).map_err(|(_, message)| message)
 }

@@ -204,8 +204,11 @@ fn stiffness(found: &Findings, say: &mut dyn FnMut(String, &str)) {
                 );
             }
         }
+        // plies and crystals are meant to be
+        let meant = matches!(&spec.materials[n].law, LawSpec::Named(law) if !law.isotropic);
         if let Some(a) = class.stiffness.anisotropy()
             && (a.zener - 1.0).abs() > 0.2
+            && !meant
         {
             say(
                 format!(

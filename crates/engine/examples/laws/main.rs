@@ -98,6 +98,8 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         Parameter::Direction(["-y - 1", "x + 1", "0"].map(component))
     };
     let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.1)]);
+    let lamina = Parameters::numbers(&[("fibre_critical_stretch", 0.5)])
+        .with("young", Parameter::List(vec![4.0, 1.0]));
     vec![
         (
             "lps",
@@ -135,6 +137,7 @@ fn laws() -> Vec<(&'static str, LawSpec)> {
         ("metal, elastic yet", metal(1e3)),
         ("metal, flowing", metal(1e-9)),
         ("softening", LawSpec::named("softening", softening)),
+        ("lamina", LawSpec::named("lamina", lamina)),
         ("ply, straight", ply(straight(), "family")),
         ("ply, bent", ply(bent(), "family")),
         ("ply of bonds, straight", ply(straight(), "bond")),
@@ -163,8 +166,8 @@ fn main() {
         for (name, law) in laws() {
             for family in [FamilyChoice::Stencil, FamilyChoice::List] {
                 for breaks in [false, true] {
-                    // it must be able to break
-                    if name == "softening" && !breaks {
+                    // they must be able to break
+                    if ["softening", "lamina"].contains(&name) && !breaks {
                         continue;
                     }
                     let row = format!(

@@ -1,6 +1,8 @@
 //! What every law on every family can do: the contract between bonds and those who move, load and watch a body.
 
-use super::{BondForce, BondState, BondTangent, PointEnergies, Sweep, Tally, add_virial, along};
+use super::{
+    BondForce, BondState, BondTangent, PointEnergies, Sweep, Tally, add_virial, along, history,
+};
 use crate::body::{Body, Field, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
@@ -160,6 +162,11 @@ pub trait Interaction<const D: usize>: Send + Sync {
 
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
+
+    /// Critical `e` of the bond ξ between two slots, from those of its ends; ∞: it never breaks.
+    fn bond_limit(&self, _ends: [usize; 2], _xi: &[f64; D], critical: [f64; 2]) -> f64 {
+        history::limit(critical[0], critical[1])
+    }
 
     /// What enumerates the bonds: `"stencil"`, `"list"` or `"neighbours"`.
     fn family(&self) -> &'static str;

@@ -3,7 +3,7 @@
 //! Sweeps want the columns of their own body, so displacements, velocities and forces are copied in and out.
 
 use super::interface::Interface;
-use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally};
+use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
 use crate::body::several::Piece;
 use crate::body::{Body, Field, Identity, Layout, zeros};
 use crate::columns::{Declaration, On};
@@ -381,6 +381,16 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
         for interface in &self.interfaces {
             interface.each_bond(visit);
+        }
+    }
+
+    fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
+        let of = |slot: usize| self.own.iter().rfind(|own| own.first <= slot);
+        let own = of(ends[0]).filter(|own| of(ends[1]).is_some_and(|o| o.first == own.first));
+        match own.and_then(|own| Some((own.first, own.bonds.as_ref()?))) {
+            Some((first, bonds)) => bonds.bond_limit(ends.map(|s| s - first), xi, critical),
+            // of an interface
+            None => history::limit(critical[0], critical[1]),
         }
     }
 

@@ -3,6 +3,7 @@
 
 use crate::columns::Dimension;
 use crate::expression::Expression;
+use crate::law::partner::Partner;
 use crate::law::solid::eam_like::Solid;
 use crate::quantity::rounded;
 use crate::spec::{Influence, LawSpec, Moduli, Parameter, Parameters, Plane};
@@ -528,6 +529,8 @@ pub struct Given<'a> {
     pub first_moment: f64,
     /// Radius of its families (length).
     pub horizon: f64,
+    /// A full family of the lattice that the points lie on, of several sublattices their mean; empty: they lie on none.
+    pub family: &'a [Partner<3>],
 }
 
 /// A law that can stand on a shelf.
@@ -538,6 +541,8 @@ pub trait Shelved: Sized {
     const ENDS: bool = false;
     /// Do its bonds store energy by turning, too? Then a fracture energy gives no critical stretch.
     const TURNS: bool = false;
+    /// Do some of its bonds break at a stretch of their own? Then bonds break by nothing else, and toughness of places spares points at most.
+    const KINDS: bool = false;
 
     fn descriptor() -> Descriptor;
 

@@ -15,6 +15,7 @@ pub mod material;
 pub mod micromodulus;
 mod moduli;
 pub mod number;
+pub mod partner;
 pub mod potential;
 pub mod scaled;
 pub mod slopes;

@@ -1,7 +1,7 @@
 //! Interfaces of a spec: which points of two bodies they bond, and by which law.
 
 use super::calibration::cloud_moments;
-use super::constitutive::{ConstitutiveModel, Shelf};
+use super::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use super::reference::{cell, reference};
 use crate::body::Body;
 use crate::error::BuildError;
@@ -123,9 +123,12 @@ fn join<const D: usize>(
         moments = cloud_moments(&own, &full.body, full.horizon, spacings[0])?;
     }
     let continuum = || Moments::continuum(D, full.horizon, spec.section, written.influence);
-    let moments = moments.unwrap_or_else(continuum);
-    let model =
-        ConstitutiveModel::new::<D>(&own, None, full.horizon, spacing, moments, shelf, simd)?;
+    let bulk = Bulk {
+        moments: moments.unwrap_or_else(continuum),
+        // bonds between two bodies are on no lattice
+        family: vec![],
+    };
+    let model = ConstitutiveModel::new::<D>(&own, None, full.horizon, spacing, bulk, shelf, simd)?;
     let slots = near(all, bodies, model.reach());
     if slots.is_empty() {
         return Err(BuildError::empty(

@@ -1,13 +1,14 @@
 //! The bodies of a spec on their way into a model: where their points are, their laws, their bonds.
 
 use super::calibration::cloud_moments;
-use super::constitutive::{ConstitutiveModel, Shelf};
+use super::constitutive::{Bulk, ConstitutiveModel, Shelf};
 use super::reference::{Reference, cell, reference};
 use crate::body::{Body, Layout, Values};
 use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::family::stencil::Stencil;
 use crate::interaction::Interaction;
+use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::Warnings;
@@ -27,6 +28,8 @@ pub(super) struct Part<'a> {
     pub bonded: bool,
     pub stencil: Option<Stencil>,
     pub bulk: Option<Moments>,
+    /// [`Reference::family`]
+    pub family: Vec<Partner<3>>,
     /// Length.
     pub horizon: f64,
 }
@@ -40,6 +43,7 @@ pub(super) fn parts<'a, const D: usize>(
             body,
             stencil,
             bulk,
+            family,
             horizon,
         } = reference::<D>(&spec)?;
         let part = Part {
@@ -48,6 +52,7 @@ pub(super) fn parts<'a, const D: usize>(
             bonded,
             stencil,
             bulk,
+            family,
             horizon,
         };
         Ok((part, body))
@@ -187,13 +192,16 @@ impl Part<'_> {
             }
         }
         let continuum = || Moments::continuum(D, self.horizon, spec.section, spec.influence);
-        let discrete = bulk.unwrap_or_else(continuum);
+        let bulk = Bulk {
+            moments: bulk.unwrap_or_else(continuum),
+            family: std::mem::take(&mut self.family),
+        };
         ConstitutiveModel::new::<D>(
             spec,
             self.stencil.take(),
             self.horizon,
             cell,
-            discrete,
+            bulk,
             shelf,
             simd,
         )

@@ -4,6 +4,7 @@ use crate::body::{Body, Layout};
 use crate::error::BuildError;
 use crate::family::stencil::{MOST, Stencil, too_many};
 use crate::law::influence::influence;
+use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
 use crate::message;
 use crate::quantity::Dimension;
@@ -19,6 +20,8 @@ pub(super) struct Reference<const D: usize> {
     pub stencil: Option<Stencil>,
     /// Sums over a full family of the lattice that the points come from, whatever the family is.
     pub bulk: Option<Moments>,
+    /// That family, of several sublattices their mean; empty where points lie on no lattice.
+    pub family: Vec<Partner<3>>,
     /// Length.
     pub horizon: f64,
 }
@@ -48,14 +51,14 @@ pub(super) fn current_neighbours(spec: &Spec) -> bool {
         && matches!(spec.family, FamilyChoice::Auto | FamilyChoice::Neighbours)
 }
 
-/// Sums over a full family of the lattice, averaged over the sublattices.
-fn stencil_moments<const D: usize>(
+/// Sums over a full family of the lattice, averaged over the sublattices; and this family.
+fn bulk_family<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
     stencil: &Stencil,
     horizon: f64,
     cell: f64,
-) -> Moments {
+) -> (Moments, Vec<Partner<3>>) {
     let Layout::Grid(grid) = &body.layout else {
         unreachable!("stencils live on grids")
     };
@@ -65,6 +68,7 @@ fn stencil_moments<const D: usize>(
         second: 0.0,
         bare: 0.0,
     };
+    let mut family = vec![];
     for o in stencil.offsets.iter().flatten() {
         let r0 = grid.lattice.spacing * (o.squared as f64).sqrt() / 4.0;
         let nu = if spec.volume_scaling {
@@ -72,12 +76,21 @@ fn stencil_moments<const D: usize>(
         } else {
             1.0
         };
-        let w = nu * influence(spec.influence, r0, horizon) * volume / stencil.offsets.len() as f64;
+        let omega = influence(spec.influence, r0, horizon);
+        let w = nu * omega * volume / stencil.offsets.len() as f64;
         sum.bare += nu * volume / stencil.offsets.len() as f64 * r0;
         sum.first += w * r0;
         sum.second += w * r0 * r0;
+        let edges = grid.lattice.kind.edges();
+        family.push(Partner {
+            xi: std::array::from_fn(|a| {
+                0.25 * grid.lattice.spacing * edges[a] * f64::from(o.quarter[a])
+            }),
+            omega,
+            volume: nu * volume / stencil.offsets.len() as f64,
+        });
     }
-    sum
+    (sum, family)
 }
 
 pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, BuildError> {
@@ -153,11 +166,12 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 ));
             }
         }
-        let bulk = stencil_moments::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
+        let (bulk, family) = bulk_family::<D>(spec, &body, &stencil, horizon, cell(spec, &body));
         Ok(Reference {
             body,
             stencil: Some(stencil),
             bulk: Some(bulk),
+            family,
             horizon,
         })
     };
@@ -199,6 +213,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                     Ok(Reference {
                         body: perturbed(&r.body, p)?,
                         stencil: None,
+                        family: vec![],
                         ..r
                     })
                 }
@@ -234,6 +249,7 @@ pub(super) fn reference<const D: usize>(spec: &Spec) -> Result<Reference<D>, Bui
                 body,
                 stencil: None,
                 bulk: None,
+                family: vec![],
                 horizon: spec.horizon.length(spacing),
             })
         }

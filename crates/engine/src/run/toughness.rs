@@ -84,6 +84,16 @@ fn refused(spec: &Spec, shelf: &Shelf) -> Result<(), BuildError> {
             );
             return unsupported("toughness[0]", &message);
         }
+        if let LawSpec::Named(law) = &m.law
+            && shelf.kinds(&law.name)
+            && let Some(n) = spec.toughness.iter().position(factor)
+        {
+            let message = format!(
+                "bonds of the law {} break at stretches of two kinds: a factor is of one; only no_failure goes with it",
+                law.name
+            );
+            return unsupported(&format!("toughness[{n}]"), &message);
+        }
     }
     Ok(())
 }

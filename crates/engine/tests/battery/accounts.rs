@@ -21,6 +21,18 @@ fn block(kind: LatticeKind) -> Place {
     }
 }
 
+/// The same for a material, whose plane it may have to be.
+fn block_of(name: &str, kind: LatticeKind) -> Place {
+    let place = block(kind);
+    match name {
+        "laminae" => Place {
+            plane: Plane::Stress,
+            ..place
+        },
+        _ => place,
+    }
+}
+
 fn ends(spec: &mut Spec, cells: usize) {
     let half = |x: f64, sign: f64| {
         Members::Region(Region::HalfSpace {
@@ -109,11 +121,11 @@ fn the_ledger_of_intact_bodies_closes_to_second_order() {
     for kind in [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic] {
         let mut laws = vec!["pmb", "lps mixed", "viscoelastic", "softening"];
         if kind != LatticeKind::Chain {
-            laws.extend(["hypoelastic", "metal and soil"]);
+            laws.extend(["hypoelastic", "metal and soil", "laminae"]);
         }
         for name in laws {
             for (what, conditions) in loads() {
-                let place = block(kind);
+                let place = block_of(name, kind);
                 let case = Case::of(name, place);
                 let residual = |n: usize| {
                     let mut spec = case.spec();
@@ -223,6 +235,7 @@ fn what_breaking_bodies_lose_is_of_second_order() {
             "hypoelastic",
             "viscoelastic",
             "viscoelastic mixed",
+            "laminae",
         ];
         for name in laws {
             for (family, release) in WAYS {
@@ -230,7 +243,7 @@ fn what_breaking_bodies_lose_is_of_second_order() {
                 if name == "hypoelastic" && release == Release::AfterForce {
                     continue;
                 }
-                let place = block(kind);
+                let place = block_of(name, kind);
                 let case = Case::of(name, place);
                 let residual = |n: usize| {
                     let mut spec = case.spec();

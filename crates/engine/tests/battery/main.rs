@@ -9,6 +9,7 @@ mod constants;
 mod cracks;
 mod criteria;
 mod equivalence;
+mod lamina;
 mod mechanics;
 mod motion;
 /// The law of a user, who has no other way in than this crate's face.

@@ -99,7 +99,7 @@ fn names(kind: LatticeKind) -> Vec<&'static str> {
         "softening",
     ];
     if kind != LatticeKind::Chain {
-        names.extend(["correspondence", "neo-hookean mixed"]);
+        names.extend(["correspondence", "neo-hookean mixed", "laminae"]);
     }
     if kind == LatticeKind::Cubic {
         names.extend([

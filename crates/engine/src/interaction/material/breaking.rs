@@ -10,6 +10,7 @@ use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::{Tally, Toughness, history};
+use crate::law::material::fibres::{Fibres, of_kind};
 use crate::law::material::{Kin, Material, Numbers, Partner};
 
 /// Most numbers that a form has.
@@ -30,6 +31,10 @@ pub struct Test<'a, const D: usize, F> {
     pub next: Shared,
     pub toughness: &'a [Toughness],
     pub criteria: &'a Criteria,
+    /// Per material; empty: all bonds of one are alike.
+    pub fibres: &'a [Fibres<D>],
+    /// Are stretches of points all that counts, without rates and fibres?
+    pub plain: bool,
     /// Work done on each directed bond; empty: it does not matter.
     pub work: &'a [f64],
     /// What is left of the life of each; empty: none wears.
@@ -87,7 +92,11 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                         // a bond that is shorter than in the reference is not torn
                         let longer = L::bits(L::splat(0.0).lt(e)) as u8;
                         L::bits(history::limit(other, own).lt(work)) as u8 & longer
-                    } else if self.criteria.rate.is_empty() {
+                    } else if self.plain {
+                        L::bits(history::limit(other, own).lt(e)) as u8
+                    } else if !self.fibres.is_empty() {
+                        let own = self.stronger(own, rows, &r.xi);
+                        let other = self.stronger(other, ends, &r.xi);
                         L::bits(history::limit(other, own).lt(e)) as u8
                     } else {
                         let mut opening = L::splat(0.0);
@@ -143,6 +152,30 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
 }
 
 impl<const D: usize, F: Family<D>> Test<'_, D, F> {
+    /// The critical `e` of points for their bonds ξ, some of which are fibres.
+    #[inline(always)]
+    fn stronger<L: Lane>(&self, critical: L, slots: F::Slots, xi: &[L; D]) -> L {
+        if let [one] = self.fibres {
+            let direction = one.direction.map(L::splat);
+            return fibre_limit(&direction, L::splat(one.critical), critical, xi);
+        }
+        let (mut direction, mut of_fibre) = ([[0.0; TILE]; D], [0.0; TILE]);
+        for l in 0..L::N {
+            let fibres = &self.fibres[self.body.material_of(slots.slot(l))];
+            of_fibre[l] = fibres.critical;
+            for a in 0..D {
+                direction[a][l] = fibres.direction[a];
+            }
+        }
+        let mut of = *xi;
+        for a in 0..D {
+            // SAFETY, both: a number per lane
+            of[a] = unsafe { L::load(direction[a].as_ptr()) };
+        }
+        let of_fibre = unsafe { L::load(of_fibre.as_ptr()) };
+        fibre_limit(&of, of_fibre, critical, xi)
+    }
+
     /// The critical `e` of points where a bond is stretched at this rate.
     #[inline(always)]
     fn quicker<L: Lane>(&self, critical: L, slots: F::Slots, speed: L) -> L {
@@ -167,6 +200,20 @@ impl<const D: usize, F: Family<D>> Test<'_, D, F> {
         let s0 = history::stretch(L::select(known, critical, one));
         L::select(known, history::critical(s0 * factor), critical)
     }
+}
+
+/// The critical `e` of a bond ξ at an end with these fibres, that of the point unless it is one of them.
+#[inline(always)]
+pub fn fibre_limit<L: Lane, const D: usize>(
+    direction: &[L; D],
+    critical: L,
+    of_point: L,
+    xi: &[L; D],
+) -> L {
+    // ∞ and never are left alone
+    let known = of_point.lt(L::splat(1e100));
+    let of_fibre = L::select(known, history::critical(critical), of_point);
+    of_kind(direction, xi, of_fibre, of_point)
 }
 
 /// How much shorter the shortest whole bond of a block is than in the reference: the most `1 − r²/r0²`, or 0.

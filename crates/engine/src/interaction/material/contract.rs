@@ -140,6 +140,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         });
     }
 
+    fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
+        self.limit_of(ends, xi, critical)
+    }
+
     fn each_force(
         &mut self,
         body: &Body<D>,

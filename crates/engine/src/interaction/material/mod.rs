@@ -24,6 +24,7 @@ use crate::body::{Body, Column, Field, Identity, field};
 use crate::execute::blocks::{PerBlock, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
+use crate::law::material::fibres::Fibres;
 use crate::law::material::{Material, Numbers};
 use breaking::{Tear, Test};
 use family::{Family, Moved, Slots};
@@ -60,6 +61,8 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     memory: Vec<f64>,
     toughness: Vec<Toughness>,
     criteria: Criteria,
+    /// [`Material::fibres`]
+    fibres: Vec<Fibres<D>>,
     repulsion: Option<Repulsion>,
     /// Critical `e` per slot, or critical work, now and next; empty: nothing breaks.
     critical: Column,
@@ -222,6 +225,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             },
             tallies: PerBlock::new(blocks, Tally::default()),
             sums: PerBlock::sums(blocks),
+            fibres: law.fibres(),
             law,
             family,
             simd,
@@ -367,6 +371,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             next,
             toughness: &self.toughness,
             criteria: &self.criteria,
+            fibres: &self.fibres,
+            plain: self.criteria.rate.is_empty() && self.fibres.is_empty(),
             work: &self.work,
             life: &self.life,
             v,

@@ -1,14 +1,27 @@
-//! One bond after the other, in plain numbers: homogeneous strains, forces bond by bond.
+//! One bond after the other, in plain numbers: homogeneous strains, forces bond by bond, what a bond bears.
 
+use super::breaking::fibre_limit;
 use super::family::{Family, Slots};
 use super::sweeps::{own_pull, pull};
 use super::{MaterialInteraction, Room};
 use crate::body::{Body, Field};
 use crate::execute::lane::TILE;
-use crate::interaction::{BondForce, PointEnergies, along};
+use crate::interaction::{BondForce, PointEnergies, along, history};
 use crate::law::material::{Bond, End, Material, Numbers, Site};
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
+    /// What [`Interaction::bond_limit`](crate::interaction::Interaction::bond_limit) answers where there are fibres.
+    pub(super) fn limit_of(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {
+        let of = |n: usize| {
+            let material = self.material.get(ends[n]).map_or(0, |m| usize::from(*m));
+            match self.fibres.get(material) {
+                Some(f) => fibre_limit(&f.direction, f.critical, critical[n], xi),
+                None => critical[n],
+            }
+        };
+        history::limit(of(0), of(1))
+    }
+
     /// ξ, ω and `ν V` of the whole bonds of a point, with their places.
     pub(super) fn bonds_of(&self, group: usize, l: usize) -> Vec<(usize, [f64; D], f64, f64)> {
         let mut all = vec![];

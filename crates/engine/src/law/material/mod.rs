@@ -7,6 +7,8 @@
 pub mod bond_rotation;
 pub mod bonds;
 pub mod elastic_plastic;
+pub mod fibres;
+pub mod lamina;
 pub mod non_ordinary;
 pub mod numbers;
 pub mod position_aware;
@@ -19,8 +21,10 @@ pub mod viscoelastic;
 use crate::columns::Declaration;
 use crate::law::descriptor::Shelved;
 use crate::law::number::Number;
+pub use crate::law::partner::Partner;
 use crate::space::Point;
 use crate::spec::Parameters;
+use fibres::Fibres;
 pub use non_ordinary::{BondAssociated, NonOrdinary};
 pub use numbers::{Numbers, Sink, Source};
 pub use thermoelastic::Thermoelastic;
@@ -35,6 +39,7 @@ pub fn each(kinds: &mut impl Kinds) {
     non_ordinary::each(kinds);
     kinds.solid::<position_aware::PositionAware>();
     kinds.solid::<bond_rotation::BondRotation>();
+    kinds.solid::<lamina::Lamina>();
     kinds.law::<softening::Softening>();
     kinds.law::<bonds::Bonds<Thermoelastic, 0>>();
     kinds.law::<ThermoelasticSolid>();
@@ -204,17 +209,6 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
     }
 }
 
-/// A bond of a reference family.
-#[derive(Debug, Clone, Copy)]
-pub struct Partner<const D: usize> {
-    /// ξ (length).
-    pub xi: [f64; D],
-    /// Influence function ω(|ξ|).
-    pub omega: f64,
-    /// `ν V_j`
-    pub volume: f64,
-}
-
 /// The reference family of a point, as a law may ask for it: any sum over its bonds.
 #[derive(Clone, Copy)]
 pub struct Kin<'a, const D: usize> {
@@ -326,6 +320,11 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Which number of [`Material::Past`] is a damage: a bond breaks when the mean of its ends reaches 1.
     fn failure(&self) -> Option<usize> {
         None
+    }
+
+    /// Fibres of every material: bonds along them break at a stretch of their own, all others at that of the material; empty: there are none.
+    fn fibres(&self) -> Vec<Fibres<D>> {
+        vec![]
     }
 
     /// Constants of a material for a step of length `dt`; 0: time stands still.

@@ -84,10 +84,10 @@ pub(super) fn criteria<const D: usize>(
             .help("leave alpha out"));
         }
         if let LawSpec::Named(law) = &spec.materials[n].law
-            && shelf.ends(&law.name)
+            && (shelf.ends(&law.name) || shelf.kinds(&law.name))
         {
             let message = format!(
-                "the law {} has its critical stretch among its constants: its bonds break by nothing else",
+                "the law {} has a critical stretch among its constants: its bonds break by nothing else",
                 law.name
             );
             return Err(unsupported(n, "fracture", message));

@@ -15,6 +15,7 @@ use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::pairs::BondTable;
 use crate::interaction::{PairTable, Repulsion, Toughness};
 use crate::law::influence::influence;
+use crate::law::material::Partner;
 use crate::law::micromodulus::Moments;
 use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
@@ -24,6 +25,14 @@ pub(super) use shelf::AnyPotentials;
 pub use shelf::Shelf;
 use std::sync::Arc;
 use toughness::toughness;
+
+/// A full family.
+#[derive(Debug, Clone)]
+pub(super) struct Bulk {
+    pub moments: Moments,
+    /// Its bonds, where points lie on a lattice; else empty.
+    pub family: Vec<Partner<3>>,
+}
 
 /// Of one body.
 pub(super) struct ConstitutiveModel {
@@ -129,20 +138,20 @@ impl ConstitutiveModels {
 }
 
 impl ConstitutiveModel {
-    /// Constants from a spec; `discrete` are the sums over a bulk family of this body.
+    /// Constants from a spec; `bulk` is a bulk family of this body.
     pub fn new<const D: usize>(
         spec: &Spec,
         stencil: Option<Stencil>,
         horizon: f64,
         spacing: f64,
-        discrete: Moments,
+        bulk: Bulk,
         shelf: &Shelf,
         simd: Simd,
     ) -> Result<ConstitutiveModel, BuildError> {
         let continuum = Moments::continuum(D, horizon, spec.section, spec.influence);
         let moments = match spec.calibration {
             Calibration::Continuum => continuum,
-            Calibration::Discrete => discrete,
+            Calibration::Discrete => bulk.moments,
         };
         let Constants { laws, contact } = constants::<D>(spec, horizon, moments, continuum, shelf)?;
         let toughness = spec
@@ -164,7 +173,7 @@ impl ConstitutiveModel {
             None => None,
         };
         let pairs = pairs::bond_table(spec, &laws, horizon, spacing)?.map(Arc::new);
-        let named = shelf::chosen::<D>(spec, shelf, (horizon, moments), &toughness)?;
+        let named = shelf::chosen::<D>(spec, shelf, (horizon, moments, bulk.family), &toughness)?;
         if named.is_none() && !criteria.is_plain() {
             return Err(BuildError::unsupported(
                 "materials[0].fracture",

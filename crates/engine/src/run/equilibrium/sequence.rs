@@ -244,9 +244,8 @@ impl<const D: usize> Model<D> {
                 if state != BondState::Whole {
                     return;
                 }
-                let ends = limits(i, j);
-                let limit = ends[0].min(ends[1]);
-                if ends.contains(&history::NEVER) || !limit.is_finite() {
+                let limit = self.interaction.bond_limit([i, j], &xi, limits(i, j));
+                if !limit.is_finite() {
                     return;
                 }
                 let s = stretch(i, j, &xi, &self.u);

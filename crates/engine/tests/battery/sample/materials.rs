@@ -20,7 +20,7 @@ pub struct Material {
 impl Material {
     /// Has it the constants of an isotropic solid?
     pub fn is_isotropic(&self) -> bool {
-        let plies = |law: &LawSpec| matches!(law, LawSpec::Named(law) if law.name == "anisotropic");
+        let plies = |law: &LawSpec| matches!(law, LawSpec::Named(law) if ["anisotropic", "lamina"].contains(&law.name.as_str()));
         !self.laws.iter().any(plies)
     }
 }
@@ -114,6 +114,13 @@ pub fn materials() -> Vec<Material> {
             LawSpec::Named(law)
         }
         law => law,
+    };
+    let lamina = |young: [f64; 2], fibre: [f64; 3]| {
+        let all = Parameters::default()
+            .with("young", Parameter::List(young.to_vec()))
+            .with("fibre", Parameter::List(fibre.to_vec()))
+            .with("fibre_critical_stretch", Parameter::Number(0.09));
+        LawSpec::named("lamina", all)
     };
     let softening = |young: f64| {
         let all = Parameters::numbers(&[("young", young), ("onset", 0.1)]);
@@ -308,6 +315,25 @@ pub fn materials() -> Vec<Material> {
                 "bonds of a ply",
                 of_bonds(ply(3.0, [1.0, 2.0, 0.0])),
                 Influence::Constant,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Stress),
+            fracture: Some(3.0),
+            ..one(
+                "lamina",
+                lamina([3.0, 0.6], [1.0, 0.0, 0.0]),
+                Influence::Constant,
+            )
+        },
+        Material {
+            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Stress),
+            fracture: Some(3.0),
+            ..two(
+                "laminae",
+                lamina([3.0, 0.6], [0.0, -1.0, 0.0]),
+                lamina([2.0, 1.0], [2.0, 0.0, 0.0]),
+                Influence::Gaussian,
             )
         },
         Material {

@@ -294,6 +294,7 @@ mod tests {
             weighted_volume: None,
             first_moment: 1.0,
             horizon: 1.0,
+            family: &[],
         };
         Anisotropic::make(d, plane, &[given]).map_err(|(_, message)| message)
     }

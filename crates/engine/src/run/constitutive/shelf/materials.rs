@@ -13,7 +13,7 @@ use crate::interaction::material::{
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
 use crate::law::descriptor::{Given, Memory, Shelved};
-use crate::law::material::{Material, Numbers};
+use crate::law::material::{Material, Numbers, Partner};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
@@ -50,6 +50,8 @@ pub(super) struct Materials {
     pub ends: bool,
     /// [`Shelved::TURNS`]
     pub turns: bool,
+    /// [`Shelved::KINDS`]
+    pub kinds: bool,
     binders: Binders,
     /// Another law, and whether it fits the parameters of a material.
     other: Option<(fn(&Parameters) -> bool, Binders)>,
@@ -91,6 +93,7 @@ impl Materials {
             isotropic: M::ISOTROPIC,
             ends: M::ENDS,
             turns: M::TURNS,
+            kinds: M::KINDS,
             binders: [
                 line,
                 Arc::new(bind::<2, M> as Binder<2>),
@@ -111,6 +114,7 @@ pub(crate) struct Chosen {
     weighted_volume: Option<f64>,
     first_moment: f64,
     horizon: f64,
+    family: Arc<[Partner<3>]>,
 }
 
 #[derive(Clone)]
@@ -130,7 +134,7 @@ struct Made {
 pub(in crate::run::constitutive) fn chosen<const D: usize>(
     spec: &Spec,
     shelf: &Shelf,
-    (horizon, moments): (f64, Moments),
+    (horizon, moments, family): (f64, Moments, Vec<Partner<3>>),
     toughness: &[Toughness],
 ) -> Result<Option<Chosen>, BuildError> {
     let named = |law: &LawSpec| match law {
@@ -180,6 +184,7 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
         },
         first_moment: moments.first,
         horizon,
+        family: family.into(),
     };
     Ok(Some(chosen))
 }
@@ -244,6 +249,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 weighted_volume: chosen.weighted_volume,
                 first_moment: chosen.first_moment,
                 horizon: chosen.horizon,
+                family: &chosen.family,
             }
         })
         .collect();

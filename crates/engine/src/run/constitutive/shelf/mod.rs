@@ -317,6 +317,14 @@ impl Shelf {
         }
     }
 
+    /// Do some of its bonds break at a stretch of their own?
+    pub(crate) fn kinds(&self, name: &str) -> bool {
+        match self.entry(name).map(|e| &e.runs) {
+            Some(Runs::Material(material)) => material.kinds,
+            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
+        }
+    }
+
     /// Do its bonds store energy by turning, too?
     pub(crate) fn turns(&self, name: &str) -> bool {
         match self.entry(name).map(|e| &e.runs) {
