@@ -16,6 +16,8 @@ pub struct TransferAccount {
     pub held: f64,
     /// By deformation.
     pub made: f64,
+    /// From the warmer to the colder point of every pair in contact: no part of the balance, since it stays in the body.
+    pub through_contact: f64,
 }
 
 impl TransferAccount {

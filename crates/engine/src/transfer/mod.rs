@@ -5,16 +5,18 @@
 //! `½ Σ_i V_i Σ_j (D k/m_i) ω ν (T_j − T_i)² V_j`: as for the bond-based conduction of Bobaru and Duangpanya (2010), with each end's own
 //! weighted volume in place of that of a full ball, a linear field has the energy `½ k |∇T|²` at every point whose family is symmetric to
 //! each plane through it, those of flat faces included, and inside the flux `k ∇T`. State-based models (Oterkus, Madenci & Agwai 2014)
-//! come to the same for isotropic conduction.
+//! come to the same for isotropic conduction. Points in contact conduct by [`Touching`].
 
 mod account;
 mod condition;
 mod implicit;
 mod rows;
+mod touching;
 
 pub use account::TransferAccount;
 pub use condition::Condition;
 pub use rows::{Conduction, Rows};
+pub use touching::Touching;
 
 use crate::error::SolveError;
 use crate::execute::blocks::for_each_piece;
@@ -28,6 +30,8 @@ pub struct Transfer {
     /// Do bonds that break in the run go on conducting?
     pub across_broken: bool,
     pub rows: Rows,
+    /// What contact conducts now.
+    pub touching: Touching,
     pub conditions: Vec<Condition>,
     /// C_i (energy / temperature)
     capacity: Vec<f64>,
@@ -60,6 +64,7 @@ impl Transfer {
             method,
             across_broken,
             rows,
+            touching: Touching::default(),
             conditions,
             capacity,
             held_places: places.filter(|i| held[*i as usize]).collect(),
@@ -117,9 +122,11 @@ impl Transfer {
     pub fn stable_step(&self, t: f64) -> f64 {
         let slopes = self.slopes(t);
         let each = self.capacity.iter().zip(self.rows.totals()).zip(&slopes);
-        each.zip(&self.held)
-            .filter(|(((_, g), slope), held)| !**held && **g + **slope > 0.0)
-            .map(|(((c, g), slope), _)| c / (g + slope))
+        each.enumerate()
+            .filter(|(i, _)| !self.held[*i])
+            .map(|(i, ((c, g), slope))| (c, g + self.touching.total(i) + slope))
+            .filter(|(_, out)| *out > 0.0)
+            .map(|(c, out)| c / out)
             .fold(f64::INFINITY, f64::min)
     }
 
@@ -169,6 +176,7 @@ impl Transfer {
     fn powers(&mut self, t: f64, time: f64) {
         let value = &self.value;
         self.rows.flow(|i| value[i], &mut self.flow);
+        self.account.through_contact += time * self.touching.flow(value, &mut self.flow);
         for c in &self.conditions {
             c.add(value, (t, time), &mut self.flow, None, &mut self.account);
         }
@@ -200,6 +208,6 @@ impl Transfer {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.rows.bytes() + 33 * self.value.len()
+        self.rows.bytes() + self.touching.bytes() + 33 * self.value.len()
     }
 }

@@ -156,6 +156,7 @@ pub fn transfer_columns(quantity: Quantity, energy_unit: &str) -> Vec<Column> {
         "exchanged",
         "held",
         "made",
+        "through contact",
         "residual",
     ];
     let name = |n: &str| Column::new(format!("{} {n}", quantity.name()), unit);
@@ -163,13 +164,14 @@ pub fn transfer_columns(quantity: Quantity, energy_unit: &str) -> Vec<Column> {
 }
 
 /// The account as a row: its entries without the constant `initial`, and what the balance misses.
-pub fn transfer_values(a: &TransferAccount) -> [f64; 6] {
+pub fn transfer_values(a: &TransferAccount) -> [f64; 7] {
     [
         a.content,
         a.supplied,
         a.exchanged,
         a.held,
         a.made,
+        a.through_contact,
         a.residual(),
     ]
 }
