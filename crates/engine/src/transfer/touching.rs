@@ -1,56 +1,123 @@
-//! Conductances of points in contact.
+//! Conductances of points that touch.
 
-/// Pairs in contact and what they conduct; points by their places.
+/// Rounds in which faces are shared; the second shares what the first left over.
+const ROUNDS: usize = 2;
+/// Partners whose weights cover this part of a face take all of it.
+const COVERED: f64 = 0.5;
+
+/// A pair that touches, by the places of its points.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    ends: [u32; 2],
+    /// Which body has which end.
+    bodies: [u32; 2],
+    /// w_ij
+    weight: f64,
+    /// g_ij (power / temperature)
+    conductance: f64,
+}
+
+/// Pairs that touch, and what they conduct.
 ///
-/// A pair conducts `g_ij = h_c A_ij` with `A_ij = ½ A_i A_j (1/S_i + 1/S_j)`, `A_i` the face of a point and `S_i = Σ_k A_k` over
-/// the points that it touches: each point shares its own face among those, so that `Σ A_ij` is the mean of the areas of both sides that touch,
-/// however many pairs there are. Two flat faces at uniform temperatures exchange `h_c A ΔT` (the definition of h_c: Incropera &
-/// DeWitt, Fundamentals of Heat and Mass Transfer, section 3.1.4).
-#[derive(Debug, Clone, Default)]
+/// A pair conducts `g_ij = h_c A_ij`. Towards each other body a point has one face `A_i`, which it shares among those that it touches there: with
+/// `l_i = A_i` at first, every round adds `l_i l_j w_ij / max(s_i, s_j, l_i/2, l_j/2)`, `s_i = Σ_k l_k w_ik`, to `A_ij` and takes it from l_i and l_j.
+/// So `A_ij = A_ji`, `Σ_j A_ij ≤ A_i`, both faces of one lattice share all they have, and `A_ij` goes to 0 with `w_ij`. Two flat faces at
+/// uniform temperatures exchange `h_c A ΔT` (the definition of h_c: Incropera & DeWitt, Fundamentals of Heat and Mass
+/// Transfer, section 3.1.4).
+#[derive(Debug, Clone)]
 pub struct Touching {
-    pairs: Vec<(u32, u32, f64)>,
-    /// Σ_j g_ij; empty: nothing was ever in contact.
-    total: Vec<f64>,
+    /// h_c (power / area / temperature)
+    coefficient: f64,
+    /// A_i (area)
+    face: Vec<f64>,
+    pairs: Vec<Pair>,
+    left: Vec<f64>,
+    sum: Vec<f64>,
+    taken: Vec<f64>,
 }
 
 impl Touching {
-    /// Of pairs in contact, with a contact conductance (power / area / temperature) and the face (area) of every point.
-    pub fn set(&mut self, conductance: f64, pairs: &[(u32, u32)], face: impl Fn(usize) -> f64) {
-        let points = self.total.len();
-        let mut touched = vec![0.0; points];
-        for (i, j) in pairs {
-            let (i, j) = (*i as usize, *j as usize);
-            touched[i] += face(j);
-            touched[j] += face(i);
+    /// Of a contact conductance (power / area / temperature) and one face (area) of every point; nobody touches.
+    pub fn new(coefficient: f64, face: Vec<f64>) -> Touching {
+        let points = face.len();
+        Touching {
+            coefficient,
+            face,
+            pairs: vec![],
+            left: vec![0.0; points],
+            sum: vec![0.0; points],
+            taken: vec![0.0; points],
         }
-        self.total.fill(0.0);
+    }
+
+    /// Nobody touches.
+    pub fn clear(&mut self) {
         self.pairs.clear();
-        for (i, j) in pairs {
-            let (a, b) = (*i as usize, *j as usize);
-            let area = 0.5 * face(a) * face(b) * (1.0 / touched[a] + 1.0 / touched[b]);
-            let g = conductance * area;
-            self.total[a] += g;
-            self.total[b] += g;
-            self.pairs.push((*i, *j, g));
+    }
+
+    /// Two points of these bodies touch with a weight from 0 to 1.
+    pub fn add(&mut self, ends: [u32; 2], bodies: [u32; 2], weight: f64) {
+        self.pairs.push(Pair {
+            ends,
+            bodies,
+            weight,
+            conductance: 0.0,
+        });
+    }
+
+    /// What all that were added conduct. The same bits for the same order.
+    pub fn share(&mut self) {
+        // stable, so in the order in which they came
+        self.pairs.sort_by_key(|p| p.bodies);
+        for pairs in self.pairs.chunk_by_mut(|p, q| p.bodies == q.bodies) {
+            for end in pairs.iter().flat_map(|p| p.ends) {
+                self.left[end as usize] = self.face[end as usize];
+            }
+            for _ in 0..ROUNDS {
+                for end in pairs.iter().flat_map(|p| p.ends) {
+                    (self.sum[end as usize], self.taken[end as usize]) = (0.0, 0.0);
+                }
+                for p in pairs.iter() {
+                    let [i, j] = p.ends.map(|e| e as usize);
+                    self.sum[i] += self.left[j] * p.weight;
+                    self.sum[j] += self.left[i] * p.weight;
+                }
+                for p in pairs.iter_mut() {
+                    let [i, j] = p.ends.map(|e| e as usize);
+                    let most = [i, j].map(|e| self.sum[e].max(COVERED * self.left[e]));
+                    let most = most[0].max(most[1]);
+                    if most > 0.0 {
+                        let area = self.left[i] * self.left[j] * p.weight / most;
+                        p.conductance += self.coefficient * area;
+                        self.taken[i] += area;
+                        self.taken[j] += area;
+                    }
+                }
+                for end in pairs.iter().flat_map(|p| p.ends) {
+                    let i = end as usize;
+                    self.left[i] = (self.left[i] - self.taken[i]).max(0.0);
+                    self.taken[i] = 0.0;
+                }
+            }
         }
     }
 
-    pub fn resize(&mut self, points: usize) {
-        self.total.resize(points, 0.0);
-    }
-
-    /// Σ_j g_ij of a point.
-    pub fn total(&self, point: usize) -> f64 {
-        self.total.get(point).copied().unwrap_or(0.0)
+    /// Adds Σ_j g_ij of every point.
+    pub fn add_totals(&self, into: &mut [f64]) {
+        for p in &self.pairs {
+            for end in p.ends {
+                into[end as usize] += p.conductance;
+            }
+        }
     }
 
     /// Adds what comes into every point: what one end gets is what the other gives, to the last bit. Returns the sum from the warmer to the
     /// colder end of every pair (power).
-    pub fn flow(&self, value: &[f64], into: &mut [f64]) -> f64 {
+    pub fn flow(&self, value: impl Fn(usize) -> f64, into: &mut [f64]) -> f64 {
         let mut sum = 0.0;
-        for (i, j, g) in &self.pairs {
-            let (i, j) = (*i as usize, *j as usize);
-            let power = g * (value[j] - value[i]);
+        for p in &self.pairs {
+            let [i, j] = p.ends.map(|e| e as usize);
+            let power = p.conductance * (value(j) - value(i));
             into[i] += power;
             into[j] -= power;
             sum += power.abs();
@@ -59,6 +126,6 @@ impl Touching {
     }
 
     pub fn bytes(&self) -> usize {
-        16 * self.pairs.capacity() + 8 * self.total.len()
+        size_of::<Pair>() * self.pairs.capacity() + 32 * self.face.len()
     }
 }

@@ -3,7 +3,8 @@
 use super::make::face;
 use crate::error::BuildError;
 use crate::run::model::Model;
-use crate::spec::{Quantity, Spec, Stepper, TransferMethod};
+use crate::spec::{BodySpec, Quantity, Spec, Stepper, TransferMethod};
+use crate::transfer::Touching;
 
 impl<const D: usize> Model<D> {
     /// Takes the contact conductance of a spec whose transfers are made.
@@ -23,12 +24,28 @@ impl<const D: usize> Model<D> {
                 .help("add [heat] and the heat of every material, or leave conductance out"));
         };
         match heat.method {
-            TransferMethod::Explicit { .. } => {}
-            TransferMethod::Implicit { .. } | TransferMethod::Steady { .. } => {
-                let message = "contact conducts heat in explicit steps of heat only";
-                return Err(BuildError::unsupported(PATH, message)
-                    .help("write method = \"explicit\" in [heat], or leave conductance out"));
+            TransferMethod::Explicit { .. } | TransferMethod::Implicit { .. } => {}
+            TransferMethod::Steady { .. } => {
+                let message = "contact comes and goes, and a body that nothing else holds has no steady temperature without it";
+                return Err(BuildError::unsupported(PATH, message).help(
+                    "write method = \"implicit\" in [heat] with steps as long as you like, or leave conductance out",
+                ));
             }
+        }
+        if !spec.interfaces.is_empty() {
+            let message = "bonds between bodies conduct, and contact would conduct beside them";
+            return Err(BuildError::unsupported(PATH, message)
+                .help("leave conductance out, or take the interfaces away"));
+        }
+        if let BodySpec::Several(pieces) = &spec.body
+            && let Some(loose) = pieces.iter().find(|p| !p.bonded)
+        {
+            let message = format!(
+                "the points of `{}` are loose: each shares one face among all its partners, and none has a side",
+                loose.name
+            );
+            return Err(BuildError::unsupported(PATH, message)
+                .help("leave conductance out, or bonded = false"));
         }
         let moves = match spec.schedule.stepper {
             Stepper::Verlet | Stepper::Still => true,
@@ -40,29 +57,35 @@ impl<const D: usize> Model<D> {
                 "take [run] with integrator = \"verlet\" or \"still\" and no [statics], or leave conductance out",
             ));
         }
-        heat.touching.resize(self.body.points());
-        self.transfers.conductance = Some(h);
+        let mut faces = vec![0.0; self.body.points()];
+        for &s in &self.body.slots {
+            faces[self.transfers.place[s as usize] as usize] = face(&self.body, s as usize);
+        }
+        heat.with_contact(Touching::new(h, faces));
+        self.conduct_contact();
+        let told = self.info.transfers.iter_mut().zip(&self.transfers.all);
+        told.for_each(|(info, t)| info.stable_step = t.stable_step(0.0));
         Ok(())
     }
 
-    /// Who touches whom now.
+    /// Who touches whom now, and what they conduct.
     pub(super) fn conduct_contact(&mut self) {
-        let (Some(h), Some(contact)) = (self.transfers.conductance, &mut self.contact) else {
+        let touching = self
+            .transfers
+            .all
+            .iter_mut()
+            .find_map(|t| t.touching.as_mut());
+        let (Some(touching), Some(contact)) = (touching, &mut self.contact) else {
             return;
         };
         let (body, interaction) = (&self.body, &self.interaction);
         contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
         let place = &self.transfers.place;
-        let mut faces = vec![0.0; body.points()];
-        let mut pairs = vec![];
-        contact.each_contact(&self.u, |touch| {
-            let [a, b] = [touch.i, touch.j].map(|s| place[s]);
-            faces[a as usize] = face(body, touch.i);
-            faces[b as usize] = face(body, touch.j);
-            pairs.push((a, b));
+        touching.clear();
+        contact.each_near(&self.u, |ends, weight| {
+            let bodies = ends.map(|s| body.piece_of(s) as u32);
+            touching.add(ends.map(|s| place[s]), bodies, weight);
         });
-        for t in { self.transfers.all.iter_mut() }.filter(|t| t.quantity == Quantity::Heat) {
-            t.touching.set(h, &pairs, |i| faces[i]);
-        }
+        touching.share();
     }
 }

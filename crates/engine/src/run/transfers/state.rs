@@ -20,8 +20,6 @@ pub struct TransferInfo {
 #[derive(Debug, Clone, Default)]
 pub(in crate::run) struct Transfers {
     pub all: Vec<Transfer>,
-    /// Of heat through contact (power / area / temperature).
-    pub(super) conductance: Option<f64>,
     /// Place of the point in a slot, in the order of slots.
     pub(super) place: Vec<u32>,
     /// Directed bonds broken when bonds were looked at last.
