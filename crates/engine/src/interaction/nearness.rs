@@ -98,7 +98,7 @@ mod tests {
         assert_eq!(at(2f64.sqrt(), 2f64.sqrt()), 0.0);
         // bodies that come from afar are held apart at 1.35 spacings, and touch there
         let far = nearness().bounds([0, 0], false, 9.0, 1.35);
-        assert_eq!([far.weight(1.349), far.weight(1.7)], [1.0, 0.0]);
+        assert_eq!([far.weight(1.349), far.weight(1.701)], [1.0, 0.0]);
         assert!((far.weight(1.525) - 0.25).abs() < 1e-12);
     }
 

@@ -168,7 +168,6 @@ fn faces_of_unlike_lattices_exchange_by_their_area() {
             // whole numbers of both spacings
             (two.spacing, two.length) = (spacing, [0.7; 2]);
             let off = two.part() - 1.0;
-            eprintln!("{d}-D {spacing:?} {off:e}");
             assert!(off.abs() < bound, "{d}-D, {spacing:?}: {off:e}");
         }
     }
@@ -317,7 +316,6 @@ fn bars_in_series_resist_one_after_the_other() {
     };
     let errors = [20, 40, 80].map(|n| (flux(n) / exact - 1.0).abs());
     let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();
-    eprintln!("{errors:?} {orders:?}");
     assert!(
         orders.iter().all(|o| (o - 1.0).abs() < 0.15),
         "{errors:?} {orders:?}"

@@ -41,7 +41,7 @@ impl<const D: usize> Model<D> {
             && let Some(loose) = pieces.iter().find(|p| !p.bonded)
         {
             let message = format!(
-                "the points of `{}` are loose: each shares one face among all its partners, and none has a side",
+                "the points of `{}` are loose, and contact does not know which way the faces of such points look",
                 loose.name
             );
             return Err(BuildError::unsupported(PATH, message)
