@@ -78,8 +78,8 @@ pub struct ContactSpec {
     pub stiffness: ContactStiffness,
     /// Coulomb friction between points that were never bonded; `None`: they slide freely.
     pub friction: Option<FrictionSpec>,
-    /// Thermal contact conductance h_c (power / area / temperature) between points that were never bonded, of explicit heat; `None`: contact
-    /// conducts nothing.
+    /// Thermal contact conductance h_c (power / area / temperature) between points that touch and were never bonded; `None`: contact conducts
+    /// nothing.
     pub conductance: Option<f64>,
 }
 
