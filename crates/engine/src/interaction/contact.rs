@@ -161,9 +161,10 @@ impl<const D: usize> Contact<D> {
                     Some(kind) => *kind as usize,
                     None => body.material_of(s),
                 });
-                let (r0, same) = (square.sqrt(), body.piece_of(i) == body.piece_of(j));
+                let r0 = square.sqrt();
                 let distance = self.repulsion.distance(r0, materials);
                 if let Some(near) = &self.near {
+                    let same = body.piece_of(i) == body.piece_of(j);
                     self.bounds.push(near.bounds(materials, same, r0, distance));
                 }
                 self.pairs.push(Pair {
