@@ -81,7 +81,7 @@ impl Two {
         heat.materials = (self.conductivity)
             .map(|conductivity| TransferMaterial {
                 conductivity,
-                ..heat.materials[0].clone()
+                ..heat.materials[0]
             })
             .to_vec();
         heat.initial = vec![("upper".into(), text("1"))];
