@@ -65,6 +65,7 @@ fn sliding(friction: FrictionSpec) -> Spec {
         free: 2.4,
         stiffness: ContactStiffness::Laws,
         friction: Some(friction),
+        conductance: None,
     });
     spec.conditions = vec![
         ConditionSpec {
@@ -227,6 +228,7 @@ fn glancing() -> Spec {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: Some(FrictionSpec::constant(0.4)),
+        conductance: None,
     });
     spec.initial = vec![thrown("block", ["1.5", "-1"])];
     spec.schedule.time_step = TimeStep::Fraction(0.1);
@@ -309,6 +311,7 @@ fn points(
         free: 1.0,
         stiffness: ContactStiffness::Same(18.0 * spring / (PI * horizon.powi(5))),
         friction: None,
+        conductance: None,
     });
     spec.schedule.force_unstable = true;
     spec

@@ -216,6 +216,7 @@ fn pulled() -> Spec {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        conductance: None,
     });
     for (set, v) in [("left", "-0.02*(3-x)"), ("right", "0.02*(x-2.5)")] {
         spec.initial.push(InitialSpec {
@@ -316,6 +317,7 @@ fn unlike() -> Spec {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        conductance: None,
     });
     spec.schedule.time_step = TimeStep::Fraction(0.1);
     spec

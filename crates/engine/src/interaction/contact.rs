@@ -3,6 +3,7 @@
 //! A pair repels as its materials do ([`Repulsion`]); its energy is `½ K (r − d)² V_i V_j`, and volumes are not scaled at
 //! the horizon. Pairs inside a family repel in the family's own sweep.
 
+use super::nearness::{Bounds, Nearness};
 use super::{BondTangent, Repulsion};
 use crate::body::{Body, Field};
 use crate::family::neighbours::{LOOSE, Neighbours, periods};
@@ -53,6 +54,10 @@ pub struct Contact<const D: usize> {
     /// `[slots]`: which row of the tables of `repulsion` a point has; empty: that of its material.
     kind: Vec<u16>,
     pairs: Vec<Pair<D>>,
+    /// Who touches, where that is asked for.
+    near: Option<Nearness>,
+    /// Of every pair, where that is asked for.
+    bounds: Vec<Bounds>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -63,9 +68,22 @@ impl<const D: usize> Contact<D> {
     /// bonds that a crack made absent.
     /// Where there are several bodies, it holds within each of them that is `bonded`; empty: in all.
     pub fn new(repulsion: Repulsion, body: &Body<D>, horizon: f64, bonded: &[bool]) -> Self {
+        Contact::with_nearness(repulsion, None, body, horizon, bonded)
+    }
+
+    /// The same, and it knows who touches ([`Contact::each_near`]).
+    pub fn with_nearness(
+        repulsion: Repulsion,
+        near: Option<Nearness>,
+        body: &Body<D>,
+        horizon: f64,
+        bonded: &[bool],
+    ) -> Self {
         // two points out of a body that holds together come that close only if their displacements differ by the rest
         // of the horizon; half of it as skin leaves the other half to pass over cells that have hardly deformed
-        let range = repulsion.range.highest();
+        let repels = repulsion.range.highest();
+        let touches = { near.as_ref() }.map_or(0.0, |n| n.longest(&repulsion.range));
+        let range = repels.max(touches);
         let skin = (0.5 * (horizon - range)).max(0.25 * range).min(0.5 * range);
         // bonds within round-off of the horizon may be in the family or not
         let apart = (horizon * (1.0 - 1e-6) - range - skin).max(0.0);
@@ -76,6 +94,8 @@ impl<const D: usize> Contact<D> {
                 .groups(groups(body, bonded)),
             kind: vec![],
             pairs: vec![],
+            near,
+            bounds: vec![],
         }
     }
 
@@ -127,6 +147,7 @@ impl<const D: usize> Contact<D> {
             return;
         }
         self.pairs.clear();
+        self.bounds.clear();
         for (i, row) in self.neighbours.rows() {
             let p = body.position(i);
             for &j in row {
@@ -140,9 +161,15 @@ impl<const D: usize> Contact<D> {
                     Some(kind) => *kind as usize,
                     None => body.material_of(s),
                 });
+                let r0 = square.sqrt();
+                let distance = self.repulsion.distance(r0, materials);
+                if let Some(near) = &self.near {
+                    let same = body.piece_of(i) == body.piece_of(j);
+                    self.bounds.push(near.bounds(materials, same, r0, distance));
+                }
                 self.pairs.push(Pair {
                     base: std::array::from_fn(|a| xi[a] - now[a]),
-                    distance: self.repulsion.distance(square.sqrt(), materials),
+                    distance,
                     stiffness: self.repulsion.of(materials),
                 });
             }
@@ -202,28 +229,56 @@ impl<const D: usize> Contact<D> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.neighbours.bytes() + size_of::<Pair<D>>() * self.pairs.capacity()
+        self.neighbours.bytes()
+            + size_of::<Pair<D>>() * self.pairs.capacity()
+            + size_of::<Bounds>() * self.bounds.capacity()
     }
 
     /// Visit the pairs closer than allowed.
     pub fn each_contact(&self, u: &Field<D>, mut visit: impl FnMut(Touch<D>)) {
-        let mut pairs = self.pairs.iter();
+        self.each_pair(u, |_, [i, j], y, pair| {
+            let square: f64 = y.iter().map(|c| c * c).sum();
+            if square < pair.distance * pair.distance {
+                visit(Touch {
+                    i,
+                    j,
+                    y,
+                    r: square.sqrt(),
+                    d: pair.distance,
+                    stiffness: pair.stiffness,
+                });
+            }
+        });
+    }
+
+    /// Visit the pairs that touch, with a weight from 0 to 1; `u` as for [`Contact::energy`]. None without [`Nearness`].
+    pub fn each_near(&self, u: &Field<D>, mut visit: impl FnMut([usize; 2], f64)) {
+        if self.near.is_none() {
+            return;
+        }
+        self.each_pair(u, |n, ends, y, _| {
+            let r = y.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let weight = self.bounds[n].weight(r);
+            if weight > 0.0 {
+                visit(ends, weight);
+            }
+        });
+    }
+
+    /// Visit the listed pairs: place in the list, ends, and the way between them now.
+    #[inline(always)]
+    fn each_pair(
+        &self,
+        u: &Field<D>,
+        mut visit: impl FnMut(usize, [usize; 2], [f64; D], &Pair<D>),
+    ) {
+        let mut pairs = self.pairs.iter().enumerate();
         for (i, row) in self.neighbours.rows() {
             let ui: [f64; D] = std::array::from_fn(|a| u[a][i]);
-            for (&j, pair) in row.iter().zip(&mut pairs) {
+            for (&j, (n, pair)) in row.iter().zip(&mut pairs) {
                 let j = j as usize;
                 let y: [f64; D] = std::array::from_fn(|a| pair.base[a] + (u[a][j] - ui[a]));
-                let square: f64 = y.iter().map(|c| c * c).sum();
-                if square < pair.distance * pair.distance {
-                    visit(Touch {
-                        i,
-                        j,
-                        y,
-                        r: square.sqrt(),
-                        d: pair.distance,
-                        stiffness: pair.stiffness,
-                    });
-                }
+                visit(n, [i, j], y, pair);
             }
         }
     }

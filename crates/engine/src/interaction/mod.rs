@@ -13,6 +13,7 @@ pub(crate) mod linear;
 pub mod list;
 pub(crate) mod material;
 pub(crate) mod micromoduli;
+pub mod nearness;
 pub mod pairs;
 mod point_constants;
 mod point_energies;

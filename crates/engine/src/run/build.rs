@@ -160,6 +160,13 @@ pub fn build_in<const D: usize>(
             "friction acts between points that were never bonded: the faces of a crack slide on each other without it",
         );
     }
+    if { spec.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
+        && spec.materials.iter().any(|m| m.fracture.is_some())
+    {
+        warnings.push(
+            "contact conducts heat between points that were never bonded: none crosses a crack, whether its faces touch or not",
+        );
+    }
     let asymmetry = interaction.asymmetry();
     if asymmetry > SYMMETRIC {
         warnings.push(format!(

@@ -8,6 +8,7 @@ use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
 use crate::error::BuildError;
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
+use crate::interaction::nearness::Nearness;
 use crate::interaction::{PairTable, Repulsion};
 use crate::message;
 use crate::quantity::Dimension;
@@ -29,6 +30,8 @@ struct Kind {
 pub(super) struct Rules {
     kinds: Vec<Kind>,
     repulsion: Repulsion,
+    /// Does contact conduct, so that it must know who touches?
+    conducts: bool,
 }
 
 /// The rules of all pairs; `None`: no contact. Points of unlike spacing repel from the mean of both on.
@@ -70,7 +73,11 @@ pub(super) fn repulsion<const D: usize>(
     let range = PairTable::new(kinds.len(), |a, b| {
         contact.free * 0.5 * (kinds[a].spacing + kinds[b].spacing)
     });
-    let longest = range.highest();
+    let conducts = contact.conductance.is_some();
+    let longest = match conducts {
+        true => nearness(&kinds, 0.0).longest(&range).max(range.highest()),
+        false => range.highest(),
+    };
     if !body.pieces().is_empty() {
         for (a, period) in body.period.iter().enumerate() {
             if let Some(p) = period.filter(|p| *p <= 3.0 * longest) {
@@ -94,7 +101,16 @@ pub(super) fn repulsion<const D: usize>(
             bonded: contact.bonded,
             range,
         },
+        conducts,
     }))
+}
+
+/// Who can touch, of points that are this near in one body and belong together (length).
+fn nearness(kinds: &[Kind], horizon: f64) -> Nearness {
+    Nearness {
+        spacing: kinds.iter().map(|k| k.spacing).collect(),
+        horizon,
+    }
 }
 
 impl Rules {
@@ -190,7 +206,8 @@ impl Rules {
                 kind[s as usize] = of(s as usize) as u16;
             }
         }
-        Contact::new(self.repulsion, body, horizon, &bonded).kinds(kind)
+        let near = self.conducts.then(|| nearness(&self.kinds, horizon));
+        Contact::with_nearness(self.repulsion, near, body, horizon, &bonded).kinds(kind)
     }
 }
 

@@ -295,6 +295,9 @@ impl<const D: usize> Model<D> {
             }
         }
         self.count(false);
+        if let Some(contact) = &mut self.contact {
+            contact.moved(self.fastest);
+        }
         self.forces(true, 0.0);
         let dt = self.dt;
         self.verlet

@@ -78,6 +78,9 @@ pub struct ContactSpec {
     pub stiffness: ContactStiffness,
     /// Coulomb friction between points that were never bonded; `None`: they slide freely.
     pub friction: Option<FrictionSpec>,
+    /// Thermal contact conductance h_c (power / area / temperature) between points that touch and were never bonded; `None`: contact conducts
+    /// nothing.
+    pub conductance: Option<f64>,
 }
 
 /// Coefficient of friction of points that slide at a speed v: `μ = μ_k + (μ_s − μ_k) exp(−v/v_c)` (Oden & Martins 1985, section 2.4).

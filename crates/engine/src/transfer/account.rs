@@ -16,6 +16,9 @@ pub struct TransferAccount {
     pub held: f64,
     /// By deformation.
     pub made: f64,
+    /// From the warmer to the colder point of every pair that touches: no part of the balance, since it stays in the bodies. `None`: contact
+    /// conducts nothing.
+    pub through_contact: Option<f64>,
 }
 
 impl TransferAccount {

@@ -1,6 +1,6 @@
 //! Implicit steps and steady values: Newton's method with conjugate gradients.
 
-use super::{Rows, Transfer};
+use super::{Rows, Touching, Transfer};
 use crate::error::SolveError;
 use crate::statics::cg::{self, Goal};
 use crate::statics::{LinearOperator, Support, norm};
@@ -15,6 +15,7 @@ const ROUND_OFF: f64 = 1e-15;
 /// `diag(own) − g`: what values take to be changed.
 struct Operator<'a> {
     rows: &'a Rows,
+    touching: Option<&'a Touching>,
     /// On the diagonal beside the bonds.
     own: &'a [f64],
     /// Part of the bonds.
@@ -29,13 +30,20 @@ impl LinearOperator<1> for Operator<'_> {
 
     fn apply(&mut self, x: &[[f64; 1]], y: &mut [[f64; 1]]) {
         self.rows.flow(|i| x[i][0], &mut self.room);
+        if let Some(touching) = self.touching {
+            touching.flow(|i| x[i][0], &mut self.room);
+        }
         for (i, y) in y.iter_mut().enumerate() {
             y[0] = self.own[i] * x[i][0] - self.theta * self.room[i];
         }
     }
 
     fn diagonal(&mut self) -> Vec<[[f64; 1]; 1]> {
-        let each = self.own.iter().zip(self.rows.totals());
+        let mut total = self.rows.totals().to_vec();
+        if let Some(touching) = self.touching {
+            touching.add_totals(&mut total);
+        }
+        let each = self.own.iter().zip(&total);
         each.map(|(own, g)| [[own + self.theta * g]]).collect()
     }
 }
@@ -114,6 +122,7 @@ impl Transfer {
             }
             let mut operator = Operator {
                 rows: &self.rows,
+                touching: self.touching.as_ref(),
                 own: &own,
                 theta,
                 room: vec![0.0; own.len()],

@@ -5,16 +5,18 @@
 //! `½ Σ_i V_i Σ_j (D k/m_i) ω ν (T_j − T_i)² V_j`: as for the bond-based conduction of Bobaru and Duangpanya (2010), with each end's own
 //! weighted volume in place of that of a full ball, a linear field has the energy `½ k |∇T|²` at every point whose family is symmetric to
 //! each plane through it, those of flat faces included, and inside the flux `k ∇T`. State-based models (Oterkus, Madenci & Agwai 2014)
-//! come to the same for isotropic conduction.
+//! come to the same for isotropic conduction. Points in contact conduct by [`Touching`].
 
 mod account;
 mod condition;
 mod implicit;
 mod rows;
+mod touching;
 
 pub use account::TransferAccount;
 pub use condition::Condition;
 pub use rows::{Conduction, Rows};
+pub use touching::Touching;
 
 use crate::error::SolveError;
 use crate::execute::blocks::for_each_piece;
@@ -28,6 +30,8 @@ pub struct Transfer {
     /// Do bonds that break in the run go on conducting?
     pub across_broken: bool,
     pub rows: Rows,
+    /// What contact conducts now; `None`: contact conducts nothing.
+    pub touching: Option<Touching>,
     pub conditions: Vec<Condition>,
     /// C_i (energy / temperature)
     capacity: Vec<f64>,
@@ -60,6 +64,7 @@ impl Transfer {
             method,
             across_broken,
             rows,
+            touching: None,
             conditions,
             capacity,
             held_places: places.filter(|i| held[*i as usize]).collect(),
@@ -69,6 +74,12 @@ impl Transfer {
             value,
             account: TransferAccount::default(),
         }
+    }
+
+    /// Contact conducts, too.
+    pub fn with_contact(&mut self, touching: Touching) {
+        self.touching = Some(touching);
+        self.account.through_contact = Some(0.0);
     }
 
     pub fn values(&self) -> &[f64] {
@@ -99,6 +110,7 @@ impl Transfer {
         }
         self.account = TransferAccount {
             initial: self.content(),
+            through_contact: self.touching.as_ref().map(|_| 0.0),
             ..TransferAccount::default()
         };
     }
@@ -112,10 +124,13 @@ impl Transfer {
         slope
     }
 
-    /// The longest explicit step that makes no new extremes, `min C_i/(Σ_j g_ij − ∂P_i/∂T_i)` over the free points: at most the limit of
+    /// The longest explicit step that makes no new extremes, `min C_i/(Σ_j g_ij − ∂P_i/∂T_i)` over the free points, with what touches among the j: at most the limit of
     /// stability `2/λ`, since `λ ≤ 2 max Σ_j g_ij/C_i` (Gershgorin). Infinite where nothing flows.
     pub fn stable_step(&self, t: f64) -> f64 {
-        let slopes = self.slopes(t);
+        let mut slopes = self.slopes(t);
+        if let Some(touching) = &self.touching {
+            touching.add_totals(&mut slopes);
+        }
         let each = self.capacity.iter().zip(self.rows.totals()).zip(&slopes);
         each.zip(&self.held)
             .filter(|(((_, g), slope), held)| !**held && **g + **slope > 0.0)
@@ -169,6 +184,11 @@ impl Transfer {
     fn powers(&mut self, t: f64, time: f64) {
         let value = &self.value;
         self.rows.flow(|i| value[i], &mut self.flow);
+        if let Some(touching) = &self.touching {
+            let power = touching.flow(|i| value[i], &mut self.flow);
+            self.account.through_contact =
+                { self.account.through_contact }.map(|w| w + time * power);
+        }
         for c in &self.conditions {
             c.add(value, (t, time), &mut self.flow, None, &mut self.account);
         }
@@ -200,6 +220,7 @@ impl Transfer {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.rows.bytes() + 33 * self.value.len()
+        let touching = self.touching.as_ref().map_or(0, Touching::bytes);
+        self.rows.bytes() + touching + 33 * self.value.len()
     }
 }

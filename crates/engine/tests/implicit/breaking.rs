@@ -7,6 +7,7 @@ const CONTACT: ContactSpec = ContactSpec {
     free: 1.35,
     stiffness: ContactStiffness::Laws,
     friction: None,
+    conductance: None,
 };
 
 /// A notched plate, pulled apart.

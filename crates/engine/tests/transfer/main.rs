@@ -2,6 +2,7 @@
 
 mod accounts;
 mod bars;
+mod contact;
 mod expand;
 mod modes;
 mod repeat;

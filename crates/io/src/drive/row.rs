@@ -30,8 +30,8 @@ pub(super) fn columns(sim: &dyn Simulation, plan: &Plan) -> Vec<Column> {
     if sim.cycles().is_some() {
         columns.push(Column::new("cycles", ""));
     }
-    for (quantity, _) in sim.transfers() {
-        columns.extend(transfer_columns(quantity, &plan.energy_unit));
+    for (quantity, account) in sim.transfers() {
+        columns.extend(transfer_columns(quantity, &account, &plan.energy_unit));
     }
     if let Some(atoms) = &plan.atoms {
         columns.push(Column::new("temperature", &atoms.temperature_unit));

@@ -145,33 +145,31 @@ pub fn ledger_values(l: &Ledger) -> [f64; 8] {
 }
 
 /// Columns of the account of what spreads, in the order of [`transfer_values`]; amounts of a species are plain numbers.
-pub fn transfer_columns(quantity: Quantity, energy_unit: &str) -> Vec<Column> {
+pub fn transfer_columns(quantity: Quantity, a: &TransferAccount, energy_unit: &str) -> Vec<Column> {
     let unit = match quantity {
         Quantity::Heat => energy_unit,
         Quantity::Species => "",
     };
-    let names = [
-        "content",
-        "supplied",
-        "exchanged",
-        "held",
-        "made",
-        "residual",
-    ];
-    let name = |n: &str| Column::new(format!("{} {n}", quantity.name()), unit);
-    names.map(name).to_vec()
+    let name = |(n, _): (&str, f64)| Column::new(format!("{} {n}", quantity.name()), unit);
+    transfer_entries(a).map(name).collect()
 }
 
 /// The account as a row: its entries without the constant `initial`, and what the balance misses.
-pub fn transfer_values(a: &TransferAccount) -> [f64; 6] {
+pub fn transfer_values(a: &TransferAccount) -> Vec<f64> {
+    transfer_entries(a).map(|(_, value)| value).collect()
+}
+
+fn transfer_entries(a: &TransferAccount) -> impl Iterator<Item = (&'static str, f64)> {
     [
-        a.content,
-        a.supplied,
-        a.exchanged,
-        a.held,
-        a.made,
-        a.residual(),
+        ("content", a.content),
+        ("supplied", a.supplied),
+        ("exchanged", a.exchanged),
+        ("held", a.held),
+        ("made", a.made),
     ]
+    .into_iter()
+    .chain(a.through_contact.map(|x| ("through contact", x)))
+    .chain([("residual", a.residual())])
 }
 
 #[cfg(test)]

@@ -93,6 +93,7 @@ pub fn spec(setup: &Setup, types: &Types) -> Result<Spec, HostError> {
             free: 1.35,
             stiffness: types.contact(),
             friction: None,
+            conductance: None,
         }),
         initial: vec![],
         conditions: vec![],

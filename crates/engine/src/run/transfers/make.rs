@@ -13,12 +13,16 @@ use crate::spec::{
 };
 use crate::transfer::{Condition, Conduction, Rows, Transfer};
 
+/// One face of the point in a slot: volume over spacing.
+pub(super) fn face<const D: usize>(body: &Body<D>, slot: usize) -> f64 {
+    body.volume.at(slot) / body.spacing_at(slot)
+}
+
 /// Shares of the surface of a set that its points have: all of `area` by volume, or a face each.
 fn areas<const D: usize>(body: &Body<D>, slots: &[u32], area: Option<f64>) -> Vec<f64> {
     let volume = |s: &u32| body.volume.at(*s as usize);
     let Some(area) = area else {
-        let face = |s: &u32| volume(s) / body.spacing_at(*s as usize);
-        return slots.iter().map(face).collect();
+        return slots.iter().map(|s| face(body, *s as usize)).collect();
     };
     let all: f64 = slots.iter().map(volume).sum();
     slots.iter().map(|s| area * volume(s) / all).collect()
@@ -35,7 +39,7 @@ impl<const D: usize> Model<D> {
             }
         }
         if transfers.is_empty() {
-            return Ok(());
+            return self.make_contact(spec);
         }
         let mut slots = self.body.slots.clone();
         slots.sort_unstable();
@@ -50,6 +54,7 @@ impl<const D: usize> Model<D> {
             self.transfers.all.push(made);
             self.info.transfers.push(info);
         }
+        self.make_contact(spec)?;
         self.make_expansion(spec)?;
         self.make_heated(spec)
     }

@@ -1,5 +1,6 @@
 //! What spreads through the bonds of a model: driven step by step beside the motion.
 
+mod contact;
 mod expansion;
 mod make;
 pub(super) mod state;
@@ -78,6 +79,7 @@ impl<const D: usize> Model<D> {
         if self.transfers.seen != self.broken {
             self.break_transfers();
         }
+        self.conduct_contact();
         for n in 0..self.transfers.all.len() {
             if let Err(error) = self.transfers.all[n].advance(t, dt) {
                 self.transfers.all.iter_mut().for_each(Transfer::retreat);

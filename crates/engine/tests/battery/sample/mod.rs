@@ -216,6 +216,7 @@ pub const CONTACT: ContactSpec = ContactSpec {
     free: 1.35,
     stiffness: ContactStiffness::Laws,
     friction: None,
+    conductance: None,
 };
 
 /// With the laws of the engine, and that of [`crate::own_law`].

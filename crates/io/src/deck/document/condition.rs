@@ -22,6 +22,10 @@ pub struct Contact {
     /// Coulomb friction between points that were never bonded, a number or an expression of t; 0 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub friction: Option<At<Or<Written, Friction>>>,
+    /// Thermal contact conductance between points that were never bonded: heat per area, time and difference of temperature; contact
+    /// conducts nothing when left out.
+    #[schemars(extend("dimension" = Dim::HEAT_TRANSFER.name()))]
+    pub conductance: Option<Number>,
 }
 
 /// Friction that falls from rest to sliding, `μ = kinetic + (static − kinetic) exp(−v/speed)` at a sliding speed v.

@@ -17,6 +17,7 @@ pub fn contact(
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        conductance: None,
     };
     match &document.contact {
         Some(Or::Bare(false)) => Ok(None),
@@ -50,6 +51,9 @@ pub fn contact(
                     .friction
                     .as_ref()
                     .map(|f| friction(context, f))
+                    .transpose()?,
+                conductance: { c.conductance.as_ref() }
+                    .map(|n| context.positive(n, Dim::HEAT_TRANSFER, "the contact conductance"))
                     .transpose()?,
             }))
         }
