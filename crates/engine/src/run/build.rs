@@ -25,7 +25,7 @@ use crate::error::BuildError;
 use crate::execute::simd::Simd;
 use crate::message;
 use crate::quantity::{Dimension, Warnings, rounded};
-use crate::spec::{BodySpec, Control, Horizon, Spec, Stepper, TimeStep};
+use crate::spec::{BodySpec, Control, Horizon, LawSpec, Spec, Stepper, TimeStep};
 use crate::statics::SYMMETRIC;
 
 /// How to build, as opposed to what.
@@ -221,6 +221,7 @@ pub fn build_in<const D: usize>(
     let (smallest, largest) = sizes.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     let u = body.at_rest();
     constitutive.forget_stencils(); // the interaction has them
+    let kinds = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.kinds(&law.name));
     let mut model = Model {
         info: Info {
             dimension: D,
@@ -238,7 +239,11 @@ pub fn build_in<const D: usize>(
             section: spec.section,
             mass: body.mass(),
             volume: body.slots.iter().map(|s| body.volume.at(*s as usize)).sum(),
-            micromodulus: constitutive.micromoduli(spec.materials.len()),
+            // bonds of several kinds have no single one
+            micromodulus: match spec.materials.iter().any(|m| kinds(&m.law)) {
+                true => vec![],
+                false => constitutive.micromoduli(spec.materials.len()),
+            },
             critical_stretch: constitutive.critical_stretches(spec.materials.len()),
             families: constitutive.families(spec.materials.len()),
             time_step: dt,

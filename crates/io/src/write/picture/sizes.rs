@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 /// Of the mean distance to its nearest neighbours.
-const WIDE: f64 = 1.5;
+const WIDE: f64 = 1.7;
 const NEAREST: usize = 3;
 /// Sites of lattices are so many parts of a spacing apart along an axis, to within this part of it.
 const PARTS: f64 = 4.0;
