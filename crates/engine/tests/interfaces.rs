@@ -460,6 +460,8 @@ fn glue_breaks_in_turn_at_its_own_stretch() {
     spec.conditions = vec![held("left", "0"), held("right", "t")];
     spec.interfaces[0].fracture = Some(FractureSpec::new(Criterion::Stretch(1e-3)));
     spec.schedule.steps = 3;
+    // an increment of load
+    spec.schedule.time_step = TimeStep::Fixed(1.0);
     let statics = |control: Control| {
         Stepper::Statics(Statics {
             control,

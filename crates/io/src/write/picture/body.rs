@@ -65,7 +65,11 @@ pub fn draw(
         let reach = REACH * longest(&bounds) + spacing;
         (0..3).all(|a| x[a] >= bounds[a][0] - reach && x[a] <= bounds[a][1] + reach)
     };
-    let edges = sizes::edges(&s.reference, s.spacing);
+    // cubes in space hide what is behind gaps anyway, and overlap badly
+    let edges = match s.dimension {
+        2 => sizes::edges(&s.reference, s.spacing),
+        _ => None,
+    };
     let size = |i: usize| edges.as_ref().map_or(1.0, |e| e[i] / s.spacing);
     let shown = |cut: Option<Cut>| {
         let all = moved(s, scale).zip(&s.reference).zip(&what.values);

@@ -1,10 +1,14 @@
-//! How large points are drawn that lie anyhow: cells of a mesh are neither squares nor alike, and squares of one size leave holes.
+//! How large points of plates are drawn that lie anyhow: cells of a mesh are neither squares nor alike, and squares of one size leave holes.
 
 use std::collections::HashMap;
 
 /// Of the mean distance to its nearest neighbours.
 const WIDE: f64 = 1.7;
 const NEAREST: usize = 3;
+/// Sites of one of several square lattices: the nearest two as near as each other, to this part, and the fourth no further than a diagonal, or
+/// at a corner the third on one. Of triangles both are √3 away.
+const ALIKE: f64 = 1e-3;
+const DIAGONAL: [f64; 2] = [1.3, 1.5];
 /// Sites of lattices are so many parts of a spacing apart along an axis, to within this part of it.
 const PARTS: f64 = 4.0;
 const TOLERANCE: f64 = 1e-3;
@@ -31,7 +35,7 @@ pub fn edges(reference: &[[f64; 3]], spacing: f64) -> Option<Vec<f64>> {
     }
     let of = |x: &[f64; 3]| {
         // the squares of the nearest, rising, the point itself first
-        let mut near = [f64::INFINITY; NEAREST + 1];
+        let mut near = [f64::INFINITY; NEAREST + 2];
         let c = cell(x);
         for n in 0..27 {
             let at = [c[0] + n % 3 - 1, c[1] + n / 3 % 3 - 1, c[2] + n / 9 - 1];
@@ -45,8 +49,14 @@ pub fn edges(reference: &[[f64; 3]], spacing: f64) -> Option<Vec<f64>> {
                 }
             }
         }
-        let found = near[1..].iter().filter(|r| r.is_finite());
-        let (sum, count) = found.fold((0.0, 0.0), |(sum, n), r| (sum + r.sqrt(), n + 1.0));
+        let near = near.map(f64::sqrt);
+        let [low, high] = DIAGONAL.map(|d| d * near[1]);
+        let square = near[4] < high || (low < near[3] && near[3] < high);
+        if square && near[2] < (1.0 + ALIKE) * near[1] {
+            return near[1];
+        }
+        let found = near[1..=NEAREST].iter().filter(|r| r.is_finite());
+        let (sum, count) = found.fold((0.0, 0.0), |(sum, n), r| (sum + r, n + 1.0));
         match count > 0.0 {
             true => WIDE * sum / count,
             false => spacing,
@@ -66,6 +76,12 @@ mod tests {
             .collect();
         assert_eq!(edges(&square, 0.2), None);
         assert_eq!(edges(&[], 0.2), None);
+        // two lattices side by side
+        let mut both = square.clone();
+        both.extend(square.iter().map(|x| [1.0 + 0.5 * x[0], 0.5 * x[1], 0.0]));
+        let all = edges(&both, 0.15).unwrap();
+        assert!(all[..12].iter().all(|e| (e - 0.2).abs() < 1e-12), "{all:?}");
+        assert!(all[12..].iter().all(|e| (e - 0.1).abs() < 1e-12), "{all:?}");
         // centroids of equilateral triangles of edge 1 are honeycombs: three neighbours 1/√3 away
         let h = 3f64.sqrt();
         let mut centroids = vec![];
