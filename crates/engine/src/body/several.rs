@@ -86,6 +86,11 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// One face of the point in a slot: its volume over the spacing (area).
+    pub fn face_at(&self, slot: usize) -> f64 {
+        self.volume.at(slot) / self.spacing_at(slot)
+    }
+
     /// Ids of the points of each of the bodies.
     pub fn ids(&self) -> Vec<std::ops::Range<usize>> {
         let mut first = 0;

@@ -118,10 +118,7 @@ impl<const D: usize> Model<D> {
                 }
                 ConditionKind::Traction { value, area } => {
                     let volume: f64 = slots.iter().map(|s| self.body.volume.at(*s as usize)).sum();
-                    let face = |slot: u32| {
-                        let slot = slot as usize;
-                        self.body.volume.at(slot) / self.body.spacing_at(slot)
-                    };
+                    let face = |slot: u32| self.body.face_at(slot as usize);
                     let first = slots.first().map_or(0.0, |s| face(*s));
                     let area =
                         area.unwrap_or_else(|| match slots.iter().all(|s| face(*s) == first) {

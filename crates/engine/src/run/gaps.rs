@@ -150,12 +150,14 @@ pub(super) fn bridged<const D: usize>(
     let mut shortest: Option<(f64, usize, usize)> = None;
     let mut bonds = 0u64;
     interaction.each_bond(body, &mut |i, j, xi, state| {
-        if state != BondState::Whole {
+        let along = |s: usize| (0..D).map(|a| inward[s][a] * xi[a]).sum::<f64>();
+        // most points are inside
+        let [from, to] = [-along(i), along(j)];
+        if !(from > 0.0 && to > 0.0 && state == BondState::Whole) {
             return;
         }
         let r = square(&xi).sqrt();
-        let along = |s: usize| (0..D).map(|a| inward[s][a] * xi[a]).sum::<f64>();
-        if along(i) < -FACING * r && along(j) > FACING * r && r > NEXT * length(i).max(length(j)) {
+        if from.min(to) > FACING * r && r > NEXT * length(i).max(length(j)) {
             bonds += 1;
             if shortest.is_none_or(|(least, ..)| r < least) {
                 shortest = Some((r, i, j));

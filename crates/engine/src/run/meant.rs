@@ -3,7 +3,6 @@
 use crate::body::{Body, Layout};
 use crate::message;
 use crate::quantity::{Dimension, Message};
-use crate::space::lattice::LatticeKind;
 use crate::space::region::Region;
 use crate::spec::{BodySpec, ConditionKind, Spec};
 
@@ -35,7 +34,7 @@ pub(super) fn regions(spec: &Spec) -> Vec<Message> {
     };
     let told = bodies.into_iter().filter_map(|(name, body)| {
         let BodySpec::Lattice {
-            kind: LatticeKind::Chain | LatticeKind::Square | LatticeKind::Cubic,
+            kind,
             spacing,
             origin,
             region,
@@ -44,6 +43,10 @@ pub(super) fn regions(spec: &Spec) -> Vec<Message> {
         else {
             return None;
         };
+        // a face of others goes through some of the points of a cell
+        if kind.basis().len() > 1 {
+            return None;
+        }
         let [low, high] = block(region)?;
         (0..spec.dimension).find_map(|a| {
             if spec.periodic[a].is_some() || !(low[a].is_finite() && high[a].is_finite()) {
@@ -94,10 +97,7 @@ pub(super) fn tractions<const D: usize>(
         return vec![];
     };
     // neighbours along the axes of the cell are those of other lattices only in part
-    if !matches!(
-        grid.lattice.kind,
-        LatticeKind::Chain | LatticeKind::Square | LatticeKind::Cubic
-    ) {
+    if grid.basis() > 1 {
         return vec![];
     }
     let inside = |id: &&u32| {

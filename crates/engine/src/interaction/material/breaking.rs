@@ -156,7 +156,11 @@ impl<const D: usize, F: Family<D>> Test<'_, D, F> {
     #[inline(always)]
     fn stronger<L: Lane>(&self, critical: L, slots: F::Slots, xi: &[L; D]) -> L {
         if let [one] = self.fibres {
-            let direction = one.direction.map(L::splat);
+            // no `map`: it would not be inlined
+            let mut direction = *xi;
+            for a in 0..D {
+                direction[a] = L::splat(one.direction[a]);
+            }
             return fibre_limit(&direction, L::splat(one.critical), critical, xi);
         }
         let (mut direction, mut of_fibre) = ([[0.0; TILE]; D], [0.0; TILE]);

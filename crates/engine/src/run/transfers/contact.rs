@@ -1,6 +1,5 @@
 //! Heat through contact: who touches whom in every step, and where that is not known.
 
-use super::make::face;
 use crate::error::BuildError;
 use crate::run::model::Model;
 use crate::spec::{BodySpec, Quantity, Spec, Stepper, TransferMethod};
@@ -59,7 +58,7 @@ impl<const D: usize> Model<D> {
         }
         let mut faces = vec![0.0; self.body.points()];
         for &s in &self.body.slots {
-            faces[self.transfers.place[s as usize] as usize] = face(&self.body, s as usize);
+            faces[self.transfers.place[s as usize] as usize] = self.body.face_at(s as usize);
         }
         heat.with_contact(Touching::new(h, faces));
         self.conduct_contact();

@@ -13,16 +13,11 @@ use crate::spec::{
 };
 use crate::transfer::{Condition, Conduction, Rows, Transfer};
 
-/// One face of the point in a slot: volume over spacing.
-pub(super) fn face<const D: usize>(body: &Body<D>, slot: usize) -> f64 {
-    body.volume.at(slot) / body.spacing_at(slot)
-}
-
 /// Shares of the surface of a set that its points have: all of `area` by volume, or a face each.
 fn areas<const D: usize>(body: &Body<D>, slots: &[u32], area: Option<f64>) -> Vec<f64> {
     let volume = |s: &u32| body.volume.at(*s as usize);
     let Some(area) = area else {
-        return slots.iter().map(|s| face(body, *s as usize)).collect();
+        return slots.iter().map(|s| body.face_at(*s as usize)).collect();
     };
     let all: f64 = slots.iter().map(volume).sum();
     slots.iter().map(|s| area * volume(s) / all).collect()

@@ -230,3 +230,30 @@ fn a_level_surface_is_lit_evenly_up_to_its_edges() {
     let cut = column[column.len() / 2];
     assert!(cut[0] < top[0][0] && cut[2] < top[0][2]);
 }
+
+/// Cells of unlike size beside each other: each as large as it is, none hides the other.
+#[test]
+fn a_place_shows_the_cell_that_it_lies_in() {
+    let mut s = block([8, 8, 1], 2);
+    let mut fine = vec![];
+    for y in 0..16 {
+        fine.extend((0..16).map(|x| [7.75 + 0.5 * x as f64, -0.25 + 0.5 * y as f64, 0.0]));
+    }
+    s.reference.extend(fine);
+    let count = s.reference.len();
+    let s = Snapshot {
+        dimension: 2,
+        spacing: 0.7,
+        ..of_columns(
+            s.reference,
+            vec![
+                ("displacement", Values::Vectors(vec![[0.0; 3]; count])),
+                ("damage", Values::Scalars(vec![0.0; count])),
+            ],
+        )
+    };
+    let image = draw(&damaged(s, |x| x[0] > 7.5));
+    let [whole, torn] = [0.0, 1.0].map(|d| number_of(&image, colormap::color(d)) as f64);
+    // either half of the plate; a tenth of a cell overlaps at its rim
+    assert!((torn / whole - 1.0).abs() < 0.05, "{torn} {whole}");
+}

@@ -130,7 +130,7 @@ struct Buffer {
 /// A point as it is drawn: where, its place among the colours from 0 to 1, and its edge in spacings.
 pub type Seen = ([f64; 3], f64, f64);
 
-/// Cells of points that lie anyhow overlap: what is nearer to a point shows that point. By this part of an edge only, which is no relief.
+/// Cells of points that lie anyhow overlap: a place shows the point that is nearest, in edges of each. By this part of an edge only, which is no relief.
 const NEARER: f64 = 1e-4;
 
 /// Draws points with the upper left corner of the frame at `corner` (pixels), `scale` pixels per
@@ -193,7 +193,7 @@ fn hollow_radius(edge: f64) -> usize {
 }
 
 impl Buffer {
-    /// A cube of so many edges seen from `elevation`: its top face above its front face, each a rectangle.
+    /// A cube seen from `elevation`: its top face above its front face, each a rectangle; of so many edges where it is seen from above.
     fn cube(&mut self, [x, y]: [f64; 2], (depth, part): (f32, f32), size: f64, camera: &Camera) {
         let (e, s, c) = (size * self.edge, camera.sine, camera.cosine);
         let whole = |from: f64, to: f64, end: usize| {
@@ -203,14 +203,14 @@ impl Buffer {
         let top = y - 0.5 * e * (s + c);
         // the front upper edge of the cube is the part nearest to the viewer
         let ridge = top + e * s;
-        let nearest = depth + (0.5 * (s + c) * size) as f32;
+        let nearest = depth + (0.5 * (s + c)) as f32;
         let overlaps = size != 1.0 && c == 0.0;
         for row in whole(top, top + e * (s + c), self.height) {
             let v = row as f64 + 0.5 - ridge;
             let (fall, light) = match (v < 0.0, c == 0.0) {
                 (_, true) => (0.0, 1.0),
-                (true, _) => (-v * c / s / self.edge, TOP_LIGHT),
-                (false, _) => (v * s / c / self.edge, SIDE_LIGHT),
+                (true, _) => (-v * c / s / e, TOP_LIGHT),
+                (false, _) => (v * s / c / e, SIDE_LIGHT),
             };
             let depth = nearest - fall as f32;
             for column in whole(x - 0.5 * e, x + 0.5 * e, self.width) {
@@ -219,7 +219,7 @@ impl Buffer {
                 if overlaps {
                     let away = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
                     let square = away[0] * away[0] + away[1] * away[1];
-                    depth -= (NEARER * square / (self.edge * self.edge)) as f32;
+                    depth -= (NEARER * square / (e * e)) as f32;
                 }
                 if depth > self.depth[at] {
                     self.depth[at] = depth;
