@@ -92,7 +92,9 @@ impl Case {
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         let begun =
             |line: &str| line.starts_with("running ") || line.trim_start().starts_with("40 ");
-        assert!(lines.any(|line| begun(&line.unwrap())), "it never ran");
+        if !lines.any(|line| begun(&line.unwrap())) {
+            panic!("it never ran: {}", code(child).1);
+        }
         // the rest is read so that no pipe fills
         std::thread::spawn(move || lines.for_each(drop));
         let until = Instant::now() + Duration::from_secs(60);
@@ -257,12 +259,12 @@ fn a_second_run_is_locked_out_until_the_first_is_gone() {
 
 #[test]
 fn temporaries_of_a_killed_run_are_swept_by_the_next() {
-    // frames at every step: the kill most likely falls into the writing of one
+    // frames at every step: the kill most likely falls into the writing of one; few enough that a small disk takes them
     let case = Case::new(
         "block.toml",
         &BLOCK
-            .replace("100000000", "10000")
-            .replace("[output]", "[output]\nevery = 1"),
+            .replace("100000000", "2000")
+            .replace("history = 100", "history = 5\nevery = 1"),
     );
     let first = case.stepping();
     signal(&first, "KILL");
