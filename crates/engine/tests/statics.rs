@@ -4,6 +4,8 @@
 mod preload;
 #[path = "statics/sequence.rs"]
 mod sequence;
+#[path = "statics/touching.rs"]
+mod touching;
 
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};

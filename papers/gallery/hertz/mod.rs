@@ -1,4 +1,5 @@
-//! A rigid sphere on a piece of a half-space: force and depth against Hertz, and the circle of contact.
+//! A rigid sphere on a piece of a half-space: force and depth against Hertz, and the circle of contact; then pushed along it, and back, against
+//! Cattaneo and Mindlin.
 
 use peridyne_io::write::picture::shown::About;
 use peridyne_io::write::plot::Plot;
@@ -11,14 +12,21 @@ experiment!(
     Hertz,
     "hertz",
     "A rigid sphere on an elastic half-space (Hertz)",
-    ["../bench.rs", "deck.toml"]
+    ["../bench.rs", "deck.toml", "shear.toml"]
 );
 
 const DECK: &str = include_str!("deck.toml");
+const SHEAR: &str = include_str!("shear.toml");
 /// Of the deck (SI): modulus, Poisson's ratio of the law, radius of the sphere.
 const E: f64 = 70e9;
 const NU: f64 = 0.25;
 const R: f64 = 0.6;
+/// Of the deck that pushes: friction, and the depth.
+const MU: f64 = 0.3;
+const DEPTH: f64 = 6e-5;
+/// Its increments: pressed, pushed, all.
+const PRESSED: usize = 2;
+const PUSHED: usize = 5;
 
 /// F = 4/3 E* √R d^1.5.
 fn hertz(depth: f64) -> f64 {
@@ -112,5 +120,101 @@ fn run(context: &Context) -> Result<Findings, Failure> {
         About::Equilibrium,
         &mut found,
     )?;
+    pushed_along(context, &mut found)?;
     Ok(found)
+}
+
+/// The way D at which all of the contact slides.
+fn sliding_way() -> f64 {
+    MU * DEPTH * (2.0 - NU) / (2.0 * (1.0 - NU))
+}
+
+/// Force along the surface over μ F at a way from the pressed state, all of it the first loading.
+fn mindlin(way: f64) -> f64 {
+    1.0 - (1.0 - way / sliding_way()).max(0.0).powf(1.5)
+}
+
+/// The same on the way back from a force and a way.
+fn back_from([force, way]: [f64; 2], now: f64) -> f64 {
+    force - 2.0 * mindlin(0.5 * (way - now))
+}
+
+/// Presses, pushes along and lets go; the way is that of the point under the pole, which sticks.
+fn pushed_along(context: &Context, found: &mut Findings) -> Result<(), Failure> {
+    let set: &[(&str, &str)] = match context.small {
+        true => &[("constants.h", "2 mm"), ("statics.tolerance", "1e-4")],
+        false => &[],
+    };
+    let mut bench = Bench::new(SHEAR, set)?;
+    let [mut way, mut force] = [vec![], vec![]];
+    let mut pressed = [0.0; 2];
+    for n in 1..=bench.steps() as usize {
+        context.say(&format!("pushed along, increment {n}"));
+        bench.step()?;
+        let now = [bench.probe("way_x")?, -bench.probe("force_x")?];
+        if n == PRESSED {
+            pressed = now;
+        }
+        if n >= PRESSED {
+            way.push(now[0] - pressed[0]);
+            force.push((now[1] - pressed[1]) / (MU * bench.probe("force_z")?));
+        }
+    }
+    let turn = PUSHED - PRESSED;
+    let exact: Vec<f64> = (0..way.len())
+        .map(|n| match n <= turn {
+            true => mindlin(way[n]),
+            false => back_from([force[turn], way[turn]], way[n]),
+        })
+        .collect();
+    let off: Vec<f64> = force.iter().zip(&exact).map(|(f, e)| f - e).collect();
+    let most = |part: &[f64]| part.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    found.measured(
+        "force along the surface over μF",
+        format!("{force:.3?}"),
+        "",
+    );
+    found.measured(
+        "that of Mindlin at the same ways",
+        format!("{exact:.3?}"),
+        "",
+    );
+    found.number("shear", most(&off[..=turn]));
+    found.number("shear_back", most(&off[turn..]));
+    found.measured(
+        "energy that slip took",
+        format!("{:.3}", 1e3 * bench.probe("sphere_energy_dissipated")?),
+        "mJ",
+    );
+    let d = sliding_way();
+    let over = |v: &[f64]| v.iter().map(|x| x / d).collect::<Vec<f64>>();
+    let fine: Vec<f64> = (0..=100).map(|k| 0.01 * d * f64::from(k)).collect();
+    let top = way[turn];
+    let back: Vec<f64> = fine.iter().map(|x| x * top / d).collect();
+    let plot = Plot::new("A sphere is pushed along, and back")
+        .x("way over that at which all slides", "")
+        .y("force over μF", "")
+        .points("peridyne", &over(&way), &force)
+        .line(
+            "Mindlin",
+            &over(&fine),
+            &fine.iter().map(|x| mindlin(*x)).collect::<Vec<_>>(),
+        )
+        .line(
+            "Mindlin, back",
+            &over(&back),
+            &back
+                .iter()
+                .map(|x| back_from([force[turn], top], *x))
+                .collect::<Vec<_>>(),
+        );
+    found.picture(plot.save(&context.out, "shear")?);
+    let path = context.out.join("shear.csv");
+    Table::new()
+        .column("way", "m", way)
+        .column("force over friction", "", force)
+        .column("Mindlin's", "", exact)
+        .save(&path)?;
+    found.file(path);
+    Ok(())
 }

@@ -255,6 +255,12 @@ impl<const D: usize> Rigid<D> {
         std::array::from_fn(|a| self.center[a] + arm[a])
     }
 
+    /// The way from where it was then to where it is, of what is at `arm` from the centre now.
+    pub fn way_since(&self, then: &Kept, arm: &Point) -> Point {
+        let before = times(&then.axes, &transposed_times(&self.axes, arm));
+        std::array::from_fn(|a| (self.center[a] + arm[a]) - (then.center[a] + before[a]))
+    }
+
     /// Velocity of what is at `arm` from the centre.
     pub fn velocity_at(&self, arm: &Point) -> Point {
         let turn = cross(&self.turning, arm);

@@ -3,7 +3,8 @@
 //! A pair in contact is a spring of force density `K V_j` along its direction. Points that are free, with z neighbours
 //! in range on all sides, meet `(z/D) K V` along any direction, and twice that where neighbours move against each other:
 //! `λ = (z/D) K (V_b/ρ_a + V_a/ρ_b)` (exact for springs of a square or cubic lattice). A point at the surface of a body
-//! has half a family besides: `λ = ½ λ_bonds + (z/D) K V_b/ρ_a`.
+//! has half a family besides: `λ = ½ λ_bonds + (z/D) K V_b/ρ_a`. With friction, springs along the faces count with theirs:
+//! z/D becomes `z (1 + (D − 1) κ/K)/D`.
 
 use crate::interaction::Repulsion;
 
@@ -24,7 +25,7 @@ pub struct ContactLimit {
     pub materials: [usize; 2],
 }
 
-/// The largest eigenvalue over all pairs of materials. `per_axis` is z/D, `bonds` the largest eigenvalue of the bonds.
+/// The largest eigenvalue over all pairs of materials. `per_axis` is z/D, with friction more, `bonds` the largest eigenvalue of the bonds.
 pub fn contact_limit(
     repulsion: &Repulsion,
     grains: &[Grain],

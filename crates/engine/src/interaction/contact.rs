@@ -196,6 +196,16 @@ impl<const D: usize> Contact<D> {
         });
     }
 
+    /// Adds what points that touch resist with (force / length) to sums by slot; `u` as for [`Contact::energy`].
+    pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
+        self.each_contact(u, |touch| {
+            let [vi, vj] = [touch.i, touch.j].map(|s| body.volume.at(s));
+            for s in [touch.i, touch.j] {
+                sum[s] += touch.stiffness * vi * vj;
+            }
+        });
+    }
+
     /// Energy of all contacts (energy). `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].
     pub fn energy(&self, body: &Body<D>, u: &Field<D>) -> f64 {
         let mut energy = 0.0;

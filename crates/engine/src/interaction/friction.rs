@@ -1,28 +1,48 @@
-//! Coulomb friction of points that touch: force density `μ K (d − r) V_j` on i along the tangential velocity of j against i,
-//! `w = (1 − n⊗n)(v_j − v_i)` with n from i to j, and the opposite force on j. K (d − r) is what they repel with. μ may depend on |w| and on
-//! time ([`FrictionSpec`]).
+//! Coulomb friction of points that touch, with a memory of sticking (Cundall & Strack 1979): a spring along the faces that slips.
 //!
-//! Momentum is kept, and what friction does is dissipated. A pair that sticks has no direction: the force is never more than
-//! what takes an equal part of w from every partner within one step, `m |w| / (z Δt)` with the reduced mass `m = m_i m_j/(m_i + m_j)`
-//! and z the greater number of partners of the two. Sticking points so creep with z accelerations of a step, and friction
-//! turns no motion around: without the bound it would do so in every step, by as much as `μ N Δt/m`.
+//! A pair has an elastic part ξ of the path of j along i. It grows by what j moves against i across n, the direction from i to j, turns
+//! with n, and is cut to the length at which `κ |ξ| = μ K (d − r)`, with K (d − r) what the pair repels with and `κ = 2/7 K`
+//! ([`TANGENTIAL`]). The force density on i is `κ V_j ξ`, that on j the opposite. μ may depend on the speed of sliding and on time
+//! ([`FrictionSpec`]). What touches and slides when a run begins has slid before. So what sticks holds a force without creeping; momentum
+//! is kept; what slips is dissipated; and the rest, `½ κ ξ² V_i V_j`, is energy of the contact until the pair parts.
 
 use super::contact::{Contact, Touch};
 use crate::body::{Body, Field, zeros};
 use crate::expression::Expression;
 use crate::spec::FrictionSpec;
+use std::iter::Peekable;
+use std::slice::Iter;
+
+/// Stiffness of contact along faces over that across them: the usual choice of granular mechanics (LAMMPS, `pair_style gran`).
+pub const TANGENTIAL: f64 = 2.0 / 7.0;
+
+/// The elastic path ξ of two that touch.
+#[derive(Debug, Clone, Copy)]
+struct Spring<const D: usize> {
+    ends: [u32; 2],
+    way: [f64; D],
+    /// `d − r` (length).
+    depth: f64,
+}
 
 /// Friction outside the families, and what it has dissipated.
 #[derive(Debug, Clone)]
 pub struct Friction<const D: usize> {
     law: FrictionSpec,
-    now: Coefficients,
     /// Force density of the last evaluation.
     force: Field<D>,
-    /// `[slots]`: with how many a point is in touch.
-    partners: Vec<u32>,
-    /// Work done on the bodies (energy): what is dissipated, negative.
+    /// Of an increment of statics: displacements and force density where it began.
+    from: Option<[Field<D>; 2]>,
+    /// Of all that touch, by their ends: as they were when the step began, and as they are.
+    before: Vec<Spring<D>>,
+    now: Vec<Spring<D>>,
+    /// How deep they were at the last [`Friction::press`], in statics.
+    pressed: Vec<Spring<D>>,
+    /// Work done on the bodies (energy), and what it was when the step began.
     pub work: f64,
+    kept: f64,
+    /// What springs hold (energy): `−work − energy` is dissipated.
+    pub energy: f64,
 }
 
 /// Coefficients of a law at a time; what is below 0 counts as 0.
@@ -63,24 +83,114 @@ impl Coefficients {
     }
 }
 
+/// The spring of two, in a list that is gone through in order of the ends.
+fn find<'a, const D: usize>(
+    all: &mut Peekable<Iter<'a, Spring<D>>>,
+    ends: [u32; 2],
+) -> Option<&'a Spring<D>> {
+    while all.next_if(|s| s.ends < ends).is_some() {}
+    all.next_if(|s| s.ends == ends)
+}
+
+fn length<const D: usize>(x: &[f64; D]) -> f64 {
+    x.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// What of a way lies in a face of normal n (of length 1).
+pub fn along<const D: usize>(normal: &[f64; D], way: &[f64; D]) -> [f64; D] {
+    let across: f64 = (0..D).map(|a| way[a] * normal[a]).sum();
+    std::array::from_fn(|a| way[a] - across * normal[a])
+}
+
+/// The elastic path of what begins in touch and slides with `w`: as if it had slid before.
+pub fn begun<const D: usize>(w: &[f64; D], most: f64) -> [f64; D] {
+    match length(w) {
+        0.0 => [0.0; D],
+        speed => w.map(|c| c * most / speed),
+    }
+}
+
+/// The elastic path after another piece of path along a face of normal n (of length 1), no longer than `most`.
+pub fn slipped<const D: usize>(
+    before: &[f64; D],
+    normal: &[f64; D],
+    path: &[f64; D],
+    most: f64,
+) -> [f64; D] {
+    // what turns with the faces keeps its length
+    let turned = along(normal, before);
+    let kept = match length(&turned) {
+        0.0 => 0.0,
+        short => length(before) / short,
+    };
+    let path = along(normal, path);
+    let way: [f64; D] = std::array::from_fn(|a| kept * turned[a] + path[a]);
+    let long = length(&way);
+    match long > most {
+        true => way.map(|c| c * most / long),
+        false => way,
+    }
+}
+
 impl<const D: usize> Friction<D> {
     pub fn new(law: FrictionSpec, body: &Body<D>) -> Self {
         Friction {
             law,
-            now: Coefficients::default(),
             force: zeros(body.len),
-            partners: vec![0; body.len],
+            from: None,
+            before: vec![],
+            now: vec![],
+            pressed: vec![],
             work: 0.0,
+            kept: 0.0,
+            energy: 0.0,
         }
     }
 
-    /// Half of the work of the old force; `v` is the velocity of the middle of the step that ends now.
+    /// A step begins from what is now. Half of the work of the old force; `v` is the velocity of the middle of the step that ends now.
     pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
+        std::mem::swap(&mut self.before, &mut self.now);
+        self.kept = self.work;
         self.half_path(body, v, dt);
     }
 
+    /// An increment of statics begins, from these displacements.
+    pub fn depart(&mut self, u: &Field<D>) {
+        std::mem::swap(&mut self.before, &mut self.now);
+        self.kept = self.work;
+        self.from = Some([u.clone(), self.force.clone()]);
+    }
+
+    /// In statics what rubs is pressed as it is at this call, until the next: between calls friction has a potential.
+    pub fn press(&mut self) {
+        self.pressed.clone_from(&self.now);
+    }
+
+    /// Does anything touch?
+    pub fn rubs(&self) -> bool {
+        !self.now.is_empty()
+    }
+
+    /// It has ended: its work, by the trapezoidal rule.
+    pub fn arrive(&mut self, body: &Body<D>, u: &Field<D>) {
+        let Some([from, force]) = &self.from else {
+            return;
+        };
+        for &s in &body.slots {
+            let i = s as usize;
+            let work = (0..D).map(|a| (force[a][i] + self.force[a][i]) * (u[a][i] - from[a][i]));
+            self.work += 0.5 * body.volume.at(i) * work.sum::<f64>();
+        }
+    }
+
+    /// Back to before the last [`Friction::begin`] or [`Friction::depart`].
+    pub fn retreat(&mut self) {
+        std::mem::swap(&mut self.before, &mut self.now);
+        self.work = self.kept;
+    }
+
     /// Adds the force density at the displacements of the contact's last update to `f`. `v` is the velocity of the step's middle,
-    /// `dt` the step that ends, 0 at the start of a run, `step` the one that begins, `t` the time.
+    /// `dt` the step that ends, 0 at the start of a run and in statics, where the path is that from the beginning of the increment; `t` the time.
     pub fn add(
         &mut self,
         contact: &Contact<D>,
@@ -88,24 +198,59 @@ impl<const D: usize> Friction<D> {
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
         t: f64,
-        [dt, step]: [f64; 2],
+        dt: f64,
     ) {
-        self.now = Coefficients::new(&self.law, t);
-        self.partners.fill(0);
-        contact.each_contact(u, |touch| {
-            self.partners[touch.i] += 1;
-            self.partners[touch.j] += 1;
-        });
+        let law = Coefficients::new(&self.law, t);
+        if dt == 0.0 && self.from.is_none() {
+            std::mem::swap(&mut self.before, &mut self.now);
+        }
+        self.now.clear();
+        self.energy = 0.0;
         self.force.iter_mut().for_each(|c| c.fill(0.0));
+        // both in order of their ends
+        let mut before = self.before.iter().peekable();
+        let mut pressed = self.pressed.iter().peekable();
         contact.each_contact(u, |touch| {
-            let Some(force) = self.between(body, v, &touch, step) else {
+            let Touch { i, j, y, r, d, .. } = touch;
+            if r == 0.0 {
                 return;
-            };
-            let [vi, vj] = [touch.i, touch.j].map(|s| body.volume.at(s));
-            for a in 0..D {
-                self.force[a][touch.i] += force[a] / vi;
-                self.force[a][touch.j] -= force[a] / vj;
             }
+            let ends = [i as u32, j as u32];
+            let before = find(&mut before, ends);
+            let depth = match &self.from {
+                Some(_) => find(&mut pressed, ends).map_or(0.0, |s| s.depth),
+                None => d - r,
+            };
+            let normal = y.map(|c| c / r);
+            let w = along(&normal, &std::array::from_fn(|a| v[a][j] - v[a][i]));
+            let most = law.at(length(&w)) * depth / TANGENTIAL;
+            let way = match (&self.from, before) {
+                (None, before) if dt == 0.0 && before.is_none_or(|s| s.way == [0.0; D]) => {
+                    begun(&w, most)
+                }
+                (from, before) => {
+                    let path = match from {
+                        Some([from, _]) => {
+                            std::array::from_fn(|a| (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]))
+                        }
+                        None => w.map(|c| dt * c),
+                    };
+                    slipped(before.map_or(&[0.0; D], |s| &s.way), &normal, &path, most)
+                }
+            };
+            let stiffness = TANGENTIAL * touch.stiffness;
+            let [vi, vj] = [i, j].map(|s| body.volume.at(s));
+            for a in 0..D {
+                self.force[a][i] += stiffness * vj * way[a];
+                self.force[a][j] -= stiffness * vi * way[a];
+            }
+            let square: f64 = way.iter().map(|c| c * c).sum();
+            self.energy += 0.5 * stiffness * square * vi * vj;
+            self.now.push(Spring {
+                ends,
+                way,
+                depth: d - r,
+            });
         });
         for a in 0..D {
             for (f, own) in f[a].iter_mut().zip(self.force[a].iter()) {
@@ -113,32 +258,6 @@ impl<const D: usize> Friction<D> {
             }
         }
         self.half_path(body, v, dt);
-    }
-
-    /// The force on i; `None`: nothing rubs.
-    fn between(
-        &self,
-        body: &Body<D>,
-        v: &Field<D>,
-        touch: &Touch<D>,
-        step: f64,
-    ) -> Option<[f64; D]> {
-        let &Touch { i, j, y, r, .. } = touch;
-        let mut w: [f64; D] = std::array::from_fn(|a| v[a][j] - v[a][i]);
-        let across = (0..D).map(|a| w[a] * y[a]).sum::<f64>() / (r * r);
-        for a in 0..D {
-            w[a] -= across * y[a];
-        }
-        let speed = w.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if !(r > 0.0 && speed > 0.0) {
-            return None;
-        }
-        let [mi, mj] = [i, j].map(|s| body.density.at(s) * body.volume.at(s));
-        let z = self.partners[i].max(self.partners[j]);
-        let most = mi * mj / (mi + mj) * speed / (f64::from(z) * step);
-        let normal = touch.stiffness * (touch.d - r) * body.volume.at(i) * body.volume.at(j);
-        let force = (self.now.at(speed) * normal).min(most);
-        Some(w.map(|c| force * c / speed))
     }
 
     fn half_path(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
@@ -154,6 +273,8 @@ impl<const D: usize> Friction<D> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        (8 * D + 4) * self.partners.len()
+        let springs = self.before.capacity() + self.now.capacity() + self.pressed.capacity();
+        let fields = if self.from.is_some() { 3 } else { 1 };
+        8 * D * fields * self.force[0].len() + size_of::<Spring<D>>() * springs
     }
 }

@@ -43,7 +43,10 @@ impl<const D: usize> Model<D> {
                 ledger.work_conditions += load.work
             }
         }
-        ledger.dissipated -= self.friction.as_ref().map_or(0.0, |f| f.work);
+        if let Some(friction) = &self.friction {
+            ledger.contact += friction.energy;
+            ledger.dissipated -= friction.work + friction.energy;
+        }
         ledger.work_conditions += self.constraints.iter().map(|c| c.work).sum::<f64>();
         ledger.work_indenter += self.indenters.iter().map(|i| i.work).sum::<f64>();
         for d in &self.driven {

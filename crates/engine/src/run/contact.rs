@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
 use crate::error::BuildError;
 use crate::interaction::contact::Contact;
-use crate::interaction::friction::Friction;
+use crate::interaction::friction::{Friction, TANGENTIAL};
 use crate::interaction::nearness::Nearness;
 use crate::interaction::{PairTable, Repulsion};
 use crate::message;
@@ -32,6 +32,7 @@ pub(super) struct Rules {
     repulsion: Repulsion,
     /// Does contact conduct, so that it must know who touches?
     conducts: bool,
+    rubs: bool,
 }
 
 /// The rules of all pairs; `None`: no contact. Points of unlike spacing repel from the mean of both on.
@@ -102,6 +103,7 @@ pub(super) fn repulsion<const D: usize>(
             range,
         },
         conducts,
+        rubs: contact.friction.is_some(),
     }))
 }
 
@@ -173,7 +175,9 @@ impl Rules {
             let range = range.map(|(k, _)| self.repulsion.range.at(k, k));
             near = near.max(part.neighbours(own, range.fold(0.0, f64::max)));
         }
-        contact_limit(&self.repulsion, &grains, near / D as f64, bonds)
+        let along = if self.rubs { TANGENTIAL } else { 0.0 };
+        let per_axis = near * (1.0 + (D - 1) as f64 * along) / D as f64;
+        contact_limit(&self.repulsion, &grains, per_axis, bonds)
     }
 
     /// The kind of a slot.
@@ -219,14 +223,13 @@ pub(super) fn friction<const D: usize>(
     let Some(law) = spec.contact.as_ref().and_then(|c| c.friction.as_ref()) else {
         return Ok(None);
     };
-    check_friction::<D>(law, spec, "contact.friction")?;
+    check_friction::<D>(law, "contact.friction")?;
     Ok(Some(Friction::new(law.clone(), body)))
 }
 
 /// Coefficients that depend on t alone and do not begin below 0, of a body that moves and has something to rub along.
 pub(super) fn check_friction<const D: usize>(
     law: &FrictionSpec,
-    spec: &Spec,
     path: &str,
 ) -> Result<(), BuildError> {
     let mut all = vec![&law.kinetic];
@@ -256,11 +259,6 @@ pub(super) fn check_friction<const D: usize>(
     if D == 1 {
         let message = "points on a line have nothing to rub along";
         return Err(BuildError::unsupported(path, message).help("leave friction out"));
-    }
-    if spec.schedule.statics().is_some() {
-        let message = "friction follows velocities, which equilibrium does not have";
-        return Err(BuildError::unsupported(path, message)
-            .help("leave friction out, or take [run] instead of [statics]"));
     }
     Ok(())
 }

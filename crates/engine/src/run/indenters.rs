@@ -20,15 +20,14 @@ pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), B
         .enumerate()
     {
         let path = format!("preload.indenters[{n}]");
-        let moves = matches!(indenter.motion, IndenterMotion::Free(_));
-        if moves || indenter.friction.is_some() {
+        if matches!(indenter.motion, IndenterMotion::Free(_)) {
             return Err(BuildError::unsupported(
                 path,
-                "in statics rigid bodies go where they are told, and slide without friction",
+                "in statics rigid bodies go where they are told",
             )
-            .help("leave mass, density and friction out, or write stage = \"motion\""));
+            .help("leave mass and density out, or write stage = \"motion\""));
         }
-        one::<D>(indenter, spec, &path)?;
+        one::<D>(indenter, &path)?;
         recurs(indenter, body, &path)?;
         if let Some(cohesion) = &indenter.cohesion {
             sticks(cohesion, body, &path)?;
@@ -43,7 +42,7 @@ pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), B
             return Err(BuildError::conflict(format!("{path}.name"), message));
         }
         names.push(name);
-        one::<D>(indenter, spec, &path)?;
+        one::<D>(indenter, &path)?;
         recurs(indenter, body, &path)?;
         if let Some(cohesion) = &indenter.cohesion {
             sticks(cohesion, body, &path)?;
@@ -52,7 +51,7 @@ pub(super) fn check<const D: usize>(spec: &Spec, body: &Body<D>) -> Result<(), B
     Ok(())
 }
 
-fn one<const D: usize>(indenter: &IndenterSpec, spec: &Spec, path: &str) -> Result<(), BuildError> {
+fn one<const D: usize>(indenter: &IndenterSpec, path: &str) -> Result<(), BuildError> {
     let shape = &indenter.shape;
     if !shape.fits(D) {
         let shapes = ["sphere or plane", "sphere (a disk), box or plane", ""][D.clamp(1, 3) - 1];
@@ -88,7 +87,7 @@ fn one<const D: usize>(indenter: &IndenterSpec, spec: &Spec, path: &str) -> Resu
         return Err(BuildError::unsupported(format!("{path}.rotation"), message));
     }
     if let Some(friction) = &indenter.friction {
-        check_friction::<D>(friction, spec, &format!("{path}.friction"))?;
+        check_friction::<D>(friction, &format!("{path}.friction"))?;
     }
     match &indenter.motion {
         IndenterMotion::Kinematic(_) => Ok(()),

@@ -98,7 +98,7 @@ impl<const D: usize> Model<D> {
             }
             if let Some(friction) = &mut self.friction {
                 let state = [&self.u, &self.v];
-                friction.add(contact, body, state, &mut self.f, t, [dt, self.dt]);
+                friction.add(contact, body, state, &mut self.f, t, dt);
             }
         }
         for indenter in &mut self.indenters {
@@ -325,6 +325,9 @@ impl<const D: usize> Model<D> {
             let error = self.explained(fault);
             self.retreat_transfers();
             self.indenters.iter_mut().for_each(Indenter::retreat);
+            if let Some(friction) = &mut self.friction {
+                friction.retreat();
+            }
             self.step_back();
             return Err(error);
         }

@@ -2,6 +2,8 @@
 
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
+use crate::message;
+use crate::quantity::{Dimension, place};
 use crate::spec::{Calibration, Criterion, Influence, LawSpec, Spec, Stepper};
 
 /// What is longer by this part is so by round-off.
@@ -98,10 +100,14 @@ pub(super) fn give<const D: usize>(
         if !(horizon > 0.0 && horizon <= longest * ROUND_OFF) {
             return Err(BuildError::invalid(
                 "own_horizon",
-                format!(
-                    "the horizon of the point at {:?} is {horizon:e}, expected a positive length up to the horizon of the body, {longest:e}",
-                    &x[..D]
-                ),
+                message![
+                    "the horizon of the point at ",
+                    place(&x[..D]),
+                    " is ",
+                    Dimension::LENGTH.of(horizon),
+                    ", expected a positive length up to the horizon of the body, ",
+                    Dimension::LENGTH.of(longest),
+                ],
             )
             .help("horizon is the longest of all"));
         }

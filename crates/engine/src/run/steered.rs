@@ -77,7 +77,7 @@ impl<const D: usize> Steered for Model<D> {
         self.past_work = [now.dissipated, now.work_conditions, now.work_indenter];
         // it goes on; what it took is in the past now
         if let Some(friction) = &mut self.friction {
-            friction.work = 0.0;
+            friction.work = -friction.energy;
         }
         self.driven.clear();
         self.loads = loads;

@@ -8,17 +8,17 @@ use super::vectors::{add, dot, norm};
 use crate::error::SolveError;
 
 /// Moves `x` until `force(x)` (force on every component) vanishes on the free ones. `mass` per point makes a step of 1 stable:
-/// at least a quarter of the largest eigenvalue of stiffness over mass. `scale` is the force that residuals are compared with, asked
-/// for at the end of each pass.
+/// at least a quarter of the largest eigenvalue of stiffness over mass. `force` raises it where it meets more stiffness, and returns the force that
+/// residuals are compared with.
 ///
 /// # Errors
 /// The goal is not reached, or somebody has had enough; something is not a number.
 pub fn relax<const D: usize>(
     x: &mut [[f64; D]],
-    mass: &[f64],
+    mut mass: Vec<f64>,
     support: &Support<D>,
     goal: Goal,
-    mut force: impl FnMut(&[[f64; D]], &mut [[f64; D]]) -> f64,
+    mut force: impl FnMut(&[[f64; D]], &mut [[f64; D]], &mut [f64]) -> f64,
 ) -> Result<Solved, SolveError> {
     let n = x.len();
     let mut f = vec![[0.0; D]; n];
@@ -28,7 +28,7 @@ pub fn relax<const D: usize>(
     let mut residual = f64::INFINITY;
     for iteration in 0..=goal.most_iterations {
         goal.go_on()?;
-        let scale = force(x, &mut f);
+        let scale = force(x, &mut f, &mut mass);
         support.mask(&mut f);
         let size = norm(&f);
         if !size.is_finite() {
@@ -53,7 +53,7 @@ pub fn relax<const D: usize>(
         }
         let weight: f64 = moved
             .iter()
-            .zip(mass)
+            .zip(&mass)
             .map(|(u, m)| m * u.iter().map(|c| c * c).sum::<f64>())
             .sum();
         let quotient = if weight > 0.0 {

@@ -76,7 +76,7 @@ const CASES: [(&str, Answer); 43] = [
     (
         "Contact_Friction",
         Not(
-            "its start is met (tests/friction.rs); then the peer's friction reverses the sliding, that of the engine ends it",
+            "its start is met (tests/friction.rs); then the peer's friction reverses the sliding in every step, that of the engine sticks",
         ),
     ),
     (

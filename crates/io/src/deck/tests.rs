@@ -388,6 +388,47 @@ fn quantities_stand_in_expressions() {
 }
 
 #[test]
+fn numbers_in_quotes_without_a_unit_are_warned_of() {
+    let deck = |old: &str, new: &str| {
+        let text = IMPACT.replace(old, new);
+        assert_ne!(text, IMPACT);
+        parse(&text).warnings
+    };
+    let taken = |line: u32, number: &str, as_: &str| {
+        [format!(
+            "impact.toml:{line}: \"{number}\" has no unit and is taken as {as_}: write the unit, or the number without quotes"
+        )]
+    };
+    assert_eq!(
+        deck("\"5 mm\"", "\"0.005\""),
+        taken(4, "0.005", "0.005 in the unit of each place that uses it")
+    );
+    assert_eq!(deck("\"0.5 mm\"", "\"5e-4\""), taken(8, "5e-4", "0.5 mm"));
+    assert_eq!(
+        deck("{ y = \"x > 2*R ? v : 0\" }", "{ y = \"-100\" }"),
+        taken(15, "-100", "-100 m/s")
+    );
+    // pure numbers, zero, and plain numbers
+    for (old, new) in [
+        ("= 0.0005", "= \"0.0005\""),
+        ("low = 0,", "low = \"0\","),
+        ("\"0.5 mm\"", "5e-4"),
+    ] {
+        assert_eq!(deck(old, new), [String::new(); 0], "{new}");
+    }
+    let reduced = IMPACT.replace("title = \"impact\"", "units = \"none\"");
+    let plain = ["5 mm", "-100 m/s", "0.5 mm", "37 mm", "2.5 mm"];
+    let plain = plain.iter().fold(reduced, |text, n| {
+        text.replace(n, n.split(' ').next().unwrap())
+    });
+    let plain = plain
+        .replace("2200 kg/m^3", "2200")
+        .replace("14.9 GPa", "14.9");
+    let plain = plain.replace("1e17 N/m^5", "1e17").replace("100 ns", "100");
+    assert_eq!(parse(&plain).warnings, [String::new(); 0]);
+}
+
+#[test]
 fn what_does_not_fit_together_is_refused_with_its_place() {
     for (key, text, message, help) in [
         (

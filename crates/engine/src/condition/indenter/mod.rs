@@ -1,11 +1,11 @@
 //! Rigid bodies that push points: force density `K g²` along the normal where the gap g between point and surface is negative
 //! (LAMMPS's `fix indent`; sandia2010 ch. 3, The Projectile).
 //!
-//! A surface may rub: `μ K g²` against the sliding of the point on it, by the law of [`FrictionSpec`], and never more than what takes half
-//! of that within one step (as between equal points, [`crate::interaction::friction`]). It may pull what is near ([`CohesionSpec`]): the traction acts on the
+//! A surface may rub ([`rub`]). It may pull what is near ([`CohesionSpec`]): the traction acts on the
 //! face of a point, so the force density is that over its spacing. What points feel the body feels with the other sign, at the place of the
 //! point: momentum and angular momentum of both together stay as they are.
 
+mod rub;
 mod surface;
 
 use super::reaction::Reaction;
@@ -15,17 +15,10 @@ use crate::interaction::friction::Coefficients;
 use crate::space::rigid::RigidShape;
 use crate::space::{Point, cross};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
+use rub::Touched;
+use std::collections::HashMap;
 pub use surface::{Form, Push};
 use surface::{Near, Surface};
-
-/// A point touched at the last evaluation.
-#[derive(Debug, Clone, Copy)]
-struct Touched<const D: usize> {
-    slot: u32,
-    near: Near<D>,
-    /// Force density along the normal that presses.
-    pressed: f64,
-}
 
 #[derive(Debug, Clone)]
 pub struct Indenter<const D: usize> {
@@ -39,17 +32,19 @@ pub struct Indenter<const D: usize> {
     members: Option<Vec<u32>>,
     /// Points touched last time, with the force density on them.
     touched: Vec<(u32, [f64; D])>,
-    /// The same as they are rubbed.
+    /// The same as they are rubbed, and as they were when the step began.
     rubbed: Vec<Touched<D>>,
-    /// Force densities of friction alone, in the order of those that are touched.
-    rubs: Vec<[f64; D]>,
+    rubbed_before: Vec<Touched<D>>,
+    /// How deep points were at the last [`Indenter::press`], in statics.
+    pressed: HashMap<u32, f64>,
     /// Points that can be touched before anything moved by `slack`.
     candidates: Vec<u32>,
     slack: f64,
     /// Work done on the body (energy).
     pub work: f64,
-    /// What friction took (energy).
-    pub dissipated: f64,
+    /// Work of friction on both (energy), and what of it its springs hold.
+    rubbed_work: f64,
+    stored: f64,
     pub reaction: Reaction,
     /// Of points on the rigid body (force), and about its centre (force · length).
     pub force: Point,
@@ -57,6 +52,8 @@ pub struct Indenter<const D: usize> {
     /// The most that contact adds to `M⁻¹K` (1 / time²).
     stiff: f64,
     kept: Option<(Kept, f64, f64)>,
+    /// Of an increment of statics: where it and the points were.
+    from: Option<(Kept, Field<D>)>,
 }
 
 impl<const D: usize> Indenter<D> {
@@ -108,16 +105,19 @@ impl<const D: usize> Indenter<D> {
             members: None,
             touched: vec![],
             rubbed: vec![],
-            rubs: vec![],
+            rubbed_before: vec![],
+            pressed: HashMap::new(),
             candidates: vec![],
             slack: 0.0,
             work: 0.0,
-            dissipated: 0.0,
+            rubbed_work: 0.0,
+            stored: 0.0,
             reaction: Reaction::default(),
             force: [0.0; 3],
             torque: [0.0; 3],
             stiff: 0.0,
             kept: None,
+            from: None,
         }
     }
 
@@ -146,7 +146,7 @@ impl<const D: usize> Indenter<D> {
         }
         self.touched.retain(|(s, _)| keep(*s));
         self.rubbed.clear();
-        self.rubs.clear();
+        self.rubbed_before.clear();
         self.look_again();
     }
 
@@ -157,13 +157,14 @@ impl<const D: usize> Indenter<D> {
 
     /// Move to the end of a step and account for half of the old force's work. `moved` bounds the path of any point.
     pub fn begin(&mut self, body: &Body<D>, v: &Field<D>, t: f64, dt: f64, moved: f64) {
-        self.kept = Some((self.rigid.keep(), self.work, self.dissipated));
+        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
         for (s, f) in &self.touched {
             let i = *s as usize;
             self.work += 0.5 * dt * body.volume.at(i) * (0..D).map(|a| f[a] * v[a][i]).sum::<f64>();
         }
         self.rigid.kick(dt);
         self.rub_away(body, v, dt);
+        std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
         let path = self.rigid.advance(t, dt);
         self.slack -= moved + path.way;
         if let Surface::Turned(shape) = &self.surface
@@ -174,11 +175,19 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// Back to before the last [`Indenter::begin`].
+    /// An increment of statics begins, from these displacements.
+    pub fn depart(&mut self, u: &Field<D>) {
+        self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
+        std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+        self.from = Some((self.rigid.keep(), u.clone()));
+    }
+
+    /// Back to before the last [`Indenter::begin`] or [`Indenter::depart`].
     pub fn retreat(&mut self) {
-        if let Some((rigid, work, dissipated)) = self.kept.take() {
+        if let Some((rigid, work, rubbed)) = self.kept.take() {
             self.rigid.retreat(&rigid);
-            (self.work, self.dissipated) = (work, dissipated);
+            std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+            (self.work, self.rubbed_work) = (work, rubbed);
             self.look_again();
         }
     }
@@ -196,11 +205,13 @@ impl<const D: usize> Indenter<D> {
         self.rigid.arrive();
         if dt == 0.0 {
             self.rigid.look_ahead(t, step);
+            if self.from.is_none() {
+                std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
+            }
         }
         self.look_around(body, u);
         self.touched.clear();
         self.rubbed.clear();
-        self.rubs.clear();
         (self.force, self.torque, self.stiff) = ([0.0; 3], [0.0; 3], 0.0);
         let mut reaction = Reaction::default();
         let (range, mut mobile) = (self.range(), 0.0);
@@ -252,7 +263,9 @@ impl<const D: usize> Indenter<D> {
                 self.rubbed.push(Touched {
                     slot: s,
                     near,
-                    pressed: if gap < 0.0 { along } else { 0.0 },
+                    way: [0.0; D],
+                    depth: 0.0,
+                    rub: [0.0; D],
                 });
             }
         }
@@ -261,7 +274,7 @@ impl<const D: usize> Indenter<D> {
         self.reaction = reaction;
         if let Some(law) = &self.friction {
             let now = Coefficients::new(law, t);
-            self.rub(body, v, f, now, [dt, step]);
+            self.rub(body, [u, v], f, now, dt);
         }
         self.rigid.push(self.force, self.torque, t, dt);
     }
@@ -320,67 +333,6 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// Sliding of a point on the surface: along it, of the surface against the point.
-    fn sliding(&self, v: &Field<D>, touched: &Touched<D>) -> [f64; D] {
-        let Near { arm, normal, .. } = &touched.near;
-        let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
-        let (of, i) = (self.rigid.velocity_at(&full), touched.slot as usize);
-        let w: [f64; D] = std::array::from_fn(|a| of[a] - v[a][i]);
-        let across: f64 = (0..D).map(|a| w[a] * normal[a]).sum();
-        std::array::from_fn(|a| w[a] - across * normal[a])
-    }
-
-    /// Friction on all that are touched: every one of z loses half of its sliding in one step at most, though all push the body the same way.
-    /// Half, as between equal points, leaves steps stable up to `ω Δt = √3`; all of it would only up to √2.
-    fn rub(
-        &mut self,
-        body: &Body<D>,
-        v: &Field<D>,
-        f: &mut Field<D>,
-        now: Coefficients,
-        [dt, step]: [f64; 2],
-    ) {
-        let rubbed = std::mem::take(&mut self.rubbed);
-        let pressed = rubbed.iter().filter(|t| t.pressed > 0.0);
-        let square = |t: &Touched<D>| t.near.arm.iter().map(|c| c * c).sum::<f64>();
-        let (z, far) = pressed.fold((0.0, 0.0), |(z, far): (f64, f64), t| {
-            (z + 1.0, far.max(square(t)))
-        });
-        let mobility = z * self.rigid.mobility(far);
-        for (n, touched) in rubbed.iter().enumerate() {
-            let i = touched.slot as usize;
-            let w = self.sliding(v, touched);
-            let speed = w.iter().map(|c| c * c).sum::<f64>().sqrt();
-            let volume = body.volume.at(i);
-            let mass = body.density.at(i) * volume;
-            let most = 0.5 * speed / (step * (1.0 / mass + mobility)) / volume;
-            let force = (now.at(speed) * touched.pressed).min(most);
-            let force = match speed > 0.0 && force > 0.0 {
-                true => w.map(|c| force * c / speed),
-                false => [0.0; D],
-            };
-            for a in 0..D {
-                self.reaction.force[a] -= force[a];
-                f[a][i] += force[a];
-                self.work += 0.5 * dt * volume * force[a] * v[a][i];
-                self.touched[n].1[a] += force[a];
-            }
-            self.bear(&touched.near.arm, &force, volume);
-            self.rubs.push(force);
-        }
-        self.rubbed = rubbed;
-        self.rub_away(body, v, dt);
-    }
-
-    /// Half of what friction takes within a step, with the velocities of its middle.
-    fn rub_away(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
-        for (touched, force) in self.rubbed.iter().zip(&self.rubs) {
-            let w = self.sliding(v, touched);
-            let power: f64 = (0..D).map(|a| force[a] * w[a]).sum();
-            self.dissipated += 0.5 * dt * power * body.volume.at(touched.slot as usize);
-        }
-    }
-
     /// The eigenvalue of `M⁻¹K` that a step must meet with this contact, of a body whose bonds alone have `bonds` (1 / time²): points at a surface
     /// have half a family. Contact counts four times: a blow is short, and its steps are half of those that are stable. 0: nothing touches.
     pub fn stiffened(&self, bonds: f64) -> f64 {
@@ -402,9 +354,10 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// Adds what it resists with at each point that it pushes or pulls (force / length) to sums by slot.
+    /// Adds what it resists with at each point that it pushes or pulls (force / length) to sums by slot, at the displacements of the last
+    /// [`Indenter::add`].
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
-        for &s in self.members.as_ref().unwrap_or(&body.slots) {
+        for &s in &self.candidates {
             let i = s as usize;
             let Some(near) = self.surface.near(&self.rigid, body, u, i, self.range()) else {
                 continue;
@@ -434,6 +387,7 @@ impl<const D: usize> Indenter<D> {
             let path = (0..D).map(|a| f[a] * (u[1][a][i] - u[0][a][i]));
             self.work += 0.5 * body.volume.at(i) * path.sum::<f64>();
         }
+        self.account_rubbing(body, u[1]);
     }
 
     /// Forget which points are near, after something else moved them.

@@ -1,6 +1,7 @@
 //! Statics of a model: every step is an increment of load, and ends in equilibrium.
 
 mod linear;
+mod relaxed;
 mod sequence;
 mod solve;
 pub(super) mod state;
@@ -271,6 +272,10 @@ impl<const D: usize> Model<D> {
             false => self.external(),
         };
         let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
+        self.indenters.iter_mut().for_each(|i| i.depart(&self.u));
+        if let Some(friction) = &mut self.friction {
+            friction.depart(&self.u);
+        }
         self.step += 1;
         if Self::breaks_in_turn(state.options) {
             return self.break_next(state, u, f);
@@ -280,8 +285,10 @@ impl<const D: usize> Model<D> {
             self.step -= 1;
             self.retreat_transfers();
             (self.u, self.f) = (u, f);
-            let t = self.time();
-            self.indenters.iter_mut().for_each(|i| i.place(t));
+            self.indenters.iter_mut().for_each(Indenter::retreat);
+            if let Some(friction) = &mut self.friction {
+                friction.retreat();
+            }
             self.refresh_images();
             self.statics = Some(state);
             return Err(self.unsolved(error));
@@ -294,7 +301,9 @@ impl<const D: usize> Model<D> {
         for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
             indenter.account(before, &self.body, [&u, &self.u]);
         }
-
+        if let Some(friction) = &mut self.friction {
+            friction.arrive(&self.body, &self.u);
+        }
         self.pay(0.5, 0.0);
         Ok(())
     }

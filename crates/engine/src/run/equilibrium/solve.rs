@@ -1,9 +1,8 @@
-//! How one increment finds its equilibrium: linear about the reference, Newton's method, dynamic relaxation.
+//! How one increment finds its equilibrium: linear about the reference, or by Newton's method.
 
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
 use crate::body::{Field, zeros};
-use crate::dynamics::stable_step::largest_ratio;
 use crate::error::SolveError;
 use crate::interaction::Sweep;
 use crate::run::Simulation;
@@ -11,7 +10,6 @@ use crate::run::constitutive::Laws;
 use crate::run::model::Model;
 use crate::spec::{LinearBody, Solver, Statics};
 use crate::statics::cg::{self, Goal};
-use crate::statics::relaxation::relax;
 use crate::statics::{
     self, Assembled, Direct, LinearOperator, Shifted, Solved, Support, Swept, norm,
 };
@@ -105,7 +103,7 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    fn goal(&self, options: Statics) -> Goal {
+    pub(super) fn goal(&self, options: Statics) -> Goal {
         Goal {
             tolerance: options.tolerance,
             most_iterations: options.most_iterations,
@@ -367,7 +365,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// What atoms at their sites pull at each other without any load; 0 of other laws.
-    fn residual_of_reference(&mut self, support: &Support<D>) -> f64 {
+    pub(super) fn residual_of_reference(&mut self, support: &Support<D>) -> f64 {
         if self.at_peace() {
             return 0.0;
         }
@@ -379,7 +377,12 @@ impl<const D: usize> Model<D> {
     }
 
     /// Forces on the free components at displacements `x`, and the size of the loads and reactions.
-    fn imbalance(&mut self, x: &[[f64; D]], r: &mut [[f64; D]], support: &Support<D>) -> f64 {
+    pub(super) fn imbalance(
+        &mut self,
+        x: &[[f64; D]],
+        r: &mut [[f64; D]],
+        support: &Support<D>,
+    ) -> f64 {
         self.set_values(x);
         self.forces_held();
         let all = self.per_point(&self.f);
@@ -395,43 +398,6 @@ impl<const D: usize> Model<D> {
             }
         }
         scale.sqrt()
-    }
-
-    pub(super) fn relax(
-        &mut self,
-        state: &mut StaticState<D>,
-        support: &Support<D>,
-    ) -> Result<Solved, SolveError> {
-        let goal = self.goal(state.options);
-        // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
-        let mut sum = vec![0.0; self.body.len];
-        let reference = self.body.at_rest();
-        let body = &self.body;
-        self.interaction.tangents(body, &reference, &mut |bond| {
-            let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
-            sum[bond.i] += body.volume.at(bond.i) * trace;
-        });
-        let mut mass = self.by_id(|i| sum[i]);
-        let least = mass.iter().copied().fold(0.0, f64::max) * 1e-3;
-        mass.iter_mut().for_each(|m| *m = m.max(least));
-        let top = largest_ratio(&self.body, self.interaction.as_mut(), &mass);
-        // a step of 1 is stable to 4; half of that leaves room for stiffening and contact
-        mass.iter_mut().for_each(|m| *m *= 0.5 * top);
-        // indenters are deepest before the body has given way
-        sum.fill(0.0);
-        for indenter in &self.indenters {
-            indenter.add_stiffness(&self.body, &self.u, &mut sum);
-        }
-        let pushed = self.by_id(|i| sum[i]);
-        mass.iter_mut().zip(pushed).for_each(|(m, k)| *m += 0.5 * k);
-        let reference = self.residual_of_reference(support);
-        let mut x = self.values(&self.u);
-        let mut r = vec![[0.0; D]; x.len()];
-        relax(&mut x, &mass, support, goal, |x, f| {
-            let scale = self.imbalance(x, &mut r, support).hypot(reference);
-            f.copy_from_slice(&r);
-            scale
-        })
     }
 
     fn largest_stretch(&self) -> f64 {

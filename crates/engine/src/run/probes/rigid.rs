@@ -43,7 +43,7 @@ impl RigidQuantity {
     fn of<const D: usize>(self, indenter: &Indenter<D>) -> Vec<f64> {
         let rigid = &indenter.rigid;
         let vector = match self {
-            RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated],
+            RigidQuantity::Energy => return vec![rigid.kinetic(), indenter.dissipated()],
             RigidQuantity::Force => indenter.force,
             RigidQuantity::Torque => indenter.torque,
             RigidQuantity::Center => rigid.center,

@@ -19,7 +19,7 @@ pub struct Contact {
     /// Force / volume² / length; from the law when left out.
     #[schemars(extend("dimension" = Dim::CONTACT_STIFFNESS.name()))]
     pub stiffness: Option<Number>,
-    /// Coulomb friction between points that were never bonded, a number or an expression of t; 0 when left out.
+    /// Coulomb friction between points that were never bonded, which stick and slip; a number or an expression of t; 0 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub friction: Option<At<Or<Written, Friction>>>,
     /// Thermal contact conductance between points that were never bonded: heat per area, time and difference of temperature; contact

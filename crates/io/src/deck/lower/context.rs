@@ -7,6 +7,7 @@ use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Writ
 use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
 use peridyne::spec::{AnyLinearBody, Parameter};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,6 +24,8 @@ pub(in crate::deck) struct Context<'a> {
     pub micromoduli: Option<Arc<AnyLinearBody>>,
     /// What was passed over in files.
     pub notes: Vec<String>,
+    /// Numbers in quotes that carry no unit: where, and what was taken.
+    pub unitless: RefCell<Vec<(Range<usize>, String)>>,
     /// What `t` is: a time, in statics a number.
     time: Dim,
     /// Dimension if units say it, and the value: as computed with a dimension, else a plain number of the deck.
@@ -44,6 +47,7 @@ impl<'a> Context<'a> {
             atoms: None,
             micromoduli: None,
             notes: Vec::new(),
+            unitless: RefCell::default(),
             constants: BTreeMap::new(),
         };
         // constants may use each other in any order; each round settles at least one, or the first error is real
@@ -92,7 +96,30 @@ impl<'a> Context<'a> {
             Written::Text(text) => {
                 let (expression, kind) = self.compile(text, &number.span)?;
                 let value = self.constant_value(expression, &number.span)?;
+                let each = |v: f64| format!("{v} in the unit of each place that uses it");
+                self.see_unitless(text, &number.span, each);
                 Ok((value, kind.of_constant()))
+            }
+        }
+    }
+
+    /// Notes a number in quotes without a unit, which quotes are for.
+    fn see_unitless(&self, text: &str, span: &Range<usize>, taken: impl Fn(f64) -> String) {
+        if let Ok(value) = text.trim().parse::<f64>()
+            && self.units.has_units()
+            && value.is_finite()
+            && value != 0.0
+        {
+            let found = (
+                span.clone(),
+                format!(
+                    "\"{text}\" has no unit and is taken as {}: write the unit, or the number without quotes",
+                    taken(value)
+                ),
+            );
+            let mut all = self.unitless.borrow_mut();
+            if !all.contains(&found) {
+                all.push(found);
             }
         }
     }
@@ -131,6 +158,9 @@ impl<'a> Context<'a> {
     ) -> Result<Expression> {
         let (expression, kind) = self.compile_of(text, span, variables)?;
         let factor = self.units.plain_factor(dim);
+        if dim != Dim::NUMBER {
+            self.see_unitless(text, span, |v| self.units.show(v * factor, dim));
+        }
         if kind.takes_any() || !kind.unit {
             return Ok(if factor == 1.0 {
                 expression

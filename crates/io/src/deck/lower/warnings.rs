@@ -23,5 +23,8 @@ pub(super) fn warnings(context: &Context, document: &Document) -> Vec<String> {
             format!("this crack never grows, as no material can break: {help}"),
         );
     }
+    for (span, text) in context.unitless.borrow().iter() {
+        warn(span, text.clone());
+    }
     all
 }

@@ -1,0 +1,142 @@
+//! Friction on the surface of a rigid body, with a memory of sticking as between points ([`crate::interaction::friction`]): the force density `κ ξ` of
+//! the elastic part ξ of its path along the point, at most `μ K g²`, with `κ = 2/7 · 2 K |g|`. Where a point goes deeper the force stays, where
+//! it comes out ξ does (Mindlin & Deresiewicz 1953), so that neither gives energy.
+
+use super::Indenter;
+use super::surface::Near;
+use crate::body::{Body, Field};
+use crate::condition::rigid::Kept;
+use crate::interaction::friction::{Coefficients, TANGENTIAL, along, begun, slipped};
+use crate::space::Point;
+use std::collections::HashMap;
+
+/// A point touched at the last evaluation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touched<const D: usize> {
+    pub slot: u32,
+    pub near: Near<D>,
+    /// Elastic path of the surface along the point (length), the depth that its stiffness is of, and the force density of friction.
+    pub way: [f64; D],
+    pub depth: f64,
+    pub rub: [f64; D],
+}
+
+impl<const D: usize> Indenter<D> {
+    /// Sliding of a point on the surface: along it, of the surface against the point.
+    fn sliding(&self, v: &Field<D>, touched: &Touched<D>) -> [f64; D] {
+        let Near { arm, normal, .. } = &touched.near;
+        let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
+        let (of, i) = (self.rigid.velocity_at(&full), touched.slot as usize);
+        along(normal, &std::array::from_fn(|a| of[a] - v[a][i]))
+    }
+
+    /// Friction on all that are touched.
+    pub(super) fn rub(
+        &mut self,
+        body: &Body<D>,
+        [u, v]: [&Field<D>; 2],
+        f: &mut Field<D>,
+        now: Coefficients,
+        dt: f64,
+    ) {
+        let mut rubbed = std::mem::take(&mut self.rubbed);
+        let old = std::mem::take(&mut self.rubbed_before);
+        let before: HashMap<u32, &Touched<D>> = old.iter().map(|t| (t.slot, t)).collect();
+        self.stored = 0.0;
+        for (n, touched) in rubbed.iter_mut().enumerate() {
+            let i = touched.slot as usize;
+            let depth = match &self.from {
+                Some(_) => self.pressed.get(&touched.slot).copied().unwrap_or(0.0),
+                None => -touched.near.gap,
+            };
+            if !(depth > 0.0) {
+                continue;
+            }
+            let w = self.sliding(v, touched);
+            let speed = w.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let most = now.at(speed) * depth / (2.0 * TANGENTIAL);
+            touched.way = match (&self.from, before.get(&touched.slot)) {
+                (None, before) if dt == 0.0 && before.is_none_or(|t| t.way == [0.0; D]) => {
+                    begun(&w, most)
+                }
+                (from, before) => {
+                    let start = before.map_or([0.0; D], |t| {
+                        // the force stays where the spring grows stiffer
+                        let softer = t.depth / depth;
+                        t.way.map(|c| c * softer.min(1.0))
+                    });
+                    let path = match from {
+                        Some(from) => self.way_from(from, u, touched),
+                        None => w.map(|c| c * dt),
+                    };
+                    slipped(&start, &touched.near.normal, &path, most)
+                }
+            };
+            let stiffness = 2.0 * TANGENTIAL * self.stiffness * depth;
+            touched.rub = touched.way.map(|c| stiffness * c);
+            touched.depth = depth;
+            let volume = body.volume.at(i);
+            let square: f64 = touched.way.iter().map(|c| c * c).sum();
+            self.stored += 0.5 * stiffness * square * volume;
+            let force = touched.rub;
+            for a in 0..D {
+                self.reaction.force[a] -= force[a];
+                f[a][i] += force[a];
+                self.work += 0.5 * dt * volume * force[a] * v[a][i];
+                self.touched[n].1[a] += force[a];
+            }
+            let arm = touched.near.arm;
+            self.bear(&arm, &force, volume);
+        }
+        (self.rubbed, self.rubbed_before) = (rubbed, old);
+        self.rub_away(body, v, dt);
+    }
+
+    /// The way of the surface against a point in an increment of statics.
+    fn way_from(
+        &self,
+        (then, from): &(Kept, Field<D>),
+        u: &Field<D>,
+        touched: &Touched<D>,
+    ) -> [f64; D] {
+        let (arm, i) = (&touched.near.arm, touched.slot as usize);
+        let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
+        let way = self.rigid.way_since(then, &full);
+        std::array::from_fn(|a| way[a] - (u[a][i] - from[a][i]))
+    }
+
+    /// Half of the work of friction within a step, with the velocities of its middle.
+    pub(super) fn rub_away(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {
+        for touched in &self.rubbed {
+            let w = self.sliding(v, touched);
+            let power: f64 = (0..D).map(|a| touched.rub[a] * w[a]).sum();
+            self.rubbed_work += 0.5 * dt * power * body.volume.at(touched.slot as usize);
+        }
+    }
+
+    /// The same of an increment of statics, by the trapezoidal rule.
+    pub(super) fn account_rubbing(&mut self, body: &Body<D>, u: &Field<D>) {
+        let Some(from) = &self.from else { return };
+        for touched in self.rubbed_before.iter().chain(&self.rubbed) {
+            let way = self.way_from(from, u, touched);
+            let power: f64 = (0..D).map(|a| touched.rub[a] * way[a]).sum();
+            self.rubbed_work += 0.5 * power * body.volume.at(touched.slot as usize);
+        }
+    }
+
+    /// In statics what rubs is pressed as it is at this call, until the next (as between points).
+    pub fn press(&mut self) {
+        let each = self.rubbed.iter().map(|t| (t.slot, -t.near.gap));
+        self.pressed = each.collect();
+    }
+
+    /// Does anything touch it that it could rub?
+    pub fn rubs(&self) -> bool {
+        !self.rubbed.is_empty()
+    }
+
+    /// What friction took (energy).
+    pub fn dissipated(&self) -> f64 {
+        self.rubbed_work - self.stored
+    }
+}

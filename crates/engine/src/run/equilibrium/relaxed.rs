@@ -1,0 +1,91 @@
+//! How one increment finds its equilibrium by dynamic relaxation, friction included: what presses is held while the points move, and taken anew
+//! until nothing moves. Held, friction has a potential; with the pressure of every trial it has none, and points may circle for ever.
+
+use super::state::StaticState;
+use crate::condition::indenter::Indenter;
+use crate::dynamics::stable_step::largest_ratio;
+use crate::error::SolveError;
+use crate::interaction::friction::Friction;
+use crate::run::model::Model;
+use crate::statics::relaxation::relax;
+use crate::statics::{Solved, Support};
+
+/// How often pressure is taken anew.
+const PRESSINGS: usize = 100;
+
+impl<const D: usize> Model<D> {
+    pub(super) fn relax(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+    ) -> Result<Solved, SolveError> {
+        let goal = self.goal(state.options);
+        // direct stiffness of every point as its mass, scaled so that a step of 1 is well below the limit
+        let mut sum = vec![0.0; self.body.len];
+        let reference = self.body.at_rest();
+        let body = &self.body;
+        self.interaction.tangents(body, &reference, &mut |bond| {
+            let trace: f64 = (0..D).map(|a| bond.stiffness[a][a].abs()).sum();
+            sum[bond.i] += body.volume.at(bond.i) * trace;
+        });
+        let mut own = self.by_id(|i| sum[i]);
+        let least = own.iter().copied().fold(0.0, f64::max) * 1e-3;
+        own.iter_mut().for_each(|m| *m = m.max(least));
+        let top = largest_ratio(&self.body, self.interaction.as_mut(), &own);
+        // a step of 1 is stable to 4; half of that leaves room for stiffening
+        own.iter_mut().for_each(|m| *m *= 0.5 * top);
+        let reference = self.residual_of_reference(support);
+        let mut x = self.values(&self.u);
+        let mut r = vec![[0.0; D]; x.len()];
+        let mut total = Solved::default();
+        for _ in 0..PRESSINGS {
+            self.press();
+            let solved = relax(&mut x, own.clone(), support, goal, |x, f, mass| {
+                let scale = self.imbalance(x, &mut r, support).hypot(reference);
+                f.copy_from_slice(&r);
+                self.weigh(&mut sum, &own, mass);
+                scale
+            })?;
+            total.iterations += solved.iterations;
+            total.residual = solved.residual;
+            if solved.iterations == 0 || !self.rubs() {
+                return Ok(total);
+            }
+        }
+        Err(SolveError::NotConverged {
+            iterations: total.iterations,
+            residual: total.residual,
+            tolerance: goal.tolerance,
+        })
+    }
+
+    /// Raises masses where points touch: they stay light enough to settle elsewhere. `sum` is room for a number per slot.
+    fn weigh(&self, sum: &mut [f64], own: &[f64], mass: &mut [f64]) {
+        if self.contact.is_none() && self.indenters.is_empty() {
+            return;
+        }
+        sum.fill(0.0);
+        if let Some(contact) = &self.contact {
+            contact.add_stiffness(&self.body, &self.u, sum);
+        }
+        for indenter in &self.indenters {
+            indenter.add_stiffness(&self.body, &self.u, sum);
+        }
+        for ((m, own), &s) in mass.iter_mut().zip(own).zip(&self.body.slots) {
+            *m = m.max(own + sum[s as usize]);
+        }
+    }
+
+    /// What rubs is pressed as it is now.
+    fn press(&mut self) {
+        if let Some(friction) = &mut self.friction {
+            friction.press();
+        }
+        self.indenters.iter_mut().for_each(Indenter::press);
+    }
+
+    fn rubs(&self) -> bool {
+        self.friction.as_ref().is_some_and(Friction::rubs)
+            || self.indenters.iter().any(Indenter::rubs)
+    }
+}

@@ -1,0 +1,92 @@
+//! A rigid disk and a body in equilibrium by relaxation: what is stiff where they touch must not throw points away.
+
+use super::{block, hold, number, text};
+use peridyne::run::{Options, build};
+use peridyne::space::region::Region;
+use peridyne::space::rigid::RigidShape;
+use peridyne::spec::*;
+
+const INCREMENTS: u32 = 12;
+
+/// Force of the disk on the block (along, across) at every increment: the disk goes by `way` from above the middle of the block, and its floor by
+/// `floor`; t goes from 0 to 1.
+fn forces(way: [&str; 2], floor: [&str; 2], stiffness: f64) -> Vec<[f64; 2]> {
+    let radius = 100.0;
+    let mut spec = block([20.0, 8.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    spec.horizon = Horizon::Ratio(3);
+    spec.sets.push(SetSpec {
+        name: "floor".into(),
+        members: Members::Region(Region::HalfSpace {
+            point: [0.0, 2.1, 0.0],
+            normal: [0.0, 1.0, 0.0],
+        }),
+    });
+    hold(&mut spec, "floor", [text(floor[0]), text(floor[1]), None]);
+    let center = [
+        text(&format!("10 + {}", way[0])).unwrap(),
+        text(&format!("{} + {}", 8.0 + radius, way[1])).unwrap(),
+        number(0.0).unwrap(),
+    ];
+    let shape = RigidShape::Sphere { radius };
+    let mut disk = IndenterSpec::new(stiffness, shape, IndenterMotion::Kinematic(center));
+    disk.name = "disk".into();
+    spec.indenters = vec![disk];
+    spec.probes = vec![ProbeSpec {
+        name: "disk".into(),
+        set: "all".into(),
+        measure: Measure::Indenter {
+            indenter: "disk".into(),
+            of: Some(RigidQuantity::Force),
+        },
+    }];
+    spec.schedule = Schedule {
+        steps: u64::from(INCREMENTS),
+        time_step: TimeStep::Fixed(1.0 / f64::from(INCREMENTS)),
+        force_unstable: false,
+        stepper: Stepper::Statics(Statics {
+            method: Method::Relaxation,
+            tolerance: 1e-6,
+            ..Statics::default()
+        }),
+    };
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let mut all = vec![];
+    for n in 0..INCREMENTS {
+        sim.step().unwrap_or_else(|e| panic!("{n}: {e}"));
+        let force = sim.measure();
+        all.push([force[0], force[1]]);
+    }
+    all
+}
+
+#[test]
+fn a_stiff_disk_is_pressed_in_and_goes_sideways() {
+    for stiffness in [2.5, 25.0, 250.0, 2500.0] {
+        let down = "-0.5*min(2*t, 1)";
+        let pressed = forces(["0", down], ["0", "0"], stiffness);
+        let sideways = forces(["2*max(t - 0.5, 0)", down], ["0", "0"], stiffness);
+        let [last, most] = [pressed[11][1], sideways[11][1]];
+        // by one spacing; the contact is as wide as the block, so that its edges are felt
+        println!("{stiffness}: {last:.4e} {most:.4e}");
+        assert!(
+            (most / last - 1.0).abs() < 0.05,
+            "{stiffness}: {pressed:?} {sideways:?}"
+        );
+    }
+}
+
+/// Who moves does not matter, though in one case no point is deep in the disk when an increment begins.
+#[test]
+fn a_block_that_is_pressed_into_a_disk_bears_as_the_disk_in_the_block() {
+    for stiffness in [25.0, 2500.0] {
+        let disk = forces(["0", "-0.5*t"], ["0", "0"], stiffness);
+        let floor = forces(["0", "0"], ["0", "0.5*t"], stiffness);
+        for (a, b) in disk.iter().zip(&floor) {
+            assert!(
+                (a[1] / b[1] - 1.0).abs() < 1e-4,
+                "{stiffness}: {disk:?} {floor:?}"
+            );
+        }
+    }
+}
