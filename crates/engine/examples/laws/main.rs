@@ -191,7 +191,13 @@ fn time(row: &str, spec: &Spec, simd: Simd) {
         simd: Some(simd),
         ..Options::default()
     };
-    let mut sim = build(spec, options).expect("a body");
+    let mut sim = match build(spec, options) {
+        Ok(sim) => sim,
+        Err(error) => {
+            println!("{row:55} {error}");
+            return;
+        }
+    };
     let n = sim.info().points as usize;
     let wave = |i: usize, a: usize| 1e-3 * (0.37 * i as f64 + 2.0 * a as f64).sin();
     let v: Vec<[f64; 3]> = (0..n)
