@@ -157,10 +157,7 @@ impl<const D: usize> Contact<D> {
                 let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
                 let (then, now) = (periods(body, &xi), periods(body, &now));
                 let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
-                let materials = [i, j].map(|s| match self.kind.get(s) {
-                    Some(kind) => *kind as usize,
-                    None => body.material_of(s),
-                });
+                let materials = self.materials(body, [i, j]);
                 let r0 = square.sqrt();
                 let distance = self.repulsion.distance(r0, materials);
                 if let Some(near) = &self.near {
@@ -174,6 +171,23 @@ impl<const D: usize> Contact<D> {
                 });
             }
         }
+    }
+
+    /// Rows of the tables of repulsion.
+    fn materials(&self, body: &Body<D>, ends: [usize; 2]) -> [usize; 2] {
+        ends.map(|s| match self.kind.get(s) {
+            Some(kind) => *kind as usize,
+            None => body.material_of(s),
+        })
+    }
+
+    /// What two points resist with once they repel (force / length); `None`: others come in between before they do, as they are this far apart in
+    /// the reference.
+    pub fn first_stiffness(&self, body: &Body<D>, ends: [usize; 2], r0: f64) -> Option<f64> {
+        let materials @ [a, b] = self.materials(body, ends);
+        let first = self.repulsion.bonded * r0 <= self.repulsion.range.at(a, b);
+        let [vi, vj] = ends.map(|s| body.volume.at(s));
+        first.then(|| self.repulsion.of(materials) * vi * vj)
     }
 
     /// Tangents of all contacts, as those of bonds between points that touch: `V_j (K n⊗n + pull (1 − n⊗n))`. `u` as for

@@ -7,9 +7,12 @@ use super::support::Support;
 use super::vectors::{add, dot, norm};
 use crate::error::SolveError;
 
+/// Loads and reactions of this part of the greatest residual are none.
+const UNLOADED: f64 = 1e-6;
+
 /// Moves `x` until `force(x)` (force on every component) vanishes on the free ones. `mass` per point makes a step of 1 stable:
 /// at least a quarter of the largest eigenvalue of stiffness over mass. `force` raises it where it meets more stiffness, and returns the force that
-/// residuals are compared with.
+/// residuals are compared with, or `None`: it put `x` back to where it was before it met that.
 ///
 /// # Errors
 /// The goal is not reached, or somebody has had enough; something is not a number.
@@ -18,22 +21,30 @@ pub fn relax<const D: usize>(
     mut mass: Vec<f64>,
     support: &Support<D>,
     goal: Goal,
-    mut force: impl FnMut(&[[f64; D]], &mut [[f64; D]], &mut [f64]) -> f64,
+    mut force: impl FnMut(&mut [[f64; D]], &mut [[f64; D]], &mut [f64]) -> Option<f64>,
 ) -> Result<Solved, SolveError> {
     let n = x.len();
     let mut f = vec![[0.0; D]; n];
     let mut before = f.clone();
     let mut v = f.clone();
     let mut moved = f.clone();
-    let mut residual = f64::INFINITY;
+    let (mut residual, mut most) = (f64::INFINITY, 0.0f64);
     for iteration in 0..=goal.most_iterations {
         goal.go_on()?;
-        let scale = force(x, &mut f, &mut mass);
+        let Some(scale) = force(x, &mut f, &mut mass) else {
+            for all in [&mut v, &mut moved] {
+                all.iter_mut().for_each(|x| *x = [0.0; D]);
+            }
+            continue;
+        };
         support.mask(&mut f);
         let size = norm(&f);
         if !size.is_finite() {
             return Err(SolveError::NotFinite);
         }
+        // where nothing bears a load in the end, what is left is compared with what moved the points
+        most = most.max(size);
+        let scale = scale.max(UNLOADED * most);
         residual = if scale > 0.0 { size / scale } else { size };
         if residual <= goal.tolerance || size == 0.0 {
             return Ok(Solved {

@@ -414,7 +414,7 @@ fn numbers_in_quotes_without_a_unit_are_warned_of() {
         ("low = 0,", "low = \"0\","),
         ("\"0.5 mm\"", "5e-4"),
     ] {
-        assert_eq!(deck(old, new), [String::new(); 0], "{new}");
+        assert!(deck(old, new).is_empty(), "{new}");
     }
     let reduced = IMPACT.replace("title = \"impact\"", "units = \"none\"");
     let plain = ["5 mm", "-100 m/s", "0.5 mm", "37 mm", "2.5 mm"];
@@ -425,7 +425,7 @@ fn numbers_in_quotes_without_a_unit_are_warned_of() {
         .replace("2200 kg/m^3", "2200")
         .replace("14.9 GPa", "14.9");
     let plain = plain.replace("1e17 N/m^5", "1e17").replace("100 ns", "100");
-    assert_eq!(parse(&plain).warnings, [String::new(); 0]);
+    assert!(parse(&plain).warnings.is_empty());
 }
 
 #[test]

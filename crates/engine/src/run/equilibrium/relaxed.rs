@@ -12,6 +12,8 @@ use crate::statics::{Solved, Support};
 
 /// How often pressure is taken anew.
 const PRESSINGS: usize = 100;
+/// Iterations between looks whether pairs of a family repel. They do much stiffer than bonds pull, and few bodies need the weight for it.
+const LOOK: usize = 20;
 
 impl<const D: usize> Model<D> {
     pub(super) fn relax(
@@ -38,13 +40,27 @@ impl<const D: usize> Model<D> {
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
         let mut total = Solved::default();
+        // where points were when no pair of a family repelled yet
+        let (mut safe, mut repels) = (x.clone(), false);
         for _ in 0..PRESSINGS {
             self.press();
+            let mut calls = 0;
             let solved = relax(&mut x, own.clone(), support, goal, |x, f, mass| {
                 let scale = self.imbalance(x, &mut r, support).hypot(reference);
+                if calls % LOOK == 0 {
+                    if !repels && self.repels_inside() {
+                        repels = true;
+                        self.weigh_families(&mut own);
+                        mass.copy_from_slice(&own);
+                        x.copy_from_slice(&safe);
+                        return None;
+                    }
+                    safe.copy_from_slice(x);
+                }
+                calls += 1;
                 f.copy_from_slice(&r);
                 self.weigh(&mut sum, &own, mass);
-                scale
+                Some(scale)
             })?;
             total.iterations += solved.iterations;
             total.residual = solved.residual;
@@ -73,6 +89,27 @@ impl<const D: usize> Model<D> {
         }
         for ((m, own), &s) in mass.iter_mut().zip(own).zip(&self.body.slots) {
             *m = m.max(own + sum[s as usize]);
+        }
+    }
+
+    /// Do points repel that are in each other's family?
+    fn repels_inside(&mut self) -> bool {
+        self.contact.is_some() && self.interaction.energy(&self.body, &self.u)[1] > 0.0
+    }
+
+    /// Raises masses by what repulsion inside families resists with.
+    fn weigh_families(&self, own: &mut [f64]) {
+        let Some(contact) = &self.contact else { return };
+        let mut sum = vec![0.0; self.body.len];
+        self.interaction.each_bond(&self.body, &mut |i, j, xi, _| {
+            let r0 = xi.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if let Some(stiffness) = contact.first_stiffness(&self.body, [i, j], r0) {
+                sum[i] += stiffness;
+                sum[j] += stiffness;
+            }
+        });
+        for (m, &s) in own.iter_mut().zip(&self.body.slots) {
+            *m += sum[s as usize];
         }
     }
 
