@@ -403,7 +403,7 @@ fn numbers_in_quotes_without_a_unit_are_warned_of() {
         deck("\"5 mm\"", "\"0.005\""),
         taken(4, "0.005", "0.005 in the unit of each place that uses it")
     );
-    assert_eq!(deck("\"0.5 mm\"", "\"5e-4\""), taken(8, "5e-4", "0.5 mm"));
+    assert_eq!(deck("\"0.5 mm\"", "\"5e-4\""), taken(8, "5e-4", "500 µm"));
     assert_eq!(
         deck("{ y = \"x > 2*R ? v : 0\" }", "{ y = \"-100\" }"),
         taken(15, "-100", "-100 m/s")
