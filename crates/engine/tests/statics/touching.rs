@@ -1,6 +1,7 @@
 //! A rigid disk and a body in equilibrium by relaxation: what is stiff where they touch must not throw points away.
 
 use super::{block, hold, number, text};
+use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
 use peridyne::space::region::Region;
 use peridyne::space::rigid::RigidShape;
@@ -11,6 +12,15 @@ const INCREMENTS: u32 = 12;
 /// Force of the disk on the block (along, across) at every increment: the disk goes by `way` from above the middle of the block, and its floor by
 /// `floor`; t goes from 0 to 1.
 fn forces(way: [&str; 2], floor: [&str; 2], stiffness: f64) -> Vec<[f64; 2]> {
+    forces_rubbed(way, floor, stiffness, None)
+}
+
+fn forces_rubbed(
+    way: [&str; 2],
+    floor: [&str; 2],
+    stiffness: f64,
+    friction: Option<FrictionSpec>,
+) -> Vec<[f64; 2]> {
     let radius = 100.0;
     let mut spec = block([20.0, 8.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
     spec.horizon = Horizon::Ratio(3);
@@ -30,6 +40,7 @@ fn forces(way: [&str; 2], floor: [&str; 2], stiffness: f64) -> Vec<[f64; 2]> {
     let shape = RigidShape::Sphere { radius };
     let mut disk = IndenterSpec::new(stiffness, shape, IndenterMotion::Kinematic(center));
     disk.name = "disk".into();
+    disk.friction = friction;
     spec.indenters = vec![disk];
     spec.probes = vec![ProbeSpec {
         name: "disk".into(),
@@ -72,6 +83,29 @@ fn a_stiff_disk_is_pressed_in_and_goes_sideways() {
         assert!(
             (most / last - 1.0).abs() < 0.05,
             "{stiffness}: {pressed:?} {sideways:?}"
+        );
+    }
+}
+
+/// The coefficient of statics is that at rest, though the disk goes somewhere.
+#[test]
+fn friction_of_statics_is_that_at_rest() {
+    let falling = FrictionSpec {
+        at_rest: Some(AtRest {
+            coefficient: Expression::constant(0.2),
+            speed: 1e-9,
+        }),
+        ..FrictionSpec::constant(0.0)
+    };
+    let way = ["2*max(t - 0.5, 0)", "-0.5*min(2*t, 1)"];
+    for law in [falling, FrictionSpec::constant(0.2)] {
+        let all = forces_rubbed(way, ["0", "0"], 250.0, Some(law));
+        let [along, across] = all[11];
+        println!("{along} {across}");
+        // as far as the normal of the disk leans: a contact of ten spacings on a radius of a hundred
+        assert!(
+            (along.abs() / across.abs() / 0.2 - 1.0).abs() < 0.1,
+            "{all:?}"
         );
     }
 }

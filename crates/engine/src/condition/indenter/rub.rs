@@ -53,7 +53,11 @@ impl<const D: usize> Indenter<D> {
                 continue;
             }
             let w = self.sliding(v, touched);
-            let speed = w.iter().map(|c| c * c).sum::<f64>().sqrt();
+            // in equilibrium nothing has a speed, whatever the increment is divided by
+            let speed = match &self.from {
+                Some(_) => 0.0,
+                None => w.iter().map(|c| c * c).sum::<f64>().sqrt(),
+            };
             let most = now.at(speed) * depth / (2.0 * TANGENTIAL);
             touched.way = match (&self.from, before.get(&touched.slot)) {
                 (None, before) if dt == 0.0 && before.is_none_or(|t| t.way == [0.0; D]) => {
