@@ -1,13 +1,34 @@
 //! A rigid disk and a body in equilibrium by relaxation: what is stiff where they touch must not throw points away.
 
-use super::{block, hold, number, text};
+use super::{block, hold, number, text, with};
 use peridyne::expression::Expression;
-use peridyne::run::{Options, build};
+use peridyne::run::{Options, Simulation, build};
 use peridyne::space::region::Region;
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
 
 const INCREMENTS: u32 = 12;
+
+/// The rows below a height, or with −1 above it.
+fn rows(name: &str, way: f64, y: f64) -> SetSpec {
+    SetSpec {
+        name: name.into(),
+        members: Members::Region(Region::HalfSpace {
+            point: [0.0, y, 0.0],
+            normal: [0.0, way, 0.0],
+        }),
+    }
+}
+
+/// Before the first of so many increments, in which t goes from 0 to 1.
+fn relaxed(spec: &Spec, increments: u32) -> Box<dyn Simulation> {
+    let mut spec = with(spec, Method::Relaxation, Solver::Auto, 1e-6);
+    spec.schedule.steps = u64::from(increments);
+    spec.schedule.time_step = TimeStep::Fixed(1.0 / f64::from(increments));
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    sim
+}
 
 /// Force of the disk on the block (along, across) at every increment: the disk goes by `way` from above the middle of the block, and its floor by
 /// `floor`; t goes from 0 to 1.
@@ -24,13 +45,7 @@ fn forces_rubbed(
     let radius = 100.0;
     let mut spec = block([20.0, 8.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
     spec.horizon = Horizon::Ratio(3);
-    spec.sets.push(SetSpec {
-        name: "floor".into(),
-        members: Members::Region(Region::HalfSpace {
-            point: [0.0, 2.1, 0.0],
-            normal: [0.0, 1.0, 0.0],
-        }),
-    });
+    spec.sets.push(rows("floor", 1.0, 2.1));
     hold(&mut spec, "floor", [text(floor[0]), text(floor[1]), None]);
     let center = [
         text(&format!("10 + {}", way[0])).unwrap(),
@@ -50,18 +65,7 @@ fn forces_rubbed(
             of: Some(RigidQuantity::Force),
         },
     }];
-    spec.schedule = Schedule {
-        steps: u64::from(INCREMENTS),
-        time_step: TimeStep::Fixed(1.0 / f64::from(INCREMENTS)),
-        force_unstable: false,
-        stepper: Stepper::Statics(Statics {
-            method: Method::Relaxation,
-            tolerance: 1e-6,
-            ..Statics::default()
-        }),
-    };
-    let mut sim = build(&spec, Options::default()).unwrap();
-    sim.start(true);
+    let mut sim = relaxed(&spec, INCREMENTS);
     let mut all = vec![];
     for n in 0..INCREMENTS {
         sim.step().unwrap_or_else(|e| panic!("{n}: {e}"));
@@ -140,16 +144,8 @@ fn faces_of_a_crack_are_pressed_together() {
             friction: None,
             conductance: None,
         });
-        let rows = [("floor", 1.0, 2.1), ("top", -1.0, 9.9)];
-        for (name, way, y) in rows {
-            spec.sets.push(SetSpec {
-                name: name.into(),
-                members: Members::Region(Region::HalfSpace {
-                    point: [0.0, y, 0.0],
-                    normal: [0.0, way, 0.0],
-                }),
-            });
-        }
+        spec.sets
+            .extend([rows("floor", 1.0, 2.1), rows("top", -1.0, 9.9)]);
         if cut {
             spec.precracks.push(PrecrackSpec {
                 shape: CrackShape::Segment {
@@ -166,18 +162,7 @@ fn faces_of_a_crack_are_pressed_together() {
             set: "top".into(),
             measure: Measure::Reaction,
         }];
-        spec.schedule = Schedule {
-            steps: 20,
-            time_step: TimeStep::Fixed(0.05),
-            force_unstable: false,
-            stepper: Stepper::Statics(Statics {
-                method: Method::Relaxation,
-                tolerance: 1e-6,
-                ..Statics::default()
-            }),
-        };
-        let mut sim = build(&spec, Options::default()).unwrap();
-        sim.start(true);
+        let mut sim = relaxed(&spec, 20);
         let mut all = vec![];
         for n in 1..=20 {
             sim.step()
