@@ -80,6 +80,7 @@ fn main() {
             free: 1.35,
             stiffness: ContactStiffness::Laws,
             friction: None,
+            cohesion: None,
             conductance: None,
         }),
         initial: vec![],

@@ -1,5 +1,9 @@
 //! Coulomb friction: sliding blocks, momentum, what is dissipated, and Peridigm's stored numbers.
 
+#[path = "friction/cohesion.rs"]
+mod cohesion;
+#[path = "friction/faces.rs"]
+mod faces;
 #[path = "friction/rigid.rs"]
 mod rigid;
 
@@ -14,14 +18,14 @@ pub(crate) fn text(e: &str) -> Option<Expression> {
     Some(Expression::parse(e, &[]).unwrap())
 }
 
-fn piece(name: &str, body: BodySpec, bonded: bool) -> PieceSpec {
+pub(crate) fn piece(name: &str, body: BodySpec, bonded: bool) -> PieceSpec {
     PieceSpec {
         bonded,
         ..PieceSpec::new(name, body)
     }
 }
 
-fn sets(names: &[&str]) -> Vec<SetSpec> {
+pub(crate) fn sets(names: &[&str]) -> Vec<SetSpec> {
     let within = |name: &&str| SetSpec {
         name: name.to_string(),
         members: Members::Within {
@@ -65,6 +69,7 @@ fn sliding(friction: FrictionSpec) -> Spec {
         free: 2.4,
         stiffness: ContactStiffness::Laws,
         friction: Some(friction),
+        cohesion: None,
         conductance: None,
     });
     spec.conditions = vec![
@@ -264,6 +269,7 @@ fn glancing() -> Spec {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: Some(FrictionSpec::constant(0.4)),
+        cohesion: None,
         conductance: None,
     });
     spec.initial = vec![thrown("block", ["1.5", "-1"])];
@@ -347,6 +353,7 @@ fn points(
         free: 1.0,
         stiffness: ContactStiffness::Same(18.0 * spring / (PI * horizon.powi(5))),
         friction: None,
+        cohesion: None,
         conductance: None,
     });
     spec.schedule.force_unstable = true;

@@ -289,6 +289,7 @@ fn what_has_no_tangent_is_refused() {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        cohesion: None,
         conductance: None,
     });
     assert!(build(&touching, Options::default()).is_ok());

@@ -216,6 +216,7 @@ fn pulled() -> Spec {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        cohesion: None,
         conductance: None,
     });
     for (set, v) in [("left", "-0.02*(3-x)"), ("right", "0.02*(x-2.5)")] {
@@ -317,6 +318,7 @@ fn unlike() -> Spec {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        cohesion: None,
         conductance: None,
     });
     spec.schedule.time_step = TimeStep::Fraction(0.1);

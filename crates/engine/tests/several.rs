@@ -53,6 +53,7 @@ const CONTACT: ContactSpec = ContactSpec {
     free: 1.35,
     stiffness: ContactStiffness::Laws,
     friction: None,
+    cohesion: None,
     conductance: None,
 };
 

@@ -323,6 +323,7 @@ fn worn() -> Vec<(Spec, Vec<Point>)> {
             free: 1.35,
             stiffness: ContactStiffness::Laws,
             friction: None,
+            cohesion: None,
             conductance: None,
         });
         let mut seed = 7u64;

@@ -4,7 +4,7 @@
 //! in range on all sides, meet `(z/D) K V` along any direction, and twice that where neighbours move against each other:
 //! `λ = (z/D) K (V_b/ρ_a + V_a/ρ_b)` (exact for springs of a square or cubic lattice). A point at the surface of a body
 //! has half a family besides: `λ = ½ λ_bonds + (z/D) K V_b/ρ_a`. With friction, springs along the faces count with theirs:
-//! z/D becomes `z (1 + (D − 1) κ/K)/D`.
+//! z/D becomes `z (1 + (D − 1) κ/K)/D`. Cohesion adds what it resists with, `V`-weighted over its partners, over both densities.
 
 use crate::interaction::Repulsion;
 
@@ -25,12 +25,14 @@ pub struct ContactLimit {
     pub materials: [usize; 2],
 }
 
-/// The largest eigenvalue over all pairs of materials. `per_axis` is z/D, with friction more, `bonds` the largest eigenvalue of the bonds.
+/// The largest eigenvalue over all pairs of materials. `per_axis` is z/D, with friction more, `bonds` the largest eigenvalue of the bonds,
+/// `cohesion` what a pair of materials resists with besides (force density / length).
 pub fn contact_limit(
     repulsion: &Repulsion,
     grains: &[Grain],
     per_axis: f64,
     bonds: f64,
+    cohesion: impl Fn(usize, usize) -> f64,
 ) -> Option<ContactLimit> {
     let mut most: Option<ContactLimit> = None;
     for (a, own) in grains.iter().enumerate() {
@@ -38,7 +40,8 @@ pub fn contact_limit(
             let stiffness = per_axis * repulsion.of([a, b]);
             let push = stiffness * other.volume / own.density;
             let free = push + stiffness * own.volume / other.density;
-            let lambda = free.max(0.5 * bonds + push);
+            let sticks = cohesion(a, b) * (1.0 / own.density + 1.0 / other.density);
+            let lambda = free.max(0.5 * bonds + push) + sticks;
             if push > 0.0 && most.is_none_or(|m| lambda > m.lambda) {
                 most = Some(ContactLimit {
                     lambda,
@@ -59,7 +62,14 @@ mod tests {
         // springs k between m and M by turns: ω² = 2 k (1/m + 1/M) at most
         let repulsion = Repulsion::uniform(3.0, 0.9, 1.35);
         let of = |volume, density| Grain { volume, density };
-        let found = contact_limit(&repulsion, &[of(2.0, 1.0), of(2.0, 5.0)], 2.0, 0.0).unwrap();
+        let found = contact_limit(
+            &repulsion,
+            &[of(2.0, 1.0), of(2.0, 5.0)],
+            2.0,
+            0.0,
+            |_, _| 0.0,
+        )
+        .unwrap();
         // the lighter material alone is stiffest: k = K V², m = ρ V
         assert_eq!(found.materials, [0, 0]);
         assert!((found.lambda - 4.0 * 3.0 * 2.0 / 1.0).abs() < 1e-12);
@@ -68,7 +78,8 @@ mod tests {
             stiffness: crate::interaction::PairTable::new(2, apart),
             ..repulsion
         };
-        let found = contact_limit(&across, &[of(2.0, 1.0), of(2.0, 5.0)], 2.0, 0.0).unwrap();
+        let found =
+            contact_limit(&across, &[of(2.0, 1.0), of(2.0, 5.0)], 2.0, 0.0, |_, _| 0.0).unwrap();
         let (k, m) = (3.0 * 4.0, [2.0, 10.0]);
         assert_eq!(found.materials, [0, 1]);
         assert!((found.lambda - 2.0 * k * (1.0 / m[0] + 1.0 / m[1])).abs() < 1e-12);
@@ -77,7 +88,8 @@ mod tests {
                 &Repulsion::uniform(0.0, 0.9, 1.0),
                 &[of(1.0, 1.0)],
                 2.0,
-                5.0
+                5.0,
+                |_, _| 0.0
             )
             .is_none()
         );

@@ -1,10 +1,11 @@
-//! Contact: repulsion between points that are not in each other's family.
+//! Contact: repulsion between points that are not in each other's family, and [`Cohesion`] of bodies.
 //!
 //! A pair repels as its materials do ([`Repulsion`]); its energy is `½ K (r − d)² V_i V_j`, and volumes are not scaled at
 //! the horizon. Pairs inside a family repel in the family's own sweep.
 
+use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
-use super::{BondTangent, Repulsion};
+use super::{BondTangent, Interaction, Repulsion};
 use crate::body::{Body, Field};
 use crate::family::neighbours::{LOOSE, Neighbours, periods};
 
@@ -34,15 +35,60 @@ pub struct Touch<const D: usize> {
 }
 
 impl<const D: usize> Touch<D> {
-    /// `(i's − j's)` force density over the partner's volume, along y; `None`: two points on one spot have no
-    /// direction.
-    pub fn pull(&self) -> Option<f64> {
-        (self.r > 0.0).then(|| self.stiffness * (self.r - self.d) / self.r)
+    fn pull(&self) -> Pull<D> {
+        let over = self.r - self.d;
+        Pull {
+            i: self.i,
+            j: self.j,
+            y: self.y,
+            r: self.r,
+            // two points on one spot have no direction
+            pull: match self.r > 0.0 {
+                true => self.stiffness * over / self.r,
+                false => 0.0,
+            },
+            slope: self.stiffness,
+            energy: 0.5 * self.stiffness * over * over,
+        }
     }
+}
 
-    /// `½ K (r − d)²` (energy / volume²).
-    fn energy(&self) -> f64 {
-        0.5 * self.stiffness * (self.r - self.d) * (self.r - self.d)
+/// A central force of a pair.
+#[derive(Debug, Clone, Copy)]
+pub struct Pull<const D: usize> {
+    pub i: usize,
+    pub j: usize,
+    /// From i to j now, and its length.
+    pub y: [f64; D],
+    pub r: f64,
+    /// Force density on i over the volume of j and over r, along y.
+    pub pull: f64,
+    /// What the force density over the volume grows with r by.
+    pub slope: f64,
+    /// Energy / volume².
+    pub energy: f64,
+}
+
+impl<const D: usize> Pull<D> {
+    /// `V_j (slope n⊗n + pull (1 − n⊗n))` of both ends; none of two points on one spot.
+    fn tangents(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        let &Pull {
+            i, j, y, r, pull, ..
+        } = self;
+        if r == 0.0 {
+            return;
+        }
+        let n = y.map(|c| c / r);
+        for (i, j, way) in [(i, j, 1.0), (j, i, -1.0)] {
+            let volume = body.volume.at(j);
+            let block = std::array::from_fn(|a| {
+                std::array::from_fn(|b| {
+                    let along = (self.slope - pull) * n[a] * n[b];
+                    volume * (along + if a == b { pull } else { 0.0 })
+                })
+            });
+            visit(BondTangent::direct(i, j, y.map(|c| way * c), block));
+        }
     }
 }
 
@@ -58,6 +104,8 @@ pub struct Contact<const D: usize> {
     near: Option<Nearness>,
     /// Of every pair, where that is asked for.
     bounds: Vec<Bounds>,
+    /// What bodies attract each other by.
+    cohesion: Option<Cohesion<D>>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -96,7 +144,14 @@ impl<const D: usize> Contact<D> {
             pairs: vec![],
             near,
             bounds: vec![],
+            cohesion: None,
         }
+    }
+
+    /// The same, and bodies attract each other.
+    pub fn cohesive(mut self, cohesion: Option<Cohesion<D>>) -> Self {
+        self.cohesion = cohesion;
+        self
     }
 
     /// `[slots]`: the row of the tables of repulsion that a point has, instead of that of its material.
@@ -108,11 +163,17 @@ impl<const D: usize> Contact<D> {
     /// No point has gone further than `path` (length) since the last call.
     pub fn moved(&mut self, path: f64) {
         self.neighbours.moved(path);
+        if let Some(cohesion) = &mut self.cohesion {
+            cohesion.moved(path);
+        }
     }
 
     /// Points may be anywhere now.
     pub fn look_again(&mut self) {
         self.neighbours.look_again();
+        if let Some(cohesion) = &mut self.cohesion {
+            cohesion.look_again();
+        }
     }
 
     /// Add the force density of all pairs for which `in_family` is false to `f`. Finds the pairs anew when points
@@ -125,9 +186,7 @@ impl<const D: usize> Contact<D> {
         in_family: &dyn Fn(usize, usize) -> bool,
     ) {
         self.update(body, u, in_family);
-        self.each_contact(u, |touch| {
-            let Some(pull) = touch.pull() else { return };
-            let Touch { i, j, y, .. } = touch;
+        self.each_pull(u, |Pull { i, j, y, pull, .. }| {
             let (vi, vj) = (body.volume.at(i), body.volume.at(j));
             for a in 0..D {
                 f[a][i] += pull * vj * y[a];
@@ -143,6 +202,9 @@ impl<const D: usize> Contact<D> {
         u: &Field<D>,
         in_family: &dyn Fn(usize, usize) -> bool,
     ) {
+        if let Some(cohesion) = &mut self.cohesion {
+            cohesion.update(body, u);
+        }
         if !self.neighbours.update(body, u, &|i, j| !in_family(i, j)) {
             return;
         }
@@ -190,32 +252,56 @@ impl<const D: usize> Contact<D> {
         first.then(|| self.repulsion.of(materials) * vi * vj)
     }
 
-    /// Tangents of all contacts, as those of bonds between points that touch: `V_j (K n⊗n + pull (1 − n⊗n))`. `u` as for
-    /// [`Contact::energy`].
+    /// The touch of two points of one family, ξ apart in the reference; `None`: they do not repel.
+    pub fn touch_inside(
+        &self,
+        body: &Body<D>,
+        u: &Field<D>,
+        [i, j]: [usize; 2],
+        xi: [f64; D],
+    ) -> Option<Touch<D>> {
+        let length = |x: &[f64; D]| x.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let y: [f64; D] = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
+        let materials = self.materials(body, [i, j]);
+        let (r, d) = (length(&y), self.repulsion.distance(length(&xi), materials));
+        (r < d).then(|| Touch {
+            i,
+            j,
+            y,
+            r,
+            d,
+            stiffness: self.repulsion.of(materials),
+        })
+    }
+
+    /// Tangents of all contacts, as those of bonds between points that touch. `u` as for [`Contact::energy`].
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
-        self.each_contact(u, |touch| {
-            let Some(pull) = touch.pull() else { return };
-            let Touch { i, j, y, r, .. } = touch;
-            let n = y.map(|c| c / r);
-            for (i, j, way) in [(i, j, 1.0), (j, i, -1.0)] {
-                let volume = body.volume.at(j);
-                let block = std::array::from_fn(|a| {
-                    std::array::from_fn(|b| {
-                        let along = (touch.stiffness - pull) * n[a] * n[b];
-                        volume * (along + if a == b { pull } else { 0.0 })
-                    })
-                });
-                visit(BondTangent::direct(i, j, y.map(|c| way * c), block));
+        self.each_pull(u, |pull| pull.tangents(body, visit));
+    }
+
+    /// The same of pairs inside the families, bonded or not.
+    pub fn tangents_inside(
+        &self,
+        body: &Body<D>,
+        interaction: &dyn Interaction<D>,
+        u: &Field<D>,
+        visit: &mut dyn FnMut(BondTangent<D>),
+    ) {
+        interaction.each_bond(body, &mut |i, j, xi, _| {
+            let touch = self.touch_inside(body, u, [i, j], xi);
+            // bonds between bodies are in no family
+            if let Some(touch) = touch.filter(|_| interaction.in_family(body, i, j)) {
+                touch.pull().tangents(body, visit);
             }
         });
     }
 
     /// Adds what points that touch resist with (force / length) to sums by slot; `u` as for [`Contact::energy`].
     pub fn add_stiffness(&self, body: &Body<D>, u: &Field<D>, sum: &mut [f64]) {
-        self.each_contact(u, |touch| {
+        self.each_pull(u, |touch| {
             let [vi, vj] = [touch.i, touch.j].map(|s| body.volume.at(s));
             for s in [touch.i, touch.j] {
-                sum[s] += touch.stiffness * vi * vj;
+                sum[s] += touch.slope.abs().max(touch.pull.abs()) * vi * vj;
             }
         });
     }
@@ -223,8 +309,8 @@ impl<const D: usize> Contact<D> {
     /// Energy of all contacts (energy). `u` is that of the last [`Contact::add_forces`] or [`Contact::update`].
     pub fn energy(&self, body: &Body<D>, u: &Field<D>) -> f64 {
         let mut energy = 0.0;
-        self.each_contact(u, |touch| {
-            energy += touch.energy() * body.volume.at(touch.i) * body.volume.at(touch.j);
+        self.each_pull(u, |touch| {
+            energy += touch.energy * body.volume.at(touch.i) * body.volume.at(touch.j);
         });
         energy
     }
@@ -232,8 +318,8 @@ impl<const D: usize> Contact<D> {
     /// Add the energy density of all contacts to `out`, per slot, half of a pair's at each end (energy / volume).
     /// `u` as for [`Contact::energy`].
     pub fn add_energy_density(&self, body: &Body<D>, u: &Field<D>, out: &mut [f64]) {
-        self.each_contact(u, |touch| {
-            let half = 0.5 * touch.energy();
+        self.each_pull(u, |touch| {
+            let half = 0.5 * touch.energy;
             out[touch.i] += half * body.volume.at(touch.j);
             out[touch.j] += half * body.volume.at(touch.i);
         });
@@ -254,8 +340,17 @@ impl<const D: usize> Contact<D> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.neighbours.bytes()
+            + self.cohesion.as_ref().map_or(0, Cohesion::bytes)
             + size_of::<Pair<D>>() * self.pairs.capacity()
             + size_of::<Bounds>() * self.bounds.capacity()
+    }
+
+    /// Visit every central force: of pairs closer than allowed, then of those that attract each other.
+    pub fn each_pull(&self, u: &Field<D>, mut visit: impl FnMut(Pull<D>)) {
+        self.each_contact(u, |touch| visit(touch.pull()));
+        if let Some(cohesion) = &self.cohesion {
+            cohesion.each_pull(u, visit);
+        }
     }
 
     /// Visit the pairs closer than allowed.

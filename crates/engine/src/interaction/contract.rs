@@ -163,6 +163,26 @@ pub trait Interaction<const D: usize>: Send + Sync {
     /// Every undirected bond of the reference family once: slots i < j (images resolved), reference vector ξ.
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState));
 
+    /// Of [`each_bond`](Interaction::each_bond) those that are broken and whose points repel inside the family: not those of interfaces.
+    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.each_bond(body, &mut |i, j, xi, state| {
+            if state == BondState::Broken {
+                visit(i, j, xi);
+            }
+        });
+    }
+
+    /// Broken bonds become whole again, as they were in the reference, where `heals` of their ends and their `e` (see [`history`](super::history)) at `u`,
+    /// images of which are fresh; it must say the same of both directions. How many directed ones; `None`: those of the law do not.
+    fn mend(
+        &mut self,
+        _body: &Body<D>,
+        _u: &Field<D>,
+        _heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
+        None
+    }
+
     /// Critical `e` of the bond ξ between two slots, from those of its ends; ∞: it never breaks.
     fn bond_limit(&self, _ends: [usize; 2], _xi: &[f64; D], critical: [f64; 2]) -> f64 {
         history::limit(critical[0], critical[1])

@@ -6,6 +6,7 @@
 //! ([`FrictionSpec`]). What touches and slides when a run begins has slid before. So what sticks holds a force without creeping; momentum
 //! is kept; what slips is dissipated; and the rest, `½ κ ξ² V_i V_j`, is energy of the contact until the pair parts.
 
+use super::Interaction;
 use super::contact::{Contact, Touch};
 use crate::body::{Body, Field, zeros};
 use crate::expression::Expression;
@@ -25,7 +26,7 @@ struct Spring<const D: usize> {
     depth: f64,
 }
 
-/// Friction outside the families, and what it has dissipated.
+/// Friction of points that touch, outside the families and over broken bonds, and what it has dissipated.
 #[derive(Debug, Clone)]
 pub struct Friction<const D: usize> {
     law: FrictionSpec,
@@ -41,6 +42,8 @@ pub struct Friction<const D: usize> {
     /// Work done on the bodies (energy), and what it was when the step began.
     pub work: f64,
     kept: f64,
+    /// Who touches now.
+    touching: Vec<Touch<D>>,
     /// What springs hold (energy): `−work − energy` is dissipated.
     pub energy: f64,
 }
@@ -143,6 +146,7 @@ impl<const D: usize> Friction<D> {
             pressed: vec![],
             work: 0.0,
             kept: 0.0,
+            touching: vec![],
             energy: 0.0,
         }
     }
@@ -194,6 +198,7 @@ impl<const D: usize> Friction<D> {
     pub fn add(
         &mut self,
         contact: &Contact<D>,
+        interaction: &dyn Interaction<D>,
         body: &Body<D>,
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
@@ -207,13 +212,23 @@ impl<const D: usize> Friction<D> {
         self.now.clear();
         self.energy = 0.0;
         self.force.iter_mut().for_each(|c| c.fill(0.0));
-        // both in order of their ends
+        self.touching.clear();
+        contact.each_contact(u, |touch| self.touching.push(touch));
+        let outside = self.touching.len();
+        interaction.each_broken(body, &mut |i, j, xi| {
+            self.touching
+                .extend(contact.touch_inside(body, u, [i, j], xi));
+        });
+        if self.touching.len() > outside {
+            self.touching.sort_unstable_by_key(|t| [t.i, t.j]);
+        }
+        // all in order of their ends
         let mut before = self.before.iter().peekable();
         let mut pressed = self.pressed.iter().peekable();
-        contact.each_contact(u, |touch| {
-            let Touch { i, j, y, r, d, .. } = touch;
+        for touch in &self.touching {
+            let &Touch { i, j, y, r, d, .. } = touch;
             if r == 0.0 {
-                return;
+                continue;
             }
             let ends = [i as u32, j as u32];
             let before = find(&mut before, ends);
@@ -251,7 +266,7 @@ impl<const D: usize> Friction<D> {
                 way,
                 depth: d - r,
             });
-        });
+        }
         for a in 0..D {
             for (f, own) in f[a].iter_mut().zip(self.force[a].iter()) {
                 *f += own;
@@ -275,6 +290,8 @@ impl<const D: usize> Friction<D> {
     pub fn bytes(&self) -> usize {
         let springs = self.before.capacity() + self.now.capacity() + self.pressed.capacity();
         let fields = if self.from.is_some() { 3 } else { 1 };
-        8 * D * fields * self.force[0].len() + size_of::<Spring<D>>() * springs
+        8 * D * fields * self.force[0].len()
+            + size_of::<Spring<D>>() * springs
+            + size_of::<Touch<D>>() * self.touching.capacity()
     }
 }

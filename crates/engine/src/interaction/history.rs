@@ -1,6 +1,6 @@
 //! What bonds remember: the next critical stretch, and the energy of those that just broke.
 
-use super::bond::critical_stretch;
+use super::bond::{critical_stretch, relative_square_stretch};
 use super::{Repulsion, Toughness};
 use crate::body::Body;
 use crate::columns::{Declaration, Dimension, Shape};
@@ -83,6 +83,11 @@ pub fn write_critical<const D: usize>(
 /// Does anything depend on how far bonds were stretched: do they break, or repel when broken?
 pub fn remembers(repulsion: Option<&Repulsion>, toughness: &[Toughness]) -> bool {
     repulsion.is_some() || toughness.iter().any(|t| t.s00.is_finite())
+}
+
+/// `e` of the bond ξ whose ends have moved by η against each other; of both directions the same bits.
+pub fn relative<const D: usize>(xi: &[f64; D], eta: [f64; D]) -> f64 {
+    relative_square_stretch(eta, *xi, 2.0 / xi.iter().map(|x| x * x).sum::<f64>())
 }
 
 /// Marks the bond of a lane as whole or broken.

@@ -277,6 +277,20 @@ impl<const D: usize, W: Law> Interaction<D> for ListInteraction<D, W> {
         self.each_of_family(visit);
     }
 
+    fn mend(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
+        self.check(body, &[u]);
+        Some(self.mend_where(u, heals))
+    }
+
+    fn each_broken(&self, _: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.each_torn(visit);
+    }
+
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {
         self.damages(body, out);
     }

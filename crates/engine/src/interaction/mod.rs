@@ -3,6 +3,7 @@
 
 pub(crate) mod atoms;
 pub(crate) mod bond;
+pub mod cohesion;
 pub mod contact;
 mod contract;
 pub(crate) mod criterion;

@@ -2,11 +2,13 @@
 //!
 //! Sweeps want the columns of their own body, so displacements, velocities and forces are copied in and out.
 
+mod columns;
+
 use super::interface::Interface;
 use super::{BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally, history};
 use crate::body::several::Piece;
 use crate::body::{Body, Field, Identity, Layout, zeros};
-use crate::columns::{Declaration, On};
+use crate::columns::Declaration;
 use crate::error::BuildError;
 use crate::law::BondFactors;
 use crate::spec::CrackKind;
@@ -289,84 +291,12 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         self.interfaces.iter().map(|i| i.criticals()).collect()
     }
 
-    /// Bodies that have no such column have 0 at their points, and no bonds in it.
     fn read_column(&self, body: &Body<D>, u: &Field<D>, name: &str, out: &mut Vec<f64>) -> bool {
-        out.clear();
-        let Some(column) = self.columns().into_iter().find(|c| c.name == name) else {
-            return false;
-        };
-        let numbers = column.shape.stored(D);
-        let mut own = vec![];
-        if column.on == On::Points {
-            out.resize(numbers * body.len, 0.0);
-        }
-        for (p, bonds) in self.each(body) {
-            if bonds.read_column(&p.body, &part(u, p), name, &mut own) {
-                match column.on {
-                    On::Points => {
-                        out[numbers * p.first..][..own.len()].copy_from_slice(&own);
-                    }
-                    On::Bonds => out.extend_from_slice(&own),
-                }
-            }
-        }
-        if column.on == On::Bonds {
-            for interface in &self.interfaces {
-                if interface.read_bonds(name, &mut own) {
-                    out.extend_from_slice(&own);
-                }
-            }
-        }
-        true
+        self.read_named(body, u, name, out)
     }
 
     fn write_column(&mut self, body: &Body<D>, name: &str, values: &[f64]) -> bool {
-        let Some(column) = self.columns().into_iter().find(|c| c.name == name) else {
-            return false;
-        };
-        let numbers = column.shape.stored(D);
-        let mut first = 0;
-        let mut parts = vec![];
-        for (n, (p, own)) in pieces(body).iter().zip(&self.own).enumerate() {
-            let Some(bonds) = &own.bonds else { continue };
-            if !bonds.columns().iter().any(|c| c.name == name) {
-                continue;
-            }
-            let range = match column.on {
-                On::Points => numbers * p.first..numbers * (p.first + p.body.len),
-                On::Bonds => {
-                    let (begin, mut own) = (first, vec![]);
-                    bonds.read_column(&p.body, &p.body.at_rest(), name, &mut own);
-                    first += own.len();
-                    begin..first
-                }
-            };
-            parts.push((n, range));
-        }
-        let mut ends = vec![];
-        if column.on == On::Bonds {
-            let mut own = vec![];
-            for (n, interface) in self.interfaces.iter().enumerate() {
-                if interface.read_bonds(name, &mut own) {
-                    ends.push((n, first..first + own.len()));
-                    first += own.len();
-                }
-            }
-        }
-        let length = match column.on {
-            On::Points => numbers * body.len,
-            On::Bonds => first,
-        };
-        if values.len() != length {
-            return false;
-        }
-        let pieces = pieces(body);
-        let inside = parts.into_iter().all(|(n, range)| {
-            let bonds = self.own[n].bonds.as_mut().expect("it has the column");
-            bonds.write_column(&pieces[n].body, name, &values[range])
-        });
-        let mut ends = ends.into_iter();
-        inside && ends.all(|(n, range)| self.interfaces[n].write_bonds(name, &values[range]))
+        self.write_named(body, name, values)
     }
 
     fn gain(&self, slot: usize) -> f64 {
@@ -381,6 +311,29 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
         for interface in &self.interfaces {
             interface.each_bond(visit);
+        }
+    }
+
+    fn mend(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
+        let mut sum = 0;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                take(u, p, &mut own.u);
+                let heals = |i: usize, j: usize, e: f64| heals(i + p.first, j + p.first, e);
+                sum += bonds.mend(&p.body, &own.u, &heals)?;
+            }
+        }
+        Some(sum)
+    }
+
+    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        for (p, bonds) in self.each(body) {
+            bonds.each_broken(&p.body, &mut |i, j, xi| visit(i + p.first, j + p.first, xi));
         }
     }
 

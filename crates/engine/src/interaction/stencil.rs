@@ -271,7 +271,25 @@ impl<const D: usize, W: Law> Interaction<D> for StencilInteraction<D, W> {
     }
 
     fn each_bond(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D], BondState)) {
-        self.each_of_family(body, visit);
+        self.each_of_family(body, false, visit);
+    }
+
+    fn mend(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> Option<u64> {
+        self.check(body, &[u]);
+        Some(self.mend_where(body, u, heals))
+    }
+
+    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        self.each_of_family(body, true, &mut |i, j, xi, state| {
+            if state == BondState::Broken {
+                visit(i, j, xi);
+            }
+        });
     }
 
     fn damage(&self, body: &Body<D>, out: &mut [f64]) {

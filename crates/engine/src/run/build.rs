@@ -153,13 +153,6 @@ pub fn build_in<const D: usize>(
     }
     warnings.extend(meant::regions(spec));
     warnings.extend(meant::tractions(spec, &body, &sets));
-    if spec.contact.as_ref().is_some_and(|c| c.friction.is_some())
-        && spec.materials.iter().any(|m| m.fracture.is_some())
-    {
-        warnings.push(
-            "friction acts between points that were never bonded: the faces of a crack slide on each other without it",
-        );
-    }
     if { spec.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {
@@ -271,6 +264,7 @@ pub fn build_in<const D: usize>(
         }),
         friction: contact::friction(spec, &body)?,
         toughness: None,
+        healing: None,
         boltzmann: spec.boltzmann,
         release: spec.release,
         stop: || false,
@@ -339,6 +333,7 @@ pub fn build_in<const D: usize>(
     indenters::check(spec, &model.body)?;
     model.set_conditions(&spec.conditions, &sets, &spec.indenters)?;
     model.toughness = model.toughness_of(spec, shelf, &sets)?;
+    model.healing = model.healing_of(spec, &sets)?;
     // how long a run of a given duration is, its caller knows
     let steps = match spec.schedule.steps {
         0 => 1000,

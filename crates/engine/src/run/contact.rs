@@ -6,6 +6,7 @@ use super::reference::cell;
 use crate::body::Body;
 use crate::dynamics::contact_step::{ContactLimit, Grain, contact_limit};
 use crate::error::BuildError;
+use crate::interaction::cohesion::{Adhesion, Cohesion, Faces, RANGES};
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::{Friction, TANGENTIAL};
 use crate::interaction::nearness::Nearness;
@@ -13,7 +14,7 @@ use crate::interaction::{PairTable, Repulsion};
 use crate::message;
 use crate::quantity::Dimension;
 use crate::space::AXES;
-use crate::spec::{ContactStiffness, FrictionSpec, Spec};
+use crate::spec::{CohesionSpec, ContactStiffness, FrictionSpec, Spec};
 
 /// Points of one material in one body.
 struct Kind {
@@ -33,6 +34,9 @@ pub(super) struct Rules {
     /// Does contact conduct, so that it must know who touches?
     conducts: bool,
     rubs: bool,
+    /// `[kinds][kinds]`, empty: bodies do not attract each other.
+    adhesion: Vec<Adhesion>,
+    section: f64,
 }
 
 /// The rules of all pairs; `None`: no contact. Points of unlike spacing repel from the mean of both on.
@@ -95,7 +99,28 @@ pub(super) fn repulsion<const D: usize>(
             }
         }
     }
+    let mut adhesion = vec![];
+    if let Some(cohesion) = &contact.cohesion {
+        if body.pieces().is_empty() {
+            let message = "cohesion is between bodies, and there is one";
+            return Err(BuildError::conflict("contact.cohesion", message)
+                .help("write each as a [[body]] of its own"));
+        }
+        if !spec.interfaces.is_empty() {
+            let message = "points that an interface bonds would attract each other as well";
+            return Err(BuildError::conflict("contact.cohesion", message)
+                .help("leave out cohesion or the interface"));
+        }
+        for a in 0..kinds.len() {
+            for b in 0..kinds.len() {
+                let faces = faces(&kinds, &range, spec.section, a, b);
+                adhesion.push(sticks::<D>(cohesion, faces)?);
+            }
+        }
+    }
     Ok(Some(Rules {
+        section: spec.section,
+        adhesion,
         kinds,
         repulsion: Repulsion {
             stiffness,
@@ -105,6 +130,47 @@ pub(super) fn repulsion<const D: usize>(
         conducts,
         rubs: contact.friction.is_some(),
     }))
+}
+
+/// Rows of two kinds that touch.
+fn faces(kinds: &[Kind], range: &PairTable, section: f64, a: usize, b: usize) -> Faces {
+    Faces {
+        spacing: [a, b].map(|k| kinds[k].spacing),
+        apart: range.at(a, b),
+        section,
+    }
+}
+
+/// What such rows attract each other by.
+fn sticks<const D: usize>(cohesion: &CohesionSpec, faces: Faces) -> Result<Adhesion, BuildError> {
+    let &CohesionSpec { energy, strength } = cohesion;
+    if let Some(adhesion) = Adhesion::of_strength::<D>(energy, strength, faces) {
+        return Ok(adhesion);
+    }
+    let [most, least] =
+        RANGES.map(|x| Adhesion::new::<D>(energy, x * faces.apart, faces).traction::<D>(faces));
+    let why = match strength > least {
+        true => " would end within the second row of points",
+        false => " would reach further than 20 times the distance of contact",
+    };
+    Err(BuildError::conflict(
+        "contact.cohesion",
+        message![
+            "a traction of ",
+            Dimension::PRESSURE.of(strength),
+            " that takes ",
+            Dimension::FRACTURE_ENERGY.of(energy),
+            format!(" per area{why}, of points that touch at a distance of "),
+            Dimension::LENGTH.of(faces.apart),
+        ],
+    )
+    .help(message![
+        "write a strength from ",
+        Dimension::PRESSURE.of(least),
+        " to ",
+        Dimension::PRESSURE.of(most),
+        ", or another spacing",
+    ]))
 }
 
 /// Who can touch, of points that are this near in one body and belong together (length).
@@ -177,7 +243,14 @@ impl Rules {
         }
         let along = if self.rubs { TANGENTIAL } else { 0.0 };
         let per_axis = near * (1.0 + (D - 1) as f64 * along) / D as f64;
-        contact_limit(&self.repulsion, &grains, per_axis, bonds)
+        let pulls = |a: usize, b: usize| match self.adhesion.get(a * self.kinds.len() + b) {
+            None => 0.0,
+            Some(adhesion) => {
+                let faces = faces(&self.kinds, &self.repulsion.range, self.section, a, b);
+                adhesion.stiffness::<D>(faces)
+            }
+        };
+        contact_limit(&self.repulsion, &grains, per_axis, bonds, pulls)
     }
 
     /// The kind of a slot.
@@ -211,7 +284,15 @@ impl Rules {
             }
         }
         let near = self.conducts.then(|| nearness(&self.kinds, horizon));
-        Contact::with_nearness(self.repulsion, near, body, horizon, &bonded).kinds(kind)
+        let kinds = self.kinds.len();
+        let cohesion = (!self.adhesion.is_empty()).then(|| {
+            Cohesion::new(body, kinds, kind.clone(), |a, b| {
+                self.adhesion[a * kinds + b]
+            })
+        });
+        Contact::with_nearness(self.repulsion, near, body, horizon, &bonded)
+            .kinds(kind)
+            .cohesive(cohesion)
     }
 }
 

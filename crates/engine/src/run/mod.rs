@@ -17,6 +17,7 @@ mod examined;
 mod feasible;
 mod free;
 mod gaps;
+mod healing;
 mod implicit;
 mod indenters;
 mod interfaces;

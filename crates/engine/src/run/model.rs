@@ -2,6 +2,7 @@
 
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
+use super::healing::Healing;
 use super::implicit::state::Implicit;
 use super::preload::state::Preload;
 use super::probes::state::Probe;
@@ -49,6 +50,8 @@ pub struct Model<const D: usize> {
     pub(super) friction: Option<Friction<D>>,
     /// `None`: that of the materials.
     pub(super) toughness: Option<ToughnessField>,
+    /// `None`: what is broken stays so.
+    pub(super) healing: Option<Healing>,
     pub(super) u: Field<D>,
     pub(super) v: Field<D>,
     pub(super) f: Field<D>,

@@ -98,7 +98,15 @@ impl<const D: usize> Model<D> {
             }
             if let Some(friction) = &mut self.friction {
                 let state = [&self.u, &self.v];
-                friction.add(contact, body, state, &mut self.f, t, dt);
+                friction.add(
+                    contact,
+                    self.interaction.as_ref(),
+                    body,
+                    state,
+                    &mut self.f,
+                    t,
+                    dt,
+                );
             }
         }
         for indenter in &mut self.indenters {
@@ -320,6 +328,7 @@ impl<const D: usize> Model<D> {
         for d in &mut self.driven {
             d.begin(&self.body, &self.v, t, dt, path);
         }
+        self.heal(t);
         self.forces(true, dt);
         if let Some(fault) = self.fault {
             let error = self.explained(fault);

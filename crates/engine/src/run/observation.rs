@@ -9,7 +9,7 @@ use crate::fracture::fragments::Fragments;
 use crate::interaction::{BondForce, BondState};
 use crate::observe::observables::{Needs, Observable};
 use crate::observe::{Column, FamilyBond, Observed, PointForce, Snapshot, State, Values};
-use crate::space::Point;
+use crate::space::{Point, full};
 
 /// The state of a model, and what was computed of it already.
 pub(super) struct View<'a, const D: usize> {
@@ -17,10 +17,6 @@ pub(super) struct View<'a, const D: usize> {
     /// Id of every slot of a point.
     id: Vec<u32>,
     seen: Option<Observed>,
-}
-
-fn padded<const D: usize>(x: &[f64; D]) -> Point {
-    std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0))
 }
 
 impl<const D: usize> View<'_, D> {
@@ -50,17 +46,17 @@ impl<const D: usize> State for View<'_, D> {
 
     fn displacement(&self, id: usize) -> Point {
         let s = self.slot(id);
-        padded(&std::array::from_fn::<_, D, _>(|a| self.model.u[a][s]))
+        full(&std::array::from_fn::<_, D, _>(|a| self.model.u[a][s]))
     }
 
     fn velocity(&self, id: usize) -> Point {
         let s = self.slot(id);
-        padded(&std::array::from_fn::<_, D, _>(|a| self.model.v[a][s]))
+        full(&std::array::from_fn::<_, D, _>(|a| self.model.v[a][s]))
     }
 
     fn force_density(&self, id: usize) -> Point {
         let s = self.slot(id);
-        padded(&std::array::from_fn::<_, D, _>(|a| self.model.f[a][s]))
+        full(&std::array::from_fn::<_, D, _>(|a| self.model.f[a][s]))
     }
 
     fn volume(&self, id: usize) -> f64 {
@@ -122,7 +118,7 @@ impl<const D: usize> State for View<'_, D> {
                 let r0 = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
                 visit(FamilyBond {
                     ends: [i, j].map(|s| id[s] as usize),
-                    xi: padded(&xi),
+                    xi: full(&xi),
                     weight: model.constitutive.at(i).0.weight(r0),
                     whole: state == BondState::Whole,
                 });
@@ -136,9 +132,9 @@ impl<const D: usize> State for View<'_, D> {
             visit(PointForce {
                 id: id[bond.i] as usize,
                 partner: id[bond.j] as usize,
-                y: padded(&bond.y),
-                force: padded(&bond.force),
-                own: bond.own.as_ref().map(padded),
+                y: full(&bond.y),
+                force: full(&bond.force),
+                own: bond.own.as_ref().map(full),
             });
         })
     }
@@ -183,8 +179,8 @@ impl<const D: usize> Model<D> {
         if let Some(contact) = &mut self.contact {
             let interaction = &self.interaction;
             contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            contact.each_contact(&self.u, |touch| {
-                let Some(pull) = touch.pull() else { return };
+            contact.each_pull(&self.u, |touch| {
+                let pull = touch.pull;
                 for (i, j, sign) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
                     let y = touch.y.map(|y| sign * y);
                     let force = y.map(|y| pull * body.volume.at(j) * y);

@@ -3,6 +3,7 @@
 use super::model::Model;
 use super::{AtomBond, Families};
 use crate::interaction::{BondState, PointEnergies};
+use crate::space::full;
 
 impl<const D: usize> Model<D> {
     pub(super) fn count_families(&self) -> Families {
@@ -60,7 +61,7 @@ impl<const D: usize> Model<D> {
             visit(AtomBond {
                 from: id[bond.i],
                 to: id[bond.j],
-                xi: std::array::from_fn(|a| bond.y.get(a).copied().unwrap_or(0.0)),
+                xi: full(&bond.y),
                 tension: volume * bond.tension,
                 stiffness: volume * along / q,
                 share: (0..D).map(|a| bond.share[a] * bond.y[a]).sum::<f64>() / q.sqrt(),

@@ -42,12 +42,10 @@ impl<const D: usize> Model<D> {
         let Some(contact) = &self.contact else {
             return;
         };
-        contact.each_contact(&self.u, |touch| {
-            if let Some(pull) = touch.pull() {
-                let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
-                add(&mut points[touch.i], &touch.y, 0.5 * pull, volumes);
-                add(&mut points[touch.j], &touch.y, 0.5 * pull, volumes);
-            }
+        contact.each_pull(&self.u, |touch| {
+            let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
+            add(&mut points[touch.i], &touch.y, 0.5 * touch.pull, volumes);
+            add(&mut points[touch.j], &touch.y, 0.5 * touch.pull, volumes);
         });
     }
 
@@ -56,11 +54,9 @@ impl<const D: usize> Model<D> {
         let Some(contact) = &self.contact else {
             return;
         };
-        contact.each_contact(&self.u, |touch| {
-            if let Some(pull) = touch.pull() {
-                let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
-                add(virial, &touch.y, pull, volumes);
-            }
+        contact.each_pull(&self.u, |touch| {
+            let volumes = [touch.i, touch.j].map(|s| self.body.volume.at(s));
+            add(virial, &touch.y, touch.pull, volumes);
         });
     }
 

@@ -1,5 +1,6 @@
 //! What is done to bonds before the run: factors of their stiffness, pre-cracks; and contact between points without one.
 
+use super::CohesionSpec;
 use crate::expression::Expression;
 use crate::space::triangles::Triangles;
 
@@ -10,6 +11,15 @@ pub enum BondFactorSpec {
     Field(Expression),
     /// Bonds that cross this shape.
     Crossing { shape: CrackShape, factor: f64 },
+}
+
+/// Broken bonds that become whole again.
+#[derive(Debug, Clone)]
+pub struct HealingSpec {
+    /// Both ends are of this set.
+    pub set: String,
+    /// Stretch below which they heal, an expression of t; −1 and less: nothing heals.
+    pub below: Expression,
 }
 
 /// Toughness of some points.
@@ -76,8 +86,10 @@ pub struct ContactSpec {
     /// Range in spacings for pairs far apart in the reference; 1.35 in LAMMPS.
     pub free: f64,
     pub stiffness: ContactStiffness,
-    /// Coulomb friction between points that were never bonded; `None`: they slide freely.
+    /// Coulomb friction between points that touch and have no whole bond; `None`: they slide freely.
     pub friction: Option<FrictionSpec>,
+    /// What points of different bodies attract each other by; `None`: nothing.
+    pub cohesion: Option<CohesionSpec>,
     /// Thermal contact conductance h_c (power / area / temperature) between points that touch and were never bonded; `None`: contact conducts
     /// nothing.
     pub conductance: Option<f64>,

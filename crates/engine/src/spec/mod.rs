@@ -27,7 +27,7 @@ pub use body::{BodySpec, Cloud, Members, Perturbation, PieceSpec, SetSpec};
 pub use bonded::{BondedSpec, BondedTerm, Form};
 pub use bonds::{
     AtRest, BondFactorSpec, ContactSpec, ContactStiffness, CrackKind, CrackShape, FrictionSpec,
-    PrecrackSpec, ToughnessFactor, ToughnessSpec,
+    HealingSpec, PrecrackSpec, ToughnessFactor, ToughnessSpec,
 };
 pub use carriers::Carriers;
 pub use condition::{ConditionKind, ConditionSpec, InitialSpec, ThermalSpec};
@@ -82,6 +82,8 @@ pub struct Spec {
     pub mixing: Option<Mixing>,
     /// Factors of the toughness of points.
     pub toughness: Vec<ToughnessSpec>,
+    /// Which broken bonds become whole again; `None`: none.
+    pub healing: Option<HealingSpec>,
     /// When a bond past its critical stretch lets go.
     pub release: Release,
     pub horizon: Horizon,
@@ -147,6 +149,7 @@ impl Spec {
             potentials: vec![],
             mixing: None,
             toughness: vec![],
+            healing: None,
             release: Release::AtOnce,
             horizon: Horizon::Ratio(1),
             own_horizon: None,

@@ -9,6 +9,7 @@ mod constants;
 mod cracks;
 mod criteria;
 mod equivalence;
+mod healing;
 mod lamina;
 mod mechanics;
 mod motion;

@@ -7,6 +7,7 @@ const CONTACT: ContactSpec = ContactSpec {
     free: 1.35,
     stiffness: ContactStiffness::Laws,
     friction: None,
+    cohesion: None,
     conductance: None,
 };
 
@@ -178,5 +179,49 @@ fn a_ball_that_is_pressed_in_does_the_work_that_the_block_holds() {
     assert!(most > 0.1, "{most}");
     for (a, b) in far.iter().zip(&near) {
         assert!((a[1] - b[1]).abs() < 0.05 * most, "{a:?} {b:?}");
+    }
+}
+
+/// A block that is pressed together by a fifth: bonds repel beyond a tenth, twenty times as stiff as they pull. Newton's method finds them by their
+/// tangents, in steps fifty times as long as explicit ones.
+#[test]
+fn bonds_that_repel_have_tangents() {
+    let mut spec = block(
+        [10.0, 6.0, 0.0],
+        2,
+        LawSpec::Pmb(PmbStiffness::Young(1.0)),
+        2,
+    );
+    spec.contact = Some(CONTACT);
+    spec.conditions = vec![];
+    for (set, way) in [("low", "0"), ("high", "-2*sin(pi*min(t, 200)/400)^2")] {
+        spec.conditions.push(ConditionSpec {
+            set: set.into(),
+            kind: ConditionKind::Displacement([text(way), None, None]),
+        });
+    }
+    spec.conditions.push(ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::Damping(text("0.2").unwrap()),
+    });
+    let run = |stepper: Stepper, fraction: f64| {
+        let mut spec = spec.clone();
+        spec.schedule.stepper = stepper;
+        spec.schedule.time_step = TimeStep::Fraction(fraction);
+        let mut sim = built(&spec);
+        while sim.time() < 300.0 {
+            sim.step().unwrap_or_else(|e| panic!("{}: {e}", sim.time()));
+        }
+        sim.ledger().unwrap()
+    };
+    let explicit = run(Stepper::Verlet, 0.5);
+    let implicit = run(Stepper::Newmark(Newmark::hht(-0.1)), 25.0);
+    println!("{explicit:?}\n{implicit:?}");
+    assert!(explicit.contact > 0.01 * explicit.strain, "{explicit:?}");
+    for (a, b) in [
+        (implicit.contact, explicit.contact),
+        (implicit.strain, explicit.strain),
+    ] {
+        assert!((a / b - 1.0).abs() < 0.02, "{implicit:?} {explicit:?}");
     }
 }

@@ -221,6 +221,7 @@ fn stresses_of_points_are_the_virial_of_the_body() {
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        cohesion: None,
         conductance: None,
     });
     spec.schedule.time_step = TimeStep::Fixed(1e-3);

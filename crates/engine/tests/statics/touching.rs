@@ -3,6 +3,7 @@
 use super::{block, hold, number, text, with};
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
@@ -142,6 +143,7 @@ fn faces_of_a_crack_are_pressed_together() {
             free: 1.35,
             stiffness: ContactStiffness::Laws,
             friction: None,
+            cohesion: None,
             conductance: None,
         });
         spec.sets
@@ -189,4 +191,90 @@ fn faces_of_a_crack_are_pressed_together() {
     assert!(cut[0][0].abs() < 1e-9, "{cut:?}");
     let slopes = [&whole, &cut].map(|all| all[6][0] - all[3][0]);
     assert!((0.5..1.0).contains(&(slopes[1] / slopes[0])), "{slopes:?}");
+}
+
+/// Upper rows of a strip without ends go down, until its cut is closed, and sideways, until it slips: rows face each other, so that all that touch
+/// lean by the same angle θ, and what drags is tan(φ − θ) of what presses, φ the angle of friction.
+#[test]
+fn faces_of_a_crack_rub() {
+    let mu = 0.1f64;
+    let young = PmbStiffness::Young(1.0);
+    let solid = LawSpec::Lps(Moduli {
+        young: 1.0,
+        poisson: 0.25,
+    });
+    let laws = [
+        (LawSpec::Pmb(young.clone()), FamilyChoice::Auto),
+        (LawSpec::Pmb(young), FamilyChoice::List),
+        (solid, FamilyChoice::Auto),
+    ];
+    for (law, family) in laws {
+        for friction in [None, Some(FrictionSpec::constant(mu))] {
+            let mut spec = block([12.0, 8.0, 0.0], 2, law.clone());
+            spec.body = BodySpec::Lattice {
+                kind: LatticeKind::Square,
+                spacing: 1.0,
+                origin: [0.5, 0.5, 0.0],
+                region: Region::Block {
+                    low: [0.0; 3],
+                    high: [12.0, 8.0, 0.0],
+                },
+                perturb: None,
+            };
+            spec.family = family;
+            spec.periodic[0] = Some(12.0);
+            spec.horizon = Horizon::Ratio(2);
+            let rubs = friction.is_some();
+            spec.contact = Some(ContactSpec {
+                bonded: 0.9,
+                free: 1.35,
+                stiffness: ContactStiffness::Laws,
+                friction,
+                cohesion: None,
+                conductance: None,
+            });
+            spec.sets
+                .extend([rows("floor", 1.0, 2.1), rows("top", -1.0, 5.9)]);
+            spec.precracks.push(PrecrackSpec {
+                shape: CrackShape::Segment {
+                    from: [-1.0, 4.0, 0.0],
+                    to: [13.0, 4.0, 0.0],
+                },
+                kind: CrackKind::Broken,
+            });
+            let zero = || number(0.0);
+            hold(&mut spec, "floor", [zero(), zero(), None]);
+            let ways = ["0.1*max(0, 2*t - 1)", "-0.2*min(1, 2*t)"];
+            hold(&mut spec, "top", [text(ways[0]), text(ways[1]), None]);
+            spec.probes = vec![ProbeSpec {
+                name: "top".into(),
+                set: "top".into(),
+                measure: Measure::Reaction,
+            }];
+            let mut sim = relaxed(&spec, 20);
+            let mut all = vec![];
+            for n in 1..=20 {
+                sim.step().unwrap_or_else(|e| panic!("{n}: {e}"));
+                let (x, u) = (sim.vectors("reference"), sim.displacements());
+                let of = |y: f64| x.iter().position(|x| x[0] < 1.0 && (x[1] - y).abs() < 0.1);
+                let [below, above] = [3.5, 4.5].map(|y| u[of(y).unwrap()]);
+                let lean = (above[0] - below[0]) / (1.0 + above[1] - below[1]);
+                let reaction = sim.measure();
+                let l = sim.ledger().unwrap();
+                all.push([reaction[0], -reaction[1], lean, l.dissipated, l.residual()]);
+            }
+            let [drag, press, lean, dissipated, residual] = all[19];
+            println!("{drag:.4e} {press:.4e} {lean:.4e} {dissipated:.3e} {residual:.3e}");
+            let angle = if rubs { mu.atan() } else { 0.0 };
+            let exact = (angle - lean.atan()).tan();
+            assert!(press > 0.1 && lean > 0.0, "{all:?}");
+            assert!((drag / press - exact).abs() < 1e-4, "{exact} {all:?}");
+            assert_eq!(dissipated > 0.0, rubs, "{all:?}");
+            if rubs {
+                // it sticks before it slips
+                let [drag, press, lean, ..] = all[11];
+                assert!(drag / press < 0.8 * (angle - lean.atan()).tan(), "{all:?}");
+            }
+        }
+    }
 }

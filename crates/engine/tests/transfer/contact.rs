@@ -108,6 +108,7 @@ impl Two {
             free: 1.35,
             stiffness: ContactStiffness::Laws,
             friction: None,
+            cohesion: None,
             conductance: Some(self.conductance),
         });
         spec

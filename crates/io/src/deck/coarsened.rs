@@ -5,9 +5,10 @@ use super::upscaled::{Rewritten, table};
 use toml::{Table, Value};
 
 /// What belongs to the old body and its law.
-const GONE: [&str; 14] = [
+const GONE: [&str; 15] = [
     "bond_factor",
     "toughness",
+    "healing",
     "horizon",
     "influence",
     "volume_scaling",

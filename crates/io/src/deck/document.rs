@@ -16,9 +16,9 @@ mod units;
 use super::units::Dim;
 use super::value::{At, Named, Number, Or, Vector, Written};
 pub use condition::{Condition, Contact, Friction, Initial};
-pub use crack::{BondFactor, FlatShape, Precrack, Toughness};
+pub use crack::{BondFactor, FlatShape, Healing, Precrack, Toughness};
 pub use fields::{Centre, Fields};
-pub use indenter::{Indenter, Rigid, Rotation};
+pub use indenter::{Cohesion, Indenter, Rigid, Rotation};
 pub use law::{Given, Law};
 pub use molecules::Molecules;
 pub use names::*;
@@ -111,6 +111,8 @@ pub struct Document {
     /// Factors of the toughness of sets, by place and time, and sets that never fail; all that concern a point are multiplied.
     #[serde(default)]
     pub toughness: Vec<At<Toughness>>,
+    /// Broken bonds that become whole again, in explicit motion; none when left out.
+    pub healing: Option<At<Healing>>,
     /// Bonds that never were, or are broken, where they cross a shape.
     #[serde(default)]
     pub precrack: Vec<At<Precrack>>,

@@ -19,7 +19,8 @@ const SEVERAL: [&str; 8] = [
 ];
 
 /// Tables that it has one of.
-const ONE: [&str; 8] = [
+const ONE: [&str; 9] = [
+    "healing",
     "run",
     "statics",
     "output",

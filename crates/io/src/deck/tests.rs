@@ -63,6 +63,7 @@ fn a_deck_becomes_a_spec() {
             free: 1.35,
             stiffness: ContactStiffness::Laws,
             friction: None,
+            cohesion: None,
             conductance: None,
         })
     );

@@ -13,7 +13,7 @@ use super::rigid::{Kept, Rigid};
 use crate::body::{Body, Field};
 use crate::interaction::friction::Coefficients;
 use crate::space::rigid::RigidShape;
-use crate::space::{Point, cross};
+use crate::space::{Point, cross, full};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
 use rub::Touched;
 use std::collections::HashMap;
@@ -322,8 +322,6 @@ impl<const D: usize> Indenter<D> {
 
     /// The body feels what it does to a point.
     fn bear(&mut self, arm: &[f64; D], force: &[f64; D], volume: f64) {
-        let full =
-            |x: &[f64; D]| -> Point { std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0)) };
         let turn = cross(&full(arm), &full(force));
         for a in 0..D {
             self.force[a] -= force[a] * volume;

@@ -7,7 +7,7 @@ use super::surface::Near;
 use crate::body::{Body, Field};
 use crate::condition::rigid::Kept;
 use crate::interaction::friction::{Coefficients, TANGENTIAL, along, begun, slipped};
-use crate::space::Point;
+use crate::space::full;
 use std::collections::HashMap;
 
 /// A point touched at the last evaluation.
@@ -25,8 +25,7 @@ impl<const D: usize> Indenter<D> {
     /// Sliding of a point on the surface: along it, of the surface against the point.
     fn sliding(&self, v: &Field<D>, touched: &Touched<D>) -> [f64; D] {
         let Near { arm, normal, .. } = &touched.near;
-        let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
-        let (of, i) = (self.rigid.velocity_at(&full), touched.slot as usize);
+        let (of, i) = (self.rigid.velocity_at(&full(arm)), touched.slot as usize);
         along(normal, &std::array::from_fn(|a| of[a] - v[a][i]))
     }
 
@@ -104,8 +103,7 @@ impl<const D: usize> Indenter<D> {
         touched: &Touched<D>,
     ) -> [f64; D] {
         let (arm, i) = (&touched.near.arm, touched.slot as usize);
-        let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
-        let way = self.rigid.way_since(then, &full);
+        let way = self.rigid.way_since(then, &full(arm));
         std::array::from_fn(|a| way[a] - (u[a][i] - from[a][i]))
     }
 

@@ -2,7 +2,7 @@
 
 use crate::body::{Body, Field};
 use crate::condition::rigid::Rigid;
-use crate::space::Point;
+use crate::space::full;
 use crate::space::rigid::RigidShape;
 use crate::space::rotation::{times, transposed_times};
 
@@ -164,8 +164,7 @@ impl Surface {
                 if square > far * far {
                     return None;
                 }
-                let full: Point = std::array::from_fn(|a| arm.get(a).copied().unwrap_or(0.0));
-                let (gap, normal) = shape.distance(&transposed_times(&rigid.axes, &full));
+                let (gap, normal) = shape.distance(&transposed_times(&rigid.axes, &full(&arm)));
                 let normal = times(&rigid.axes, &normal);
                 Some(Near {
                     arm,

@@ -92,4 +92,22 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             }
         });
     }
+
+    /// Every undirected bond that is broken.
+    pub(super) fn each_torn(&self, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let view = self.view(&self.moved);
+        for (slice, rows) in self.list.rows.chunks(TILE).enumerate() {
+            let lines = self.list.lines(TILE * slice);
+            for line in lines.filter(|line| self.alive[*line] != 0xff) {
+                for (l, &i) in rows.iter().enumerate() {
+                    // a row's own slot: there is no bond
+                    let j = self.list.partner[TILE * line + l];
+                    if i < j && self.alive[line] >> l & 1 == 0 {
+                        let (i, j) = (i as usize, j as usize);
+                        visit(i, j, view.constant(i, j).0);
+                    }
+                }
+            }
+        }
+    }
 }

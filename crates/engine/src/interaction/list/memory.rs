@@ -1,7 +1,7 @@
 //! What the bonds of a list remember: which are whole, which were cut, and from which stretch they break.
 
 use super::ListInteraction;
-use crate::body::Body;
+use crate::body::{Body, Field};
 use crate::execute::lane::TILE;
 use crate::interaction::history::{self, Crosses};
 use crate::law::Law;
@@ -49,6 +49,29 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
             self.list.directed -= cut.len() as u64;
         }
         cut.len() as u64
+    }
+
+    /// [`mend`](crate::interaction::Interaction::mend).
+    pub(super) fn mend_where(
+        &mut self,
+        u: &Field<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> u64 {
+        let view = self.view(&self.moved);
+        let mut mended = vec![];
+        self.each_line(|row, line, [i, j]| {
+            if self.is_whole(row, line) {
+                return;
+            }
+            let eta = std::array::from_fn(|a| u[a][j] - u[a][i]);
+            if heals(i, j, history::relative(&view.constant(i, j).0, eta)) {
+                mended.push((line, row % TILE));
+            }
+        });
+        for &(line, l) in &mended {
+            history::set(&mut self.alive[line], l, true);
+        }
+        mended.len() as u64
     }
 
     pub(super) fn read_named(&self, body: &Body<D>, name: &str, out: &mut Vec<f64>) -> bool {

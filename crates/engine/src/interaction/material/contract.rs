@@ -7,6 +7,7 @@ use super::sweeps::Forces;
 use crate::body::{Body, Column, Field, Identity, field};
 use crate::columns::Declaration;
 use crate::execute::blocks::{Shared, run_blocks};
+use crate::execute::lane::TILE;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
@@ -138,6 +139,26 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
                 visit(i, j, self.family.bond(group, k, l).0, state);
             }
         });
+    }
+
+    fn each_broken(&self, body: &Body<D>, visit: &mut dyn FnMut(usize, usize, [f64; D])) {
+        let original = body.originals();
+        for group in 0..self.family.groups() {
+            for k in 0..self.family.bonds(group) {
+                let alive = self.alive[self.family.byte(group, k)];
+                for l in (0..TILE).filter(|l| alive >> l & 1 == 0) {
+                    if !self.family.is_point(group, l) || !self.family.is_bond(group, k, l) {
+                        continue;
+                    }
+                    let i = self.family.rows(group).slot(l);
+                    let end = self.family.ends(group, k).slot(l);
+                    let j = original(end);
+                    if i < j || (i == j && end > i) {
+                        visit(i, j, self.family.bond(group, k, l).0);
+                    }
+                }
+            }
+        }
     }
 
     fn bond_limit(&self, ends: [usize; 2], xi: &[f64; D], critical: [f64; 2]) -> f64 {

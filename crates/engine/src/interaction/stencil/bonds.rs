@@ -1,6 +1,7 @@
 //! The bonds of a stencil one by one, in order of slots: for whatever is not a kernel.
 
 use super::StencilInteraction;
+use super::kernel::WHOLE;
 use crate::body::{Body, Field, Grid, zeros};
 use crate::execute::blocks::PerBlock;
 use crate::execute::lane::{Lane, TILE};
@@ -48,6 +49,12 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// All points.
     pub(super) fn places<'a>(&'a self, grid: &'a Grid<D>) -> impl Iterator<Item = Place> + 'a {
         self.places_of(grid, 0..self.tiles.len())
+    }
+
+    /// Those of tiles that may have a broken bond.
+    pub(super) fn torn_places<'a>(&'a self, grid: &'a Grid<D>) -> impl Iterator<Item = Place> + 'a {
+        let torn = (0..self.tiles.len()).filter(|n| self.state[*n] & WHOLE == 0);
+        torn.flat_map(|n| self.places_of(grid, n..n + 1))
     }
 
     /// Those of some tiles.
@@ -193,15 +200,20 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         }
     }
 
-    /// Every undirected bond of the reference family.
+    /// Every undirected bond of the reference family, of tiles that may have a broken one alone where that is asked for.
     pub(super) fn each_of_family(
         &self,
         body: &Body<D>,
+        torn: bool,
         visit: &mut dyn FnMut(usize, usize, [f64; D], BondState),
     ) {
         let grid = body.grid();
         let original = body.originals();
-        for p in self.places(grid) {
+        let places: Box<dyn Iterator<Item = Place>> = match torn {
+            true => Box::new(self.torn_places(grid)),
+            false => Box::new(self.places(grid)),
+        };
+        for p in places {
             let bonds = self.bonds[p.sublattice]
                 .iter()
                 .zip(&self.partners[p.sublattice]);

@@ -1,7 +1,7 @@
 //! What the bonds of a stencil remember: which are whole, which were cut, and from which stretch they break.
 
 use super::StencilInteraction;
-use crate::body::Body;
+use crate::body::{Body, Field};
 use crate::execute::lane::TILE;
 use crate::interaction::history::{self, Crosses};
 use crate::law::Law;
@@ -68,6 +68,38 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         }
         self.look(grid);
         cut.len() as u64
+    }
+
+    /// [`mend`](crate::interaction::Interaction::mend).
+    pub(super) fn mend_where(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        heals: &dyn Fn(usize, usize, f64) -> bool,
+    ) -> u64 {
+        let grid = body.grid();
+        let original = body.originals();
+        let mut mended = vec![];
+        for p in self.torn_places(grid) {
+            let partners = &self.partners[p.sublattice];
+            let bonds = self.bonds[p.sublattice].iter().zip(partners);
+            for (k, ((b, to), bits)) in bonds.zip(self.row(p.n)).enumerate() {
+                let whole = bits >> p.lane & 1 == 1;
+                if whole || grid.neighbour(p.slot, to.cell, to.to).is_none() {
+                    continue;
+                }
+                let (i, j) = (p.slot, b.to(p.slot));
+                let eta = std::array::from_fn(|a| u[a][j] - u[a][i]);
+                if heals(i, original(j), history::relative(&b.back.map(|x| -x), eta)) {
+                    mended.push((p.n, k, p.lane));
+                }
+            }
+        }
+        for &(n, k, l) in &mended {
+            history::set(&mut self.alive[n * self.width + k], l, true);
+        }
+        self.look(grid);
+        mended.len() as u64
     }
 
     pub(super) fn read_named(&self, body: &Body<D>, name: &str, out: &mut Vec<f64>) -> bool {

@@ -22,7 +22,7 @@ use crate::columns::Dimension;
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved, Value};
 use crate::law::number::Number;
 use crate::quantity::rounded;
-use crate::space::Point;
+use crate::space::{Point, length};
 use crate::spec::{LawSpec, Parameters, Plane, PmbStiffness};
 
 /// Constants of one material.
@@ -105,10 +105,6 @@ fn young(parameters: &Parameters) -> Result<[f64; 2], String> {
         Some(&[along, across]) => Ok([along, across]),
         Some(_) | None => Err("a lamina needs young = [E1, E2]".into()),
     }
-}
-
-fn length(x: &Point) -> f64 {
-    x.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
 /// A row of the family along a direction, of length one.

@@ -216,6 +216,7 @@ pub const CONTACT: ContactSpec = ContactSpec {
     free: 1.35,
     stiffness: ContactStiffness::Laws,
     friction: None,
+    cohesion: None,
     conductance: None,
 };
 

@@ -197,9 +197,16 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         };
         lines.push(format!("toughness  on {}: {of}", t.set));
     }
+    if let Some(healing) = &spec.healing {
+        lines.push(format!(
+            "healing    of bonds of {} below a stretch of {}",
+            healing.set,
+            healing.below.source()
+        ));
+    }
     if let Some(contact) = &spec.contact {
         lines.push(format!(
-            "contact    below {} of the reference distance, within {} spacings{}",
+            "contact    below {} of the reference distance, within {} spacings{}{}",
             contact.bonded,
             contact.free,
             match &contact.friction {
@@ -214,7 +221,14 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
                         ),
                     }
                 }
-            }
+            },
+            { contact.cohesion.as_ref() }.map_or(String::new(), |c| {
+                format!(
+                    ", bodies stick with {} and {}",
+                    units.write(c.energy, Dim::FRACTURE_ENERGY),
+                    units.write(c.strength, Dim::PRESSURE)
+                )
+            }),
         ));
     }
     for indenter in &spec.indenters {

@@ -1,6 +1,6 @@
 //! What is done to a body: contact, initial values, conditions.
 
-use super::{Convection, Radiation, Shape, SpeciesExchange, StageName};
+use super::{Cohesion, Convection, Radiation, Shape, SpeciesExchange, StageName};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Components, Number, Or, Written};
 use schemars::JsonSchema;
@@ -19,9 +19,11 @@ pub struct Contact {
     /// Force / volume² / length; from the law when left out.
     #[schemars(extend("dimension" = Dim::CONTACT_STIFFNESS.name()))]
     pub stiffness: Option<Number>,
-    /// Coulomb friction between points that were never bonded, which stick and slip; a number or an expression of t; 0 when left out.
+    /// Coulomb friction between points that touch and have no whole bond, which stick and slip; a number or an expression of t; 0 when left out.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub friction: Option<At<Or<Written, Friction>>>,
+    /// Attraction between points of different bodies; none when left out.
+    pub cohesion: Option<At<Cohesion>>,
     /// Thermal contact conductance between points that were never bonded: heat per area, time and difference of temperature; contact
     /// conducts nothing when left out.
     #[schemars(extend("dimension" = Dim::HEAT_TRANSFER.name()))]

@@ -36,6 +36,17 @@ pub struct Toughness {
     pub no_failure: Option<At<bool>>,
 }
 
+/// Broken bonds that become whole again.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Healing {
+    /// Both ends of the bond are of this set; all when left out.
+    pub set: Option<At<String>>,
+    /// Stretch below which a broken bond is whole again, a number or an expression of t; -1: none.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub below: Number,
+}
+
 /// One of segment, disk, polygon, point.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -115,14 +115,16 @@ pub struct Rotation {
     pub angle: Number,
 }
 
-/// Traction of a surface on points near it, `27/4 strength s (1 − s)²` at a gap of s times its range 16 energy/(9 strength).
+/// What pulls points that are near. Of a rigid surface a traction of `27/4 strength s (1 − s)²` at a gap of s times its range 16 energy/(9 strength);
+/// between bodies of points central forces that fall to nothing over a range of about 4 energy/strength.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cohesion {
     /// Work of adhesion: energy per area that pulling off takes.
     #[schemars(extend("dimension" = Dim::FRACTURE_ENERGY.name()))]
     pub energy: Number,
-    /// Greatest traction. The range that follows is at most the spacing of the points.
+    /// Greatest traction of a rigid surface, whose range is then at most the spacing of the points; of bodies that of faces that touch, whose range is
+    /// then 2 to 20 times their distance.
     #[schemars(extend("dimension" = Dim::PRESSURE.name()))]
     pub strength: Number,
 }

@@ -1,11 +1,13 @@
-//! Contact between points without a bond, and its friction.
+//! Contact between points without a bond, its friction and cohesion.
 
 use super::bodies;
 use super::context::{Context, Result};
-use crate::deck::document::{Document, Friction};
+use crate::deck::document::{Cohesion, Document, Friction};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Written};
-use peridyne::spec::{AtRest, ContactSpec, ContactStiffness, FrictionSpec, MaterialSpec};
+use peridyne::spec::{
+    AtRest, CohesionSpec, ContactSpec, ContactStiffness, FrictionSpec, MaterialSpec,
+};
 
 pub fn contact(
     context: &Context,
@@ -17,6 +19,7 @@ pub fn contact(
         free: 1.35,
         stiffness: ContactStiffness::Laws,
         friction: None,
+        cohesion: None,
         conductance: None,
     };
     match &document.contact {
@@ -52,12 +55,22 @@ pub fn contact(
                     .as_ref()
                     .map(|f| friction(context, f))
                     .transpose()?,
+                cohesion: { c.cohesion.as_ref() }
+                    .map(|c| cohesion(context, &c.value))
+                    .transpose()?,
                 conductance: { c.conductance.as_ref() }
                     .map(|n| context.positive(n, Dim::HEAT_TRANSFER, "the contact conductance"))
                     .transpose()?,
             }))
         }
     }
+}
+
+pub(super) fn cohesion(context: &Context, c: &Cohesion) -> Result<CohesionSpec> {
+    Ok(CohesionSpec {
+        energy: context.positive(&c.energy, Dim::FRACTURE_ENERGY, "the work of adhesion")?,
+        strength: context.positive(&c.strength, Dim::PRESSURE, "the strength")?,
+    })
 }
 
 pub(super) fn friction(

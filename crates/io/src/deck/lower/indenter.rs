@@ -1,7 +1,7 @@
 //! Rigid bodies that push points.
 
 use super::Files;
-use super::contact::friction;
+use super::contact::{cohesion, friction};
 use super::context::{Context, Result};
 use crate::deck::document::{Indenter, Rigid, Rotation};
 use crate::deck::units::Dim;
@@ -10,7 +10,7 @@ use peridyne::expression::Expression;
 use peridyne::space::Point;
 use peridyne::space::rigid::RigidShape;
 use peridyne::space::triangles::Solid;
-use peridyne::spec::{CohesionSpec, FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
+use peridyne::spec::{FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
 use std::sync::Arc;
 
 pub(super) fn indenter(
@@ -54,17 +54,9 @@ pub(super) fn indenter(
             .as_ref()
             .map(|f| friction(context, f))
             .transpose()?,
-        cohesion: match &i.cohesion {
-            None => None,
-            Some(c) => Some(CohesionSpec {
-                energy: context.positive(
-                    &c.value.energy,
-                    Dim::FRACTURE_ENERGY,
-                    "the work of adhesion",
-                )?,
-                strength: context.positive(&c.value.strength, Dim::PRESSURE, "the strength")?,
-            }),
-        },
+        cohesion: { i.cohesion.as_ref() }
+            .map(|c| cohesion(context, &c.value))
+            .transpose()?,
     })
 }
 

@@ -300,6 +300,9 @@ pub(super) fn lower(
             .iter()
             .map(|t| motion::toughness(&context, t, &sets))
             .collect::<Result<_>>()?,
+        healing: { document.healing.as_ref() }
+            .map(|h| motion::healing(&context, h, &sets))
+            .transpose()?,
         precracks: precracks.before,
         contact: contact::contact(&context, document, &materials)?,
         initial,

@@ -5,13 +5,13 @@ use super::context::{Context, Result};
 use super::region::region;
 use super::transfer::{self, Said};
 use crate::deck::document::{
-    BondFactor, Condition, CrackName, FlatShape, Initial, Precrack, Shape, Toughness,
+    BondFactor, Condition, CrackName, FlatShape, Healing, Initial, Precrack, Shape, Toughness,
 };
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number};
 use peridyne::spec::{
-    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, InitialSpec, Members,
-    PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec, TransferCondition,
+    BondFactorSpec, ConditionKind, ConditionSpec, CrackKind, CrackShape, HealingSpec, InitialSpec,
+    Members, PrecrackSpec, SetSpec, ToughnessFactor, ToughnessSpec, TransferCondition,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -205,6 +205,21 @@ pub(super) fn bond_factor(context: &Context, at: &At<BondFactor>) -> Result<Bond
     Ok(BondFactorSpec::Crossing {
         shape: flat_shape(context, &shape.span, "the shape to cross", &shape.value)?,
         factor,
+    })
+}
+
+pub(super) fn healing(
+    context: &Context,
+    at: &At<Healing>,
+    sets: &[SetSpec],
+) -> Result<HealingSpec> {
+    let set = match &at.value.set {
+        Some(set) => context.known_set(set, sets)?,
+        None => "all".to_string(),
+    };
+    Ok(HealingSpec {
+        set,
+        below: context.expression(&at.value.below, Dim::NUMBER)?,
     })
 }
 

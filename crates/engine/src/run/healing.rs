@@ -1,0 +1,141 @@
+//! Healing: broken bonds that become whole again, in explicit motion.
+//!
+//! A bond heals with the length that it had in the reference, where both its ends may heal and its stretch is below the limit of the time. What it
+//! holds then comes from what healing is driven by, not from the body: it is taken from the energy released.
+
+use super::model::Model;
+use crate::error::BuildError;
+use crate::expression::Expression;
+use crate::interaction::history;
+use crate::message;
+use crate::spec::{CrackKind, HealingSpec, Spec, Stepper};
+
+/// Where and when bonds heal.
+pub(super) struct Healing {
+    /// Stretch below which they do, an expression of t.
+    below: Expression,
+    /// `[slots]`
+    may: Vec<bool>,
+}
+
+/// What does not heal.
+fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
+    let unsupported =
+        |message: &str, help: &str| Err(BuildError::unsupported("healing", message).help(help));
+    if spec.materials.iter().all(|m| m.fracture.is_none()) && spec.precracks.is_empty() {
+        return unsupported(
+            "nothing of this body breaks",
+            "give a material a fracture, or leave healing out",
+        );
+    }
+    if !spec.toughness.is_empty() {
+        return unsupported(
+            "bonds with a [[toughness]] of places and times do not heal",
+            "leave healing or toughness out",
+        );
+    }
+    if !matches!(spec.schedule.stepper, Stepper::Verlet) || spec.preload.is_some() {
+        return unsupported(
+            "bonds heal in explicit motion, not in statics and implicit steps",
+            "leave healing out, or take [run] with integrator = \"verlet\"",
+        );
+    }
+    if spec.precracks.iter().any(|p| p.kind == CrackKind::Absent) {
+        return unsupported(
+            "a bond that is absent from the start cannot be told from one that was never there",
+            "write kind = \"broken\" in [[precrack]]",
+        );
+    }
+    if !spec.interfaces.is_empty() || spec.own_horizon.is_some() {
+        return unsupported(
+            "bonds between bodies and bonds of points with a horizon of their own do not heal",
+            "leave healing out",
+        );
+    }
+    if healing.below.depends_on_position() {
+        return unsupported(
+            "the stretch below which bonds heal depends on the place, expected an expression of t",
+            "name a set",
+        );
+    }
+    let first = healing.below.eval(&[0.0; 3], 0.0);
+    if !first.is_finite() {
+        let message = format!("bonds heal below a stretch of {first}, expected a number");
+        return Err(BuildError::invalid("healing", message).help("1e-3 is usual"));
+    }
+    Ok(())
+}
+
+impl<const D: usize> Model<D> {
+    /// Of a spec; `None`: what is broken stays so.
+    pub(super) fn healing_of(
+        &mut self,
+        spec: &Spec,
+        sets: &[(String, Vec<u32>)],
+    ) -> Result<Option<Healing>, BuildError> {
+        let Some(healing) = &spec.healing else {
+            return Ok(None);
+        };
+        refused(spec, healing)?;
+        if self
+            .interaction
+            .mend(&self.body, &self.u, &|_, _, _| false)
+            .is_none()
+        {
+            let message = "bonds of this law remember more than whether they are whole";
+            return Err(BuildError::unsupported("healing", message).help(
+                "bonds of pmb and lps heal, that break by critical_stretch or energy, without rate, fatigue and expansion",
+            ));
+        }
+        let mut may = vec![false; self.body.len];
+        match sets.iter().find(|(name, _)| *name == healing.set) {
+            Some((_, ids)) => {
+                for id in ids {
+                    may[self.body.slots[*id as usize] as usize] = true;
+                }
+            }
+            None if healing.set == "all" => may.fill(true),
+            None => {
+                return Err(BuildError::invalid(
+                    "healing",
+                    message![format!("there is no set {}", healing.set)],
+                ));
+            }
+        }
+        Ok(Some(Healing {
+            below: healing.below.clone(),
+            may,
+        }))
+    }
+
+    /// Bonds heal at the displacements of now, before the forces there.
+    pub(super) fn heal(&mut self, t: f64) {
+        let Some(healing) = &self.healing else { return };
+        let below = healing.below.eval(&[0.0; 3], t);
+        if !(below > -1.0) {
+            return;
+        }
+        let limit = history::critical(below);
+        self.refresh_images();
+        let Some(healing) = &self.healing else { return };
+        let heals = |i: usize, j: usize, e: f64| e < limit && healing.may[i] && healing.may[j];
+        let (body, u) = (&self.body, &self.u);
+        let mut any = false;
+        self.interaction.each_broken(body, &mut |i, j, xi| {
+            any |= !any
+                && heals(
+                    i,
+                    j,
+                    history::relative(&xi, std::array::from_fn(|a| u[a][j] - u[a][i])),
+                );
+        });
+        if !any {
+            return;
+        }
+        let [before, _] = self.interaction.energy(body, u);
+        let healed = self.interaction.mend(body, u, &heals);
+        let [after, _] = self.interaction.energy(body, u);
+        self.released -= after - before;
+        self.broken -= healed.unwrap_or(0);
+    }
+}

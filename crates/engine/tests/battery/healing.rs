@@ -1,0 +1,192 @@
+//! Broken bonds that become whole again.
+
+use crate::sample::*;
+use peridyne::expression::Expression;
+use peridyne::run::{Options, Simulation, build};
+use peridyne::space::lattice::LatticeKind;
+use peridyne::space::region::Region;
+use peridyne::spec::*;
+
+fn heals(spec: &mut Spec, below: &str) {
+    spec.healing = Some(HealingSpec {
+        set: "all".into(),
+        below: Expression::parse(below, &[]).unwrap(),
+    });
+}
+
+fn laws() -> [(LawSpec, FamilyChoice); 4] {
+    let pmb = || LawSpec::Pmb(PmbStiffness::Young(100.0));
+    let lps = || {
+        LawSpec::Lps(Moduli {
+            young: 100.0,
+            poisson: 0.2,
+        })
+    };
+    [
+        (pmb(), FamilyChoice::Stencil),
+        (pmb(), FamilyChoice::List),
+        (lps(), FamilyChoice::Stencil),
+        (lps(), FamilyChoice::List),
+    ]
+}
+
+/// A plate that swings, cut across by a broken crack or whole.
+fn plate(law: LawSpec, family: FamilyChoice, cut: bool) -> Spec {
+    let body = BodySpec::Lattice {
+        kind: LatticeKind::Square,
+        spacing: 1.0,
+        origin: [0.5, 0.5, 0.0],
+        region: Region::Block {
+            low: [0.0; 3],
+            high: [14.0, 7.0, 0.0],
+        },
+        perturb: None,
+    };
+    let mut spec = Spec::new(2, body, 1.0, law);
+    spec.family = family;
+    spec.horizon = Horizon::Ratio(3);
+    spec.periodic[1] = Some(7.0);
+    if cut {
+        spec.precracks = vec![PrecrackSpec {
+            shape: CrackShape::Segment {
+                from: [7.0, -1.0, 0.0],
+                to: [7.0, 8.0, 0.0],
+            },
+            kind: CrackKind::Broken,
+        }];
+    }
+    spec.initial = vec![InitialSpec {
+        set: "all".into(),
+        displacement: [None, None, None],
+        velocity: [Some(e("0.02*sin(0.3*x)")), Some(e("0.01*cos(0.2*x)")), None],
+    }];
+    spec.schedule.time_step = TimeStep::Fraction(0.3);
+    spec
+}
+
+fn started(spec: &Spec) -> Box<dyn Simulation> {
+    let mut sim = build(spec, Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    sim.start(true);
+    sim
+}
+
+#[test]
+fn a_crack_that_heals_at_once_was_never_there() {
+    for (law, family) in laws() {
+        let mut healed = plate(law.clone(), family, true);
+        heals(&mut healed, "0.1");
+        let run = |spec: &Spec| {
+            let mut sim = started(spec);
+            let cut = sim.scalars("damage").iter().sum::<f64>();
+            (0..200).for_each(|_| sim.step().unwrap());
+            (sim, cut)
+        };
+        let (mut healed, cut) = run(&healed);
+        let (whole, _) = run(&plate(law, family, false));
+        assert!(cut > 1.0, "{cut}");
+        assert_eq!(healed.scalars("damage").iter().sum::<f64>(), 0.0);
+        assert_eq!(healed.fragments(), 1);
+        assert_eq!(healed.displacements(), whole.displacements());
+        let l = healed.ledger().unwrap();
+        assert!(l.residual().abs() < 1e-3 * l.initial, "{l:?}");
+    }
+}
+
+/// What healed bonds hold is taken from what is released; only those of the set heal, and only from their time on.
+#[test]
+fn what_heals_under_strain_is_accounted_for() {
+    for (law, family) in laws() {
+        let mut spec = plate(law, family, true);
+        spec.sets = vec![SetSpec {
+            name: "upper".into(),
+            members: Members::Region(Region::HalfSpace {
+                point: [0.0, 3.6, 0.0],
+                normal: [0.0, -1.0, 0.0],
+            }),
+        }];
+        heals(&mut spec, "t > 3 ? 0.5 : -1");
+        spec.healing.as_mut().unwrap().set = "upper".into();
+        let mut sim = started(&spec);
+        let (scale, at_first) = (sim.ledger().unwrap().initial, sim.scalars("damage"));
+        let mut released = [0.0; 2];
+        while sim.time() < 6.0 {
+            sim.step().unwrap();
+            let l = sim.ledger().unwrap();
+            assert!(l.residual().abs() < 1e-3 * scale, "{}: {l:?}", sim.time());
+            released[usize::from(sim.time() > 3.0)] = l.released;
+            if sim.time() < 3.0 {
+                assert_eq!(sim.scalars("damage"), at_first);
+            }
+        }
+        assert_eq!(released[0], 0.0);
+        println!("{:e} of {scale:e}", released[1]);
+        assert!(released[1] < -1e-4 * scale, "{released:?} {scale}");
+        let x = sim.vectors("reference");
+        for (x, (now, then)) in x.iter().zip(sim.scalars("damage").iter().zip(&at_first)) {
+            // periodic across: every point has bonds to the lower half, which stay broken
+            assert!(now <= then);
+            assert_eq!(
+                x[1] < 3.6 && *then > 0.0,
+                now == then && *then > 0.0,
+                "{x:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn torn_and_closed_again_it_is_whole() {
+    for (law, family) in laws() {
+        let mut spec = plate(law, family, false);
+        spec.initial = vec![];
+        spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
+        heals(&mut spec, "1e-3");
+        // all points told: apart by two spacings and back
+        spec.conditions = vec![ConditionSpec {
+            set: "all".into(),
+            kind: ConditionKind::Displacement([
+                Some(e("x > 7 ? 2*sin(pi*t/100)^2 : 0")),
+                Some(e("0")),
+                None,
+            ]),
+        }];
+        spec.schedule.time_step = TimeStep::Fixed(0.5);
+        let mut sim = started(&spec);
+        let mut most = 0;
+        while sim.time() < 100.0 {
+            sim.step().unwrap();
+            most = most.max(sim.broken());
+        }
+        assert!(most > 100, "{most}");
+        assert_eq!(sim.broken(), 0);
+        let strain = sim.ledger().unwrap().strain;
+        assert!(strain.abs() < 1e-9, "{strain}");
+        assert_eq!(sim.scalars("damage").iter().sum::<f64>(), 0.0);
+    }
+}
+
+#[test]
+fn healing_that_cannot_be_is_refused() {
+    let (law, family) = laws()[0].clone();
+    let refused = |spec: &Spec| match build(spec, Options::default()) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("built"),
+    };
+    let mut spec = plate(law, family, false);
+    heals(&mut spec, "1e-3");
+    assert!(refused(&spec).contains("nothing of this body breaks"));
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(1.0)));
+    assert!(refused(&spec).contains("remember more"));
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
+    heals(&mut spec, "x");
+    assert!(refused(&spec).contains("depends on the place"));
+    heals(&mut spec, "1e-3");
+    spec.precracks = vec![PrecrackSpec {
+        shape: CrackShape::Segment {
+            from: [7.0, -1.0, 0.0],
+            to: [7.0, 8.0, 0.0],
+        },
+        kind: CrackKind::Absent,
+    }];
+    assert!(refused(&spec).contains("broken"));
+}
