@@ -24,6 +24,7 @@ mod warnings;
 pub(super) use atoms::boltzmann;
 pub(super) use material::point_volume;
 pub(super) use schedule::{MANY_STEPS, steps};
+pub(super) use warnings::unitless;
 
 use super::OutputSpec;
 use super::document::{
