@@ -485,7 +485,10 @@ fn surface_factors(
     };
     match peridyne_theory::homogenize::surface::correct(spec, method) {
         Ok((factors, _)) => Ok(Some(factors)),
-        Err(e) => Err(context.error_with(&named.span, e.to_string(), e.help())),
+        Err(e) => {
+            let message = context.units.tell(&e.message());
+            Err(context.error_with(&named.span, message, e.help()))
+        }
     }
 }
 
