@@ -216,7 +216,7 @@ fn numbers_that_no_solid_has_are_doubted() {
         (
             "7800 g/cm^3",
             "210 GPa",
-            "deck.toml:5: the density of `material`, 7800000 kg/m^3, is above that of any solid: is 7800 kg/m^3 meant?",
+            "deck.toml:5: the density of `material`, 7.8e6 kg/m^3, is above that of any solid: is 7800 kg/m^3 meant?",
         ),
         (
             "7800 kg/m^3",
