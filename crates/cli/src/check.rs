@@ -52,6 +52,8 @@ struct Findings<'a> {
     units: UnitSystem,
     /// Is it a LAMMPS script? Fixes are then not told: they are keys of decks.
     script: bool,
+    /// Of the deck.
+    warnings: &'a [String],
     sim: &'a dyn Simulation,
     families: Families,
     /// Smallest and largest coordinate of the points.
@@ -104,6 +106,8 @@ struct Subject {
     spec: Spec,
     units: UnitSystem,
     script: bool,
+    /// Of the deck, said already.
+    warnings: Vec<String>,
     sim: Box<dyn Simulation>,
     steps: u64,
     increments: u64,
@@ -119,6 +123,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
                 spec: prepared.spec,
                 units: setup.units.system(),
                 script: true,
+                warnings: vec![],
                 sim: prepared.simulation,
                 steps: setup.steps,
                 increments: 0,
@@ -139,7 +144,8 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     with_threads(threads, |threads| {
         let mut sim = deck::model(&deck, input)?;
         pictures(&deck, sim.as_mut())?;
-        let remarks = deck::remarks(&deck, sim.info().time_step);
+        let warnings = deck::warnings(&deck, sim.info());
+        let remarks = deck::remarks(&deck.notes, &warnings);
         if !remarks.is_empty() {
             note(remarks.trim_start());
         }
@@ -153,6 +159,7 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             units: deck.units,
             spec: deck.spec,
             script: false,
+            warnings,
             sim,
         };
         report(arguments, subject, threads)
@@ -213,6 +220,7 @@ fn find<'a>(
         spec: &subject.spec,
         units: subject.units,
         script: subject.script,
+        warnings: &subject.warnings,
         sim,
         families,
         patch,

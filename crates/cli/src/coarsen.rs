@@ -12,8 +12,8 @@ use levels::levels;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
 use peridyne::spec::{AnyLinearBody, ConditionKind, LinearBody, Stepper, TimeStep};
-use peridyne_io::deck::Deck;
 use peridyne_io::deck::upscaled::Rewritten;
+use peridyne_io::deck::{Deck, rounded};
 use peridyne_theory::coarsen::Report;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -200,8 +200,11 @@ fn relaxed(sim: &mut dyn Simulation, deck: &Deck) -> Result<Vec<Point>, Failure>
     let u = sim.displacements();
     let far = u.iter().map(|u| u.iter().map(|c| c * c).sum::<f64>());
     say(&format!(
-        "relaxed without load: atoms move by at most {:.2e} spacings, {:.2} s",
-        far.fold(0.0, f64::max).sqrt() / deck.spec.body.spacing().unwrap_or(sim.info().spacing),
+        "relaxed without load: atoms move by at most {} spacings, {:.2} s",
+        rounded(
+            far.fold(0.0, f64::max).sqrt() / deck.spec.body.spacing().unwrap_or(sim.info().spacing),
+            3
+        ),
         began.elapsed().as_secs_f64()
     ));
     Ok(u)

@@ -9,7 +9,7 @@ use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use level::{Level, Reference, measure};
 use peridyne::expression::Expression;
-use peridyne_io::deck::{Deck, Dim};
+use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use peridyne_theory::convergence::{Kind, Order, Verdict, order};
 use peridyne_theory::refine::refine;
 use std::path::{Path, PathBuf};
@@ -153,8 +153,10 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
     let mut decks = vec![];
     for k in 0..arguments.levels {
         let mut finer = deck.clone();
-        finer.spec = refine(&deck.spec, kind, k)
-            .map_err(|e| Failure::input(format!("{}: {e}", deck.file())))?;
+        finer.spec = refine(&deck.spec, kind, k).map_err(|e| {
+            let told = deck.units.tell(&e.message());
+            Failure::input(format!("{}: {told}", deck.file()))
+        })?;
         decks.push(finer);
     }
     let step = level::common_step(&decks, &arguments.input, arguments.substeps)?;
@@ -189,7 +191,7 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
         Path::new("out").join(format!("{name}-{study}"))
     });
     files::write(&out, &finished, deck.units).map_err(|e| Failure::Run(e.to_string()))?;
-    say(&report(&finished));
+    say(&report(&finished, deck.units));
     say(&format!("written: {}", out.display()));
     Ok(())
 }
@@ -242,7 +244,9 @@ fn finish(
     // between levels the time error of the common step drops out
     if !exact.is_empty() && time_error > 0.1 * smallest {
         notes.push(format!(
-            "The time error of the finest level, {time_error:.2e}, is more than a tenth of the smallest error, {smallest:.2e}: take more --substeps."
+            "The time error of the finest level, {}, is more than a tenth of the smallest error, {}: take more --substeps.",
+            rounded(time_error, 3),
+            rounded(smallest, 3)
         ));
     }
     if let (false, Some(e), Some(d)) = (exact.is_empty(), &errors, &differences)
@@ -274,23 +278,23 @@ fn finish(
     })
 }
 
-fn report(f: &Finished) -> String {
+fn report(f: &Finished, units: UnitSystem) -> String {
     let mut t = format!(
-        "\nerrors of the displacement at {} points at the time {:.6e}, against {}:\n       spacing       horizon       m   error (rms)   error (max)   to the next",
+        "\nerrors of the displacement at {} points at the time {}, against {}:\n       spacing       horizon       m   error (rms)   error (max)   to the next",
         f.points,
-        f.time,
+        units.show(f.time, Dim::TIME),
         if f.exact.is_empty() {
             "the finest level"
         } else {
             "the exact solution"
         }
     );
-    let number = |x: Option<f64>| x.map_or(format!("{:>14}", "-"), |x| format!("{x:>14.4e}"));
+    let number = |x: Option<f64>| format!("{:>14}", x.map_or("-".into(), |x| rounded(x, 4)));
     for l in &f.levels {
         t += &format!(
-            "\n{:>14.5e}{:>14.5e}{:>8.2}{}{}{}",
-            l.spacing,
-            l.horizon,
+            "\n{:>14}{:>14}{:>8.2}{}{}{}",
+            units.show(l.spacing, Dim::LENGTH),
+            units.show(l.horizon, Dim::LENGTH),
             l.horizon / l.spacing,
             number(l.error.map(|e| e[0])),
             number(l.error.map(|e| e[1])),
@@ -310,8 +314,8 @@ fn report(f: &Finished) -> String {
     t += &line("errors", &f.errors);
     t += &line("differences of neighbours", &f.differences);
     t += &format!(
-        "\ntime error of the finest level: {:.2e} (from a step twice as long){}",
-        f.time_error,
+        "\ntime error of the finest level: {} (from a step twice as long){}",
+        rounded(f.time_error, 3),
         if f.exact.is_empty() {
             "; it is common to all levels and drops out"
         } else {

@@ -4,7 +4,7 @@ use crate::Input;
 use crate::failure::Failure;
 use crate::numbers::{memory, whole};
 use peridyne::execute::simd::Simd;
-use peridyne::run::{Options, Simulation, TransferInfo, build};
+use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
 use peridyne::spec::{Stepper, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
 use std::io::Read;
@@ -141,17 +141,17 @@ pub fn model(deck: &Deck, input: &Input) -> Result<Box<dyn Simulation>, Failure>
     build(&deck.spec, options).map_err(|e| Failure::Input(deck.explain(&e).into()))
 }
 
-/// What the deck passed over and what looks wrong in it, in lines.
-pub fn remarks(deck: &Deck, time_step: f64) -> String {
-    let notes = deck.notes.iter().map(|n| format!("\nnote: {n}"));
-    let warnings = deck
-        .warnings
-        .iter()
-        .cloned()
-        .chain(deck.long_run(time_step));
-    notes
-        .chain(warnings.map(|w| format!("\nwarning: {w}")))
-        .collect()
+/// What looks wrong in a deck of which this was built.
+pub fn warnings(deck: &Deck, info: &Info) -> Vec<String> {
+    let first = deck.warnings.iter().cloned();
+    first.chain(deck.doubts(info)).collect()
+}
+
+/// What a deck passed over and what looks wrong in it, in lines.
+pub fn remarks(notes: &[String], warnings: &[String]) -> String {
+    let notes = notes.iter().map(|n| format!("\nnote: {n}"));
+    let warnings = warnings.iter().map(|w| format!("\nwarning: {w}"));
+    notes.chain(warnings).collect()
 }
 
 /// Decks of two stages, and points with horizons of their own, which `verb` does not know.

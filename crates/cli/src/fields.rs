@@ -8,6 +8,7 @@ use crate::run::with_threads;
 use peridyne_fields::residuals::{self, Residuals};
 use peridyne_fields::{Fields, Frame, Method, Progress, Targets, evaluate};
 use peridyne_io::continuum::frame;
+use peridyne_io::deck::rounded;
 use peridyne_io::read::Atoms;
 use peridyne_io::read::frames::Frames;
 use peridyne_io::write::WriteError;
@@ -363,15 +364,16 @@ fn summary(request: &Request, read: &[continuum::Frame]) {
     let Some(last) = read.last() else {
         return;
     };
+    let small = |x: f64| rounded(x, 2);
     match &last.residuals {
         Ok(r) => say(&format!(
-            "  residuals of the last frame over the rates: mass {:.1e}, momentum {:.1e}, energy {:.1e} (the differences alone leave {:.1e}, {:.1e}, {:.1e})",
-            r.mass.relative(),
-            r.momentum.relative(),
-            r.energy.relative(),
-            part(r.mass.expected, r.mass.scale),
-            part(r.momentum.expected, r.momentum.scale),
-            part(r.energy.expected, r.energy.scale),
+            "  residuals of the last frame over the rates: mass {}, momentum {}, energy {} (the differences alone leave {}, {}, {})",
+            small(r.mass.relative()),
+            small(r.momentum.relative()),
+            small(r.energy.relative()),
+            small(part(r.mass.expected, r.mass.scale)),
+            small(part(r.momentum.expected, r.momentum.scale)),
+            small(part(r.energy.expected, r.energy.scale)),
         )),
         Err(why) => say(&format!("  no residuals: {why}")),
     }
@@ -379,8 +381,8 @@ fn summary(request: &Request, read: &[continuum::Frame]) {
         && off > 1e-3
     {
         note(&format!(
-            "warning: forces of the file differ from those of the potential by {:.1e} of the largest: is it the potential of these frames?",
-            off
+            "warning: forces of the file differ from those of the potential by {} of the largest: is it the potential of these frames?",
+            small(off)
         ));
     }
 }

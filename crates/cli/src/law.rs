@@ -69,7 +69,7 @@ pub fn run(
         command: deck::command(input),
         understood: headline(&deck),
     };
-    say(&told.understood);
+    say(&(told.understood.clone() + &deck::remarks(&[], &deck.warnings)));
     say(&format!("results in {}", dir.display()));
     let mut terminal = Terminal {
         spoken: Instant::now(),
@@ -120,8 +120,9 @@ fn headline(deck: &LawDeck) -> String {
         if let Some(horizon) = horizon {
             let ratio = horizon / grid.spacing;
             text += &format!(
-                "{name} horizon {} = {ratio:.3} spacings, {bonds} bonds of a point\n",
-                length(horizon)
+                "{name} horizon {} = {} spacings, {bonds} bonds of a point\n",
+                length(horizon),
+                rounded(ratio, 4)
             );
         }
     }
@@ -154,6 +155,10 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
     if !outside {
         deck.stays_inside().map_err(|e| Failure::Input(e.into()))?;
     }
+    let remarks = deck::remarks(&[], &deck.warnings);
+    if !remarks.is_empty() {
+        note(remarks.trim_start());
+    }
     let grid = *deck.grid();
     let e = &deck.evolution;
     let [low, high] = measure::extremes(&e.u);
@@ -177,6 +182,10 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
     let per_step = begin.elapsed().as_secs_f64() / f64::from(steps.max(1));
     let all = (deck.duration / step).ceil();
     if json {
+        let warnings = deck
+            .warnings
+            .iter()
+            .map(|w| json!({"what": w, "fix": null}));
         let text = json!({
             "kind": "conservation_law", "title": deck.title, "points": grid.points(), "dimension": grid.dimension, "spacing": grid.spacing,
             "horizons": deck.horizons, "bonds_of_a_point": deck.evolution.operator.law().bonds(),
@@ -184,22 +193,26 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
             "wave_frequency_at_unit_speed": waves, "decay_rate": decay, "stable_step": stable, "first_step": step, "steps": all,
             "shock_time": shock, "min": low, "max": high, "mass": mass, "energy": energy, "energy_rate_exact": energy_rate,
             "seconds_per_step": per_step, "trial_failed": failed,
+            "warnings": warnings.collect::<Vec<_>>(),
         });
         say(&format!("{text:#}"));
         return Ok(());
     }
     say(&head);
+    let show = |x: f64, dim: Dim| deck.units.show(x, dim);
+    let u = deck.dimension;
+    let cell = [Dim::LENGTH, Dim::AREA][grid.dimension - 1];
     say(&format!(
         "state     u from {} to {}, mass {}, energy {}, its rate {}\n\
          spectrum  waves {} at unit speed, decay {}\n\
          steps     about {all:.0} of {}; {:.1} ns per point and step, {:.1} s in all",
-        rounded(low, 5),
-        rounded(high, 5),
-        rounded(mass, 5),
-        rounded(energy, 5),
-        rounded(energy_rate, 5),
-        rounded(waves, 5),
-        rounded(decay, 5),
+        show(low, u),
+        show(high, u),
+        show(mass, u * cell),
+        show(energy, u * u * cell),
+        show(energy_rate, u * u * cell / Dim::TIME),
+        show(waves, Dim::INVERSE_LENGTH),
+        show(decay, Dim::FREQUENCY),
         deck.units.show(step, Dim::TIME),
         per_step * 1e9 / grid.points() as f64,
         per_step * all,

@@ -1,12 +1,14 @@
 //! Numbers for people.
 
+use peridyne_io::deck::rounded;
+
 /// A number in about five digits.
 pub fn digits(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
         "–".into()
     } else if value != 0.0 && !(1e-3..1e6).contains(&size) {
-        format!("{value:.3e}")
+        rounded(value, 4)
     } else {
         let before = if size < 1.0 {
             1

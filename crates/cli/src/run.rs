@@ -93,11 +93,13 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     enough_disk(deck, sim.as_ref(), &dir)?;
     let pictures = pictures(deck, sim.as_mut())?;
     say(&deck.describe());
-    let remarks = deck::remarks(deck, sim.info().time_step);
+    let warnings = deck::warnings(deck, sim.info());
+    let remarks = deck::remarks(&deck.notes, &warnings);
     say(&(deck::headline(sim.as_ref(), deck.units) + &remarks));
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    plan.warnings = warnings;
     let end = (steps - plan.increments) as f64 * sim.info().time_step;
     plan.indenters = indenters(deck, end);
     let until = if counts_load(&deck.spec.schedule) {
@@ -395,6 +397,7 @@ fn plan(
         deck_text: deck.text().to_string(),
         dir,
         command: String::new(),
+        warnings: vec![],
         understood: deck.describe(),
         sources: deck.sources(),
         indenters: vec![],

@@ -7,10 +7,11 @@ use crate::deck;
 use crate::failure::{Failure, say};
 use crate::run::with_threads;
 use crate::side_by_side::{compare, run, save};
+use peridyne::quantity::Message;
 use peridyne_io::deck::upscaled::{copied, upscaled};
 use peridyne_io::deck::{Deck, Dim};
 use peridyne_io::write::card;
-use peridyne_theory::upscale::{self, Keep, card::card};
+use peridyne_theory::upscale::{self, Keep, UpscaleError, card::card};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
@@ -101,11 +102,12 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
                 m.replace("body.cells", "--cells")
             )),
         };
+        let refused = |e: &UpscaleError| wrong(fine.units.tell(&e.message()));
         let (spec, rule) =
-            upscale::upscale_keeping(&fine.spec, factor, keep).map_err(|e| wrong(e.to_string()))?;
-        let mut card = card(&fine.spec, &spec, factor, rule).map_err(|e| wrong(e.to_string()))?;
+            upscale::upscale_keeping(&fine.spec, factor, keep).map_err(|e| refused(&e))?;
+        let mut card = card(&fine.spec, &spec, factor, rule).map_err(|e| refused(&e))?;
         let text = upscaled(fine, &spec, factor).map_err(wrong)?;
-        card.notes.extend(text.notes.iter().cloned());
+        card.notes.extend(text.notes.iter().map(Message::from));
         made.push((factor, text, card));
     }
     let original = copied(fine).map_err(Failure::input)?;
@@ -158,7 +160,7 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
             ));
         }
         for note in &card.notes {
-            say(&format!("  note: {note}"));
+            say(&format!("  note: {}", fine.units.tell(note)));
         }
     }
     Ok(())

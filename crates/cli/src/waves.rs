@@ -67,7 +67,8 @@ pub fn waves(arguments: &WavesArguments) -> Result<(), Failure> {
 }
 
 fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
-    let told = |e: UpscaleError| Failure::input(format!("{}: {}", deck.file(), explained(&e)));
+    let told =
+        |e: UpscaleError| Failure::input(format!("{}: {}", deck.file(), explained(&e, deck)));
     lattice(&deck.spec).map_err(told)?;
     if deck.spec.materials.len() != 1 && deck.spec.potential().is_none() {
         return Err(told(UpscaleError::SeveralMaterials));
@@ -111,7 +112,7 @@ fn all(arguments: &WavesArguments, deck: &Deck) -> Result<(), Failure> {
 }
 
 /// What to do instead.
-fn explained(error: &UpscaleError) -> String {
+fn explained(error: &UpscaleError, deck: &Deck) -> String {
     match error {
         UpscaleError::NoLattice => "plane waves are those of an endless lattice, and this body is a cloud, a mesh or a \
              perturbed lattice: give it as `lattice` with `spacing`; `peridyne check` tells stiffness and stable step of \
@@ -120,6 +121,6 @@ fn explained(error: &UpscaleError) -> String {
         UpscaleError::SeveralMaterials => "waves of several materials are known of atoms, whose unlike ones repeat from cell to cell: \
              write a deck with one of these materials, and one for each other"
             .into(),
-        other => other.to_string(),
+        other => deck.units.tell(&other.message()),
     }
 }

@@ -335,7 +335,9 @@ fn check_warns_with_the_fix() {
         assert!(warnings.contains(part), "{part} is not in\n{warnings}");
     }
     for warning in found["warnings"].as_array().unwrap() {
-        assert!(warning["fix"].is_string(), "{warning}");
+        // those of the deck say it themselves, with their line
+        let of_deck = warning["what"].as_str().unwrap().contains("odd.toml:");
+        assert!(warning["fix"].is_string() != of_deck, "{warning}");
     }
 }
 

@@ -103,7 +103,7 @@ fn check_says_what_would_run_and_writes_nothing() {
     let text = String::from_utf8_lossy(&told.stdout).to_string();
     for part in [
         "points    600 in 1-D",
-        "10.000 spacings",
+        "= 10 spacings",
         "stable up to",
         "collars",
         "direct",
@@ -114,6 +114,45 @@ fn check_says_what_would_run_and_writes_nothing() {
     let found: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
     assert_eq!(found["kind"], "conservation_law");
     assert!(found["stable_step"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn numbers_in_quotes_without_a_unit_are_warned_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(deck("good/conservation/riemann.toml")).unwrap();
+    let text = text.replace("units = \"none\"\n", "");
+    let line = 1 + text
+        .lines()
+        .position(|l| l.starts_with("duration"))
+        .unwrap();
+    let file = dir.path().join("quoted.toml");
+    let told = text.lines().map(|l| match l.starts_with("duration") {
+        true => "duration = \"0.25\"\n".to_string(),
+        false => format!("{l}\n"),
+    });
+    std::fs::write(&file, told.collect::<String>()).unwrap();
+    let name = file.to_str().unwrap();
+    let expected = format!(
+        "quoted.toml:{line}: \"0.25\" has no unit and is taken as 250 ms: write the unit, or the number without quotes"
+    );
+    let out = dir.path().join("out");
+    let run = peridyne(&["run", name, "--out", out.to_str().unwrap()]);
+    let said = String::from_utf8_lossy(&run.stdout);
+    assert!(said.contains(&format!("warning: {name}")), "{said}");
+    assert!(said.contains(&expected), "{said}");
+    let check = peridyne(&["check", name]);
+    let said = String::from_utf8_lossy(&check.stderr);
+    assert!(
+        said.contains(&format!("warning: {name}")) && said.contains(&expected),
+        "{said}"
+    );
+    let json = peridyne(&["check", "--json", name]);
+    let record = std::fs::read_to_string(out.join("run.json")).unwrap();
+    let found: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let warning = found["warnings"][0]["what"].as_str().unwrap();
+    assert!(warning.ends_with(&expected), "{found}");
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    assert_eq!(record["warnings"][0], warning);
 }
 
 #[test]

@@ -232,6 +232,7 @@ pub fn run(
         seconds_stepping: seconds,
         ns_per_point_step: (visits > 0.0).then(|| seconds * 1e9 / visits),
         peak_memory_bytes: peak_memory_bytes(),
+        warnings: deck.warnings.clone(),
         setting: setting(deck, told),
     };
     report.write(&dir.join("run.json"))?;

@@ -45,6 +45,8 @@ pub struct Plan {
     pub command: String,
     pub understood: String,
     pub sources: Vec<String>,
+    /// What looks wrong in the deck; the model's own are added.
+    pub warnings: Vec<String>,
     /// Indenters that are moved, for the report; of those that move by themselves no path.
     pub indenters: Vec<MovingBall>,
     /// What is done to the body, for the report.
@@ -248,7 +250,7 @@ pub fn drive(
     let mut framed = None;
     let mut balance = BalanceWatch::default();
     let told = sim.info().warnings.iter().map(|w| plan.units.tell(w));
-    let mut warnings: Vec<String> = told.collect();
+    let mut warnings: Vec<String> = plan.warnings.iter().cloned().chain(told).collect();
     let mut ended = None;
     // what the history and the trajectories tell of already
     let mut told = None;

@@ -168,7 +168,12 @@ fn numbers_of_warnings_and_errors_have_units() {
             looked += 1;
             let mut said: Vec<String> = deck.warnings.clone();
             match build(&deck.spec, Options::default()) {
-                Ok(sim) => said.extend(sim.info().warnings.iter().map(|w| deck.units.tell(w))),
+                Ok(sim) => {
+                    said.extend(sim.info().warnings.iter().map(|w| deck.units.tell(w)));
+                    let doubts = deck.doubts(sim.info());
+                    assert!(folder != "good" || doubts.is_empty(), "{name}: {doubts:?}");
+                    said.extend(doubts);
+                }
                 Err(e) => {
                     let e = deck.explain(&e);
                     said.extend([e.message].into_iter().chain(e.help));
@@ -187,6 +192,102 @@ fn numbers_of_warnings_and_errors_have_units() {
         looked > 60 && told > 30,
         "{looked} decks said {told} things"
     );
+}
+
+/// A unit or prefix that was likely meant otherwise is told with its line; rubber, foam and lead are believed.
+#[test]
+fn numbers_that_no_solid_has_are_doubted() {
+    let doubts = |density: &str, law: &str, fracture: &str, run: &str| {
+        let text = format!(
+            "horizon = {{ m_ratio = 3 }}\nrun = {run}\nbody = {{ lattice = \"cubic\", spacing = \"1 mm\", region = {{ block = {{ low = [0, 0, 0], high = [\"5 mm\", \"5 mm\", \"5 mm\"] }} }} }}\n[material]\ndensity = \"{density}\"\nlaw = {{ {law} }}\n{fracture}\n"
+        );
+        let deck = Deck::parse(&text, "deck.toml", &[]).unwrap_or_else(|e| panic!("{e}: {text}"));
+        let sim = build(&deck.spec, Options::default()).unwrap();
+        deck.doubts(sim.info())
+    };
+    let steps = "{ steps = 10 }";
+    let pmb = |young: &str| format!("pmb = {{ young = \"{young}\" }}");
+    for (density, young, expected) in [
+        (
+            "7.8 kg/m^3",
+            "210 GPa",
+            "deck.toml:5: the density of `material`, 7.8 kg/m^3, is below that of any solid: is 7800 kg/m^3 meant?",
+        ),
+        (
+            "7800 g/cm^3",
+            "210 GPa",
+            "deck.toml:5: the density of `material`, 7.8e6 kg/m^3, is above that of any solid: is 7800 kg/m^3 meant?",
+        ),
+        (
+            "7800 kg/m^3",
+            "210 MPa",
+            "deck.toml:6: waves along a bar of `material` run at 164.1 m/s, slower than in any solid so dense, with a Young's modulus of 210 MPa and a density of 7800 kg/m^3: is 210 GPa meant?",
+        ),
+        (
+            "2200 kg/m^3",
+            "14.9 kPa",
+            "slower than in any solid so dense, with a Young's modulus of 14.9 kPa and a density of 2200 kg/m^3: is 14.9 GPa meant?",
+        ),
+        ("1100 kg/m^3", "500 Pa", "slower than in any solid, with"),
+        (
+            "2200 kg/m^3",
+            "14.9e12 Pa",
+            "faster than in any solid, with a Young's modulus of 14900 GPa and a density of 2200 kg/m^3: is 14.9 GPa meant?",
+        ),
+    ] {
+        let told = doubts(density, &pmb(young), "", steps);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains(expected), "{told:?}");
+    }
+    // rubber, foam, cork, lead, diamond
+    for (density, young) in [
+        ("1100 kg/m^3", "1 MPa"),
+        ("30 kg/m^3", "2 MPa"),
+        ("240 kg/m^3", "20 MPa"),
+        ("11340 kg/m^3", "16 GPa"),
+        ("3515 kg/m^3", "1100 GPa"),
+    ] {
+        let told = doubts(density, &pmb(young), "", steps);
+        assert!(told.is_empty(), "{told:?}");
+    }
+    let energy = |young: &str, energy: &str| {
+        let fracture = format!("fracture = {{ energy = \"{energy}\" }}");
+        doubts("1200 kg/m^3", &pmb(young), &fracture, steps)
+    };
+    for (young, of, expected) in [
+        ("70 GPa", "10 GJ/m^2", Some("above 100 %")),
+        ("70 GPa", "1e-6 J/m^2", Some("below 0.0001 %")),
+        ("70 GPa", "10 J/m^2", None),
+        // rubber tears beyond twice its length
+        ("1 MPa", "10 kJ/m^2", None),
+    ] {
+        let told = energy(young, of);
+        match expected {
+            Some(part) => assert!(
+                told[0].contains(part) && told[0].starts_with("deck.toml:7: "),
+                "{told:?}"
+            ),
+            None => assert!(told.is_empty(), "{told:?}"),
+        }
+    }
+    for (stress, meant) in [
+        ("350 GPa", Some("350 MPa")),
+        ("350 Pa", Some("350 MPa")),
+        ("350 MPa", None),
+    ] {
+        let law = format!(
+            "elastic_plastic = {{ young = \"210 GPa\", poisson = 0.3, yield_stress = \"{stress}\" }}"
+        );
+        let told = doubts("7800 kg/m^3", &law, "", steps);
+        match meant {
+            Some(meant) => assert!(
+                told[0].starts_with("deck.toml:6: the yield stress of `material`, ")
+                    && told[0].ends_with(&format!("is {meant} meant?")),
+                "{told:?}"
+            ),
+            None => assert!(told.is_empty(), "{told:?}"),
+        }
+    }
 }
 
 /// A program need not read the message.

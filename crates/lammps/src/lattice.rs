@@ -1,6 +1,7 @@
 //! `lattice`: the grid that atoms are created on and the unit of `units lattice`.
 
 use peridyne::execute::memory;
+use peridyne::quantity::rounded;
 
 use super::atoms::SiteLattice;
 
@@ -46,8 +47,8 @@ impl Lattice {
             let (first, last) = self.range(a, low[a], high[a]);
             if !(first.abs() < 1e9 && last.abs() < 1e9) {
                 return Err(format!(
-                    "the box is {:.3e} lattice cells long",
-                    (high[a] - low[a]) / self.constant
+                    "the box is {} lattice cells long",
+                    rounded((high[a] - low[a]) / self.constant, 4)
                 ));
             }
             total *= last - first + 1.0;
@@ -55,7 +56,8 @@ impl Lattice {
         }
         if total > 4e9 {
             return Err(format!(
-                "the box holds {total:.3e} lattice sites, more than 4e9"
+                "the box holds {} lattice sites, more than 4e9",
+                rounded(total, 4)
             ));
         }
         let lattice = self.site_lattice();
@@ -65,7 +67,9 @@ impl Lattice {
         for k in range[2].0..=range[2].1 {
             if sites.len() as f64 > most {
                 return Err(format!(
-                    "more than {most:.1e} atoms do not fit into the memory that is left; the box holds {total:.1e} lattice sites: check the lattice constant and the region"
+                    "more than {} atoms do not fit into the memory that is left; the box holds {} lattice sites: check the lattice constant and the region",
+                    rounded(most, 2),
+                    rounded(total, 2)
                 ));
             }
             for j in range[1].0..=range[1].1 {

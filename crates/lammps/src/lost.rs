@@ -5,6 +5,8 @@ use crate::error::{Problem, Result};
 use crate::session::{Session, Store};
 use crate::thermo::Lost;
 
+use peridyne::quantity::rounded;
+
 impl Session<'_> {
     /// Can atoms be lost at all?
     fn can_lose(&self) -> bool {
@@ -141,8 +143,9 @@ impl Session<'_> {
         };
         let axis = ["x", "y", "z"][axis];
         let what = format!(
-            "{lost} atoms left the box through a fixed face by step {}, first the atom with id {id}: {axis} = {place:.6e}",
-            self.progress.step
+            "{lost} atoms left the box through a fixed face by step {}, first the atom with id {id}: {axis} = {}",
+            self.progress.step,
+            rounded(place, 6)
         );
         match self.watch.thermo.lost {
             Lost::Error => Err(Problem::new(what).help(

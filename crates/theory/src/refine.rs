@@ -9,6 +9,7 @@
 //! | δm | δ/√2^k | √2^k m, rounded |
 
 use crate::convergence::Kind;
+use peridyne::quantity::Message;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::{BodySpec, Horizon, Spec};
@@ -44,6 +45,16 @@ pub enum RefineError {
     TooFine(u32),
     #[error("{0}")]
     Surface(#[from] crate::homogenize::surface::SurfaceError),
+}
+
+impl RefineError {
+    /// What it says, its numbers with what they measure.
+    pub fn message(&self) -> Message {
+        match self {
+            RefineError::Surface(e) => e.message(),
+            other => other.to_string().into(),
+        }
+    }
 }
 
 /// The body of level `level` (0: as it is).

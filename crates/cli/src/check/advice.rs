@@ -2,7 +2,7 @@
 
 use super::{Findings, atoms, directions, mean};
 use peridyne::spec::{Calibration, Horizon, LawSpec};
-use peridyne_io::deck::{Dim, UnitSystem};
+use peridyne_io::deck::doubts;
 use peridyne_theory::patch_test::Place;
 
 /// A warning with its fix.
@@ -23,6 +23,11 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
     for warning in &info.warnings {
         say(found.units.tell(warning), "");
     }
+    // those of a deck are said with their lines
+    if found.script {
+        let doubts = doubts(spec, info, found.units).into_iter();
+        doubts.for_each(|doubt| say(found.units.tell(&doubt.text), ""));
+    }
     if spec.potential().is_some() {
         atoms::advice(found, &mut say);
         trial(found, &mut say);
@@ -41,27 +46,6 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
         );
     }
     for m in &found.materials {
-        let speed = m.pressure_wave;
-        if found.units == UnitSystem::Si && speed > 30e3 {
-            say(
-                format!(
-                    "pressure waves of `{}` run at {}, faster than in any solid",
-                    m.name,
-                    found.units.show(speed, Dim::VELOCITY)
-                ),
-                "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
-            );
-        }
-        if found.units == UnitSystem::Si && speed < 1.0 {
-            say(
-                format!(
-                    "pressure waves of `{}` run at {}, slower than in any solid",
-                    m.name,
-                    found.units.show(speed, Dim::VELOCITY)
-                ),
-                "check the units of modulus and density: \"14.9 GPa\", \"2200 kg/m^3\"",
-            );
-        }
         if let Some((s00, _)) = m.fracture.filter(|f| f.0 > 0.05) {
             say(
                 format!(

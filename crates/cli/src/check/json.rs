@@ -28,6 +28,8 @@ pub fn write(found: &Findings) -> String {
             "micromodulus": info.micromodulus.get(n),
         })
     });
+    let of_deck = { found.warnings.iter() }.map(|w| json!({"what": w, "fix": null}));
+    let warnings = { advice(found).into_iter() }.map(|a| json!({"what": a.what, "fix": a.fix}));
     let report = json!({
         "title": found.spec.title,
         "units": found.units.name(),
@@ -74,7 +76,7 @@ pub fn write(found: &Findings) -> String {
         "seconds_per_step": found.trial.seconds_per_step,
         "seconds_per_increment_before": found.trial.seconds_per_increment,
         "seconds": found.trial.seconds_per_step.map(|s| found.load() + s * found.steps as f64),
-        "warnings": advice(found).iter().map(|a| json!({"what": a.what, "fix": a.fix})).collect::<Vec<_>>(),
+        "warnings": of_deck.chain(warnings).collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&report).unwrap_or_default()
 }

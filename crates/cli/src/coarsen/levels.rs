@@ -7,9 +7,9 @@ use crate::failure::{Failure, say};
 use crate::side_by_side::{compare, run, save};
 use peridyne::space::Point;
 use peridyne::spec::{Carriers, LinearBody, Method};
-use peridyne_io::deck::Deck;
 use peridyne_io::deck::coarsened::coarsened;
 use peridyne_io::deck::upscaled::copied;
+use peridyne_io::deck::{Deck, Dim, rounded};
 use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::linear::write_linear;
 use peridyne_theory::coarsen::{self, Radius, Selection, Stability, Volume};
@@ -66,7 +66,8 @@ pub(super) fn levels<const D: usize>(
     held.retain(|i| way.supports && acting.held[*i as usize]);
     for level in 1..=arguments.levels {
         let wrong = |e: coarsen::CoarsenError| {
-            Failure::input(format!("{}, level {level}: {e}", deck.file()))
+            let told = deck.units.tell(&e.message());
+            Failure::input(format!("{}, level {level}: {told}", deck.file()))
         };
         let step = arguments.every.unwrap_or(2).pow(level as u32 - 1);
         let selection = match &selection {
@@ -116,14 +117,14 @@ pub(super) fn levels<const D: usize>(
             seconds,
             supports: retained.len() - regular.len(),
         };
-        say(&told(level, &made_of, way));
+        say(&told(level, &made_of, way, deck.units));
         if let Stability::Stable { growth } = made_of.report.stability
             && growth > 0.0
             && deck.spec.schedule.statics().is_none()
         {
             say(&format!(
-                "note: without symmetry there is no energy: in dynamics the free vibrations of level {level} grow by a factor e in {:.3e}",
-                1.0 / growth
+                "note: without symmetry there is no energy: in dynamics the free vibrations of level {level} grow by a factor e in {}",
+                deck.units.show(1.0 / growth, Dim::TIME)
             ));
         }
         made.push(made_of);
@@ -204,7 +205,7 @@ fn run_levels<const D: usize>(
         say(&format!(
             "{name}: displacement error {} % at {} points, {:.1} times as fast ({:.3} s against {:.3} s)",
             match 100.0 * m.error {
-                small if small < 1e-3 => format!("{small:.1e}"),
+                small if small < 1e-3 => rounded(small, 2),
                 error => format!("{error:.3}"),
             },
             m.points,

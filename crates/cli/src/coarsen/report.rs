@@ -3,11 +3,18 @@
 use super::Level;
 use super::way::Way;
 use peridyne::statics::SYMMETRIC;
+use peridyne_io::deck::{Dim, UnitSystem, rounded};
 use peridyne_theory::coarsen::{Scheme, Stability};
 use std::collections::HashSet;
 
-pub(super) fn told<const D: usize>(level: usize, made: &Level<D>, way: Way) -> String {
+pub(super) fn told<const D: usize>(
+    level: usize,
+    made: &Level<D>,
+    way: Way,
+    units: UnitSystem,
+) -> String {
     let (body, report) = (&made.body, &made.report);
+    let small = |x: f64| rounded(x, 2);
     let n = body.points();
     let mut lines = vec![format!(
         "level {level}: {n} points{}, {:.1} bonds each, {}, {:.2} s",
@@ -19,8 +26,8 @@ pub(super) fn told<const D: usize>(level: usize, made: &Level<D>, way: Way) -> S
         match way.scheme {
             Scheme::Schur => "all others eliminated at once".to_string(),
             Scheme::Energy | Scheme::Rows => format!(
-                "balls of radius {:.4e} ({} solved{})",
-                report.radius,
+                "balls of radius {} ({} solved{})",
+                units.show(report.radius, Dim::LENGTH),
                 report.work.solved,
                 match report.work.direct {
                     0 => String::new(),
@@ -32,36 +39,39 @@ pub(super) fn told<const D: usize>(level: usize, made: &Level<D>, way: Way) -> S
     )];
     for tried in report.convergence.iter().filter(|t| t.radius.is_finite()) {
         lines.push(format!(
-            "  radius {:.4e}: effective modulus {:.8e}{}",
-            tried.radius,
-            tried.modulus,
+            "  radius {}: effective modulus {}{}",
+            units.show(tried.radius, Dim::LENGTH),
+            units.show(tried.modulus, Dim::PRESSURE),
             match tried.left.is_finite() || tried.change > 0.0 {
-                true => format!(", changed by {:.1e}", tried.change),
+                true => format!(", changed by {} %", rounded(100.0 * tried.change, 2)),
                 // the first of all has nothing to be compared with
                 false => String::new(),
             }
         ));
     }
     let asymmetry = match report.soundness.asymmetry == report.asymmetry {
-        true => format!("asymmetry {:.1e}", report.asymmetry),
+        true => format!("asymmetry {}", small(report.asymmetry)),
         false => format!(
-            "asymmetry {:.1e}, repaired to {:.1e}",
-            report.asymmetry, report.soundness.asymmetry
+            "asymmetry {}, repaired to {}",
+            small(report.asymmetry),
+            small(report.soundness.asymmetry)
         ),
     };
     lines.push(format!(
-        "  {asymmetry}, rotation {:.1e}, {}, mass kept to {:.1e}",
-        report.soundness.rotation,
+        "  {asymmetry}, rotation {}, {}, mass kept to {}",
+        small(report.soundness.rotation),
         match report.stability {
             Stability::Definite => "no unstable mode",
             Stability::Stable { .. } => "no unstable mode of the operator as it is",
             Stability::Positive => "no unstable mode (by its symmetric part)",
             Stability::Unknown => "too large to look for unstable modes",
         },
-        (report.mass[1] / report.mass[0] - 1.0).abs(),
+        small((report.mass[1] / report.mass[0] - 1.0).abs()),
     ));
     lines.push(match (way.condensed, report.loss) {
-        (true, Some(loss)) => format!("  loads condensed with the body, kept to {loss:.1e}"),
+        (true, Some(loss)) => {
+            format!("  loads condensed with the body, kept to {}", small(loss))
+        }
         (true, None) => "  no loads to condense".into(),
         (false, _) => {
             "  loads as in the paper: the same force density on the volumes of level 0".into()

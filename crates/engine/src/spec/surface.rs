@@ -1,5 +1,7 @@
 //! Corrections of bonds near a surface: plain numbers, made by `peridyne-theory`.
 
+use crate::quantity::Message;
+
 /// Where factors of bonds near a surface come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SurfaceMethod {
@@ -27,5 +29,5 @@ pub struct SurfaceFactors {
     /// `[rows]` part of its cell that such a point holds: its volume and mass (0–1].
     pub part: Vec<f64>,
     /// What a user should know about them.
-    pub warning: Option<String>,
+    pub warning: Option<Message>,
 }

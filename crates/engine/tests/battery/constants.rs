@@ -17,6 +17,7 @@ const FREE: &[(&str, &str, &str)] = &[
         "with `young`: the compliance is positive",
     ),
     ("anisotropic", "stiffness", "it is that of a stable solid"),
+    ("lamina", "fibre", "a row of bonds lies along it"),
     (
         "hypoelastic_plastic",
         "damage",

@@ -7,6 +7,7 @@ pub mod coarsened;
 pub mod conservation;
 mod describe;
 mod document;
+mod doubts;
 mod error;
 mod form;
 mod locate;
@@ -24,6 +25,7 @@ mod whole;
 mod tests;
 
 pub use describe::{describe, sources};
+pub use doubts::{Doubt, doubts};
 pub use error::DeckError;
 pub use schema::{law_schema, schema};
 pub use source::Flag;
@@ -34,6 +36,7 @@ use crate::write::trajectory::Format;
 use document::Document;
 use lower::{Entries, Files};
 use peridyne::error::BuildError;
+use peridyne::run::Info;
 use peridyne::spec::Spec;
 use serde::Deserialize;
 use source::Source;
@@ -237,8 +240,21 @@ impl Deck {
         locate::locate(&self.source, entry.as_deref().unwrap_or(path))
     }
 
+    /// What looks wrong once the model is built, with lines where there are any.
+    pub fn doubts(&self, info: &Info) -> Vec<String> {
+        let each = doubts(&self.spec, info, self.units).into_iter();
+        let told = each.map(|doubt| {
+            let text = self.units.tell(&doubt.text);
+            match self.locate(&doubt.path) {
+                Some(span) => self.source.remark(&span, &text),
+                None => text,
+            }
+        });
+        told.chain(self.long_run(info.time_step)).collect()
+    }
+
     /// What to say about the length of a run whose time step is known.
-    pub fn long_run(&self, time_step: f64) -> Option<String> {
+    fn long_run(&self, time_step: f64) -> Option<String> {
         let steps = self.steps(time_step);
         (self.spec.schedule.statics().is_none() && steps > lower::MANY_STEPS).then(|| {
             let step = self.units.write(time_step, Dim::TIME);

@@ -98,6 +98,13 @@ impl Source {
         DeckError::new(&file, text, span, message.into(), help)
     }
 
+    /// What a reader should know of a place: `deck.toml:7: …`.
+    pub(super) fn remark(&self, span: &Range<usize>, text: &str) -> String {
+        let place = self.error(Some(span.clone()), "", None);
+        let line = place.line.map_or(String::new(), |l| format!(":{l}"));
+        format!("{}{line}: {text}", place.file)
+    }
+
     /// The text at a span.
     pub(super) fn slice(&self, span: &Range<usize>) -> &str {
         let (_, text, start) = self.part(span.start);

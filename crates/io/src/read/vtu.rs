@@ -1,19 +1,21 @@
 //! Frames of points as [`write::vtu`](crate::write::vtu) writes them: raw appended data, little-endian, 64-bit lengths. No reader of
 //! VTU files in general.
 
-use std::fs;
+use std::cell::RefCell;
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::ReadError;
 
-/// A frame: the bytes of its file, and where the arrays stand in them.
-#[derive(Debug, Clone)]
-pub struct Frame {
+/// A frame: its file, and where the arrays stand in it.
+#[derive(Debug)]
+pub struct Frame<F = File> {
     pub step: u64,
     pub time: f64,
     pub points: usize,
     pub arrays: Vec<Array>,
-    bytes: Vec<u8>,
+    file: RefCell<F>,
 }
 
 /// An array over the points.
@@ -25,7 +27,7 @@ pub struct Array {
     pub names: Vec<String>,
     pub kind: Number,
     /// First byte of the numbers.
-    start: usize,
+    start: u64,
 }
 
 /// How numbers stand in the file.
@@ -55,53 +57,63 @@ impl Number {
         }
     }
 
+    fn number(self, b: &[u8]) -> f64 {
+        match self {
+            Number::Float64 => f64::from_le_bytes(fixed(b)),
+            Number::Int64 => i64::from_le_bytes(fixed(b)) as f64,
+            Number::Int32 => i32::from_le_bytes(fixed(b)).into(),
+            Number::UInt32 => u32::from_le_bytes(fixed(b)).into(),
+        }
+    }
+
     /// Counts things.
     pub fn is_whole(self) -> bool {
         self != Number::Float64
     }
 }
 
+/// What the appended data begin with.
+const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+
 impl Frame {
     /// # Errors
     /// The operating system's, or what is missing in the file.
-    pub fn read(path: &Path) -> Result<Frame, ReadError> {
-        let bytes = fs::read(path).map_err(|e| ReadError::file(path, e.to_string()))?;
-        Frame::of(bytes).map_err(|what| ReadError::file(path, what))
+    pub fn open(path: &Path) -> Result<Frame, ReadError> {
+        let file = File::open(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+        Frame::of(file).map_err(|what| ReadError::file(path, what))
     }
+}
 
-    fn of(bytes: Vec<u8>) -> Result<Frame, String> {
-        const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
-        let at = bytes.windows(MARK.len()).position(|w| w == MARK);
-        let start = at.ok_or("no raw appended data: not a frame of peridyne")? + MARK.len();
-        let head = std::str::from_utf8(&bytes[..start]).map_err(|e| e.to_string())?;
+impl<F: Read + Seek> Frame<F> {
+    fn of(mut file: F) -> Result<Frame<F>, String> {
+        let head = head(&mut file).map_err(|e| e.to_string())?;
+        let head = head.ok_or("no raw appended data: not a frame of peridyne")?;
+        let start = head.len() as u64;
+        let head = String::from_utf8(head).map_err(|e| e.to_string())?;
         let points = head
             .split_once("<Piece ")
             .and_then(|(_, piece)| attribute(piece, "NumberOfPoints"))
             .and_then(|n| n.parse().ok())
             .ok_or("no number of points")?;
-        let mut frame = Frame {
-            step: 0,
-            time: 0.0,
-            points,
-            arrays: vec![],
-            bytes: vec![],
-        };
+        let (mut step, mut time, mut arrays) = (0, 0.0, vec![]);
         for tag in head.split("<DataArray ").skip(1) {
             let name = attribute(tag, "Name").ok_or("an array without a name")?;
             let text = || Some(tag.split_once('>')?.1.split_once('<')?.0.trim());
             match name {
-                "TimeValue" => frame.time = text().and_then(|t| t.parse().ok()).unwrap_or(0.0),
-                "step" => frame.step = text().and_then(|t| t.parse().ok()).unwrap_or(0),
+                "TimeValue" => time = text().and_then(|t| t.parse().ok()).unwrap_or(0.0),
+                "step" => step = text().and_then(|t| t.parse().ok()).unwrap_or(0),
                 // cells are the points themselves
                 "connectivity" | "offsets" | "types" => {}
-                name => {
-                    let array = array(name, tag, &bytes, start, points)?;
-                    frame.arrays.push(array);
-                }
+                name => arrays.push(array(name, tag, &mut file, start, points)?),
             }
         }
-        frame.bytes = bytes;
-        Ok(frame)
+        Ok(Frame {
+            step,
+            time,
+            points,
+            arrays,
+            file: RefCell::new(file),
+        })
     }
 
     pub fn array(&self, name: &str) -> Option<&Array> {
@@ -109,16 +121,45 @@ impl Frame {
     }
 
     /// All numbers of an array, point after point.
-    pub fn numbers(&self, array: &Array) -> impl Iterator<Item = f64> {
+    ///
+    /// # Errors
+    /// The operating system's.
+    pub fn numbers(&self, array: &Array) -> io::Result<Vec<f64>> {
         let size = array.kind.bytes();
-        let all = &self.bytes[array.start..][..size * self.points * array.components];
-        let kind = array.kind;
-        all.chunks_exact(size).map(move |b| match kind {
-            Number::Float64 => f64::from_le_bytes(fixed(b)),
-            Number::Int64 => i64::from_le_bytes(fixed(b)) as f64,
-            Number::Int32 => i32::from_le_bytes(fixed(b)).into(),
-            Number::UInt32 => u32::from_le_bytes(fixed(b)).into(),
-        })
+        let mut file = self.file.borrow_mut();
+        file.seek(SeekFrom::Start(array.start))?;
+        let mut left = self.points * array.components;
+        let mut all = Vec::with_capacity(left);
+        let mut bytes = vec![0; size * left.min(PIECE)];
+        while left > 0 {
+            let piece = &mut bytes[..size * left.min(PIECE)];
+            file.read_exact(piece)?;
+            all.extend(piece.chunks_exact(size).map(|b| array.kind.number(b)));
+            left -= left.min(PIECE);
+        }
+        Ok(all)
+    }
+}
+
+/// Numbers that are read at once.
+const PIECE: usize = 1 << 14;
+
+/// All up to the appended data; `None`: there are none.
+fn head(file: &mut impl Read) -> io::Result<Option<Vec<u8>>> {
+    let mut all = vec![];
+    let mut piece = [0; 4096];
+    loop {
+        let read = file.read(&mut piece)?;
+        if read == 0 {
+            return Ok(None);
+        }
+        let before = all.len().saturating_sub(MARK.len());
+        all.extend(&piece[..read]);
+        let found = all[before..].windows(MARK.len()).position(|w| w == MARK);
+        if let Some(at) = found {
+            all.truncate(before + at + MARK.len());
+            return Ok(Some(all));
+        }
     }
 }
 
@@ -136,8 +177,8 @@ fn attribute<'a>(text: &'a str, key: &str) -> Option<&'a str> {
 fn array(
     name: &str,
     tag: &str,
-    bytes: &[u8],
-    start: usize,
+    file: &mut (impl Read + Seek),
+    start: u64,
     points: usize,
 ) -> Result<Array, String> {
     let wrong = |what: &str| format!("{name}: {what}");
@@ -146,12 +187,18 @@ fn array(
     let kind = kind.ok_or_else(|| wrong("numbers of an unknown type"))?;
     let components = number("NumberOfComponents").ok_or_else(|| wrong("no components"))?;
     let offset = number("offset").ok_or_else(|| wrong("no offset"))?;
-    let begin = start + offset;
-    let expected = kind.bytes() * points * components;
-    let length = bytes.get(begin..begin + 8);
-    let length = length.map(|b| u64::from_le_bytes(fixed(b)));
-    if length != Some(expected as u64) || bytes.len() < begin + 8 + expected {
-        return Err(wrong("cut short"));
+    let begin = start + offset as u64;
+    let expected = (kind.bytes() * points * components) as u64;
+    let mut length = || -> io::Result<[u64; 2]> {
+        let end = file.seek(SeekFrom::End(0))?;
+        file.seek(SeekFrom::Start(begin))?;
+        let mut length = [0; 8];
+        file.read_exact(&mut length)?;
+        Ok([u64::from_le_bytes(length), end])
+    };
+    match length() {
+        Ok([length, end]) if length == expected && end >= begin + 8 + expected => {}
+        _ => return Err(wrong("cut short")),
     }
     let names = (0..components).map_while(|c| attribute(tag, &format!("ComponentName{c}")));
     Ok(Array {
@@ -185,6 +232,7 @@ mod tests {
     use crate::write::fields::tests::{put, small};
     use crate::write::vtu::write_points;
     use peridyne::observe::Values;
+    use std::io::Cursor;
 
     fn written() -> Vec<u8> {
         let mut s = small();
@@ -197,9 +245,9 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        let frame = Frame::of(written()).unwrap();
+        let frame = Frame::of(Cursor::new(written())).unwrap();
         assert_eq!((frame.step, frame.time, frame.points), (7, 1.5e-7, 3));
-        let all = |name: &str| -> Vec<f64> { frame.numbers(frame.array(name).unwrap()).collect() };
+        let all = |name: &str| -> Vec<f64> { frame.numbers(frame.array(name).unwrap()).unwrap() };
         let s = small();
         assert_eq!(all("displacement"), s.displacement().concat());
         assert_eq!(all("damage"), s.damage());
@@ -217,9 +265,9 @@ mod tests {
     fn what_is_cut_short_is_told() {
         let file = written();
         let short = file[..file.len() - 60].to_vec();
-        assert!(Frame::of(short).is_ok(), "cells are not read");
+        assert!(Frame::of(Cursor::new(short)).is_ok(), "cells are not read");
         for length in [0, 100, 2500] {
-            let text = Frame::of(file[..length].to_vec()).unwrap_err();
+            let text = Frame::of(Cursor::new(file[..length].to_vec())).unwrap_err();
             assert!(
                 text.contains("cut short") || text.contains("not a frame"),
                 "{text}"

@@ -36,7 +36,7 @@ fn side(s: &Side) -> Value {
     })
 }
 
-fn json(card: &Card, measured: Option<&Measured>) -> Value {
+fn json(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Value {
     json!({
         "factor": card.factor,
         "dimension": card.dimension,
@@ -70,7 +70,7 @@ fn json(card: &Card, measured: Option<&Measured>) -> Value {
             "steps": m.steps,
             "speed_up": m.seconds[0] / m.seconds[1],
         })),
-        "notes": card.notes,
+        "notes": card.notes.iter().map(|n| units.tell(n)).collect::<Vec<_>>(),
     })
 }
 
@@ -87,7 +87,7 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
         t += "Nothing speaks against this upscaling.\n";
     }
     for note in &card.notes {
-        let _ = writeln!(t, "- {note}");
+        let _ = writeln!(t, "- {}", units.tell(note));
     }
     t += "\n| | fine | coarse |\n|---|---:|---:|\n";
     let mut row = |name: &str, f: f64, c: f64, dim: Dim| {
@@ -217,7 +217,10 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, WriteError> {
     let mut files = vec![dir.join("card.json"), dir.join("card.md")];
     write_file(&files[0], |w| {
-        Ok(serde_json::to_writer_pretty(w, &json(card, measured))?)
+        Ok(serde_json::to_writer_pretty(
+            w,
+            &json(card, units, measured),
+        )?)
     })?;
     write_file(&files[1], |w| {
         w.write_all(markdown(card, units, measured).as_bytes())

@@ -147,6 +147,8 @@ pub struct Report {
     pub seconds_stepping: f64,
     pub ns_per_point_step: Option<f64>,
     pub peak_memory_bytes: Option<u64>,
+    /// What looked wrong in the deck.
+    pub warnings: Vec<String>,
     /// What reports tell besides.
     pub setting: Setting,
 }

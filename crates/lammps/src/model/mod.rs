@@ -33,7 +33,9 @@ fn in_plane(what: &str, values: &[f64], expected: f64) -> Result<(), HostError> 
     match values.iter().find(|z| **z != expected) {
         None => Ok(()),
         Some(z) => Err(HostError::new(format!(
-            "an atom has the z {what} {z:e} in two dimensions; all others have {expected:e}"
+            "an atom has the z {what} {} in two dimensions; all others have {}",
+            rounded(*z, 6),
+            rounded(expected, 6)
         ))
         .help("use `dimension 3`, or leave z alone")),
     }

@@ -1,5 +1,8 @@
 //! What can be wrong with a request to coarsen, and what to do about it.
 
+use peridyne::message;
+use peridyne::quantity::{Dimension, Message, rounded};
+
 /// Why there is no coarse body. Points are those of the body below.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CoarsenError {
@@ -16,19 +19,19 @@ pub enum CoarsenError {
     #[error("the body is not finite at point {0}: check its positions, volumes and micromoduli")]
     NotFinite(usize),
     #[error(
-        "the radius of balls {radius} is below the longest bond {range} of the body below (two horizons for state-based laws): use {range} or more"
+        "{}", too_small(*.radius, *.range)
     )]
     Range { radius: f64, range: f64 },
-    #[error("the radius of balls must be a positive number, not {0}")]
+    #[error("{}", not_positive("radius of balls", *.0))]
     Radius(f64),
     #[error("the tolerance on the effective modulus must be between 0 and 1, not {0}")]
     Tolerance(f64),
     #[error(
-        "the ball of radius {radius} about retained point {point} holds no other retained point: retain more points or use a larger radius"
+        "{}", alone(*.point, *.radius)
     )]
     Alone { point: usize, radius: f64 },
     #[error(
-        "removed point {point} lies in no ball of radius {radius} about a retained point: retain more points or use a larger radius"
+        "{}", uncovered(*.point, *.radius)
     )]
     Uncovered { point: usize, radius: f64 },
     #[error(
@@ -40,11 +43,11 @@ pub enum CoarsenError {
     )]
     Disconnected { a: usize, b: usize },
     #[error(
-        "the removed points of the ball of radius {radius} about point {point} have no stable equilibrium (indefinite or singular operator): the body below is unstable there, or the ball cuts its state-based bonds; use the energy scheme, a larger radius or the Schur complement, or repair the body below"
+        "{}", indefinite(*.point, *.radius)
     )]
     Indefinite { point: usize, radius: f64 },
     #[error(
-        "the equations of the removed points of the ball of radius {radius} about point {point} are singular: some motion of them meets no force; use the energy scheme, a larger radius or the Schur complement, or retain more points"
+        "{}", singular(*.point, *.radius)
     )]
     Singular { point: usize, radius: f64 },
     #[error(
@@ -56,7 +59,7 @@ pub enum CoarsenError {
     )]
     IndefiniteBody,
     #[error(
-        "the equations of the ball about point {point} were not solved in {iterations} iterations (relative residual {residual:.1e}): stiffness contrast is extreme; use the Schur complement"
+        "the equations of the ball about point {point} were not solved in {iterations} iterations (relative residual {}): stiffness contrast is extreme; use the Schur complement", rounded(*.residual, 2)
     )]
     Unsolved {
         point: usize,
@@ -64,19 +67,19 @@ pub enum CoarsenError {
         residual: f64,
     },
     #[error(
-        "the coarse body has unstable modes: its stiffness has an eigenvalue below {low:.1e} of its largest; use the energy scheme, a larger radius, or the Schur complement"
+        "the coarse body has unstable modes: its stiffness has an eigenvalue below {} of its largest; use the energy scheme, a larger radius, or the Schur complement", rounded(*.low, 2)
     )]
     Unstable { low: f64 },
     #[error(
-        "the coarse body, whose rows are not symmetric, has unstable modes: an eigenvalue of its stiffness over its mass has a real part of {low:.1e} of its largest; use the energy scheme, a larger radius, or the Schur complement"
+        "the coarse body, whose rows are not symmetric, has unstable modes: an eigenvalue of its stiffness over its mass has a real part of {} of its largest; use the energy scheme, a larger radius, or the Schur complement", rounded(*.low, 2)
     )]
     Repelled { low: f64 },
     #[error(
-        "action is not reaction in the body below (by {0:.1e} of its largest micromodulus), and the energy scheme needs an energy: use the row scheme, or symmetrise the body below"
+        "action is not reaction in the body below (by {} of its largest micromodulus), and the energy scheme needs an energy: use the row scheme, or symmetrise the body below", rounded(*.0, 2)
     )]
     Unsymmetric(f64),
     #[error(
-        "a rigid rotation of the coarse body meets forces ({found:.1e} of its stiffness, allowed {allowed:.1e}): use the energy scheme, a larger radius, or the Schur complement"
+        "a rigid rotation of the coarse body meets forces ({} of its stiffness, allowed {}): use the energy scheme, a larger radius, or the Schur complement", rounded(*.found, 2), rounded(*.allowed, 2)
     )]
     Rotation { found: f64, allowed: f64 },
     #[error(
@@ -96,13 +99,90 @@ pub enum CoarsenError {
         limit: usize,
     },
     #[error(
-        "points do not lie on a lattice along axis {axis} (point {point} is off by {off:.1e} of the spacing): choose by blue noise or mark points"
+        "points do not lie on a lattice along axis {axis} (point {point} is off by {} of the spacing): choose by blue noise or mark points", rounded(*.off, 2)
     )]
     NotLattice { axis: usize, point: usize, off: f64 },
     #[error("every 0-th point cannot be retained along axis {axis}: use 1 to retain all")]
     EveryZero { axis: usize },
-    #[error("the spacing of retained points must be a positive number, not {0}")]
+    #[error("{}", not_positive("spacing of retained points", *.0))]
     Spacing(f64),
     #[error("{count} points cannot be retained of {points}: ask for 1 to {points}")]
     Count { count: usize, points: usize },
+}
+
+impl CoarsenError {
+    /// What it says, its numbers with what they measure.
+    pub fn message(&self) -> Message {
+        match self {
+            CoarsenError::Range { radius, range } => too_small(*radius, *range),
+            CoarsenError::Radius(radius) => not_positive("radius of balls", *radius),
+            CoarsenError::Alone { point, radius } => alone(*point, *radius),
+            CoarsenError::Uncovered { point, radius } => uncovered(*point, *radius),
+            CoarsenError::Indefinite { point, radius } => indefinite(*point, *radius),
+            CoarsenError::Singular { point, radius } => singular(*point, *radius),
+            CoarsenError::Spacing(spacing) => not_positive("spacing of retained points", *spacing),
+            other => other.to_string().into(),
+        }
+    }
+}
+
+fn length(x: f64) -> Message {
+    message![Dimension::LENGTH.of(x)]
+}
+
+fn too_small(radius: f64, range: f64) -> Message {
+    message![
+        "the radius of balls ",
+        length(radius),
+        " is below the longest bond ",
+        length(range),
+        " of the body below (two horizons for state-based laws): use ",
+        length(range),
+        " or more",
+    ]
+}
+
+fn not_positive(what: &str, x: f64) -> Message {
+    message![
+        format!("the {what} must be a positive number, not "),
+        length(x)
+    ]
+}
+
+fn alone(point: usize, radius: f64) -> Message {
+    message![
+        "the ball of radius ",
+        length(radius),
+        format!(
+            " about retained point {point} holds no other retained point: retain more points or use a larger radius"
+        ),
+    ]
+}
+
+fn uncovered(point: usize, radius: f64) -> Message {
+    message![
+        format!("removed point {point} lies in no ball of radius "),
+        length(radius),
+        " about a retained point: retain more points or use a larger radius",
+    ]
+}
+
+fn indefinite(point: usize, radius: f64) -> Message {
+    message![
+        "the removed points of the ball of radius ",
+        length(radius),
+        format!(
+            " about point {point} have no stable equilibrium (indefinite or singular operator): the body below is unstable there, or the ball cuts its state-based bonds; use the energy scheme, a larger radius or the Schur complement, or repair the body below"
+        ),
+    ]
+}
+
+fn singular(point: usize, radius: f64) -> Message {
+    message![
+        "the equations of the removed points of the ball of radius ",
+        length(radius),
+        format!(
+            " about point {point} are singular: some motion of them meets no force; use the energy scheme, a larger radius or the Schur complement, or retain more points"
+        ),
+    ]
 }

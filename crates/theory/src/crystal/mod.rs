@@ -16,6 +16,8 @@ pub mod mixture;
 pub mod potential;
 pub mod solid;
 
+use peridyne::message;
+use peridyne::quantity::{Dimension, Message, rounded};
 use peridyne::space::lattice::LatticeKind;
 
 pub use atoms::Atom;
@@ -98,19 +100,19 @@ pub enum CrystalError {
         expected: usize,
         found: usize,
     },
-    #[error("{what} is {value}, expected a positive number")]
+    #[error("{what} is {}, expected a positive number", rounded(*.value, 6))]
     NotPositive { what: &'static str, value: f64 },
     #[error("the potential has no cut-off: say up to which distance or shell neighbours count")]
     NoCutoff,
-    #[error("no neighbour within the reach of {reach}: the nearest is at {nearest}")]
+    #[error("{}", no_neighbours(*.reach, *.nearest))]
     NoNeighbours { reach: f64, nearest: f64 },
     #[error("at most {most} shells of neighbours are counted, {requested} were asked for")]
     TooManyShells { requested: u32, most: u32 },
     #[error("at most {most} gradient orders are derived, {requested} were asked for")]
     TooManyTerms { requested: usize, most: usize },
     #[error(
-        "the embedding energy has no value at the reference density {density}: the state is outside of what the \
-         potential describes"
+        "the embedding energy has no value at the reference density {}: the state is outside of what the \
+         potential describes", rounded(*.density, 6)
     )]
     Density { density: f64 },
     #[error("atoms have a potential: take `Crystal::of_potential`")]
@@ -136,8 +138,36 @@ pub enum CrystalError {
     /// The horizon is in another unit, most likely.
     #[error("{0}")]
     TooManyBonds(String),
-    #[error("the potential has no value at the distance {distance} of the reference")]
+    #[error("{}", no_value(*.distance))]
     Distance { distance: f64 },
+}
+
+impl CrystalError {
+    /// What it says, its numbers with what they measure.
+    pub fn message(&self) -> Message {
+        match self {
+            CrystalError::NoNeighbours { reach, nearest } => no_neighbours(*reach, *nearest),
+            CrystalError::Distance { distance } => no_value(*distance),
+            other => other.to_string().into(),
+        }
+    }
+}
+
+fn no_neighbours(reach: f64, nearest: f64) -> Message {
+    message![
+        "no neighbour within the reach of ",
+        Dimension::LENGTH.of(reach),
+        ": the nearest is at ",
+        Dimension::LENGTH.of(nearest),
+    ]
+}
+
+fn no_value(distance: f64) -> Message {
+    message![
+        "the potential has no value at the distance ",
+        Dimension::LENGTH.of(distance),
+        " of the reference",
+    ]
 }
 
 fn positive(what: &'static str, value: f64) -> Result<(), CrystalError> {

@@ -4,6 +4,7 @@
 use crate::exact::Field;
 use crate::exact::polynomial::JetPolynomial;
 use crate::gradient::Expansion;
+use peridyne::quantity::rounded;
 use std::fmt;
 
 /// One gradient order of two models.
@@ -78,8 +79,11 @@ impl<F: Field + fmt::Display> fmt::Display for Comparison<F> {
             } else {
                 writeln!(
                     f,
-                    "order {}: different by {:.3e}: {} against {}",
-                    row.order, row.relative, row.left, row.right
+                    "order {}: different by {}: {} against {}",
+                    row.order,
+                    rounded(row.relative, 4),
+                    row.left,
+                    row.right
                 )?;
             }
         }

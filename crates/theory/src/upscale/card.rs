@@ -6,6 +6,8 @@ use crate::crystal::Crystal;
 use crate::exact::polynomial::Monomial;
 use crate::gradient::nonlinear;
 use crate::lattice_dynamics::{NONLINEAR_TERMS, STRETCHES};
+use peridyne::message;
+use peridyne::quantity::{Dimension, Message};
 use peridyne::run::{Options, build};
 use peridyne::spec::{BodySpec, FamilyChoice, Horizon, Spec, TimeStep};
 use std::collections::BTreeSet;
@@ -88,7 +90,7 @@ pub struct Card {
     /// Points × bonds × steps of the fine model over those of the coarse, both at their stable steps.
     pub cost: f64,
     /// Where the upscaling is not valid, in words.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
 }
 
 /// Tolerances for which wavelengths are given.
@@ -111,7 +113,7 @@ fn card_in<const D: usize>(
     factor: u32,
     rule: Rule,
 ) -> Result<Card, UpscaleError> {
-    let mut notes = vec![];
+    let mut notes: Vec<Message> = vec![];
     let (a, a_reference) = crystal::<D>(fine)?;
     let (b, b_reference) = crystal::<D>(coarse)?;
     let left = side(fine, &a, a_reference)?;
@@ -119,19 +121,22 @@ fn card_in<const D: usize>(
     if a_reference.is_some() {
         let scale = left.stiffness[0][0].abs();
         if left.pressure.abs() > 1e-4 * scale {
-            notes.push(format!(
-                "The reference is under a pressure of {:.6e}, {:.2} % of c11: ends and surfaces must be held, and constants contain it.",
-                left.pressure,
-                100.0 * left.pressure / scale
-            ));
+            notes.push(message![
+                "The reference is under a pressure of ",
+                Dimension::PRESSURE.of(left.pressure),
+                format!(
+                    ", {:.2} % of c11: ends and surfaces must be held, and constants contain it.",
+                    100.0 * left.pressure / scale
+                ),
+            ]);
         }
     }
     for (name, side) in [("fine", &left), ("coarse", &right)] {
         if let Some(part) = side.unstable {
-            notes.push(format!(
+            notes.push(Message::from(format!(
                 "The reference state of the {name} model is unstable: {:.1} % of all waves grow. Nothing that follows from it can be trusted.",
                 100.0 * part
-            ));
+            )));
         }
     }
     if rule == Rule::Horizon && right.bonds <= 2 * D {
@@ -207,17 +212,24 @@ fn card_in<const D: usize>(
 }
 
 /// What becomes of the waves in which the sites of a cell move against each other.
-fn optical<const D: usize>(fine: &Crystal<D>, factor: u32) -> String {
+fn optical<const D: usize>(fine: &Crystal<D>, factor: u32) -> Message {
     let squares = fine.squares([0.0; D]);
-    let each: Vec<String> = { squares.iter().skip(D) }
-        .map(|s| format!("{:.6e}", s.abs().sqrt().copysign(*s)))
-        .collect();
-    format!(
-        "The cell has {} sites. Acoustic waves are kept, and so are mass density and elastic constants with sites relaxed; the {} optical branches of the fine model, ω = {} where all cells move alike, are lost: those of the coarse model lie at 1/{factor} of these and stand for nothing.",
-        fine.basis.len(),
-        squares.len() - D,
-        each.join(", ")
-    )
+    let mut each = Message::default();
+    for (n, s) in squares.iter().skip(D).enumerate() {
+        each.add(if n > 0 { ", " } else { "" });
+        each.add(Dimension::FREQUENCY.of(s.abs().sqrt().copysign(*s)));
+    }
+    message![
+        format!(
+            "The cell has {} sites. Acoustic waves are kept, and so are mass density and elastic constants with sites relaxed; the {} optical branches of the fine model, ω = ",
+            fine.basis.len(),
+            squares.len() - D
+        ),
+        each,
+        format!(
+            " where all cells move alike, are lost: those of the coarse model lie at 1/{factor} of these and stand for nothing."
+        ),
+    ]
 }
 
 /// Of both models, where both have a value.
@@ -309,7 +321,7 @@ fn cell_under_strain<const D: usize>(spec: &Spec) -> Option<Strained<'_>> {
 }
 
 /// Energies of both models under homogeneous strains.
-fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRow> {
+fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<Message>) -> Vec<EnergyRow> {
     let d = fine.dimension;
     let [Some(a), Some(b)] = [fine, coarse].map(strained) else {
         notes.push(
@@ -337,9 +349,9 @@ fn energies(fine: &Spec, coarse: &Spec, notes: &mut Vec<String>) -> Vec<EnergyRo
             let tensor = shape.map(|row| row.map(|x| strain * x));
             let (fine, coarse) = (a(tensor) - rest_a, b(tensor) - rest_b);
             if !(fine.is_finite() && coarse.is_finite()) {
-                notes.push(format!(
-                    "Under a {mode} strain of {strain} the energy has no value (ρ_h ≤ 0)."
-                ));
+                let told =
+                    format!("Under a {mode} strain of {strain} the energy has no value (ρ_h ≤ 0).");
+                notes.push(told.into());
                 continue;
             }
             rows.push(EnergyRow {

@@ -28,6 +28,8 @@ use atoms::Atoms;
 use crate::crystal::{Crystal, CrystalError, LatticeSolid, Reach, Reference};
 use peridyne::family::stencil::Stencil;
 use peridyne::law::potential::{KeptReach, Potential, Visitor};
+use peridyne::message;
+use peridyne::quantity::{Dimension, Message};
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::{
     BodySpec, FamilyChoice, Horizon, LawSpec, PmbStiffness, PotentialSpec, Schedule, Spec, TimeStep,
@@ -61,7 +63,7 @@ pub enum UpscaleError {
         choices: String,
     },
     #[error(
-        "the coarse spacing {spacing:e} is beyond the horizon {horizon:e}: points would be alone; the largest factor is {most}"
+        "{}", beyond(*.spacing, *.horizon, *.most)
     )]
     BeyondHorizon {
         spacing: f64,
@@ -84,6 +86,32 @@ pub enum UpscaleError {
     Crystal(#[from] CrystalError),
     #[error(transparent)]
     Surface(#[from] crate::homogenize::surface::SurfaceError),
+}
+
+fn beyond(spacing: f64, horizon: f64, most: u32) -> Message {
+    message![
+        "the coarse spacing ",
+        Dimension::LENGTH.of(spacing),
+        " is beyond the horizon ",
+        Dimension::LENGTH.of(horizon),
+        format!(": points would be alone; the largest factor is {most}"),
+    ]
+}
+
+impl UpscaleError {
+    /// What it says, its numbers with what they measure.
+    pub fn message(&self) -> Message {
+        match self {
+            UpscaleError::BeyondHorizon {
+                spacing,
+                horizon,
+                most,
+            } => beyond(*spacing, *horizon, *most),
+            UpscaleError::Crystal(e) => e.message(),
+            UpscaleError::Surface(e) => e.message(),
+            other => other.to_string().into(),
+        }
+    }
 }
 
 /// What can be asked to be kept.

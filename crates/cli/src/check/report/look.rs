@@ -49,8 +49,9 @@ fn time(found: &Findings) -> Option<String> {
     let (info, spec) = (found.sim.info(), found.spec);
     if let Some(statics) = spec.schedule.statics() {
         return Some(format!(
-            "equilibrium: {} increments of load, each to a residual of {:e}",
-            found.steps, statics.tolerance
+            "equilibrium: {} increments of load, each to a residual of {}",
+            found.steps,
+            rounded(statics.tolerance, 4)
         ));
     }
     let lasts = found.steps as f64 * info.time_step;

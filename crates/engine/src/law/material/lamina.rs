@@ -110,6 +110,9 @@ fn young(parameters: &Parameters) -> Result<[f64; 2], String> {
 /// A row of the family along a direction, of length one.
 fn row(family: &[Partner<3>], fibre: Point, d: usize) -> Result<Point, String> {
     let size = length(&fibre);
+    if size == 0.0 {
+        return Err("`fibre` is a direction: it cannot be 0".into());
+    }
     if d == 2 && fibre[2] != 0.0 {
         return Err("`fibre` leaves the plane of the body, expected [x, y, 0]".into());
     }
@@ -230,9 +233,6 @@ fn constants(d: usize, plane: Plane, given: &Given) -> Result<LaminaConstants, S
     if given.weighted_volume.is_some() {
         return Err("in the continuum no bond lies along the fibre: constants of a lamina are sums over the lattice; leave `calibration` out".into());
     }
-    if given.parameters.direction(FIBRE).is_some() {
-        return Err("`fibre` follows the place, rows of a lattice do not: give three numbers, or take `anisotropic`".into());
-    }
     let fibre = match given.parameters.list(FIBRE) {
         Some(list) => [list[0], list[1], list[2]],
         None => [1.0, 0.0, 0.0],
@@ -291,7 +291,7 @@ impl Shelved for Lamina {
             ),
             list(
                 FIBRE,
-                Value::Direction,
+                Value::List(3, Dimension::NUMBER, Bounds::ANY),
                 Need::Optional,
                 "Direction of the fibre, three numbers, along which the lattice has bonds; [1, 0, 0] when left out.",
             ),

@@ -140,6 +140,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         pictures: true,
         report: true,
         dir: None,
+        warnings: lower::unitless(&context),
         source: source.clone(),
     })
 }

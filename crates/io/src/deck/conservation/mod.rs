@@ -42,6 +42,8 @@ pub struct LawDeck {
     pub report: bool,
     /// Folder; `None`: chosen by the caller.
     pub dir: Option<PathBuf>,
+    /// What looks wrong though it can be run, with its line.
+    pub warnings: Vec<String>,
     source: Source,
 }
 

@@ -3,7 +3,7 @@
 mod material;
 mod shape;
 
-use super::units::{Dim, UnitSystem};
+use super::units::{Dim, UnitSystem, short};
 use material::{between_atoms, criterion, material, potentials};
 use peridyne::run::Shelf;
 use peridyne::spec::{
@@ -310,12 +310,15 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         Stepper::Verlet | Stepper::Statics(_) => String::new(),
         Stepper::Still => ", no point moves".into(),
         Stepper::Newmark(n) if n.alpha != 0.0 => format!(
-            ", implicit by the method of Hilber, Hughes and Taylor with alpha = {}, tolerance {:e}",
-            n.alpha, n.tolerance
+            ", implicit by the method of Hilber, Hughes and Taylor with alpha = {}, tolerance {}",
+            n.alpha,
+            short(n.tolerance)
         ),
         Stepper::Newmark(n) => format!(
-            ", implicit by Newmark's method with beta = {}, gamma = {}, tolerance {:e}",
-            n.beta, n.gamma, n.tolerance
+            ", implicit by Newmark's method with beta = {}, gamma = {}, tolerance {}",
+            n.beta,
+            n.gamma,
+            short(n.tolerance)
         ),
     };
     lines.push(format!("run        {steps} of {step}{how}"));
@@ -334,8 +337,8 @@ fn equilibrium(statics: &Statics, increments: u64) -> String {
         Control::Breaking => "equilibria, each where the next bond breaks",
     };
     format!(
-        "statics    {increments} {what}, {method}, tolerance {:e}",
-        statics.tolerance
+        "statics    {increments} {what}, {method}, tolerance {}",
+        short(statics.tolerance)
     )
 }
 
@@ -350,9 +353,9 @@ fn spreading(t: &TransferSpec) -> String {
                 true => "Crank and Nicolson",
                 false => "backward Euler",
             };
-            format!("implicit ({name}), tolerance {tolerance:e}")
+            format!("implicit ({name}), tolerance {}", short(tolerance))
         }
-        TransferMethod::Steady { tolerance } => format!("steady, tolerance {tolerance:e}"),
+        TransferMethod::Steady { tolerance } => format!("steady, tolerance {}", short(tolerance)),
     };
     format!(
         "{:<11}{how}, {} initial values, {} conditions",

@@ -129,14 +129,13 @@ pub(super) fn body(
                 && longest > LONG
                 && let Some(file) = &written.file
             {
-                let place = context.error(&file.span, "");
-                let line = place.line.map_or(String::new(), |l| format!(":{l}"));
-                context.notes.push(format!(
-                    "{}{line}: lengths of {} are taken as metres, which makes a body of {}: file_unit = \"1 mm\" says otherwise",
-                    place.file,
+                let text = format!(
+                    "lengths of {} are taken as metres, which makes a body of {}: file_unit = \"1 mm\" says otherwise",
                     file.value,
                     context.units.show(longest, Dim::LENGTH),
-                ));
+                );
+                let remark = context.source.remark(&file.span, &text);
+                context.notes.push(remark);
             }
             if let Some(atoms) = &mut context.atoms {
                 let mass = context.units.plain_factor(Dim::MASS);

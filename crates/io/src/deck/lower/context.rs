@@ -50,10 +50,10 @@ impl<'a> Context<'a> {
             unitless: RefCell::default(),
             constants: BTreeMap::new(),
         };
-        // constants may use each other in any order; each round settles at least one, or the first error is real
+        // constants may use each other in any order; each round settles at least one, or an error is real
         let mut open: Vec<(&String, &Number)> = constants.iter().collect();
         while !open.is_empty() {
-            let mut failed = None;
+            let mut failed = Vec::new();
             let mut next = Vec::new();
             for (name, number) in &open {
                 match context.named_constant(name, number) {
@@ -61,15 +61,17 @@ impl<'a> Context<'a> {
                         context.constants.insert((*name).clone(), value);
                     }
                     Err(error) => {
-                        failed.get_or_insert(error);
+                        failed.push(error);
                         next.push((*name, *number));
                     }
                 }
             }
-            match failed {
-                Some(error) if next.len() == open.len() => return Err(error),
-                _ => open = next,
+            if !failed.is_empty() && next.len() == open.len() {
+                // those that use others fail because of these
+                let first = next.iter().position(|(_, number)| !uses(number, &next));
+                return Err(failed.swap_remove(first.unwrap_or(0)));
             }
+            open = next;
         }
         Ok(context)
     }
@@ -96,6 +98,10 @@ impl<'a> Context<'a> {
             Written::Text(text) => {
                 let (expression, kind) = self.compile(text, &number.span)?;
                 let value = self.constant_value(expression, &number.span)?;
+                if !value.is_finite() && text.trim().parse::<f64>().is_err() {
+                    let message = format!("the constant \"{name}\" is {value}, no finite number");
+                    return Err(self.error(&number.span, message));
+                }
                 let each = |v: f64| format!("{v} in the unit of each place that uses it");
                 self.see_unitless(text, &number.span, each);
                 Ok((value, kind.of_constant()))
@@ -505,4 +511,13 @@ fn placed(number: &Number, span: &Range<usize>) -> Number {
         value: number.value.clone(),
         span,
     }
+}
+
+/// Does the text of a number name one of these constants?
+fn uses(number: &Number, constants: &[(&String, &Number)]) -> bool {
+    let Written::Text(text) = &number.value else {
+        return false;
+    };
+    text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .any(|word| constants.iter().any(|(name, _)| *name == word))
 }

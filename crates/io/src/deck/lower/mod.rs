@@ -24,6 +24,7 @@ mod warnings;
 pub(super) use atoms::boltzmann;
 pub(super) use material::point_volume;
 pub(super) use schedule::{MANY_STEPS, steps};
+pub(super) use warnings::unitless;
 
 use super::OutputSpec;
 use super::document::{
@@ -487,7 +488,10 @@ fn surface_factors(
     };
     match peridyne_theory::homogenize::surface::correct(spec, method) {
         Ok((factors, _)) => Ok(Some(factors)),
-        Err(e) => Err(context.error_with(&named.span, e.to_string(), e.help())),
+        Err(e) => {
+            let message = context.units.tell(&e.message());
+            Err(context.error_with(&named.span, message, e.help()))
+        }
     }
 }
 

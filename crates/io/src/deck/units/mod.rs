@@ -194,6 +194,11 @@ impl UnitSystem {
         }
     }
 
+    /// SI value of a computed number.
+    pub fn to_si(self, value: f64, dim: Dim) -> f64 {
+        value * self.computed(dim)
+    }
+
     /// Factor from SI to the unit that a plain number has.
     pub fn from_si(self, dim: Dim) -> f64 {
         1.0 / self.plain(dim)

@@ -165,9 +165,10 @@ impl Image {
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         let mut writer = encoder.write_header().map_err(io_error)?;
-        writer
-            .write_image_data(self.pixels.as_flattened())
-            .map_err(io_error)?;
+        // row after row: no second copy of the pixels
+        let mut rows = writer.stream_writer().map_err(io_error)?;
+        rows.write_all(self.pixels.as_flattened())?;
+        rows.finish().map_err(io_error)?;
         writer.finish().map_err(io_error)
     }
 }

@@ -113,18 +113,41 @@ fn lit(channel: f32, light: f32) -> f32 {
     }
 }
 
-/// Depth, place among the colours and light per fine pixel of some rows of a view.
+/// Depth, place among the colours and face per fine pixel of a part of a view, a byte or four each: parts reach far around where cubes
+/// are large.
 struct Buffer {
     width: usize,
     height: usize,
-    /// Row of the view that is row 0 here.
-    first: usize,
-    /// Towards the viewer, in edges of a cube; −∞ where there is nothing.
+    /// Row and column of the view that are the first here.
+    first: [usize; 2],
+    /// Towards the viewer, in edges of a cube, and then the height above the ground of the body; −∞ where there is nothing.
     depth: Vec<f32>,
-    part: Vec<f32>,
-    light: Vec<f32>,
+    /// Place in the table of colours.
+    part: Vec<u8>,
+    /// Place in [`FACES`].
+    face: Vec<u8>,
     /// Edge of a cube in fine pixels.
     edge: f64,
+}
+
+/// Light of a cube seen from straight above, and of its top and its front seen obliquely.
+const FACES: [f32; 3] = [1.0, TOP_LIGHT, SIDE_LIGHT];
+
+/// Rows and columns of a buffer that come into the image, with the light of each pixel.
+struct Core {
+    rows: Range<usize>,
+    columns: Range<usize>,
+    light: Vec<f32>,
+}
+
+impl Core {
+    /// Places in a buffer and in the light.
+    fn places(&self, width: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let columns = self.columns.clone();
+        let rows = self.rows.clone();
+        let each = rows.flat_map(move |row| columns.clone().map(move |c| row * width + c));
+        each.enumerate().map(|(n, at)| (at, n))
+    }
 }
 
 /// A point as it is drawn: where, its place among the colours from 0 to 1, and its edge in spacings.
@@ -152,34 +175,53 @@ pub fn draw(
         .max(slope_radius(edge) + 1)
         .div_ceil(FINE)
         * FINE;
-    for top in (0..h).step_by(BAND * FINE) {
-        let rows = top..(top + BAND * FINE).min(h);
-        let first = top.saturating_sub(margin);
-        let height = (rows.end + margin).min(h) - first;
-        let mut buffer = Buffer {
-            width: w,
-            height,
-            first,
-            depth: vec![f32::NEG_INFINITY; w * height],
-            part: vec![0.0; w * height],
-            light: vec![0.0; w * height],
-            edge,
-        };
-        for (x, part, size) in points.clone() {
-            let p = camera.project(x);
-            let screen = [
-                (p[0] - frame.low[0]) * fine,
-                (frame.high[1] - p[1]) * fine - first as f64,
-            ];
-            let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
-            buffer.cube(screen, (depth as f32, part as f32), size, camera);
+    // parts are as narrow as what they need around them is wide
+    let across = match margin {
+        m if m < BAND * FINE => w,
+        m => (2 * m).next_multiple_of(FINE),
+    };
+    let down = margin.max(BAND * FINE).next_multiple_of(FINE);
+    let around = |from: usize, size: usize, end: usize| {
+        let core = from..(from + size).min(end);
+        let first = from.saturating_sub(margin);
+        let length = (core.end + margin).min(end) - first;
+        (core.start - first..core.end - first, first, length)
+    };
+    let table: Vec<Color> = (0..=255).map(|i| map.color(f64::from(i) / 255.0)).collect();
+    for top in (0..h).step_by(down) {
+        for left in (0..w).step_by(across) {
+            let (rows, row, height) = around(top, down, h);
+            let (columns, column, width) = around(left, across, w);
+            let mut buffer = Buffer {
+                width,
+                height,
+                first: [row, column],
+                depth: vec![f32::NEG_INFINITY; width * height],
+                part: vec![0; width * height],
+                face: vec![0; width * height],
+                edge,
+            };
+            for (x, part, size) in points.clone() {
+                let p = camera.project(x);
+                let screen = [(p[0] - frame.low[0]) * fine, (frame.high[1] - p[1]) * fine];
+                let depth = (p[2] - frame.low[2]) / (spacing * OVERLAP);
+                let place = ((part as f32).clamp(0.0, 1.0) * 255.0).round() as u8;
+                buffer.cube(screen, (depth as f32, place), size, camera);
+            }
+            buffer.raise(camera);
+            let mut core = Core {
+                light: vec![],
+                rows,
+                columns,
+            };
+            let faces = core.places(width).map(|(at, _)| buffer.face[at]);
+            core.light = faces.map(|face| FACES[usize::from(face)]).collect();
+            if camera.cosine == 0.0 {
+                buffer.light_slopes(&mut core);
+            }
+            buffer.darken_hollows(&mut core);
+            buffer.average_onto(image, corner, &core, &table);
         }
-        let heights = buffer.heights(camera);
-        if camera.cosine == 0.0 {
-            buffer.light_slopes(&heights);
-        }
-        buffer.darken_hollows(&heights);
-        buffer.average_onto(image, corner, rows, map);
     }
 }
 
@@ -194,27 +236,28 @@ fn hollow_radius(edge: f64) -> usize {
 
 impl Buffer {
     /// A cube seen from `elevation`: its top face above its front face, each a rectangle; of so many edges where it is seen from above.
-    fn cube(&mut self, [x, y]: [f64; 2], (depth, part): (f32, f32), size: f64, camera: &Camera) {
+    fn cube(&mut self, [x, y]: [f64; 2], (depth, part): (f32, u8), size: f64, camera: &Camera) {
         let (e, s, c) = (size * self.edge, camera.sine, camera.cosine);
-        let whole = |from: f64, to: f64, end: usize| {
-            let low = (from - 0.5).ceil().max(0.0) as usize;
-            low..((to - 0.5).ceil().max(0.0) as usize).min(end)
+        let [first_row, first_column] = self.first;
+        let whole = |from: f64, to: f64, first: usize, count: usize| {
+            let low = ((from - 0.5).ceil().max(0.0) as usize).max(first);
+            low..((to - 0.5).ceil().max(0.0) as usize).min(first + count)
         };
         let top = y - 0.5 * e * (s + c);
         // the front upper edge of the cube is the part nearest to the viewer
         let ridge = top + e * s;
         let nearest = depth + (0.5 * (s + c)) as f32;
         let overlaps = size != 1.0 && c == 0.0;
-        for row in whole(top, top + e * (s + c), self.height) {
+        for row in whole(top, top + e * (s + c), first_row, self.height) {
             let v = row as f64 + 0.5 - ridge;
-            let (fall, light) = match (v < 0.0, c == 0.0) {
-                (_, true) => (0.0, 1.0),
-                (true, _) => (-v * c / s / e, TOP_LIGHT),
-                (false, _) => (v * s / c / e, SIDE_LIGHT),
+            let (fall, face) = match (v < 0.0, c == 0.0) {
+                (_, true) => (0.0, 0),
+                (true, _) => (-v * c / s / e, 1),
+                (false, _) => (v * s / c / e, 2),
             };
             let depth = nearest - fall as f32;
-            for column in whole(x - 0.5 * e, x + 0.5 * e, self.width) {
-                let at = row * self.width + column;
+            for column in whole(x - 0.5 * e, x + 0.5 * e, first_column, self.width) {
+                let at = (row - first_row) * self.width + column - first_column;
                 let mut depth = depth;
                 if overlaps {
                     let away = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
@@ -224,28 +267,26 @@ impl Buffer {
                 if depth > self.depth[at] {
                     self.depth[at] = depth;
                     self.part[at] = part;
-                    self.light[at] = light;
+                    self.face[at] = face;
                 }
             }
         }
     }
 
-    /// Height of the surface above the ground of the body (edges of a cube); −∞ where there is nothing. Seen
-    /// from above this is the depth; seen obliquely, unlike the depth, it is constant on a level surface.
-    fn heights(&self, camera: &Camera) -> Vec<f32> {
+    /// From depths to heights of the surface above the ground of the body (edges of a cube). Seen from above this is the depth; seen
+    /// obliquely, unlike the depth, it is constant on a level surface.
+    fn raise(&mut self, camera: &Camera) {
         let row_height = camera.cosine / self.edge;
-        let height = |(at, depth): (usize, &f32)| {
-            let row = (self.first + at / self.width) as f64;
-            depth * camera.sine as f32 - (row * row_height) as f32
-        };
-        self.depth.iter().enumerate().map(height).collect()
+        for (at, depth) in self.depth.iter_mut().enumerate() {
+            let row = (self.first[0] + at / self.width) as f64;
+            *depth = *depth * camera.sine as f32 - (row * row_height) as f32;
+        }
     }
 
     /// Mean of the heights within ±`radius` pixels along both axes; 0 where there is nothing.
-    fn blurred(&self, heights: &[f32], radius: usize) -> Vec<f32> {
+    fn blurred(&self, radius: usize) -> impl Fn(usize) -> f32 + use<> {
         let (w, h) = (self.width, self.height);
-        let mut sum: Vec<[f32; 2]> = heights
-            .iter()
+        let mut sum: Vec<[f32; 2]> = { self.depth.iter() }
             .map(|d| if d.is_finite() { [*d, 1.0] } else { [0.0; 2] })
             .collect();
         let mut line = Vec::new();
@@ -269,63 +310,63 @@ impl Buffer {
         };
         (0..h).for_each(|row| pass(row * w, 1, w));
         (0..w).for_each(|column| pass(column, w, h));
-        sum.into_iter()
-            .map(|[s, n]| if n > 0.5 { s / n } else { 0.0 })
-            .collect()
+        move |at| {
+            let [s, n] = sum[at];
+            if n > 0.5 { s / n } else { 0.0 }
+        }
     }
 
     /// Light from the upper left on the slopes of the smoothed surface.
-    fn light_slopes(&mut self, heights: &[f32]) {
-        let radius = slope_radius(self.edge);
-        let smooth = self.blurred(heights, radius);
+    fn light_slopes(&self, core: &mut Core) {
+        let smooth = self.blurred(slope_radius(self.edge));
         let solid = |at: usize| self.depth[at].is_finite();
-        let mut gain = vec![1f32; smooth.len()];
-        for row in 1..self.height.saturating_sub(1) {
-            for column in 1..self.width.saturating_sub(1) {
-                let at = row * self.width + column;
-                let around = [at - 1, at + 1, at - self.width, at + self.width];
-                if !solid(at) || !around.into_iter().all(solid) {
-                    continue;
-                }
-                // heights are in edges, so slopes are rise over run
-                let run = 2.0 / self.edge as f32;
-                let right = (smooth[at + 1] - smooth[at - 1]) / run;
-                let down = (smooth[at + self.width] - smooth[at - self.width]) / run;
-                gain[at] = 1.0 + (SLOPE_LIGHT * (right + down)).clamp(-0.35, 0.25);
+        for (at, n) in core.places(self.width) {
+            let (row, column) = (at / self.width, at % self.width);
+            let inside = (1..self.height.saturating_sub(1)).contains(&row)
+                && (1..self.width.saturating_sub(1)).contains(&column);
+            if !inside || !solid(at) {
+                continue;
             }
+            if ![at - 1, at + 1, at - self.width, at + self.width]
+                .into_iter()
+                .all(solid)
+            {
+                continue;
+            }
+            // heights are in edges, so slopes are rise over run
+            let run = 2.0 / self.edge as f32;
+            let right = (smooth(at + 1) - smooth(at - 1)) / run;
+            let down = (smooth(at + self.width) - smooth(at - self.width)) / run;
+            core.light[n] *= 1.0 + (SLOPE_LIGHT * (right + down)).clamp(-0.35, 0.25);
         }
-        self.light
-            .iter_mut()
-            .zip(gain)
-            .for_each(|(light, gain)| *light *= gain);
     }
 
     /// Darkens what lies deeper than its surroundings: cracks, and debris behind.
-    fn darken_hollows(&mut self, heights: &[f32]) {
-        let radius = hollow_radius(self.edge);
-        let smooth = self.blurred(heights, radius);
-        for ((light, height), smooth) in self.light.iter_mut().zip(heights).zip(smooth) {
+    fn darken_hollows(&self, core: &mut Core) {
+        let smooth = self.blurred(hollow_radius(self.edge));
+        for (at, n) in core.places(self.width) {
+            let height = self.depth[at];
             if height.is_finite() {
-                *light *= 1.0 - HOLLOW_SHADE * ((smooth - height) / 4.0).clamp(0.0, 1.0);
+                core.light[n] *= 1.0 - HOLLOW_SHADE * ((smooth(at) - height) / 4.0).clamp(0.0, 1.0);
             }
         }
     }
 
-    /// Average these fine rows of the view down to the image.
-    fn average_onto(&self, image: &mut Image, corner: [f64; 2], rows: Range<usize>, map: Map) {
-        let table: Vec<Color> = (0..=255).map(|i| map.color(f64::from(i) / 255.0)).collect();
-        for row in rows.start / FINE..rows.end.div_ceil(FINE) {
-            for column in 0..self.width.div_ceil(FINE) {
+    /// Averages fine pixels down to the image.
+    fn average_onto(&self, image: &mut Image, corner: [f64; 2], core: &Core, table: &[Color]) {
+        let (down, across) = (core.rows.len(), core.columns.len());
+        for row in 0..down.div_ceil(FINE) {
+            for column in 0..across.div_ceil(FINE) {
                 let mut sum = [0f32; 3];
                 let mut covered = 0.0;
-                for at in (0..FINE * FINE).filter_map(|k| {
-                    let (x, y) = (column * FINE + k % FINE, row * FINE + k / FINE);
-                    (x < self.width && y < rows.end).then(|| (y - self.first) * self.width + x)
-                }) {
+                for (x, y) in (0..FINE * FINE)
+                    .map(|k| (column * FINE + k % FINE, row * FINE + k / FINE))
+                    .filter(|(x, y)| *x < across && *y < down)
+                {
+                    let at = (core.rows.start + y) * self.width + core.columns.start + x;
                     if self.depth[at].is_finite() {
-                        let index = (self.part[at].clamp(0.0, 1.0) * 255.0).round() as usize;
-                        for (s, c) in sum.iter_mut().zip(table[index]) {
-                            *s += lit(f32::from(c), self.light[at]);
+                        for (s, c) in sum.iter_mut().zip(table[usize::from(self.part[at])]) {
+                            *s += lit(f32::from(c), core.light[y * across + x]);
                         }
                         covered += 1.0;
                     }
@@ -333,8 +374,11 @@ impl Buffer {
                 if covered > 0.0 {
                     let mean = sum.map(|s| (s / covered).round() as u8);
                     let opacity = f64::from(covered) / (FINE * FINE) as f64;
-                    let x = corner[0].round() as i64 + column as i64;
-                    image.blend(x, corner[1].round() as i64 + row as i64, mean, opacity);
+                    let first = [core.columns.start, core.rows.start];
+                    let x = (self.first[1] + first[0]) / FINE + column;
+                    let y = (self.first[0] + first[1]) / FINE + row;
+                    let [left, top] = corner.map(|c| c.round() as i64);
+                    image.blend(left + x as i64, top + y as i64, mean, opacity);
                 }
             }
         }

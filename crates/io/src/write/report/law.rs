@@ -41,9 +41,9 @@ pub fn read(path: &Path, setting: &Setting) -> Result<Option<Scene>, ReadError> 
             value: *time,
             position: place.clone(),
             displacement: Some(vec![0.0; place.len()]),
-            arrays: vec![Values::new("u", "scalar", u.to_vec())],
+            arrays: Box::new(std::iter::once(Ok(Values::new("u", "scalar", u.to_vec())))),
         };
-        maker.push(look, setting);
+        maker.push(look, setting)?;
     }
     Ok(maker.made())
 }

@@ -12,14 +12,12 @@ mod scene;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
 use super::atomic::{WriteError, write_file};
 use super::run_json::Setting;
 use crate::read::ReadError;
-use page::Texts;
+use page::{Counted, Texts};
 use scene::Scene;
 
 /// Bytes of a report, about: what people send and what telephones open.
@@ -193,9 +191,9 @@ impl Report {
             false => history::shown(&self.history),
         };
         notes.extend(note);
-        let mut blocks: Vec<String> = vec![];
-        let pictures = self.pictures.iter().map(|(name, bytes)| {
-            blocks.push(STANDARD.encode(bytes));
+        let mut blocks: Vec<Vec<u8>> = vec![];
+        let pictures = self.pictures.into_iter().map(|(name, bytes)| {
+            blocks.push(bytes);
             json!({"at": blocks.len() - 1, "name": name, "says": format!("Picture of the run: {name}")})
         });
         let pictures: Vec<Value> = pictures.collect();
@@ -214,7 +212,11 @@ impl Report {
             };
             page::length(&texts)
         };
-        let taken = texts(&meta.to_string()) + blocks.iter().map(String::len).sum::<usize>();
+        let written = |blocks: &[Vec<u8>]| -> usize {
+            let each = blocks.iter();
+            each.map(|b| b.len().div_ceil(3) * 4).sum()
+        };
+        let taken = texts(&meta.to_string()) + written(&blocks);
         let mut room = MOST.saturating_sub(taken + 20_000).max(LEAST);
         let many = self.scenes.len();
         let mut scenes = vec![];
@@ -244,29 +246,26 @@ impl Report {
                 }
             }
             scenes.push(packed.scene);
-            let before = blocks.iter().map(String::len).sum::<usize>();
-            blocks.extend(packed.blocks.iter().map(|b| STANDARD.encode(b)));
-            let after = blocks.iter().map(String::len).sum::<usize>();
-            room = room.saturating_sub(after - before);
+            room = room.saturating_sub(written(&packed.blocks));
+            blocks.extend(packed.blocks);
         }
         meta["scenes"] = scenes.into();
         meta["notes"] = notes.clone().into();
         let meta = meta.to_string();
-        let html = page::page(
-            &Texts {
-                title,
-                understood: &self.setting.understood,
-                deck: &self.setting.deck_text,
-                meta: &meta,
-            },
-            &blocks,
-        );
-        write_file(&path, |w| std::io::Write::write_all(w, html.as_bytes()))?;
-        Ok(Made {
-            path,
-            bytes: html.len(),
-            notes,
-        })
+        let texts = Texts {
+            title,
+            understood: &self.setting.understood,
+            deck: &self.setting.deck_text,
+            meta: &meta,
+        };
+        let mut bytes = 0;
+        write_file(&path, |w| {
+            let mut out = Counted::new(w);
+            page::page(&mut out, &texts, &blocks)?;
+            bytes = out.bytes;
+            Ok(())
+        })?;
+        Ok(Made { path, bytes, notes })
     }
 }
 

@@ -1,6 +1,10 @@
 //! The page: its parts in one file, texts as HTML.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io;
+
+use base64::display::Base64Display;
+use base64::engine::general_purpose::STANDARD;
 
 const PAGE: &str = include_str!("../../../assets/report/page.html");
 const STYLE: &str = include_str!("../../../assets/report/style.css");
@@ -25,36 +29,66 @@ pub struct Texts<'a> {
 
 /// Bytes of everything but blocks.
 pub fn length(texts: &Texts) -> usize {
-    page(texts, &[]).len()
+    let mut counted = Counted::new(io::sink());
+    // nothing can go wrong there
+    let _ = page(&mut counted, texts, &[]);
+    counted.bytes
 }
 
-/// The whole file; blocks are in base 64.
-pub fn page(texts: &Texts, blocks: &[String]) -> String {
-    let mut out = String::new();
+/// Writes the whole file; blocks become base 64.
+///
+/// # Errors
+/// The operating system's.
+pub fn page(mut out: impl io::Write, texts: &Texts, blocks: &[Vec<u8>]) -> io::Result<()> {
     let mut rest = PAGE;
     while let Some((before, after)) = rest.split_once("{{") {
-        out += before;
+        out.write_all(before.as_bytes())?;
         let (name, after) = after.split_once("}}").unwrap_or((after, ""));
         match name {
-            "title" => out += &escaped(texts.title),
-            "style" => out += STYLE,
-            "understood" => out += &terms(texts.understood, texts.title),
-            "deck" => out += &deck(texts.deck),
+            "title" => write!(out, "{}", escaped(texts.title))?,
+            "style" => write!(out, "{STYLE}")?,
+            "understood" => write!(out, "{}", terms(texts.understood, texts.title))?,
+            "deck" => write!(out, "{}", deck(texts.deck))?,
             // a string may hold what ends a script
-            "meta" => out += &texts.meta.replace('<', "\\u003c"),
+            "meta" => write!(out, "{}", texts.meta.replace('<', "\\u003c"))?,
             "blocks" => {
                 for (n, block) in blocks.iter().enumerate() {
-                    let _ = writeln!(
+                    let block = Base64Display::new(block, &STANDARD);
+                    writeln!(
                         out,
                         "<script type=\"text/plain\" id=\"b{n}\">{block}</script>"
-                    );
+                    )?;
                 }
             }
-            _ => SCRIPTS.iter().for_each(|s| out += s),
+            _ => SCRIPTS.iter().try_for_each(|s| write!(out, "{s}"))?,
         }
         rest = after;
     }
-    out + rest
+    out.write_all(rest.as_bytes())
+}
+
+/// Counts what is written.
+pub struct Counted<W> {
+    out: W,
+    pub bytes: usize,
+}
+
+impl<W: io::Write> Counted<W> {
+    pub fn new(out: W) -> Counted<W> {
+        Counted { out, bytes: 0 }
+    }
+}
+
+impl<W: io::Write> io::Write for Counted<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.bytes += written;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
 }
 
 pub fn escaped(text: &str) -> String {
@@ -159,7 +193,13 @@ mod tests {
             deck: "a = \"</code>\" # <i>",
             meta: "{\"x\": \"</script>\"}",
         };
-        let page = page(&texts, &["AAAA".into()]);
+        let mut page = vec![];
+        super::page(&mut page, &texts, &[vec![0; 3]]).unwrap();
+        assert_eq!(
+            page.len(),
+            length(&texts) + "<script type=\"text/plain\" id=\"b0\">AAAA</script>\n".len()
+        );
+        let page = String::from_utf8(page).unwrap();
         assert!(page.contains("<title>&lt;b&gt;{{deck}}&lt;/b&gt;</title>"));
         assert!(page.contains("<dt>body</dt><dd>&lt;/dl&gt;&lt;script&gt;</dd>"));
         assert!(page.contains("<span class=\"s\">&quot;&lt;/code&gt;&quot;</span> <span class=\"r\"># &lt;i&gt;</span>"));

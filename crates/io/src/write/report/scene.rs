@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::quantise::Codes;
 use crate::read::frames::Frames;
-use crate::read::vtu::{self, Frame};
+use crate::read::vtu::{self, Array, Frame};
 use crate::read::{Atoms, ReadError};
 use crate::write::run_json::Setting;
 
@@ -63,15 +63,15 @@ pub struct Scene {
     pub notes: Vec<String>,
 }
 
-/// A frame as it is read.
-pub struct Look {
+/// A frame as it is read; its arrays one after the other.
+pub struct Look<'a> {
     pub step: u64,
     pub value: f64,
     /// Three numbers for each point.
     pub position: Vec<f64>,
     /// `None`: since the first frame.
     pub displacement: Option<Vec<f64>>,
-    pub arrays: Vec<Values>,
+    pub arrays: Box<dyn Iterator<Item = Result<Values, ReadError>> + 'a>,
 }
 
 /// Values of a field over the points of a frame.
@@ -133,7 +133,10 @@ impl Maker {
     }
 
     /// Adds a frame; one of another number of points than the first is passed over.
-    pub fn push(&mut self, look: Look, setting: &Setting) {
+    ///
+    /// # Errors
+    /// An array cannot be read.
+    pub fn push(&mut self, look: Look, setting: &Setting) -> Result<(), ReadError> {
         let scene = &mut self.scene;
         if scene.frames.is_empty() {
             self.reference = match &look.displacement {
@@ -156,7 +159,7 @@ impl Maker {
             }
         }
         if look.position.len() != self.reference.len() {
-            return;
+            return Ok(());
         }
         let moved = look.displacement.unwrap_or_else(|| {
             let each = look.position.iter().zip(&self.reference);
@@ -175,6 +178,7 @@ impl Maker {
         let number = scene.frames.len();
         scene.frames.push((look.step, look.value));
         for values in look.arrays {
+            let values = values?;
             let count = values.components.len();
             if values.numbers.len() != scene.points * count {
                 continue;
@@ -200,6 +204,7 @@ impl Maker {
                 field.frames.push(Codes::of(&values.numbers, count, whole));
             }
         }
+        Ok(())
     }
 
     pub fn made(mut self) -> Option<Scene> {
@@ -259,13 +264,14 @@ pub fn of_collection(
     let Some((_, first)) = entries.first() else {
         return Ok(None);
     };
-    let first = Frame::read(&folder.join(first))?;
+    let first = Frame::open(&folder.join(first))?;
     let width: usize = first.arrays.iter().map(|a| a.components).sum();
     let numbers = chosen(entries.len(), width * first.points);
     let mut maker = Maker::new(kind, setting);
     for n in &numbers {
-        let frame = Frame::read(&folder.join(&entries[*n].1))?;
-        maker.push(look(&frame, entries[*n].0), setting);
+        let path = folder.join(&entries[*n].1);
+        let frame = Frame::open(&path)?;
+        maker.push(look(&frame, &path, entries[*n].0)?, setting)?;
     }
     let mut scene = maker.made();
     if let Some(scene) = &mut scene {
@@ -274,14 +280,20 @@ pub fn of_collection(
     Ok(scene)
 }
 
-fn look(frame: &Frame, value: f64) -> Look {
-    let all = |name: &str| {
-        let array = frame.array(name)?;
-        Some(frame.numbers(array).collect::<Vec<f64>>())
+fn look<'a>(frame: &'a Frame, path: &'a Path, value: f64) -> Result<Look<'a>, ReadError> {
+    let read = move |array: &Array| {
+        let numbers = frame.numbers(array);
+        numbers.map_err(|e| ReadError::file(path, e.to_string()))
     };
+    let all = |name: &str| frame.array(name).map(read).transpose();
     let hidden = ["position", "displacement", "id"];
-    let shown = frame.arrays.iter().filter(|a| !hidden.contains(&&*a.name));
-    let arrays = shown.map(|a| {
+    let shown = frame
+        .arrays
+        .iter()
+        .filter(move |a| !hidden.contains(&&*a.name));
+    let position = all("position")?.unwrap_or_default();
+    let displacement = all("displacement")?;
+    let arrays = shown.map(move |a| {
         let kind = match (a.components, a.kind.is_whole()) {
             (1, true) => "integer",
             (3, _) => "vector",
@@ -289,19 +301,19 @@ fn look(frame: &Frame, value: f64) -> Look {
             (9, _) => "tensor",
             _ => "scalar",
         };
-        let mut values = Values::new(&a.name, kind, frame.numbers(a).collect());
+        let mut values = Values::new(&a.name, kind, read(a)?);
         if a.names.len() == a.components && a.components > 1 {
             values.components = a.names.clone();
         }
-        values
+        Ok(values)
     });
-    Look {
+    Ok(Look {
         step: frame.step,
         value,
-        position: all("position").unwrap_or_default(),
-        displacement: all("displacement"),
-        arrays: arrays.collect(),
-    }
+        position,
+        displacement,
+        arrays: Box::new(arrays),
+    })
 }
 
 /// Frames of a trajectory of atoms.
@@ -319,7 +331,7 @@ pub fn of_trajectory(path: &Path, setting: &Setting) -> Result<Option<Scene>, Re
             numbers = chosen(total, 12 * atoms.len());
         }
         if numbers.binary_search(&at).is_ok() {
-            maker.push(of_atoms(atoms, at), setting);
+            maker.push(of_atoms(atoms, at), setting)?;
         }
         at += 1;
     }
@@ -381,13 +393,15 @@ pub fn of_dumps(
                 if !clock.is_empty() {
                     look.value = time_of(look.step, clock);
                 }
-                for values in &mut look.arrays {
+                look.arrays = Box::new(look.arrays.map(|values| {
+                    let mut values = values?;
                     let known = setting.columns.iter().find(|c| c.0 == values.name);
                     if let Some((_, name)) = known {
                         values.name = name.clone();
                     }
-                }
-                maker.push(look, setting);
+                    Ok(values)
+                }));
+                maker.push(look, setting)?;
             }
             at += 1;
         }
@@ -418,7 +432,7 @@ fn time_of(step: u64, clock: &[(u64, f64)]) -> f64 {
     a.1 + (step as f64 - a.0 as f64) / (b.0 as f64 - a.0 as f64) * (b.1 - a.1)
 }
 
-fn of_atoms(atoms: Atoms, number: usize) -> Look {
+fn of_atoms(atoms: Atoms, number: usize) -> Look<'static> {
     let mut arrays: Vec<Values> = { atoms.columns.iter() }
         .map(|(name, values)| Values::new(name, "scalar", values.clone()))
         .collect();
@@ -445,7 +459,7 @@ fn of_atoms(atoms: Atoms, number: usize) -> Look {
             .unwrap_or(number as f64),
         position: atoms.position.concat(),
         displacement: None,
-        arrays,
+        arrays: Box::new(arrays.into_iter().map(Ok)),
     }
 }
 

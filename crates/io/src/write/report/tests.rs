@@ -4,6 +4,8 @@ use crate::write::fields::tests::{of_columns, put};
 use crate::write::history::{Column, History};
 use crate::write::run_json::{FieldNote, UnitNames};
 use crate::write::{Series, SeriesOptions};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use peridyne::observe::{Snapshot, Values};
 
 /// Points of a lattice that move and break.

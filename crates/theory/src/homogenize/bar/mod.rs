@@ -67,7 +67,7 @@ pub enum BarError {
     )]
     NotSymmetric,
     #[error(
-        "the relaxation is not at rest after {steps} steps: the largest residual is {residual:e} of the load"
+        "the relaxation is not at rest after {steps} steps: the largest residual is {} of the load", peridyne::quantity::rounded(*.residual, 2)
     )]
     NotAtRest { steps: usize, residual: f64 },
 }

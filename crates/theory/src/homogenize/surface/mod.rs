@@ -21,6 +21,8 @@ use peridyne::family::stencil::Stencil;
 use peridyne::family::volume_fraction;
 use peridyne::law::influence::influence;
 use peridyne::law::solid::eam_like::Solid;
+use peridyne::message;
+use peridyne::quantity::{Message, place, rounded};
 use peridyne::space::fill::fill;
 use peridyne::space::lattice::{Lattice, LatticeKind};
 use peridyne::spec::{
@@ -49,7 +51,7 @@ pub enum SurfaceError {
     )]
     Lattice,
     #[error(
-        "{count} points, the first at ({:.6}, {:.6}, {:.6}), are corners of no whole cell: they hold nothing of the body", first[0], first[1], first[2]
+        "{}", loose(*.count, .first)
     )]
     Loose { count: usize, first: [f64; 3] },
     #[error("the surface has {0} different kinds of bonds, more than can be solved for")]
@@ -60,7 +62,23 @@ pub enum SurfaceError {
     Solver(String),
 }
 
+fn loose(count: usize, first: &[f64; 3]) -> Message {
+    message![
+        format!("{count} points, the first at "),
+        place(first),
+        ", are corners of no whole cell: they hold nothing of the body",
+    ]
+}
+
 impl SurfaceError {
+    /// What it says, its numbers with what they measure.
+    pub fn message(&self) -> Message {
+        match self {
+            SurfaceError::Loose { count, first } => loose(*count, first),
+            other => other.to_string().into(),
+        }
+    }
+
     /// What to do about it.
     pub fn help(&self) -> &'static str {
         match self {
@@ -337,11 +355,13 @@ pub fn correct(
     attempt.share(&body);
     let x = solve::nearest(&attempt.system).map_err(SurfaceError::Solver)?;
     let report = report(&body, &attempt, &x, None);
-    let [a, b, c] = report.worst;
-    let warning = format!(
-        "surface = \"exact\": no factors without negative ones make every uniform strain of this body exact; those taken leave at most {:.1e} of the stiffness, at ({a:.6}, {b:.6}, {c:.6})",
-        report.residual
-    );
+    let warning = message![
+        format!(
+            "surface = \"exact\": no factors without negative ones make every uniform strain of this body exact; those taken leave at most {} of the stiffness, at ",
+            rounded(report.residual, 2)
+        ),
+        place(&report.worst),
+    ];
     Ok((finish(&body, &mut attempt, &x, Some(warning)), Some(report)))
 }
 
@@ -395,7 +415,7 @@ fn finish(
     body: &LatticeBody,
     attempt: &mut Attempt,
     x: &[f64],
-    warning: Option<String>,
+    warning: Option<Message>,
 ) -> SurfaceFactors {
     let kinds = Kinds {
         of_point: std::mem::take(&mut attempt.kinds.of_point),
@@ -412,7 +432,7 @@ fn table(
     kinds: &Kinds,
     mut row: impl FnMut(usize) -> Vec<[f64; 2]>,
     part: impl Fn(usize) -> f64,
-    warning: Option<String>,
+    warning: Option<Message>,
 ) -> SurfaceFactors {
     let mut rows = vec![vec![]];
     let mut parts = vec![1.0];
