@@ -2,17 +2,19 @@
 
 mod atoms;
 mod exodus;
+mod modes;
 mod row;
 
 pub use atoms::AtomsPlan;
 pub use exodus::ExodusPlan;
+use modes::write_modes;
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peridyne::error::{RunError, SolveError};
-use peridyne::observe::{Ledger, Snapshot, Values};
+use peridyne::observe::{Ledger, Snapshot};
 use peridyne::run::Simulation;
 use peridyne::spec::{AnyLinearBody, Stepper};
 use peridyne_fields::FieldsError;
@@ -24,12 +26,11 @@ use crate::write::data::write_data;
 use crate::write::folder::{Folder, is_inside};
 use crate::write::history::History;
 use crate::write::linear::write_linear;
-use crate::write::picture::{self, shown::About};
+use crate::write::picture::shown::About;
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{
     self, EnergyReport, FieldNote, MarkNotes, MovingBall, RunReport, Setting, Status, UnitNames,
 };
-use crate::write::table::Table;
 use crate::write::trajectory::Trajectory;
 use crate::write::{Series, SeriesOptions, WriteError};
 
@@ -467,63 +468,6 @@ fn follow(balls: &mut [MovingBall], sim: &dyn Simulation) {
             ball.path.push([t, center[0], center[1], center[2]]);
         }
     }
-}
-
-/// Modes that get a picture.
-const PICTURED: usize = 12;
-
-/// `modes.csv`, and the shapes as `points_<mode>.vtu` and `points.pvd` in the folder `modes`, frequencies in place of times.
-fn write_modes(sim: &mut dyn Simulation, plan: &Plan, state: &Snapshot) -> Result<(), DriveError> {
-    let modes = sim.modes(plan.modes).map_err(|error| DriveError::Modes {
-        error,
-        dir: plan.dir.clone(),
-    })?;
-    let numbers: Vec<f64> = (1..=modes.len()).map(|n| n as f64).collect();
-    let per_time = |power: &str| match plan.time_unit.as_str() {
-        "" => String::new(),
-        unit => format!("1/{unit}{power}"),
-    };
-    Table::new()
-        .column("mode", "", numbers)
-        .column(
-            "frequency",
-            &per_time(""),
-            modes.iter().map(|m| m.frequency),
-        )
-        .column(
-            "angular frequency squared",
-            &per_time("²"),
-            modes.iter().map(|m| m.square),
-        )
-        .save(&plan.dir.join("modes.csv"))?;
-    let options = SeriesOptions {
-        pictures: vec![],
-        dump: None,
-        bonds: false,
-        points: true,
-    };
-    let mut series = Series::new(plan.dir.join("modes"), options)?;
-    for (n, mode) in modes.into_iter().enumerate() {
-        let mut shape = state.clone();
-        shape.step = n as u64 + 1;
-        shape.time = mode.frequency;
-        let displacement = shape
-            .columns
-            .iter_mut()
-            .find(|c| c.name() == "displacement");
-        if let Some(column) = displacement {
-            column.values = Values::Vectors(mode.shape);
-        }
-        series.write(&shape)?;
-        if let Some(options) = plan.series.pictures.first().filter(|_| n < PICTURED) {
-            let frequency = plan.units.show(mode.frequency, Dim::FREQUENCY);
-            let title = format!("mode {}, {frequency}", n + 1);
-            let options = options.of_shape(&shape, title);
-            let path = plan.dir.join(format!("modes/mode_{:02}.png", n + 1));
-            picture::write(&path, &shape, &options, About::Equilibrium)?;
-        }
-    }
-    Ok(())
 }
 
 /// What to say about so many threads.

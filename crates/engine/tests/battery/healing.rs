@@ -82,7 +82,7 @@ fn a_crack_that_heals_at_once_was_never_there() {
             (sim, cut)
         };
         let (mut healed, cut) = run(&healed);
-        let (whole, _) = run(&plate(law, family, false));
+        let (mut whole, _) = run(&plate(law, family, false));
         assert!(cut > 1.0, "{cut}");
         assert_eq!(healed.scalars("damage").iter().sum::<f64>(), 0.0);
         assert_eq!(healed.fragments(), 1);

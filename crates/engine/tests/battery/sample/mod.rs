@@ -163,6 +163,7 @@ impl Case {
             potentials: vec![],
             mixing: None,
             toughness: vec![],
+            healing: None,
             release: Release::AtOnce,
             horizon: Horizon::Ratio(ratio),
             volume_scaling: true,

@@ -3,14 +3,16 @@
 use crate::deck::error::{DeckError, nearest};
 use crate::deck::source::Source;
 use crate::deck::units::{self, Dim, Dimensions, Kind, UnitSystem};
-use crate::deck::value::{At, Components, ComponentsWritten, Number, Vector, Written};
+use crate::deck::value::{At, Number, Written};
 use crate::read::AtomsFile;
 use peridyne::expression::{Expression, ExpressionError};
-use peridyne::spec::{AnyLinearBody, Parameter};
+use peridyne::spec::AnyLinearBody;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
+
+mod vectors;
 
 pub(in crate::deck) type Result<T> = std::result::Result<T, DeckError>;
 
@@ -347,116 +349,6 @@ impl<'a> Context<'a> {
             return Ok(Expression::constant(self.finite(number, dim)?));
         };
         self.meaning(text, &number.span, dim)
-    }
-
-    /// Where to: three components, expressions of x, y, z that measure the same, whatever it is. Numbers where none asks for the place.
-    pub fn direction(&self, name: &str, list: &At<Vec<Number>>) -> Result<Parameter> {
-        let mut all = vec![];
-        let mut measured = None;
-        for number in &list.value {
-            let (expression, kind) = match &number.value {
-                Written::Plain(x) => (Expression::constant(*x), Kind::bare(*x == 0.0)),
-                Written::Text(text) => self.compile(text, &number.span)?,
-            };
-            if kind.unit && !kind.takes_any() {
-                measured.get_or_insert(kind.dim());
-            }
-            all.push((expression, kind, &number.span));
-        }
-        let dim = measured.unwrap_or(Dim::NUMBER);
-        for (expression, kind, span) in &all {
-            // a number beside a length is none, but 0
-            let stray = dim != Dim::NUMBER
-                && !kind.unit
-                && expression.as_constant().is_some_and(|x| x != 0.0);
-            if measured.is_some() && (stray || !kind.can_be(dim)) {
-                let message =
-                    format!("the components of `{name}` measure the same, and another is {dim}");
-                let help = "write lengths, as -y and x, or numbers, as -y/hypot(x, y)";
-                return Err(self.error_with(span, message, help));
-            }
-        }
-        let constants: Option<Vec<f64>> = all.iter().map(|(e, ..)| e.as_constant()).collect();
-        if let Some(numbers) = constants {
-            return match numbers.iter().all(|x| x.is_finite()) {
-                true => Ok(Parameter::List(numbers)),
-                false => Err(self.error(&list.span, "these components must be finite")),
-            };
-        }
-        let components: Vec<Expression> = all.into_iter().map(|(e, ..)| e).collect();
-        match <[Expression; 3]>::try_from(components) {
-            Ok(components) => Ok(Parameter::Direction(components)),
-            Err(found) => Err(self.error(
-                &list.span,
-                format!("`{name}` has {} components, expected 3", found.len()),
-            )),
-        }
-    }
-
-    fn list<'v>(&self, numbers: &'v [Number], span: &Range<usize>) -> Result<&'v [Number]> {
-        if numbers.len() == self.dimension {
-            return Ok(numbers);
-        }
-        let message = match (numbers.len(), self.dimension) {
-            (given, 1) => format!("expected one component in 1-D, found {given}"),
-            (given, dimension) => {
-                format!("expected {dimension} components in {dimension}-D, found {given}")
-            }
-        };
-        Err(self.error(span, message))
-    }
-
-    /// A vector, `fill` on the unused axes.
-    pub fn vector(&self, vector: &Vector, dim: Dim, fill: f64) -> Result<[f64; 3]> {
-        let mut out = [fill; 3];
-        for (a, number) in self.list(&vector.value.0, &vector.span)?.iter().enumerate() {
-            out[a] = self.number(&placed(number, &vector.span), dim)?;
-        }
-        Ok(out)
-    }
-
-    pub fn finite_vector(&self, vector: &Vector, dim: Dim) -> Result<[f64; 3]> {
-        let value = self.vector(vector, dim, 0.0)?;
-        if value.iter().all(|c| c.is_finite()) {
-            Ok(value)
-        } else {
-            Err(self.error(&vector.span, "these components must be finite"))
-        }
-    }
-
-    /// Expressions of a vector, 0 on the unused axes.
-    pub fn expressions(&self, vector: &Vector, dim: Dim) -> Result<[Expression; 3]> {
-        let mut out = [const { None }; 3];
-        for (a, number) in self.list(&vector.value.0, &vector.span)?.iter().enumerate() {
-            out[a] = Some(self.expression(&placed(number, &vector.span), dim)?);
-        }
-        Ok(out.map(|e| e.unwrap_or_else(|| Expression::constant(0.0))))
-    }
-
-    /// Components that may be left free.
-    pub fn components(&self, components: &Components, dim: Dim) -> Result<[Option<Expression>; 3]> {
-        let mut out = [const { None }; 3];
-        match &components.value {
-            ComponentsWritten::List(numbers) => {
-                for (a, number) in self.list(numbers, &components.span)?.iter().enumerate() {
-                    if !matches!(&number.value, Written::Text(text) if text.trim() == "free") {
-                        out[a] = Some(self.expression(number, dim)?);
-                    }
-                }
-            }
-            ComponentsWritten::Axes(axes) => {
-                for (a, number) in axes.iter().enumerate() {
-                    let Some(number) = number else { continue };
-                    if a >= self.dimension {
-                        let message =
-                            format!("there is no {} in {}-D", ["x", "y", "z"][a], self.dimension);
-                        return Err(self.error(&number.span, message));
-                    }
-                    out[a] = Some(self.expression(number, dim)?);
-                }
-            }
-        }
-        Ok(out)
     }
 
     /// The index of the one entry that is given, an error if there is none or more.

@@ -6,6 +6,7 @@ mod body;
 mod contact;
 pub(super) mod context;
 mod fields;
+mod files;
 mod indenter;
 mod interface;
 mod law;
@@ -22,119 +23,29 @@ mod transfer;
 mod warnings;
 
 pub(super) use atoms::boltzmann;
+pub(super) use files::Files;
 pub(super) use material::point_volume;
 pub(super) use schedule::{MANY_STEPS, steps};
 pub(super) use warnings::unitless;
 
 use super::OutputSpec;
 use super::document::{
-    Body, CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName, StageName,
+    CalibrationName, Document, FamilyName, HorizonRatio, InfluenceName, PlaneName, StageName,
     SurfaceName, UnitName, Units,
 };
 use super::error::DeckError;
 use super::source::Source;
 use super::units::{Constants, Dim, UnitSystem, short};
-use super::value::{At, Number, Or, Written};
+use super::value::{At, Or, Written};
 use crate::continuum::plan::FieldsSpec;
-use crate::read::eam::{self, EamFile};
-use crate::read::entries::Entry;
-use crate::read::{Frame, Points};
 use context::{Context, Result};
-use peridyne::law::descriptor::Key;
 use peridyne::run::Shelf;
-use peridyne::space::triangles::Triangles;
 use peridyne::spec::{
-    BodySpec, BondedSpec, Calibration, Cloud, FamilyChoice, Horizon, Influence, MaterialSpec,
-    Plane, PreloadSpec, Spec, SurfaceFactors, SurfaceMethod,
+    BodySpec, Calibration, FamilyChoice, Horizon, Influence, MaterialSpec, Plane, PreloadSpec,
+    Spec, SurfaceFactors, SurfaceMethod,
 };
 pub(super) use stage::Entries;
 use stage::{Staged, Stages};
-use std::path::Path;
-
-/// How files named in a deck are read.
-pub(super) struct Files<'a> {
-    /// Folder of the deck.
-    pub folder: &'a Path,
-}
-
-impl Files<'_> {
-    /// The points of `body.file`.
-    fn read(&self, context: &Context, body: &Body) -> Result<Points> {
-        let Some(file) = &body.file else {
-            return Ok(Points {
-                cloud: Cloud::default(),
-                dimension: None,
-                atoms: None,
-                micromoduli: None,
-                notes: Vec::new(),
-            });
-        };
-        let path = self.folder.join(&file.value);
-        let (frame, span) = match &body.file_step {
-            Some(step) => (Frame::Step(step.value), &step.span),
-            None => (Frame::Last, &file.span),
-        };
-        crate::read::points(&path, frame).map_err(|e| context.error(span, e.to_string()))
-    }
-
-    /// Is this file of an embedded-atom model one of those that have an element each?
-    fn is_funcfl(name: &str) -> bool {
-        Path::new(name).extension().is_some_and(|e| e == "eam")
-    }
-
-    /// The table of an embedded-atom model.
-    fn eam(&self, context: &Context, file: &At<String>) -> Result<EamFile> {
-        let path = self.folder.join(&file.value);
-        let read = match path.extension().and_then(|e| e.to_str()) {
-            Some("eam") => eam::funcfl(&[&path]),
-            Some("fs") => eam::fs(&path),
-            _ => eam::setfl(&path),
-        };
-        read.map_err(|e| context.error(&file.span, e.to_string()))
-    }
-
-    /// What bonds the atoms of the file of a body.
-    fn molecules(
-        &self,
-        context: &Context,
-        file: &At<String>,
-        special: [f64; 3],
-        (length, energy): (f64, f64),
-    ) -> Result<BondedSpec> {
-        let path = self.folder.join(&file.value);
-        crate::read::molecules::molecules(&path, special, length, energy)
-            .map_err(|e| context.error(&file.span, e.to_string()))
-    }
-
-    /// Constants of triples of elements.
-    fn entries(&self, context: &Context, file: &At<String>, columns: &[Key]) -> Result<Vec<Entry>> {
-        let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
-        let read = crate::read::entries::entries(&self.folder.join(&file.value), &names);
-        read.map_err(|e| context.error(&file.span, e.to_string()))
-    }
-
-    /// Triangles of a surface.
-    fn stl(
-        &self,
-        context: &Context,
-        file: &At<String>,
-        unit: &Option<Number>,
-    ) -> Result<Triangles> {
-        let unit = match unit {
-            Some(unit) => context.positive(unit, Dim::LENGTH, "the unit of the file")?,
-            None => context.units.plain_factor(Dim::LENGTH),
-        };
-        crate::read::stl::stl(&self.folder.join(&file.value), unit)
-            .map_err(|e| context.error(&file.span, e.to_string()))
-    }
-
-    /// Tables of several elements, a file each, as one model.
-    fn funcfl(&self, context: &Context, files: &[&At<String>]) -> Result<EamFile> {
-        let paths = files.iter().map(|f| self.folder.join(&f.value));
-        let paths: Vec<_> = paths.collect();
-        eam::funcfl(&paths).map_err(|e| context.error(&files[0].span, e.to_string()))
-    }
-}
 
 pub(super) struct Lowered {
     pub spec: Spec,
