@@ -23,6 +23,7 @@ mod fibre_composite;
 mod fragmenting_cylinder;
 mod hertz;
 mod kalthoff;
+mod neck;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
 mod quench;
@@ -70,5 +71,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &quench::Quench,
         &fatigue::Fatigue,
         &shock_tube::ShockTube,
+        &neck::Neck,
     ]
 }
