@@ -27,6 +27,8 @@ mod neck;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
 mod quench;
+#[path = "shear-band/mod.rs"]
+mod shear_band;
 #[path = "shock-tube/mod.rs"]
 mod shock_tube;
 mod spall;
@@ -72,5 +74,6 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &fatigue::Fatigue,
         &shock_tube::ShockTube,
         &neck::Neck,
+        &shear_band::ShearBand,
     ]
 }
