@@ -23,9 +23,12 @@ mod fibre_composite;
 mod fragmenting_cylinder;
 mod hertz;
 mod kalthoff;
+mod neck;
 #[path = "plate-with-hole/mod.rs"]
 mod plate_with_hole;
 mod quench;
+#[path = "shear-band/mod.rs"]
+mod shear_band;
 #[path = "shock-tube/mod.rs"]
 mod shock_tube;
 mod spall;
@@ -70,5 +73,7 @@ pub fn all() -> Vec<&'static dyn Experiment> {
         &quench::Quench,
         &fatigue::Fatigue,
         &shock_tube::ShockTube,
+        &neck::Neck,
+        &shear_band::ShearBand,
     ]
 }
