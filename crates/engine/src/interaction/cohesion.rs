@@ -7,7 +7,7 @@
 //! `w = h_a h_b c Σ_n Σ_m ψ(d + n h_a + m h_b)`, with ψ(z) what a point has of a plane (or line) of unit density at the distance z. That is the mean over all
 //! ways in which the faces can lie on each other; as h → 0 it is `w = π c L⁵/120` in space, `t c L⁴/30` in the plane and `A c L³/24` on a line.
 
-use super::contact::Pull;
+use super::pull::Pull;
 use crate::body::{Body, Field};
 use crate::family::neighbours::{Neighbours, periods};
 

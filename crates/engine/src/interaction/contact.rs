@@ -5,6 +5,7 @@
 
 use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
+use super::pull::Pull;
 use super::{BondTangent, Interaction, Repulsion};
 use crate::body::{Body, Field};
 use crate::family::neighbours::{LOOSE, Neighbours, periods};
@@ -49,45 +50,6 @@ impl<const D: usize> Touch<D> {
             },
             slope: self.stiffness,
             energy: 0.5 * self.stiffness * over * over,
-        }
-    }
-}
-
-/// A central force of a pair.
-#[derive(Debug, Clone, Copy)]
-pub struct Pull<const D: usize> {
-    pub i: usize,
-    pub j: usize,
-    /// From i to j now, and its length.
-    pub y: [f64; D],
-    pub r: f64,
-    /// Force density on i over the volume of j and over r, along y.
-    pub pull: f64,
-    /// What the force density over the volume grows with r by.
-    pub slope: f64,
-    /// Energy / volume².
-    pub energy: f64,
-}
-
-impl<const D: usize> Pull<D> {
-    /// `V_j (slope n⊗n + pull (1 − n⊗n))` of both ends; none of two points on one spot.
-    fn tangents(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
-        let &Pull {
-            i, j, y, r, pull, ..
-        } = self;
-        if r == 0.0 {
-            return;
-        }
-        let n = y.map(|c| c / r);
-        for (i, j, way) in [(i, j, 1.0), (j, i, -1.0)] {
-            let volume = body.volume.at(j);
-            let block = std::array::from_fn(|a| {
-                std::array::from_fn(|b| {
-                    let along = (self.slope - pull) * n[a] * n[b];
-                    volume * (along + if a == b { pull } else { 0.0 })
-                })
-            });
-            visit(BondTangent::direct(i, j, y.map(|c| way * c), block));
         }
     }
 }
@@ -279,7 +241,7 @@ impl<const D: usize> Contact<D> {
         self.each_pull(u, |pull| pull.tangents(body, visit));
     }
 
-    /// The same of pairs inside the families, bonded or not.
+    /// The same of pairs inside the families, bonded or not, along their lines alone.
     pub fn tangents_inside(
         &self,
         body: &Body<D>,
@@ -291,7 +253,12 @@ impl<const D: usize> Contact<D> {
             let touch = self.touch_inside(body, u, [i, j], xi);
             // bonds between bodies are in no family
             if let Some(touch) = touch.filter(|_| interaction.in_family(body, i, j)) {
-                touch.pull().tangents(body, visit);
+                // what they push across their line with grows with how deep they are and would leave no matrix that Newton's method can solve
+                Pull {
+                    pull: 0.0,
+                    ..touch.pull()
+                }
+                .tangents(body, visit);
             }
         });
     }

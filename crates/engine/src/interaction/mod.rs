@@ -18,6 +18,7 @@ pub mod nearness;
 pub mod pairs;
 mod point_constants;
 mod point_energies;
+pub mod pull;
 pub mod repulsion;
 pub(crate) mod scale;
 pub(crate) mod several;

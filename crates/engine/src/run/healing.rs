@@ -122,20 +122,15 @@ impl<const D: usize> Model<D> {
         let (body, u) = (&self.body, &self.u);
         let mut any = false;
         self.interaction.each_broken(body, &mut |i, j, xi| {
-            any |= !any
-                && heals(
-                    i,
-                    j,
-                    history::relative(&xi, std::array::from_fn(|a| u[a][j] - u[a][i])),
-                );
+            let eta = std::array::from_fn(|a| u[a][j] - u[a][i]);
+            any = any || heals(i, j, history::relative(&xi, eta));
         });
         if !any {
             return;
         }
         let [before, _] = self.interaction.energy(body, u);
-        let healed = self.interaction.mend(body, u, &heals);
+        self.interaction.mend(body, u, &heals);
         let [after, _] = self.interaction.energy(body, u);
         self.released -= after - before;
-        self.broken -= healed.unwrap_or(0);
     }
 }

@@ -202,7 +202,7 @@ pub trait Simulation: Steered + Examined + Send {
     fn probe_columns(&self) -> Vec<ProbeColumn>;
     /// What the probes measure now, in the order of their columns.
     fn measure(&mut self) -> Vec<f64>;
-    /// Directed bonds broken since the start.
+    /// Directed bonds broken since the start, as often as they broke.
     fn broken(&self) -> u64;
     /// Number of fragments (connected by whole bonds) now.
     fn fragments(&self) -> u64;

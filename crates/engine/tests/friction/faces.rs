@@ -34,8 +34,9 @@ fn halves(law: LawSpec, friction: Option<FrictionSpec>, family: FamilyChoice) ->
     });
     spec.initial = vec![InitialSpec {
         set: "upper".into(),
-        displacement: [None, None, None],
-        velocity: [text("0.4"), text("-0.4"), None],
+        // faces that just touch
+        displacement: [None, text("-0.0999"), None],
+        velocity: [text("0.1"), text("-0.4"), None],
     }];
     spec.schedule.time_step = TimeStep::Fraction(0.1);
     spec
@@ -46,7 +47,7 @@ fn run(spec: &Spec) -> ([[f64; 2]; 2], f64, f64) {
     let mut sim = build(spec, Options::default()).unwrap();
     sim.start(true);
     let initial = sim.ledger().unwrap().initial;
-    while sim.time() < 2.0 {
+    while sim.time() < 0.2 {
         sim.step().unwrap();
         let l = sim.ledger().unwrap();
         assert!(l.residual().abs() < 2e-3 * initial, "{l:?}");
@@ -63,10 +64,10 @@ fn run(spec: &Spec) -> ([[f64; 2]; 2], f64, f64) {
 }
 
 fn laws() -> [(LawSpec, FamilyChoice); 4] {
-    let pmb = || LawSpec::Pmb(PmbStiffness::Young(100.0));
+    let pmb = || LawSpec::Pmb(PmbStiffness::Young(1e4));
     let lps = || {
         LawSpec::Lps(Moduli {
-            young: 100.0,
+            young: 1e4,
             poisson: 0.25,
         })
     };
@@ -82,22 +83,22 @@ fn laws() -> [(LawSpec, FamilyChoice); 4] {
 fn faces_of_a_crack_slow_each_other() {
     for (law, family) in laws() {
         let free = run(&halves(law.clone(), None, family));
-        let rubbed = run(&halves(law, Some(FrictionSpec::constant(0.2)), family));
+        let rubbed = run(&halves(law, Some(FrictionSpec::constant(0.1)), family));
         println!("{free:?}\n{rubbed:?}");
         for ([_, all], ..) in [&free, &rubbed] {
             // the half goes with the whole: momentum is kept
-            assert!((all[0] - 0.2).abs() < 1e-14, "{all:?}");
+            assert!((all[0] - 0.05).abs() < 1e-14, "{all:?}");
             assert!((all[1] + 0.2).abs() < 1e-14, "{all:?}");
         }
         assert_eq!(free.1, 0.0);
         let initial = rubbed.2;
-        assert!(rubbed.1 > 1e-3 * initial, "{rubbed:?}");
+        assert!(rubbed.1 > 1e-4 * initial, "{rubbed:?}");
         // it loses at most μ of the impulse that turned it back
         let [[vx, vy], _] = rubbed.0;
         let [[wx, _], _] = free.0;
-        let most = 0.2 * (vy + 0.4);
+        let most = 0.1 * (vy + 0.4);
         assert!(
-            wx - vx > 0.3 * most && wx - vx < 1.1 * most,
+            wx - vx > 0.7 * most && wx - vx < 1.1 * most,
             "{wx} {vx} {most}"
         );
     }
@@ -106,7 +107,7 @@ fn faces_of_a_crack_slow_each_other() {
 #[test]
 fn faces_rub_with_the_same_bits_on_any_number_of_threads() {
     let (law, family) = laws()[2].clone();
-    let spec = halves(law, Some(FrictionSpec::constant(0.2)), family);
+    let spec = halves(law, Some(FrictionSpec::constant(0.1)), family);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new();
         pool.num_threads(threads)

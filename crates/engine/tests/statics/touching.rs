@@ -233,8 +233,7 @@ fn faces_of_a_crack_rub() {
                 cohesion: None,
                 conductance: None,
             });
-            spec.sets
-                .extend([rows("floor", 1.0, 2.1), rows("top", -1.0, 5.9)]);
+            spec.sets = vec![rows("floor", 1.0, 2.1), rows("top", -1.0, 5.9)];
             spec.precracks.push(PrecrackSpec {
                 shape: CrackShape::Segment {
                     from: [-1.0, 4.0, 0.0],
@@ -244,7 +243,7 @@ fn faces_of_a_crack_rub() {
             });
             let zero = || number(0.0);
             hold(&mut spec, "floor", [zero(), zero(), None]);
-            let ways = ["0.1*max(0, 2*t - 1)", "-0.2*min(1, 2*t)"];
+            let ways = ["0.06*max(0, 2*t - 1)", "-0.2*min(1, 2*t)"];
             hold(&mut spec, "top", [text(ways[0]), text(ways[1]), None]);
             spec.probes = vec![ProbeSpec {
                 name: "top".into(),
