@@ -62,6 +62,7 @@ fn main() {
         potentials: vec![],
         mixing: None,
         toughness: vec![],
+        healing: None,
         release: Release::AfterForce,
         horizon: Horizon::Length(0.0015001),
         volume_scaling: true,

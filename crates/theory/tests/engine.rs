@@ -92,6 +92,7 @@ fn case(
         potentials: vec![],
         mixing: None,
         toughness: vec![],
+        healing: None,
         release: Release::AtOnce,
         horizon: Horizon::Ratio(ratio),
         volume_scaling: true,
