@@ -191,6 +191,11 @@ pub fn build_in<const D: usize>(
     let gaps = gaps::between(&body, reach, range);
     let spacing = |n: usize| body.pieces()[n].body.spacing;
     warnings.extend(gaps::warnings(spec, &gaps, spacing));
+    if spec.healing.is_some() {
+        // a step is stable when all is whole again
+        let rest = body.at_rest();
+        interaction.mend(&body, &rest, &|_, _, _| true);
+    }
     let limits = match options.trust_time_step
         || spec.schedule.statics().is_some()
         || spec.schedule.stepper == Stepper::Still
@@ -205,6 +210,9 @@ pub fn build_in<const D: usize>(
             repulsion.as_ref(),
         )?,
     };
+    if spec.healing.is_some() {
+        precracks::cut(spec, &body, interaction.as_mut(), &mut Warnings::default())?;
+    }
     let points = body.points();
     let dt = time_step(spec, points, &limits, repulsion.as_ref(), &mut warnings)?;
     let sizes = body

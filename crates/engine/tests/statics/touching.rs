@@ -243,7 +243,7 @@ fn faces_of_a_crack_rub() {
             });
             let zero = || number(0.0);
             hold(&mut spec, "floor", [zero(), zero(), None]);
-            let ways = ["0.06*max(0, 2*t - 1)", "-0.2*min(1, 2*t)"];
+            let ways = ["0.04*max(0, 2*t - 1)", "-0.2*min(1, 2*t)"];
             hold(&mut spec, "top", [text(ways[0]), text(ways[1]), None]);
             spec.probes = vec![ProbeSpec {
                 name: "top".into(),
