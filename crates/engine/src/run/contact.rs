@@ -117,6 +117,22 @@ pub(super) fn repulsion<const D: usize>(
                 adhesion.push(sticks::<D>(cohesion, faces)?);
             }
         }
+        let longest = adhesion.iter().map(|a| a.range).fold(0.0, f64::max);
+        for (a, period) in body.period.iter().enumerate() {
+            if let Some(p) = period.filter(|p| *p <= 2.5 * longest) {
+                return Err(BuildError::conflict(
+                    "periodic",
+                    message![
+                        format!("the period along {} is ", AXES[a]),
+                        Dimension::LENGTH.of(p),
+                        ", not more than 2.5 ranges of cohesion of ",
+                        Dimension::LENGTH.of(longest),
+                        ": a point would attract two images of another",
+                    ],
+                )
+                .help("write a greater strength, or a longer period"));
+            }
+        }
     }
     Ok(Some(Rules {
         section: spec.section,

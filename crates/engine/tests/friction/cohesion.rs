@@ -38,7 +38,7 @@ fn solid(d: usize, spacing: f64, low: [f64; 3], high: [f64; 3]) -> BodySpec {
 
 /// Two bodies without ends along their faces, the upper one of which is told where to go; energy and force between them.
 fn held(d: usize, spacing: f64, gap: f64, along: [f64; 2]) -> [f64; 2] {
-    let (width, top) = (6.0, 9.5);
+    let (width, top) = (12.0, 9.5);
     // cells from 0 to the width, rows half a spacing inside
     let body = |h: f64, low: f64| {
         let first = |y: f64| [0.5 * h, y, if d == 3 { 0.5 * h } else { 0.0 }];

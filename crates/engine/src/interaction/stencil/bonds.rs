@@ -53,8 +53,13 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
 
     /// Those of tiles that may have a broken bond.
     pub(super) fn torn_places<'a>(&'a self, grid: &'a Grid<D>) -> impl Iterator<Item = Place> + 'a {
-        let torn = (0..self.tiles.len()).filter(|n| self.state[*n] & WHOLE == 0);
+        let torn = (0..self.tiles.len()).filter(|n| self.is_torn(*n));
         torn.flat_map(|n| self.places_of(grid, n..n + 1))
+    }
+
+    /// May a tile have a broken bond?
+    fn is_torn(&self, n: usize) -> bool {
+        self.state[n] & WHOLE == 0
     }
 
     /// Those of some tiles.
@@ -209,11 +214,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
     ) {
         let grid = body.grid();
         let original = body.originals();
-        let places: Box<dyn Iterator<Item = Place>> = match torn {
-            true => Box::new(self.torn_places(grid)),
-            false => Box::new(self.places(grid)),
-        };
-        for p in places {
+        let tiles = (0..self.tiles.len()).filter(|n| !torn || self.is_torn(*n));
+        for p in tiles.flat_map(|n| self.places_of(grid, n..n + 1)) {
             let bonds = self.bonds[p.sublattice]
                 .iter()
                 .zip(&self.partners[p.sublattice]);
