@@ -369,7 +369,7 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
     ),
     (
         "eam",
-        "io/src/deck/lower/mod.rs",
+        "io/src/deck/lower/files.rs",
         "a module: the format of files",
     ),
     (

@@ -6,7 +6,7 @@
 use super::cohesion::Cohesion;
 use super::nearness::{Bounds, Nearness};
 use super::pull::Pull;
-use super::{BondTangent, Interaction, Repulsion};
+use super::{BondTangent, Repulsion};
 use crate::body::{Body, Field};
 use crate::family::neighbours::{LOOSE, Neighbours, periods};
 
@@ -239,28 +239,6 @@ impl<const D: usize> Contact<D> {
     /// Tangents of all contacts, as those of bonds between points that touch. `u` as for [`Contact::energy`].
     pub fn tangents(&self, body: &Body<D>, u: &Field<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         self.each_pull(u, |pull| pull.tangents(body, visit));
-    }
-
-    /// The same of pairs inside the families, bonded or not, along their lines alone.
-    pub fn tangents_inside(
-        &self,
-        body: &Body<D>,
-        interaction: &dyn Interaction<D>,
-        u: &Field<D>,
-        visit: &mut dyn FnMut(BondTangent<D>),
-    ) {
-        interaction.each_bond(body, &mut |i, j, xi, _| {
-            let touch = self.touch_inside(body, u, [i, j], xi);
-            // bonds between bodies are in no family
-            if let Some(touch) = touch.filter(|_| interaction.in_family(body, i, j)) {
-                // what they push across their line with grows with how deep they are and would leave no matrix that Newton's method can solve
-                Pull {
-                    pull: 0.0,
-                    ..touch.pull()
-                }
-                .tangents(body, visit);
-            }
-        });
     }
 
     /// Adds what points that touch resist with (force / length) to sums by slot; `u` as for [`Contact::energy`].

@@ -3,20 +3,14 @@
 //! A bond heals with the length that it had in the reference, where both its ends may heal and its stretch is below the limit of the time. What it
 //! holds then comes from what healing is driven by, not from the body: it is taken from the energy released.
 
+pub(super) mod state;
+
 use super::model::Model;
 use crate::error::BuildError;
-use crate::expression::Expression;
 use crate::interaction::history;
 use crate::message;
 use crate::spec::{CrackKind, HealingSpec, Spec, Stepper};
-
-/// Where and when bonds heal.
-pub(super) struct Healing {
-    /// Stretch below which they do, an expression of t.
-    below: Expression,
-    /// `[slots]`
-    may: Vec<bool>,
-}
+use state::Healing;
 
 /// What does not heal.
 fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {

@@ -2,7 +2,7 @@
 
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
-use super::healing::Healing;
+use super::healing::state::Healing;
 use super::implicit::state::Implicit;
 use super::preload::state::Preload;
 use super::probes::state::Probe;

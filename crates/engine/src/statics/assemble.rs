@@ -37,7 +37,6 @@ pub fn linear_body_touching<const D: usize>(
     interaction.tangents(body, u, &mut push);
     if let Some(contact) = contact {
         contact.tangents(body, u, &mut push);
-        contact.tangents_inside(body, interaction, u, &mut push);
     }
     bonds.sort();
     let n = body.points();

@@ -105,6 +105,7 @@ fn what_heals_under_strain_is_accounted_for() {
             }),
         }];
         heals(&mut spec, "t > 3 ? 0.5 : -1");
+        spec.schedule.time_step = TimeStep::Fraction(0.05);
         spec.healing.as_mut().unwrap().set = "upper".into();
         let mut sim = started(&spec);
         let (scale, at_first) = (sim.ledger().unwrap().initial, sim.scalars("damage"));

@@ -1,0 +1,11 @@
+//! What a model knows of healing.
+
+use crate::expression::Expression;
+
+/// Where and when bonds heal.
+pub(in crate::run) struct Healing {
+    /// Stretch below which they do, an expression of t.
+    pub below: Expression,
+    /// `[slots]`
+    pub may: Vec<bool>,
+}
