@@ -202,8 +202,7 @@ impl<const D: usize> Friction<D> {
         body: &Body<D>,
         [u, v]: [&Field<D>; 2],
         f: &mut Field<D>,
-        t: f64,
-        dt: f64,
+        [t, dt]: [f64; 2],
     ) {
         let law = Coefficients::new(&self.law, t);
         if dt == 0.0 && self.from.is_none() {

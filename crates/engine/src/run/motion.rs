@@ -104,8 +104,7 @@ impl<const D: usize> Model<D> {
                     body,
                     state,
                     &mut self.f,
-                    t,
-                    dt,
+                    [t, dt],
                 );
             }
         }
