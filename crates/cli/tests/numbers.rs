@@ -84,7 +84,7 @@ fn numbers_of_commands_are_for_people() {
         let read = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         let mut said = read(&done.stdout) + &read(&done.stderr);
         assert!(done.status.success(), "{verb} {name}: {said}");
-        if verb == "upscale" {
+        if *verb == "upscale" {
             let stem = name.trim_end_matches(".toml");
             let card = dir.path().join(format!("out/{stem}-upscaled/h2/card.md"));
             said += &std::fs::read_to_string(card).unwrap();

@@ -1,6 +1,6 @@
 //! Healing: broken bonds that become whole again, in explicit motion.
 //!
-//! A bond heals with the length that it had in the reference, where both its ends may heal and its stretch is below the limit of the time. What it
+//! A bond heals with the length that it had in the reference, where both its ends may heal and the size of its stretch is below the limit of the time. What it
 //! holds then comes from what healing is driven by, not from the body: it is taken from the energy released.
 
 pub(super) mod state;
@@ -106,13 +106,14 @@ impl<const D: usize> Model<D> {
     pub(super) fn heal(&mut self, t: f64) {
         let Some(healing) = &self.healing else { return };
         let below = healing.below.eval(&[0.0; 3], t);
-        if !(below > -1.0) {
+        if !(below > 0.0) {
             return;
         }
-        let limit = history::critical(below);
         self.refresh_images();
         let Some(healing) = &self.healing else { return };
-        let heals = |i: usize, j: usize, e: f64| e < limit && healing.may[i] && healing.may[j];
+        let heals = |i: usize, j: usize, e: f64| {
+            history::stretch(e).abs() < below && healing.may[i] && healing.may[j]
+        };
         let (body, u) = (&self.body, &self.u);
         let mut any = false;
         self.interaction.each_broken(body, &mut |i, j, xi| {

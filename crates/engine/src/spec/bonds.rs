@@ -18,7 +18,7 @@ pub enum BondFactorSpec {
 pub struct HealingSpec {
     /// Both ends are of this set.
     pub set: String,
-    /// Stretch below which they heal, an expression of t; −1 and less: nothing heals.
+    /// Size of the stretch below which they heal, an expression of t; 0 and less: nothing heals.
     pub below: Expression,
 }
 

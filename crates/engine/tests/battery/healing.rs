@@ -104,7 +104,7 @@ fn what_heals_under_strain_is_accounted_for() {
                 normal: [0.0, -1.0, 0.0],
             }),
         }];
-        heals(&mut spec, "t > 3 ? 0.5 : -1");
+        heals(&mut spec, "t > 3 ? 0.5 : 0");
         spec.schedule.time_step = TimeStep::Fraction(0.05);
         spec.healing.as_mut().unwrap().set = "upper".into();
         let mut sim = started(&spec);

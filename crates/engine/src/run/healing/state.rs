@@ -4,7 +4,7 @@ use crate::expression::Expression;
 
 /// Where and when bonds heal.
 pub(in crate::run) struct Healing {
-    /// Stretch below which they do, an expression of t.
+    /// Size of the stretch below which they do, an expression of t.
     pub below: Expression,
     /// `[slots]`
     pub may: Vec<bool>,

@@ -42,7 +42,7 @@ pub struct Toughness {
 pub struct Healing {
     /// Both ends of the bond are of this set; all when left out.
     pub set: Option<At<String>>,
-    /// Stretch below which a broken bond is whole again, a number or an expression of t; -1: none.
+    /// Size of the stretch below which a broken bond is whole again, a number or an expression of t; 0: none.
     #[schemars(extend("dimension" = Dim::NUMBER.name()))]
     pub below: Number,
 }
