@@ -243,7 +243,10 @@ fn faces_of_a_crack_rub() {
             });
             let zero = || number(0.0);
             hold(&mut spec, "floor", [zero(), zero(), None]);
-            let ways = ["0.04*max(0, 2*t - 1)", "-0.2*min(1, 2*t)"];
+            // by friction it begins to slip at 0.042; further than 0.08 against each other, and the next rows touch
+            let along = if rubs { "0.06" } else { "0.04" };
+            let along = format!("{along}*max(0, 2*t - 1)");
+            let ways = [along.as_str(), "-0.2*min(1, 2*t)"];
             hold(&mut spec, "top", [text(ways[0]), text(ways[1]), None]);
             spec.probes = vec![ProbeSpec {
                 name: "top".into(),
