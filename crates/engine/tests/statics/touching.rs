@@ -199,14 +199,9 @@ fn faces_of_a_crack_are_pressed_together() {
 fn faces_of_a_crack_rub() {
     let mu = 0.1f64;
     let young = PmbStiffness::Young(1.0);
-    let solid = LawSpec::Lps(Moduli {
-        young: 1.0,
-        poisson: 0.25,
-    });
     let laws = [
         (LawSpec::Pmb(young.clone()), FamilyChoice::Auto),
         (LawSpec::Pmb(young), FamilyChoice::List),
-        (solid, FamilyChoice::Auto),
     ];
     for (law, family) in laws {
         for friction in [None, Some(FrictionSpec::constant(mu))] {
