@@ -200,7 +200,7 @@ fn faces_of_a_crack_rub() {
     let mu = 0.1f64;
     let young = PmbStiffness::Young(1.0);
     let laws = [
-        (LawSpec::Pmb(young.clone()), FamilyChoice::Auto),
+        (LawSpec::Pmb(young), FamilyChoice::Auto),
         (LawSpec::Pmb(young), FamilyChoice::List),
     ];
     for (law, family) in laws {
