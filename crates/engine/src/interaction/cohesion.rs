@@ -1,7 +1,7 @@
 //! Cohesion: attraction between points of different bodies, whatever they were in the reference.
 //!
 //! Two points at a distance r below the range L attract each other with the force density `c V_j (1 − r/L)`: a central force that falls to
-//! nothing, as bonds of long-range peridynamic adhesion do (Silling & Bobaru 2005, section 4), and the sum over half-spaces is the traction
+//! nothing, as bonds of long-range peridynamic adhesion do (Silling & Bobaru 2005), and the sum over half-spaces is the traction
 //! between their faces (Derjaguin 1934). `c` is chosen for the work of adhesion w, what it takes to pull faces of unit area apart that lie
 //! where they begin to repel: of rows of points parallel to the faces, h_a and h_b apart in the bodies and d between the faces,
 //! `w = h_a h_b c Σ_n Σ_m ψ(d + n h_a + m h_b)`, with ψ(z) what a point has of a plane (or line) of unit density at the distance z. That is the mean over all

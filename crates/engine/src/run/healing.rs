@@ -46,6 +46,12 @@ fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
             "leave healing out",
         );
     }
+    if !spec.transfers.is_empty() {
+        return unsupported(
+            "what heat and species pass through is not mended: healed bonds would conduct nothing",
+            "leave healing out, or [heat] and [species]",
+        );
+    }
     if healing.below.depends_on_position() {
         return unsupported(
             "the stretch below which bonds heal depends on the place, expected an expression of t",
