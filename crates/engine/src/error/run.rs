@@ -154,7 +154,7 @@ impl RunError {
                 ": prescribe a velocity of 0 to hold a point where it is",
             ],
             RunError::Touching { step, pairs } => format!(
-                "after {step} increments of statics, which knew no contact, {pairs} pairs of points touch: write method = \"relaxation\" under [statics], or contact = false"
+                "after {step} increments of statics, which knew no contact, {pairs} pairs of points touch or attract each other: write method = \"relaxation\" under [statics], or contact = false"
             )
             .into(),
             RunError::Toughness {

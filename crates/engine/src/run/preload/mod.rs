@@ -281,7 +281,9 @@ impl<const D: usize> Model<D> {
             let (body, interaction) = (&self.body, &self.interaction);
             contact.look_again();
             contact.update(body, &self.u, &|i, j| interaction.in_family(body, i, j));
-            let pairs = contact.pairs_in_contact(&self.u);
+            // those that attract each other, too
+            let mut pairs = 0;
+            contact.each_pull(&self.u, |_| pairs += 1);
             if pairs > 0 {
                 return Err(RunError::Touching {
                     step: self.step,
