@@ -254,3 +254,38 @@ fn fine_rows_are_half_spaces() {
     let found = Adhesion::of_strength::<3>(0.3, 0.4, faces).unwrap();
     assert!((found.traction::<3>(faces) / 0.4 - 1.0).abs() < 1e-6);
 }
+
+/// Linear statics knows no contact: motion does not begin from it where bodies attract each other, though none repel.
+#[test]
+fn statics_without_contact_does_not_pass_over_attraction() {
+    let passage = |gap: f64| {
+        let one = square(1.0, [0.0; 3], [7.0, 4.0, 0.0]);
+        let other = square(1.0, [0.0, 4.0 + gap, 0.0], [7.0, 8.0 + gap, 0.0]);
+        let pieces = vec![piece("one", one, true), piece("other", other, true)];
+        let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
+        let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law);
+        spec.sets = sets(&["one", "other"]);
+        spec.horizon = Horizon::Length(2.2);
+        cohesive(&mut spec);
+        let held = |set: &str| ConditionSpec {
+            set: set.into(),
+            kind: ConditionKind::Displacement([text("0"), text("0"), None]),
+        };
+        spec.preload = Some(PreloadSpec {
+            statics: Statics::default(),
+            increments: 1,
+            duration: None,
+            conditions: vec![held("one"), held("other")],
+            indenters: vec![],
+            cuts: vec![],
+        });
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        (0..3)
+            .try_for_each(|_| sim.step())
+            .map_err(|e| e.to_string())
+    };
+    let error = passage(2.0).unwrap_err();
+    assert!(error.contains("attract each other"), "{error}");
+    passage(9.0).unwrap();
+}
