@@ -226,5 +226,13 @@ pub fn periods<const D: usize>(body: &Body<D>, y: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|a| body.period[a].map_or(0.0, |p| p * (y[a] / p).round()))
 }
 
+/// From i to j in the reference, to the image of j that is nearest now: with `u_j − u_i` the way between them.
+pub fn base<const D: usize>(body: &Body<D>, u: &Field<D>, [i, j]: [usize; 2]) -> [f64; D] {
+    let (p, q) = (body.position(i), body.position(j));
+    let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
+    let now = periods(body, &std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i])));
+    std::array::from_fn(|a| xi[a] - now[a])
+}
+
 #[cfg(test)]
 mod tests;

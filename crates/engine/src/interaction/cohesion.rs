@@ -9,7 +9,7 @@
 
 use super::pull::Pull;
 use crate::body::{Body, Field};
-use crate::family::neighbours::{Neighbours, periods};
+use crate::family::neighbours::{Neighbours, base};
 
 /// How far cohesion reaches, in distances of faces that touch: shorter, and it would depend on how faces lie on each other; longer, and each
 /// point would have thousands of partners.
@@ -185,15 +185,8 @@ impl<const D: usize> Cohesion<D> {
         }
         self.bases.clear();
         for (i, row) in self.neighbours.rows() {
-            let p = body.position(i);
-            for &j in row {
-                let j = j as usize;
-                let q = body.position(j);
-                let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
-                let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
-                let now = periods(body, &now);
-                self.bases.push(std::array::from_fn(|a| xi[a] - now[a]));
-            }
+            let each = row.iter().map(|j| base(body, u, [i, *j as usize]));
+            self.bases.extend(each);
         }
     }
 

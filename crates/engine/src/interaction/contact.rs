@@ -8,7 +8,7 @@ use super::nearness::{Bounds, Nearness};
 use super::pull::Pull;
 use super::{BondTangent, Repulsion};
 use crate::body::{Body, Field};
-use crate::family::neighbours::{LOOSE, Neighbours, periods};
+use crate::family::neighbours::{LOOSE, Neighbours, base, periods};
 
 /// A listed pair, in the order of the list.
 #[derive(Debug, Clone, Copy)]
@@ -178,8 +178,7 @@ impl<const D: usize> Contact<D> {
                 let j = j as usize;
                 let q = body.position(j);
                 let xi: [f64; D] = std::array::from_fn(|a| q[a] - p[a]);
-                let now = std::array::from_fn(|a| xi[a] + (u[a][j] - u[a][i]));
-                let (then, now) = (periods(body, &xi), periods(body, &now));
+                let then = periods(body, &xi);
                 let square: f64 = (0..D).map(|a| (xi[a] - then[a]).powi(2)).sum();
                 let materials = self.materials(body, [i, j]);
                 let r0 = square.sqrt();
@@ -189,7 +188,7 @@ impl<const D: usize> Contact<D> {
                     self.bounds.push(near.bounds(materials, same, r0, distance));
                 }
                 self.pairs.push(Pair {
-                    base: std::array::from_fn(|a| xi[a] - now[a]),
+                    base: base(body, u, [i, j]),
                     distance,
                     stiffness: self.repulsion.of(materials),
                 });

@@ -166,8 +166,11 @@ fn sticks<const D: usize>(cohesion: &CohesionSpec, faces: Faces) -> Result<Adhes
     let [most, least] =
         RANGES.map(|x| Adhesion::new::<D>(energy, x * faces.apart, faces).traction::<D>(faces));
     let why = match strength > least {
-        true => " would end within the second row of points",
-        false => " would reach further than 20 times the distance of contact",
+        true => " would end within the second row of points".to_string(),
+        false => format!(
+            " would reach further than {} times the distance of contact",
+            RANGES[1]
+        ),
     };
     Err(BuildError::conflict(
         "contact.cohesion",
