@@ -255,7 +255,7 @@ fn fine_rows_are_half_spaces() {
     assert!((found.traction::<3>(faces) / 0.4 - 1.0).abs() < 1e-6);
 }
 
-/// Linear statics knows no contact: motion does not begin from it where bodies attract each other, though none repel.
+/// Newton's method knows no contact: motion does not begin from it where bodies attract each other, though none repel.
 #[test]
 fn statics_without_contact_does_not_pass_over_attraction() {
     let passage = |gap: f64| {
@@ -272,7 +272,10 @@ fn statics_without_contact_does_not_pass_over_attraction() {
             kind: ConditionKind::Displacement([text("0"), text("0"), None]),
         };
         spec.preload = Some(PreloadSpec {
-            statics: Statics::default(),
+            statics: Statics {
+                method: Method::Newton,
+                ..Statics::default()
+            },
             increments: 1,
             duration: None,
             conditions: vec![held("one"), held("other")],
