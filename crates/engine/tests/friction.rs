@@ -4,6 +4,8 @@
 mod cohesion;
 #[path = "friction/faces.rs"]
 mod faces;
+#[path = "friction/implicit.rs"]
+mod implicit;
 #[path = "friction/rigid.rs"]
 mod rigid;
 

@@ -293,13 +293,14 @@ fn what_has_no_tangent_is_refused() {
         conductance: None,
     });
     assert!(build(&touching, Options::default()).is_ok());
-    if let Some(contact) = &mut touching.contact {
-        contact.friction = Some(FrictionSpec::constant(0.3));
-    }
-    assert_eq!(said(&touching).path, "contact.friction");
     let mut free = spec.clone();
     let motion = IndenterMotion::Free(FreeSpec::new(1.0, [0.0, 9.0, 0.0], [0.0; 3]));
     free.indenters.push(IndenterSpec::sphere(1.0, 1.0, motion));
+    assert!(build(&free, Options::default()).is_ok());
+    free.conditions.push(ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::Displacement([text("0"), text("0"), None]),
+    });
     assert_eq!(said(&free).path, "indenters");
     for alpha in [-0.4, 0.1, f64::NAN] {
         let mut wrong = spec.clone();

@@ -1,5 +1,7 @@
 //! Equilibrium and vibration against closed forms, and one method against the others.
 
+#[path = "statics/path.rs"]
+mod path;
 #[path = "statics/preload.rs"]
 mod preload;
 #[path = "statics/sequence.rs"]

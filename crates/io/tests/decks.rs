@@ -304,7 +304,7 @@ fn decks_that_fail_in_the_build_fail_by_a_kind() {
         ("unknown_field_to_write", unknown("damge")),
         ("conditions_disagree", Conflict),
         ("period_below_horizon", Conflict),
-        ("implicit_with_friction", Unsupported),
+        ("implicit_beside_held_points", Unsupported),
         ("springs_on_a_cloud", Unsupported),
         ("empty_region", Empty),
         ("cloud_too_thin_for_its_horizon", Empty),

@@ -223,6 +223,7 @@ fn shorter(error: &SolveError) -> &'static str {
         | SolveError::NoTangent { .. }
         | SolveError::NothingBreaks
         | SolveError::NotFinite
+        | SolveError::NothingOpens
         | SolveError::Stopped => "",
     }
 }

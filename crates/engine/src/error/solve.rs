@@ -52,6 +52,10 @@ pub enum SolveError {
     NoTangent { what: &'static str },
     #[error("under this load no bond comes near to its critical stretch: nothing is left to break")]
     NothingBreaks,
+    #[error(
+        "no bond opens under this load: nothing measures the path; write control = \"arc_length\""
+    )]
+    NothingOpens,
     #[error("a force or displacement is not a number")]
     NotFinite,
     #[error("it was asked to end before it was found")]

@@ -6,6 +6,7 @@
 //! ([`FrictionSpec`]). What touches and slides when a run begins has slid before. So what sticks holds a force without creeping; momentum
 //! is kept; what slips is dissipated; and the rest, `½ κ ξ² V_i V_j`, is energy of the contact until the pair parts.
 
+use super::BondTangent;
 use super::Interaction;
 use super::contact::{Contact, Touch};
 use crate::body::{Body, Field, zeros};
@@ -24,6 +25,26 @@ struct Spring<const D: usize> {
     way: [f64; D],
     /// `d − r` (length).
     depth: f64,
+    /// ξ over what it would be if nothing slipped: 1 of what sticks.
+    kept: f64,
+}
+
+/// By what those that touch are pressed while an increment or an implicit step looks for its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pressed {
+    /// As at the last call of `press`: friction has a potential then.
+    Held,
+    /// As they are.
+    Now,
+}
+
+/// Where an increment or an implicit step began.
+#[derive(Debug, Clone)]
+struct Departure<const D: usize> {
+    u: Field<D>,
+    /// Force density there.
+    force: Field<D>,
+    pressed: Pressed,
 }
 
 /// Friction of points that touch, outside the families and over broken bonds, and what it has dissipated.
@@ -32,8 +53,8 @@ pub struct Friction<const D: usize> {
     law: FrictionSpec,
     /// Force density of the last evaluation.
     force: Field<D>,
-    /// Of an increment of statics: displacements and force density where it began.
-    from: Option<[Field<D>; 2]>,
+    /// Of an increment of statics or an implicit step.
+    from: Option<Departure<D>>,
     /// Of all that touch, by their ends: as they were when the step began, and as they are.
     before: Vec<Spring<D>>,
     now: Vec<Spring<D>>,
@@ -113,13 +134,13 @@ pub fn begun<const D: usize>(w: &[f64; D], most: f64) -> [f64; D] {
     }
 }
 
-/// The elastic path after another piece of path along a face of normal n (of length 1), no longer than `most`.
+/// The elastic path after another piece of path along a face of normal n (of length 1), no longer than `most`, and what part of it is left.
 pub fn slipped<const D: usize>(
     before: &[f64; D],
     normal: &[f64; D],
     path: &[f64; D],
     most: f64,
-) -> [f64; D] {
+) -> ([f64; D], f64) {
     // what turns with the faces keeps its length
     let turned = along(normal, before);
     let kept = match length(&turned) {
@@ -130,9 +151,27 @@ pub fn slipped<const D: usize>(
     let way: [f64; D] = std::array::from_fn(|a| kept * turned[a] + path[a]);
     let long = length(&way);
     match long > most {
-        true => way.map(|c| c * most / long),
-        false => way,
+        true => (way.map(|c| c * most / long), most / long),
+        false => (way, 1.0),
     }
+}
+
+/// How the elastic path follows a small path in a face: what slips follows across its own direction alone. What pressure does to it is
+/// left out, which would not be symmetric.
+pub fn follows<const D: usize>(normal: &[f64; D], way: &[f64; D], kept: f64) -> [[f64; D]; D] {
+    let long = length(way);
+    let slips = kept < 1.0 && long > 0.0;
+    std::array::from_fn(|a| {
+        std::array::from_fn(|b| {
+            let one = if a == b { 1.0 } else { 0.0 };
+            let slip = if slips {
+                way[a] * way[b] / (long * long)
+            } else {
+                0.0
+            };
+            kept * (one - normal[a] * normal[b] - slip)
+        })
+    })
 }
 
 impl<const D: usize> Friction<D> {
@@ -158,11 +197,15 @@ impl<const D: usize> Friction<D> {
         self.half_path(body, v, dt);
     }
 
-    /// An increment of statics begins, from these displacements.
-    pub fn depart(&mut self, u: &Field<D>) {
+    /// An increment of statics or an implicit step begins, from these displacements.
+    pub fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
         std::mem::swap(&mut self.before, &mut self.now);
         self.kept = self.work;
-        self.from = Some([u.clone(), self.force.clone()]);
+        self.from = Some(Departure {
+            u: u.clone(),
+            force: self.force.clone(),
+            pressed,
+        });
     }
 
     /// In statics what rubs is pressed as it is at this call, until the next: between calls friction has a potential.
@@ -177,12 +220,13 @@ impl<const D: usize> Friction<D> {
 
     /// It has ended: its work, by the trapezoidal rule.
     pub fn arrive(&mut self, body: &Body<D>, u: &Field<D>) {
-        let Some([from, force]) = &self.from else {
+        let Some(from) = &self.from else {
             return;
         };
         for &s in &body.slots {
             let i = s as usize;
-            let work = (0..D).map(|a| (force[a][i] + self.force[a][i]) * (u[a][i] - from[a][i]));
+            let force = |a: usize| from.force[a][i] + self.force[a][i];
+            let work = (0..D).map(|a| force(a) * (u[a][i] - from.u[a][i]));
             self.work += 0.5 * body.volume.at(i) * work.sum::<f64>();
         }
     }
@@ -194,7 +238,7 @@ impl<const D: usize> Friction<D> {
     }
 
     /// Adds the force density at the displacements of the contact's last update to `f`. `v` is the velocity of the step's middle,
-    /// `dt` the step that ends, 0 at the start of a run and in statics, where the path is that from the beginning of the increment; `t` the time.
+    /// `dt` the step that ends, 0 at the start of a run and in statics and implicit steps, where the path is that from the beginning; `t` the time.
     pub fn add(
         &mut self,
         contact: &Contact<D>,
@@ -232,19 +276,21 @@ impl<const D: usize> Friction<D> {
             let ends = [i as u32, j as u32];
             let before = find(&mut before, ends);
             let depth = match &self.from {
-                Some(_) => find(&mut pressed, ends).map_or(0.0, |s| s.depth),
-                None => d - r,
+                Some(from) if from.pressed == Pressed::Held => {
+                    find(&mut pressed, ends).map_or(0.0, |s| s.depth)
+                }
+                Some(_) | None => d - r,
             };
             let normal = y.map(|c| c / r);
             let w = along(&normal, &std::array::from_fn(|a| v[a][j] - v[a][i]));
             let most = law.at(length(&w)) * depth / TANGENTIAL;
-            let way = match (&self.from, before) {
+            let (way, kept) = match (&self.from, before) {
                 (None, before) if dt == 0.0 && before.is_none_or(|s| s.way == [0.0; D]) => {
-                    begun(&w, most)
+                    (begun(&w, most), 1.0)
                 }
                 (from, before) => {
                     let path = match from {
-                        Some([from, _]) => {
+                        Some(Departure { u: from, .. }) => {
                             std::array::from_fn(|a| (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]))
                         }
                         None => w.map(|c| dt * c),
@@ -264,6 +310,7 @@ impl<const D: usize> Friction<D> {
                 ends,
                 way,
                 depth: d - r,
+                kept,
             });
         }
         for a in 0..D {
@@ -272,6 +319,21 @@ impl<const D: usize> Friction<D> {
             }
         }
         self.half_path(body, v, dt);
+    }
+
+    /// The tangents of the last evaluation.
+    pub fn tangents(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
+        let touching = self.touching.iter().filter(|t| t.r > 0.0);
+        for (touch, spring) in touching.zip(&self.now) {
+            let normal = touch.y.map(|c| c / touch.r);
+            let block = follows(&normal, &spring.way, spring.kept);
+            let stiffness = TANGENTIAL * touch.stiffness;
+            for (i, j, way) in [(touch.i, touch.j, 1.0), (touch.j, touch.i, -1.0)] {
+                let per = stiffness * body.volume.at(j);
+                let block = block.map(|row| row.map(|c| per * c));
+                visit(BondTangent::direct(i, j, touch.y.map(|c| way * c), block));
+            }
+        }
     }
 
     fn half_path(&mut self, body: &Body<D>, v: &Field<D>, dt: f64) {

@@ -24,6 +24,15 @@ impl BondWeight {
         }
     }
 
+    /// The same with whole volumes.
+    pub fn whole(self) -> Self {
+        BondWeight {
+            cut: 1.0,
+            rate: 0.0,
+            ..self
+        }
+    }
+
     /// `ω ν` of bonds of these lengths.
     #[inline(always)]
     pub fn at<L: Lane>(&self, r0: L, inv_r0: L) -> L {

@@ -69,7 +69,8 @@ pub fn build_in<const D: usize>(
     let mut resolved = spec.clone();
     shelf.resolve(&mut resolved)?;
     let expanding = transfers::expanding(&mut resolved);
-    if criteria::remembering(&mut resolved)? || expanding {
+    let own = own_horizons::resolve(&mut resolved);
+    if criteria::remembering(&mut resolved)? || expanding || own {
         shelf.resolve(&mut resolved)?;
     }
     let spec = &resolved;
@@ -369,8 +370,12 @@ pub fn build_in<const D: usize>(
         Stepper::Statics(statics) => {
             if spec.schedule.steps > 0 {
                 model.check_statics(statics)?;
-                if statics.control == Control::Breaking {
-                    model.check_sequence(statics, spec)?;
+                match statics.control {
+                    Control::Load => {}
+                    Control::Breaking => model.check_sequence(statics, spec)?,
+                    Control::Opening(_) | Control::ArcLength(_) => {
+                        model.check_path(statics, spec)?;
+                    }
                 }
             }
             model.statics = Some(StaticState::new(statics));

@@ -2,25 +2,60 @@
 
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
+use crate::law::material::ThermoelasticSolid;
+use crate::law::solid::linear::{Linear, Lps};
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{Calibration, Criterion, Influence, LawSpec, Spec, Stepper};
+use crate::spec::{
+    Calibration, Criterion, FractureSpec, Influence, LawSpec, NamedLaw, Spec, Stepper,
+};
 
 /// What is longer by this part is so by round-off.
 const ROUND_OFF: f64 = 1.0 + 1e-9;
+
+/// Where points have horizons of their own, `lps` is `thermoelastic_solid`: its own kernel knows one horizon. Were laws changed?
+pub(super) fn resolve(spec: &mut Spec) -> bool {
+    let mut changed = false;
+    if spec.own_horizon.is_none() {
+        return changed;
+    }
+    for m in &mut spec.materials {
+        if let (LawSpec::Lps(_), Some(parameters)) = (&m.law, Lps::parameters(&m.law)) {
+            m.law = LawSpec::Named(NamedLaw {
+                name: ThermoelasticSolid::NAME.into(),
+                parameters,
+                isotropic: true,
+                linear: None,
+            });
+            changed = true;
+        }
+    }
+    changed
+}
 
 fn possible(spec: &Spec) -> Result<(), BuildError> {
     let refused = |path: &str, message: &str, help: &str| {
         Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
     };
-    if !matches!(spec.materials[..], [ref m] if matches!(m.law, LawSpec::Pmb(_))) {
+    let pmb = matches!(spec.materials[..], [ref m] if matches!(m.law, LawSpec::Pmb(_)));
+    if !pmb
+        && !spec
+            .materials
+            .iter()
+            .all(|m| matches!(m.law, LawSpec::Named(_)))
+    {
         return refused(
             "own_horizon",
-            "points with horizons of their own are a body of one material of the law pmb",
-            "leave own_horizon out, or write law = { pmb = { ... } }",
+            "points with horizons of their own are a body of one material of the law pmb, or of laws that their families normalise",
+            "take lps, or leave own_horizon out",
         );
     }
-    if spec.influence != Influence::Constant {
+    let alike = match spec.influence {
+        Influence::Constant => true,
+        Influence::Inverse => !pmb,
+        Influence::Conical | Influence::Gaussian | Influence::CubicSpline => false,
+    };
+    if !alike {
         return refused(
             "influence",
             "an influence function of the horizon is not known where points have their own",
@@ -41,10 +76,11 @@ fn possible(spec: &Spec) -> Result<(), BuildError> {
             "write calibration = \"continuum\"",
         );
     }
-    let fracture = spec.materials[0].fracture;
-    if fracture.is_some_and(|f| matches!(f.criterion, Criterion::Energy(_))) {
+    let energy = |f: FractureSpec| matches!(f.criterion, Criterion::Energy(_));
+    let mut materials = spec.materials.iter();
+    if let Some(n) = materials.position(|m| m.fracture.is_some_and(energy)) {
         return refused(
-            "materials[0].fracture",
+            &format!("materials[{n}].fracture"),
             "the stretch that a fracture energy stands for depends on the horizon, of which every point has another",
             "give critical_stretch",
         );

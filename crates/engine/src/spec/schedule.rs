@@ -130,13 +130,17 @@ pub enum Method {
 }
 
 /// What says how far an increment goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Control {
     /// t, of which loads are functions.
     Load,
     /// The next bond: an increment ends where it is at its critical stretch, and the next one begins without it. t is the factor of
     /// loads that are proportional to it, and may fall.
     Breaking,
+    /// So much growth of the stretch of the bonds that open fastest (number); t is the factor of loads that are proportional to it, and may fall.
+    Opening(f64),
+    /// So far points go, the root of the mean square of all (length); t as above.
+    ArcLength(f64),
 }
 
 /// How linear equations are solved.

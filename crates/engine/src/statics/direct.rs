@@ -3,7 +3,7 @@
 use super::Solved;
 use super::operator::LinearOperator;
 use super::support::Support;
-use super::vectors::{add, norm};
+use super::vectors::{Block, add, diagonal, norm};
 use crate::error::SolveError;
 use crate::execute::memory;
 use crate::spec::LinearBody;
@@ -27,7 +27,6 @@ pub struct Direct<const D: usize> {
     /// Place of every free component among the unknowns.
     place: Vec<[Option<usize>; D]>,
     unknowns: usize,
-    shift: f64,
     factors: Factors,
 }
 
@@ -37,6 +36,37 @@ impl<const D: usize> Direct<D> {
     /// # Errors
     /// Nothing is free; the matrix is singular or, if symmetric, not positive definite.
     pub fn new(body: &LinearBody<D>, support: &Support<D>, shift: f64) -> Result<Self, SolveError> {
+        let symmetric = body.soundness().asymmetry <= SYMMETRIC;
+        Direct::made(body, support, Own::Masses(shift), symmetric)
+    }
+
+    /// Factors `A` with a symmetric stiffness of each point against its own place besides (`[N]`, force / length).
+    ///
+    /// # Errors
+    /// Those of [`Direct::new`].
+    pub fn against(
+        body: &LinearBody<D>,
+        support: &Support<D>,
+        own: &[Block<D>],
+    ) -> Result<Self, SolveError> {
+        let symmetric = body.soundness().asymmetry <= SYMMETRIC;
+        Direct::made(body, support, Own::Blocks(own), symmetric)
+    }
+
+    /// Factors the stiffness of a body that need not be positive definite.
+    ///
+    /// # Errors
+    /// Nothing is free; the matrix is singular.
+    pub fn of_any_sign(body: &LinearBody<D>, support: &Support<D>) -> Result<Self, SolveError> {
+        Direct::made(body, support, Own::Masses(0.0), false)
+    }
+
+    fn made(
+        body: &LinearBody<D>,
+        support: &Support<D>,
+        own: Own<'_, D>,
+        symmetric: bool,
+    ) -> Result<Self, SolveError> {
         let order = order(body);
         let mut place = vec![[None; D]; body.points()];
         let (mut unknowns, mut owner) = (0, vec![]);
@@ -50,11 +80,10 @@ impl<const D: usize> Direct<D> {
         if unknowns == 0 {
             return Err(SolveError::NothingFree);
         }
-        let symmetric = body.soundness().asymmetry <= SYMMETRIC;
         let matrix = Matrix {
             body,
             place: &place,
-            shift,
+            own,
         };
         let named = |e: SolveError| match e {
             SolveError::Indefinite { point } => SolveError::Indefinite {
@@ -98,14 +127,8 @@ impl<const D: usize> Direct<D> {
         Ok(Direct {
             place,
             unknowns,
-            shift,
             factors,
         })
-    }
-
-    /// Which part of the masses is in the factors.
-    pub fn shift(&self) -> f64 {
-        self.shift
     }
 
     /// Solves for the free components; others become 0.
@@ -180,10 +203,18 @@ fn order<const D: usize>(body: &LinearBody<D>) -> Vec<usize> {
     order
 }
 
+/// What stands on the diagonal beside the bonds.
+#[derive(Clone, Copy)]
+enum Own<'a, const D: usize> {
+    /// This part of the masses.
+    Masses(f64),
+    Blocks(&'a [Block<D>]),
+}
+
 struct Matrix<'a, const D: usize> {
     body: &'a LinearBody<D>,
     place: &'a [[Option<usize>; D]],
-    shift: f64,
+    own: Own<'a, D>,
 }
 
 impl<const D: usize> Matrix<'_, D> {
@@ -206,7 +237,10 @@ impl<const D: usize> Matrix<'_, D> {
         for (i, place) in self.place.iter().enumerate() {
             let (partners, blocks) = body.row(i);
             let v = body.volume[i];
-            let mut own = [[0.0; D]; D];
+            let mut own = match self.own {
+                Own::Masses(part) => diagonal(part * body.density[i] * v),
+                Own::Blocks(all) => all[i],
+            };
             for (&j, c) in partners.iter().zip(blocks) {
                 for a in 0..D {
                     for b in 0..D {
@@ -218,7 +252,6 @@ impl<const D: usize> Matrix<'_, D> {
                 }
             }
             for a in 0..D {
-                own[a][a] += self.shift * body.density[i] * v;
                 for b in 0..D {
                     if let (Some(row), Some(column)) = (place[a], place[b]) {
                         add(row, column, own[a][b]);

@@ -20,12 +20,12 @@ pub mod support;
 mod vectors;
 
 use crate::error::SolveError;
-pub use assemble::{linear_body, linear_body_touching};
+pub use assemble::{Touching, linear_body, linear_body_touching};
 pub use direct::{Direct, SYMMETRIC};
 pub use operator::{Assembled, LinearOperator, Shifted, Swept};
 pub use soundness::Soundness;
 pub use support::Support;
-pub use vectors::norm;
+pub use vectors::{Block, diagonal, dot, norm};
 
 /// What a solver did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! Operators on displacements: `A u`, the forces that hold a body at u (force per point).
 
 use super::support::Support;
-use super::vectors::{dot, norm};
+use super::vectors::{Block, dot, norm};
 use crate::body::{Body, Field, zeros};
 use crate::interaction::{Interaction, Sweep};
 use crate::spec::LinearBody;
@@ -89,7 +89,7 @@ impl<const D: usize> LinearOperator<D> for Assembled<'_, D> {
 pub struct Shifted<'a, const D: usize> {
     pub operator: &'a mut dyn LinearOperator<D>,
     /// `[N]` (force / length); empty: nothing.
-    pub added: &'a [f64],
+    pub added: &'a [Block<D>],
 }
 
 impl<const D: usize> LinearOperator<D> for Shifted<'_, D> {
@@ -99,18 +99,22 @@ impl<const D: usize> LinearOperator<D> for Shifted<'_, D> {
 
     fn apply(&mut self, x: &[[f64; D]], y: &mut [[f64; D]]) {
         self.operator.apply(x, y);
-        for ((y, x), s) in y.iter_mut().zip(x).zip(self.added) {
+        for ((y, x), block) in y.iter_mut().zip(x).zip(self.added) {
             for a in 0..D {
-                y[a] = s.mul_add(x[a], y[a]);
+                for b in 0..D {
+                    y[a] = block[a][b].mul_add(x[b], y[a]);
+                }
             }
         }
     }
 
     fn diagonal(&mut self) -> Vec<[[f64; D]; D]> {
         let mut diagonal = self.operator.diagonal();
-        for (block, s) in diagonal.iter_mut().zip(self.added) {
+        for (block, added) in diagonal.iter_mut().zip(self.added) {
             for a in 0..D {
-                block[a][a] += s;
+                for b in 0..D {
+                    block[a][b] += added[a][b];
+                }
             }
         }
         diagonal

@@ -2,6 +2,14 @@
 
 use rayon::prelude::*;
 
+/// What a point resists with against its own place (force / length).
+pub type Block<const D: usize> = [[f64; D]; D];
+
+/// The same number along every axis.
+pub fn diagonal<const D: usize>(x: f64) -> Block<D> {
+    std::array::from_fn(|a| std::array::from_fn(|b| if a == b { x } else { 0.0 }))
+}
+
 /// Points per partial sum.
 const CHUNK: usize = 4096;
 

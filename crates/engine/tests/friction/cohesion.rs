@@ -264,7 +264,13 @@ fn statics_without_contact_does_not_pass_over_attraction() {
         let pieces = vec![piece("one", one, true), piece("other", other, true)];
         let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
         let mut spec = Spec::new(2, BodySpec::Several(pieces), 1.0, law);
-        spec.sets = sets(&["one", "other"]);
+        spec.sets = sets(&["one"]);
+        // free below its uppermost row
+        let above = format!("y > {}", 7.5 + gap);
+        spec.sets.push(SetSpec {
+            name: "held".into(),
+            members: Members::Where(text(&above).unwrap()),
+        });
         spec.horizon = Horizon::Length(2.2);
         cohesive(&mut spec);
         let held = |set: &str| ConditionSpec {
@@ -278,7 +284,7 @@ fn statics_without_contact_does_not_pass_over_attraction() {
             },
             increments: 1,
             duration: None,
-            conditions: vec![held("one"), held("other")],
+            conditions: vec![held("one"), held("held")],
             indenters: vec![],
             cuts: vec![],
         });

@@ -11,13 +11,13 @@ use peridyne::spec::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-fn made(spec: &Spec) -> Box<dyn Simulation> {
+pub(super) fn made(spec: &Spec) -> Box<dyn Simulation> {
     let mut sim = build(spec, Options::default()).unwrap();
     sim.start(true);
     sim
 }
 
-fn run(sim: &mut dyn Simulation, steps: usize) {
+pub(super) fn run(sim: &mut dyn Simulation, steps: usize) {
     (0..steps).for_each(|_| sim.step().unwrap());
 }
 
@@ -33,7 +33,7 @@ fn probe(spec: &mut Spec, indenter: &str) {
 }
 
 /// Numbers of the probe by the name of their column.
-fn seen(sim: &mut dyn Simulation, what: &str) -> Vec<f64> {
+pub(super) fn seen(sim: &mut dyn Simulation, what: &str) -> Vec<f64> {
     let columns = sim.probe_columns();
     let values = sim.measure();
     let of = columns.iter().zip(values);
@@ -47,7 +47,7 @@ fn constants(x: [f64; 3]) -> [peridyne::expression::Expression; 3] {
     x.map(peridyne::expression::Expression::constant)
 }
 
-fn mass_and_momentum(sim: &mut dyn Simulation) -> (f64, Point) {
+pub(super) fn mass_and_momentum(sim: &mut dyn Simulation) -> (f64, Point) {
     let (volume, density) = (sim.scalars("volume"), sim.scalars("density"));
     let (mut mass, mut sum) = (0.0, [0.0; 3]);
     for (i, v) in sim.velocities().iter().enumerate() {
@@ -61,7 +61,7 @@ fn mass_and_momentum(sim: &mut dyn Simulation) -> (f64, Point) {
 }
 
 /// A block of points on a rigid incline: seen along it, gravity is (g sin α, −g cos α).
-fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
+pub(super) fn on_an_incline(friction: FrictionSpec, tangent: f64) -> Spec {
     let law = LawSpec::Pmb(PmbStiffness::Young(100.0));
     let mut spec = Spec::new(2, square(1.0, [0.0; 3], [5.0, 2.0, 0.0]), 1.0, law);
     spec.horizon = Horizon::Length(2.5);
@@ -237,7 +237,7 @@ fn dragging_to_and_fro_takes_the_area_of_the_loop() {
 }
 
 /// A cube of springs, and a rigid body thrown at one of its corners.
-fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f64) -> Spec {
+pub(super) fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f64) -> Spec {
     let cube = BodySpec::Lattice {
         kind: LatticeKind::Cubic,
         spacing: 1.0,
@@ -266,10 +266,10 @@ fn tumbling(shape: RigidShape, friction: Option<FrictionSpec>, dt: f64) -> Spec 
     spec
 }
 
-const HALF: Point = [1.0, 1.5, 2.0];
+pub(super) const HALF: Point = [1.0, 1.5, 2.0];
 
 /// Of points and the rigid box together: momentum, angular momentum about the origin.
-fn of_both(sim: &mut dyn Simulation) -> ([f64; 6], f64) {
+pub(super) fn of_both(sim: &mut dyn Simulation) -> ([f64; 6], f64) {
     let cross = |a: &[f64], b: &[f64]| -> Point {
         [
             a[1] * b[2] - a[2] * b[1],
@@ -434,7 +434,7 @@ fn what_touches_hard_is_stepped_in_parts() {
 }
 
 /// A held layer of points of spacing 1 below z = 0.
-fn layer(edge: f64, body: IndenterSpec) -> Spec {
+pub(super) fn layer(edge: f64, body: IndenterSpec) -> Spec {
     let plate = BodySpec::Lattice {
         kind: LatticeKind::Cubic,
         spacing: 1.0,

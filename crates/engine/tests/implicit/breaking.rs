@@ -76,6 +76,52 @@ fn bonds_break_at_the_end_of_a_step_as_explicit_ones_do() {
     }
 }
 
+/// What bonds remember of the steps before counts at the ends of implicit steps as it does in explicit ones.
+#[test]
+fn bonds_that_remember_break_at_the_end_of_a_step_as_explicit_ones_do() {
+    let rate = RateSpec {
+        coefficient: 0.2,
+        reference: 1e-4,
+    };
+    let of = |criterion: Criterion| FractureSpec::new(criterion);
+    let faster = FractureSpec {
+        rate: Some(rate),
+        ..of(Criterion::Stretch(0.02))
+    };
+    let young = LawSpec::Pmb(PmbStiffness::Young(1.0));
+    for (law, fracture) in [
+        (young.clone(), of(Criterion::BondEnergy(5e-4))),
+        (LPS, of(Criterion::VonMises(0.02))),
+        (young.clone(), faster),
+    ] {
+        let run = |stepper: Stepper| {
+            let mut spec = notched(law.clone());
+            spec.materials[0].fracture = Some(fracture);
+            spec.schedule.stepper = stepper;
+            spec.schedule.time_step = TimeStep::Fraction(0.1);
+            let mut sim = built(&spec);
+            let mut first = None;
+            while sim.time() < 80.0 {
+                sim.step().unwrap();
+                if sim.broken() > 0 && first.is_none() {
+                    first = Some(sim.time());
+                }
+            }
+            let l = sim.ledger().unwrap();
+            (sim.broken() as f64, first.unwrap(), l)
+        };
+        let (explicit, begins, _) = run(Stepper::Verlet);
+        let (implicit, begun, l) = run(Stepper::Newmark(Newmark::hht(-0.05)));
+        println!(
+            "{fracture:?}: {explicit} and {implicit} broken, from {begins} and {begun} on; {l:?}"
+        );
+        assert!(explicit > 20.0, "{fracture:?}: {explicit}");
+        assert!((implicit / explicit - 1.0).abs() < 0.1, "{fracture:?}");
+        assert!((begun / begins - 1.0).abs() < 0.02, "{fracture:?}");
+        assert!(l.residual().abs() < 1e-3 * l.work_conditions.abs(), "{l:?}");
+    }
+}
+
 /// Two bars of several points that meet: momentum to round-off, energy to the error of the step, and velocities as explicit steps
 /// have them.
 #[test]

@@ -31,6 +31,36 @@ fn solid(size: &[f64], longest: f64, own: Option<&str>) -> Spec {
     spec
 }
 
+/// Laws whose stiffness their families make, of one E and ν.
+fn of_families(d: usize) -> Vec<LawSpec> {
+    let moduli = Moduli {
+        young: 1.0,
+        poisson: 0.3,
+    };
+    let named = |name: &str, more: &[(&str, f64)]| {
+        let mut all = Parameters::numbers(&[("young", 1.0), ("poisson", 0.3)]);
+        more.iter()
+            .for_each(|(k, v)| all.set(k, Parameter::Number(*v)));
+        LawSpec::named(name, all)
+    };
+    let mut laws = vec![LawSpec::Lps(moduli)];
+    if d > 1 {
+        laws.push(named("correspondence", &[]));
+    }
+    if d == 3 {
+        laws.push(named("elastic_plastic", &[("yield_stress", 1e3)]));
+    }
+    laws
+}
+
+fn with_law(mut spec: Spec, law: &LawSpec) -> Spec {
+    spec.materials[0].law = law.clone();
+    if matches!(law, LawSpec::Lps(_)) {
+        spec.influence = Influence::Inverse;
+    }
+    spec
+}
+
 fn started(spec: &Spec) -> Box<dyn Simulation> {
     let mut sim = build(spec, Options::default()).unwrap();
     sim.start(true);
@@ -56,16 +86,22 @@ const GRADED: &str = "2.05 + 1.5*clamp((x-3)/6, 0, 1)";
 #[test]
 fn alike_horizons_are_those_of_the_body() {
     // no pair is further apart than the horizon by less than half a spacing
-    for (size, horizon, own) in [(&[20.0][..], 2.45, "2.45"), (&[9.0, 8.0], 2.3, "2.3")] {
-        let mut one = started(&solid(size, horizon, None));
-        let mut own = started(&solid(size, horizon, Some(own)));
+    let cases = [(&[20.0][..], 2.45, "2.45"), (&[9.0, 8.0], 2.3, "2.3")];
+    let pmb = [LawSpec::Pmb(PmbStiffness::Young(1.0))];
+    let each = cases.into_iter().flat_map(|case| {
+        let laws = pmb.iter().cloned().chain(of_families(case.0.len()));
+        laws.map(move |law| (case, law)).collect::<Vec<_>>()
+    });
+    for ((size, horizon, own), law) in each {
+        let mut one = started(&with_law(solid(size, horizon, None), &law));
+        let mut own = started(&with_law(solid(size, horizon, Some(own)), &law));
         assert_eq!(one.info().directed_bonds, own.info().directed_bonds);
         let u = bent(one.as_mut());
         let (f, g) = (one.forces_under(&u), own.forces_under(&u));
         let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
         for (f, g) in f.iter().zip(&g) {
             for a in 0..3 {
-                assert!((f[a] - g[a]).abs() < 1e-12 * most, "{f:?} {g:?}");
+                assert!((f[a] - g[a]).abs() < 1e-12 * most, "{law:?}: {f:?} {g:?}");
             }
         }
     }
@@ -73,8 +109,14 @@ fn alike_horizons_are_those_of_the_body() {
 
 #[test]
 fn unlike_horizons_keep_momentum_and_energy() {
-    for size in [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]] {
-        let mut sim = started(&solid(size, 3.6, Some(GRADED)));
+    let sizes = [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]];
+    let pmb = [LawSpec::Pmb(PmbStiffness::Young(1.0))];
+    let each = sizes.into_iter().flat_map(|size| {
+        let laws = pmb.iter().cloned().chain(of_families(size.len()));
+        laws.map(move |law| (size, law)).collect::<Vec<_>>()
+    });
+    for (size, law) in each {
+        let mut sim = started(&with_law(solid(size, 3.6, Some(GRADED)), &law));
         let u = bent(sim.as_mut());
         let x = sim.vectors("reference");
         let f = sim.forces_under(&u);
@@ -95,7 +137,7 @@ fn unlike_horizons_keep_momentum_and_energy() {
         }
         // forces are the slope of the energy: it is kept, and to second order in the step
         let off = |fraction: f64| {
-            let mut spec = solid(size, 3.6, Some(GRADED));
+            let mut spec = with_law(solid(size, 3.6, Some(GRADED)), &law);
             spec.schedule.time_step = TimeStep::Fraction(fraction);
             let mut sim = started(&spec);
             sim.set_displacements(&u);
@@ -109,15 +151,24 @@ fn unlike_horizons_keep_momentum_and_energy() {
             worst
         };
         let (coarse, fine) = (off(0.2), off(0.1));
-        assert!(coarse < 5e-2, "{coarse}");
-        assert!(fine < 0.35 * coarse, "{coarse} {fine}");
+        assert!(coarse < 5e-2, "{law:?}: {coarse}");
+        assert!(fine < 0.35 * coarse, "{law:?}: {coarse} {fine}");
     }
 }
 
 /// Tangents are those of the forces.
 #[test]
 fn a_body_of_unlike_horizons_has_an_equilibrium() {
-    let mut spec = solid(&[14.0, 6.0], 3.6, Some(GRADED));
+    for law in [LawSpec::Pmb(PmbStiffness::Young(1.0))]
+        .into_iter()
+        .chain(of_families(2))
+    {
+        has_an_equilibrium(&law);
+    }
+}
+
+fn has_an_equilibrium(law: &LawSpec) {
+    let mut spec = with_law(solid(&[14.0, 6.0], 3.6, Some(GRADED)), law);
     let end = |name: &str, sign: f64, x: f64| SetSpec {
         name: name.into(),
         members: Members::Region(Region::HalfSpace {
@@ -142,7 +193,34 @@ fn a_body_of_unlike_horizons_has_an_equilibrium() {
     let mut sim = started(&spec);
     sim.step().unwrap();
     // quadratic convergence takes a handful of steps
-    assert!(sim.solved().unwrap().iterations <= 8, "{:?}", sim.solved());
+    assert!(
+        sim.solved().unwrap().iterations <= 8,
+        "{law:?}: {:?}",
+        sim.solved()
+    );
+}
+
+/// A point sees a uniform strain as it is, whatever its own horizon and those around it: its own family measures it.
+#[test]
+fn every_point_knows_the_dilatation_of_a_uniform_strain() {
+    for size in [&[20.0][..], &[12.0, 8.0], &[12.0, 5.0, 5.0]] {
+        let law = &of_families(size.len())[0];
+        let mut sim = started(&with_law(solid(size, 3.6, Some(GRADED)), law));
+        let x = sim.vectors("reference");
+        let d = size.len();
+        let uniform: Vec<[f64; 3]> = x
+            .iter()
+            .map(|x| std::array::from_fn(|a| if a < d { 1e-6 * x[a] } else { 0.0 }))
+            .collect();
+        sim.set_displacements(&uniform);
+        sim.start(true);
+        for theta in sim.scalars("dilatation") {
+            assert!(
+                (theta / (1e-6 * d as f64) - 1.0).abs() < 1e-5,
+                "{d}: {theta}"
+            );
+        }
+    }
 }
 
 /// What a uniform strain leaves in the bulk, over the force of the strain at the end of the body, and what of a pulse comes back from
@@ -209,12 +287,11 @@ fn what_knows_one_horizon_is_refused() {
         "calibration"
     );
     assert_eq!(said(&|s| s.influence = Influence::Conical), "influence");
+    let softening = Parameters::numbers(&[("young", 1.0), ("onset", 0.2)]);
     assert_eq!(
         said(&|s| {
-            s.materials[0].law = LawSpec::Lps(Moduli {
-                young: 1.0,
-                poisson: 0.3,
-            });
+            s.materials[0].law = LawSpec::named("softening", softening.clone());
+            s.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.1)));
         }),
         "own_horizon"
     );

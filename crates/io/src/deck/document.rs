@@ -87,8 +87,8 @@ pub struct Document {
     /// Not needed by atoms that talk to their current neighbours.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<At<Or<Written, HorizonRatio>>>,
-    /// Horizon of each point, an expression of x, y, z, at most `horizon` (dual horizon): pmb on clouds, with family = "list" of lattices, too;
-    /// with calibration = "continuum".
+    /// Horizon of each point, an expression of x, y, z, at most `horizon` (dual horizon): on clouds, with family = "list" of lattices, too, of pmb, lps and
+    /// other laws that their families normalise; with calibration = "continuum".
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub own_horizon: Option<Number>,
     /// constant for pmb and inverse for lps when left out.

@@ -9,13 +9,13 @@ mod rub;
 mod surface;
 
 use super::reaction::Reaction;
-use super::rigid::{Kept, Rigid};
+use super::rigid::{Kept, NewmarkStep, Rigid, Wrench};
 use crate::body::{Body, Field};
-use crate::interaction::friction::Coefficients;
+use crate::interaction::friction::{Coefficients, Pressed};
 use crate::space::rigid::RigidShape;
 use crate::space::{Point, cross, full};
 use crate::spec::{CohesionSpec, FrictionSpec, IndenterSpec};
-use rub::Touched;
+use rub::{Departure, Touched};
 use std::collections::HashMap;
 pub use surface::{Form, Push};
 use surface::{Near, Surface};
@@ -53,7 +53,7 @@ pub struct Indenter<const D: usize> {
     stiff: f64,
     kept: Option<(Kept, f64, f64)>,
     /// Of an increment of statics: where it and the points were.
-    from: Option<(Kept, Field<D>)>,
+    from: Option<Departure<D>>,
 }
 
 impl<const D: usize> Indenter<D> {
@@ -175,11 +175,15 @@ impl<const D: usize> Indenter<D> {
         }
     }
 
-    /// An increment of statics begins, from these displacements.
-    pub fn depart(&mut self, u: &Field<D>) {
+    /// An increment of statics or an implicit step begins, from these displacements.
+    pub fn depart(&mut self, u: &Field<D>, pressed: Pressed) {
         self.kept = Some((self.rigid.keep(), self.work, self.rubbed_work));
         std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
-        self.from = Some((self.rigid.keep(), u.clone()));
+        self.from = Some(Departure {
+            rigid: self.rigid.keep(),
+            u: u.clone(),
+            pressed,
+        });
     }
 
     /// Back to before the last [`Indenter::begin`] or [`Indenter::depart`].
@@ -265,6 +269,7 @@ impl<const D: usize> Indenter<D> {
                     near,
                     way: [0.0; D],
                     depth: 0.0,
+                    kept: 1.0,
                     rub: [0.0; D],
                 });
             }
@@ -320,6 +325,16 @@ impl<const D: usize> Indenter<D> {
         (-pull / h, slope / h, -cohesion.energy * left / h)
     }
 
+    /// What the pull of [`Indenter::pull`] grows by with the gap (force density / length).
+    fn pull_slope(&self, body: &Body<D>, i: usize, gap: f64) -> f64 {
+        let range = self.range();
+        if !(gap < range) {
+            return 0.0;
+        }
+        let s = gap / range;
+        self.pull(body, i, gap).1 * (1.0 - s) * (1.0 - 3.0 * s)
+    }
+
     /// The body feels what it does to a point.
     fn bear(&mut self, arm: &[f64; D], force: &[f64; D], volume: f64) {
         let turn = cross(&full(arm), &full(force));
@@ -366,6 +381,52 @@ impl<const D: usize> Indenter<D> {
             }
             sum[i] += slope * body.volume.at(i);
         }
+    }
+
+    /// Visits points (slots) with the arm of their place on the body and what resists there (force / length), at the displacements of the last
+    /// [`Indenter::add`]; without what would not be positive: how the normal turns with the surface, and cohesion beyond its greatest pull.
+    pub fn each_tangent(
+        &self,
+        body: &Body<D>,
+        u: &Field<D>,
+        mut visit: impl FnMut(usize, &[f64; D], [[f64; D]; D]),
+    ) {
+        for &s in &self.candidates {
+            let i = s as usize;
+            let Some(near) = self.surface.near(&self.rigid, body, u, i, self.range()) else {
+                continue;
+            };
+            let slope = match near.gap < 0.0 {
+                true => -2.0 * self.stiffness * near.gap,
+                false => self.pull_slope(body, i, near.gap).max(0.0),
+            };
+            if slope > 0.0 {
+                let per = slope * body.volume.at(i);
+                visit(
+                    i,
+                    &near.arm,
+                    near.normal.map(|m| near.normal.map(|n| per * m * n)),
+                );
+            }
+        }
+        self.each_rubbing(body, &mut visit);
+    }
+
+    /// The end of an implicit step of a body with mass, as [`Rigid::step_implicitly`], from where [`Indenter::depart`] left it.
+    pub fn step_implicitly(&mut self, ends: [&Wrench; 2], by: NewmarkStep) {
+        let Some(from) = &self.from else { return };
+        let path = self.rigid.step_implicitly(&from.rigid, ends, by);
+        self.slack -= path.way;
+        if let Surface::Turned(shape) = &self.surface
+            && path.angle > 0.0
+        {
+            self.slack -= path.angle * shape.reach(D);
+        }
+    }
+
+    /// What acted on it where the step began.
+    pub fn departed_under(&self) -> Wrench {
+        self.from.as_ref().map_or([0.0; 6], |f| f.rigid.wrench())
     }
 
     /// Does it move by the forces on it?

@@ -6,9 +6,19 @@ use super::Indenter;
 use super::surface::Near;
 use crate::body::{Body, Field};
 use crate::condition::rigid::Kept;
-use crate::interaction::friction::{Coefficients, TANGENTIAL, along, begun, slipped};
+use crate::interaction::friction::{
+    Coefficients, Pressed, TANGENTIAL, along, begun, follows, slipped,
+};
 use crate::space::full;
 use std::collections::HashMap;
+
+/// Where an increment of statics or an implicit step began.
+#[derive(Debug, Clone)]
+pub(super) struct Departure<const D: usize> {
+    pub rigid: Kept,
+    pub u: Field<D>,
+    pub pressed: Pressed,
+}
 
 /// A point touched at the last evaluation.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +28,8 @@ pub(super) struct Touched<const D: usize> {
     /// Elastic path of the surface along the point (length), the depth that its stiffness is of, and the force density of friction.
     pub way: [f64; D],
     pub depth: f64,
+    /// The path over what it would be if nothing slipped.
+    pub kept: f64,
     pub rub: [f64; D],
 }
 
@@ -44,23 +56,24 @@ impl<const D: usize> Indenter<D> {
         self.stored = 0.0;
         for (n, touched) in rubbed.iter_mut().enumerate() {
             let i = touched.slot as usize;
-            let depth = match &self.from {
-                Some(_) => self.pressed.get(&touched.slot).copied().unwrap_or(0.0),
-                None => -touched.near.gap,
+            let held = { self.from.as_ref() }.is_some_and(|f| f.pressed == Pressed::Held);
+            let depth = match held {
+                true => self.pressed.get(&touched.slot).copied().unwrap_or(0.0),
+                false => -touched.near.gap,
             };
             if !(depth > 0.0) {
                 continue;
             }
             let w = self.sliding(v, touched);
             // in equilibrium nothing has a speed, whatever the increment is divided by
-            let speed = match &self.from {
-                Some(_) => 0.0,
-                None => w.iter().map(|c| c * c).sum::<f64>().sqrt(),
+            let speed = match held {
+                true => 0.0,
+                false => w.iter().map(|c| c * c).sum::<f64>().sqrt(),
             };
             let most = now.at(speed) * depth / (2.0 * TANGENTIAL);
-            touched.way = match (&self.from, before.get(&touched.slot)) {
+            (touched.way, touched.kept) = match (&self.from, before.get(&touched.slot)) {
                 (None, before) if dt == 0.0 && before.is_none_or(|t| t.way == [0.0; D]) => {
-                    begun(&w, most)
+                    (begun(&w, most), 1.0)
                 }
                 (from, before) => {
                     let start = before.map_or([0.0; D], |t| {
@@ -95,16 +108,11 @@ impl<const D: usize> Indenter<D> {
         self.rub_away(body, v, dt);
     }
 
-    /// The way of the surface against a point in an increment of statics.
-    fn way_from(
-        &self,
-        (then, from): &(Kept, Field<D>),
-        u: &Field<D>,
-        touched: &Touched<D>,
-    ) -> [f64; D] {
+    /// The way of the surface against a point since an increment or an implicit step began.
+    fn way_from(&self, from: &Departure<D>, u: &Field<D>, touched: &Touched<D>) -> [f64; D] {
         let (arm, i) = (&touched.near.arm, touched.slot as usize);
-        let way = self.rigid.way_since(then, &full(arm));
-        std::array::from_fn(|a| way[a] - (u[a][i] - from[a][i]))
+        let way = self.rigid.way_since(&from.rigid, &full(arm));
+        std::array::from_fn(|a| way[a] - (u[a][i] - from.u[a][i]))
     }
 
     /// Half of the work of friction within a step, with the velocities of its middle.
@@ -130,6 +138,24 @@ impl<const D: usize> Indenter<D> {
     pub fn press(&mut self) {
         let each = self.rubbed.iter().map(|t| (t.slot, -t.near.gap));
         self.pressed = each.collect();
+    }
+
+    /// Visits the tangents of friction at the last evaluation, as [`Indenter::each_tangent`].
+    pub(super) fn each_rubbing(
+        &self,
+        body: &Body<D>,
+        visit: &mut dyn FnMut(usize, &[f64; D], [[f64; D]; D]),
+    ) {
+        for touched in &self.rubbed {
+            let i = touched.slot as usize;
+            let stiffness = 2.0 * TANGENTIAL * self.stiffness * touched.depth * body.volume.at(i);
+            let block = follows(&touched.near.normal, &touched.way, touched.kept);
+            visit(
+                i,
+                &touched.near.arm,
+                block.map(|row| row.map(|c| stiffness * c)),
+            );
+        }
     }
 
     /// Does anything touch it that it could rub?

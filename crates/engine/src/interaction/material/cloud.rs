@@ -8,6 +8,7 @@ use crate::execute::lane::{self, Lane, TILE};
 use crate::family::horizon::HorizonList;
 use crate::interaction::weight::BondWeight;
 use crate::law::material::Numbers;
+use crate::law::solid::dual_horizon::part_within;
 
 /// Eight slots that are listed.
 #[derive(Clone, Copy)]
@@ -57,6 +58,9 @@ impl Slots for Listed {
 pub struct CloudFamily<const D: usize> {
     list: HorizonList,
     weight: BondWeight,
+    /// `[slots]` `½ + δ/h` of points with horizons of their own, and 1/h; empty: they have one.
+    own: Vec<f64>,
+    rate: f64,
     /// `[slots][4]`: x, y, z, volume.
     reference: Vec<f64>,
     /// `[lines][8]`: place of the bond that leads back; empty: nobody asks.
@@ -67,23 +71,34 @@ pub struct CloudFamily<const D: usize> {
 }
 
 impl<const D: usize> CloudFamily<D> {
-    /// `remembers`: does the law have memory of bonds?
+    /// `remembers`: does the law have memory of bonds? Points with horizons of their own (`h`: the spacing) weigh a bond by the part of a cell that is within
+    /// them, `ω ν` with ν as of [`DualHorizon`](crate::law::solid::dual_horizon::DualHorizon).
     pub fn new(body: &Body<D>, list: HorizonList, weight: BondWeight, remembers: bool) -> Self {
         let mut reference = vec![0.0; 4 * body.len];
         for (slot, record) in reference.chunks_mut(4).enumerate() {
             record[..3].copy_from_slice(&body.position(slot));
             record[3] = body.volume.at(slot);
         }
+        let rate = body.spacing.recip();
+        let own = body.horizon.iter().map(|d| 0.5 + d * rate).collect();
         let back = if remembers { ways_back(&list) } else { vec![] };
         CloudFamily {
             list,
             weight,
+            own,
+            rate,
             reference,
             back,
             period: body.period.map(|p| p.unwrap_or(0.0)),
             inv_period: body.period.map(|p| p.map_or(0.0, f64::recip)),
             slots: body.len,
         }
+    }
+
+    /// What part of a cell at this distance is within a horizon.
+    #[inline(always)]
+    fn part<L: Lane>(&self, reach: L, length: L) -> L {
+        part_within(length, reach, self.rate)
     }
 
     fn line(&self, group: usize, k: usize) -> usize {
@@ -111,8 +126,8 @@ fn ways_back(list: &HorizonList) -> Vec<u32> {
 
 impl<const D: usize> Family<D> for CloudFamily<D> {
     type Slots = Listed;
-    /// x, y, z, volume
-    type Place<L: Lane> = [L; 4];
+    /// x, y, z, volume, `½ + δ/h` of horizons of points
+    type Place<L: Lane> = [L; 5];
 
     fn groups(&self) -> usize {
         self.list.slices()
@@ -144,16 +159,23 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
     }
 
     #[inline(always)]
-    unsafe fn place<L: Lane>(&self, rows: Listed) -> [L; 4] {
-        // SAFETY: a record per slot
-        unsafe { L::gather4(self.reference.as_ptr(), rows.0) }
+    unsafe fn place<L: Lane>(&self, rows: Listed) -> [L; 5] {
+        // SAFETY: a record per slot, and a number where there are any
+        unsafe {
+            let [x, y, z, volume] = L::gather4(self.reference.as_ptr(), rows.0);
+            let reach = match self.own.is_empty() {
+                true => L::splat(0.0),
+                false => rows.one::<L>(self.own.as_ptr()),
+            };
+            [x, y, z, volume, reach]
+        }
     }
     #[inline(always)]
     unsafe fn reference<L: Lane>(
         &self,
         _: usize,
         _: usize,
-        at: &[L; 4],
+        at: &[L; 5],
         ends: Listed,
         dead: L::Mask,
     ) -> Reference<L, D> {
@@ -172,12 +194,21 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         square = L::select(L::splat(0.0).lt(square), square, L::splat(1.0));
         let inv_length = lane::inv_sqrt(square);
         let length = square * inv_length;
+        let omega = self.weight.influence(length, inv_length);
+        let (mut omega, mut omega_back) = (omega, omega);
+        if !self.own.is_empty() {
+            // SAFETY: a number per slot
+            let there = unsafe { ends.one::<L>(self.own.as_ptr()) };
+            omega = omega * self.part(at[4], length);
+            omega_back = omega_back * self.part(there, length);
+        }
         Reference {
             xi,
             length,
             inv_length,
             two_by_square: (inv_length + inv_length) * inv_length,
-            omega: self.weight.influence(length, inv_length),
+            omega,
+            omega_back,
             weight: (self.weight.volume_fraction(length) * x[3]).zero_if(dead),
         }
     }
@@ -234,7 +265,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
     }
 
     fn bytes(&self) -> usize {
-        self.list.bytes() + 8 * self.reference.len() + 4 * self.back.len()
+        self.list.bytes() + 8 * (self.reference.len() + self.own.len()) + 4 * self.back.len()
     }
 }
 

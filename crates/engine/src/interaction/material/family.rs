@@ -28,8 +28,9 @@ pub struct Reference<L, const D: usize> {
     pub inv_length: L,
     /// 2/|ξ|²
     pub two_by_square: L,
-    /// ω
+    /// ω, and that of the other end
     pub omega: L,
+    pub omega_back: L,
     /// `ν V_j`
     pub weight: L,
 }

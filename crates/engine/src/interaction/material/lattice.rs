@@ -219,6 +219,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
             inv_length: L::splat(o.inv_length),
             two_by_square: L::splat(o.two_by_square),
             omega: L::splat(o.omega),
+            omega_back: L::splat(o.omega),
             weight: L::splat(o.weight).zero_if(dead),
         }
     }

@@ -39,14 +39,16 @@ fn lift<A: Numbers<f64>, B: Numbers<Real>>(of: &A, moved: Option<usize>) -> B {
 fn bent<const D: usize>(
     xi: &[f64; D],
     eta: &[f64; D],
-    omega: f64,
+    [omega, back]: [f64; 2],
     moved: Option<usize>,
 ) -> Bond<Real, D> {
     let mut change = eta.map(still);
     if let Some(a) = moved {
         change[a].slope = 1.0;
     }
-    Bond::new(xi.map(still), change, still(omega))
+    let mut bond = Bond::new(xi.map(still), change, still(omega));
+    bond.omega_back = still(back);
+    bond
 }
 
 /// A point with its bonds.
@@ -68,7 +70,8 @@ struct Half<const D: usize, M: Material<D>> {
     moved: [f64; D],
     /// `1/(1 + ε)` of that strain.
     per_length: f64,
-    omega: f64,
+    /// Of both ends.
+    omega: [f64; 2],
     weight: f64,
     memory: M::Memory<f64>,
     /// `[channels][D]`
@@ -101,7 +104,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 eta: std::array::from_fn(|a| (moved[a] - strain * xi[a]) * per_length),
                 moved,
                 per_length,
-                omega,
+                omega: [omega, self.family.plain(group, k, l).omega_back],
                 weight,
                 // SAFETY: a bond of the family
                 memory: unsafe { view.memory::<f64>(group, k, l) },

@@ -185,6 +185,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             length: r.length,
             inv_length: r.inv_length,
             omega: r.omega.zero_if(dead),
+            omega_back: r.omega_back.zero_if(dead),
             stretch: if M::STRETCHES {
                 Series::<Stretch>::new().at(e)
             } else {
@@ -326,6 +327,7 @@ pub unsafe fn grown<L: Lane, S: Slots>(expansion: &[f64], own: S, ends: S) -> [L
 #[inline(always)]
 pub fn mirrored<N: Number, const D: usize>(bond: &Bond<N, D>) -> Bond<N, D> {
     let mut out = *bond;
+    (out.omega, out.omega_back) = (bond.omega_back, bond.omega);
     let zero = N::constant(0.0);
     for a in 0..D {
         out.xi[a] = zero - bond.xi[a];

@@ -83,6 +83,7 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     type Memory<N: Number> = [N; 1];
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
+    const OF_FAMILY: bool = true;
 
     fn columns(&self) -> Columns {
         Columns {

@@ -88,6 +88,8 @@ pub struct Bond<N, const D: usize> {
     pub inv_length: N,
     /// Influence function ω(|ξ|); 0 of a bond that is not whole.
     pub omega: N,
+    /// That of the other end, which has another horizon of its own.
+    pub omega_back: N,
     /// `(|ξ+η| − |ξ|)/|ξ|`, without cancellation.
     pub stretch: N,
     /// `1/|ξ+η|` (1 / length)
@@ -115,6 +117,7 @@ impl<N: Number, const D: usize> Bond<N, D> {
             length,
             inv_length: length.recip(),
             omega,
+            omega_back: omega,
             stretch: e.div(one + root),
             inv_current: (length * root).recip(),
         }
@@ -299,6 +302,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const STRETCHES: bool = true;
     /// Is a bond of one material in the same state at both its ends: do answers and memory know nothing of points? True saves half.
     const ALIKE: bool = false;
+    /// Do the sums of the family make its stiffness, with ω once in each of them and in each answer? Points may have horizons of their own then.
+    const OF_FAMILY: bool = false;
     /// Does an answer read constants? False saves finding those of the other end.
     const READS: bool = true;
     /// Are its force states slopes of its energy? Laws of rates have no potential.

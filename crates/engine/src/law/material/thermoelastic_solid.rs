@@ -40,6 +40,7 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
+    const OF_FAMILY: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> [f64; 2] {
         let m = &self.materials[material];

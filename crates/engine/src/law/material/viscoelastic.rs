@@ -114,6 +114,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     type Memory<N: Number> = Memory<N, B>;
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
+    const OF_FAMILY: bool = true;
 
     fn columns(&self) -> Columns {
         let mut memory = vec![Declaration::of_bonds(

@@ -4,7 +4,8 @@
 //! A point pulls at those within its own horizon, and is pulled at by those in whose horizon it is (its dual horizon): force density on i
 //! `Σ_j ½ (c_i ν_i + c_j ν_j) V_j s (ξ+η)/|ξ+η|`, with `ν = clamp(½ + (δ − r0)/h, 0, 1)` the part of a cell of width h that is within δ, so
 //! that nothing jumps where a horizon passes a point. Either half is action and reaction, so momentum and angular momentum stay; with the
-//! micropotential `½ (…) s² r0` so does energy.
+//! micropotential `½ (…) s² r0` so does energy. State-based laws (eq. 17–22 there) weigh their bonds by `ω ν_i` at i and `ω ν_j` at j
+//! (`interaction/material/cloud.rs`): what T_i gives to j it takes from i.
 
 use crate::execute::lane::Lane;
 use crate::law::Law;
@@ -14,6 +15,13 @@ use crate::law::Law;
 pub struct DualHorizon {
     /// `1/h` (1 / length).
     pub rate: f64,
+}
+
+/// ν of a bond of length r0, with `reach` = ½ + δ/h and `rate` = 1/h.
+#[inline(always)]
+pub fn part_within<L: Lane>(r0: L, reach: L, rate: f64) -> L {
+    let part = r0.fma(L::splat(-rate), reach);
+    part.min(L::splat(1.0)).max(L::splat(0.0))
 }
 
 impl Law for DualHorizon {
@@ -26,11 +34,7 @@ impl Law for DualHorizon {
     }
     #[inline(always)]
     fn between_ends<L: Lane>(self, k: L, r0: L, i: [L; 2], j: [L; 2]) -> L {
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let half = |end: [L; 2]| {
-            let part = r0.fma(L::splat(-self.rate), end[1]).min(one).max(zero);
-            end[0] * part
-        };
+        let half = |end: [L; 2]| end[0] * part_within(r0, end[1], self.rate);
         L::splat(0.5) * (half(i) + half(j)) * k
     }
     #[inline(always)]

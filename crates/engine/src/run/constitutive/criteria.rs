@@ -11,7 +11,7 @@ use crate::law::solid::linear::{Linear, Lps, of_stiffness};
 use crate::quantity::Message;
 use crate::spec::{
     BodySpec, Control, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, NamedLaw, Plane,
-    Spec, Stepper,
+    Spec,
 };
 
 fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
@@ -190,10 +190,8 @@ pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
     if let Some(n) = find(&FractureSpec::remembers) {
         let else_where = if spec.preload.is_some() {
             Some(("statics before motion", "leave [statics] out"))
-        } else if matches!(spec.schedule.stepper, Stepper::Newmark(_)) {
-            Some(("implicit steps", "take integrator = \"verlet\""))
         } else if statics.is_some_and(|s| s.control != Control::Load) {
-            Some(("bonds that break in turn", "leave control out"))
+            Some(("loads that follow what bonds bear", "leave control out"))
         } else if spec.own_horizon.is_some() {
             Some(("horizons of points", "leave own_horizon out"))
         } else {

@@ -1,6 +1,9 @@
 //! Statics of a model: every step is an increment of load, and ends in equilibrium.
 
+mod bordered;
+mod equations;
 mod linear;
+mod path;
 mod relaxed;
 mod sequence;
 mod solve;
@@ -18,6 +21,7 @@ use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
 use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
+use crate::interaction::friction::Pressed;
 use crate::law::descriptor::Memory;
 use crate::quantity::rounded;
 use crate::run::Simulation;
@@ -267,28 +271,28 @@ impl<const D: usize> Model<D> {
         self.wear(state.options.cycles);
         let (u, f) = (self.u.clone(), self.f.clone());
         // nothing acts before the first increment
-        let external = match self.step == self.origin.0 {
+        let first = self.step == self.origin.0 && !Self::follows_a_path(state.options);
+        let external = match first {
             true => zeros(self.body.len),
             false => self.external(),
         };
         let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
-        self.indenters.iter_mut().for_each(|i| i.depart(&self.u));
-        if let Some(friction) = &mut self.friction {
-            friction.depart(&self.u);
-        }
+        self.touch_departs(Pressed::Held);
         self.step += 1;
         if Self::breaks_in_turn(state.options) {
             return self.break_next(state, u, f);
         }
-        let result = self.settle_increment(&mut state, [&u, &f, &external]);
+        let origin = self.origin;
+        let result = match Self::follows_a_path(state.options) {
+            true => self.settle_path(&mut state, [&u, &f, &external]),
+            false => self.settle_increment(&mut state, [&u, &f, &external]),
+        };
         if let Err(error) = result {
             self.step -= 1;
+            self.origin = origin;
             self.retreat_transfers();
             (self.u, self.f) = (u, f);
-            self.indenters.iter_mut().for_each(Indenter::retreat);
-            if let Some(friction) = &mut self.friction {
-                friction.retreat();
-            }
+            self.touch_retreats();
             self.refresh_images();
             self.statics = Some(state);
             return Err(self.unsolved(error));
@@ -306,6 +310,23 @@ impl<const D: usize> Model<D> {
         }
         self.pay(0.5, 0.0);
         Ok(())
+    }
+
+    /// Whatever rubs or is rubbed remembers where an increment or a step began.
+    pub(super) fn touch_departs(&mut self, pressed: Pressed) {
+        let u = &self.u;
+        self.indenters.iter_mut().for_each(|i| i.depart(u, pressed));
+        if let Some(friction) = &mut self.friction {
+            friction.depart(u, pressed);
+        }
+    }
+
+    /// It goes back there.
+    pub(super) fn touch_retreats(&mut self) {
+        self.indenters.iter_mut().for_each(Indenter::retreat);
+        if let Some(friction) = &mut self.friction {
+            friction.retreat();
+        }
     }
 
     /// An increment that ends where the next bonds break.

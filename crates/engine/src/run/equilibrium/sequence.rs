@@ -108,7 +108,7 @@ impl<const D: usize> Model<D> {
         out
     }
 
-    fn loads_are_proportional(&mut self) -> bool {
+    pub(super) fn loads_are_proportional(&mut self) -> bool {
         let mut at = |t: f64| {
             let mut u = self.body.at_rest();
             for c in &self.constraints {

@@ -1,18 +1,18 @@
 //! How one increment finds its equilibrium: linear about the reference, or by Newton's method.
 
+use super::equations::solve_assembled;
 use super::state::StaticState;
 use super::tried::{Inertia, Tried};
 use crate::body::{Field, zeros};
+use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::Sweep;
 use crate::run::Simulation;
 use crate::run::constitutive::Laws;
 use crate::run::model::Model;
-use crate::spec::{LinearBody, Solver, Statics};
+use crate::spec::{Solver, Statics};
 use crate::statics::cg::{self, Goal};
-use crate::statics::{
-    self, Assembled, Direct, LinearOperator, Shifted, Solved, Support, Swept, norm,
-};
+use crate::statics::{self, Assembled, Direct, Solved, Support, Swept, norm};
 
 /// Unknowns up to which the equations are factored, per dimension.
 const DIRECT: [usize; 3] = [usize::MAX, 60_000, 12_000];
@@ -74,22 +74,6 @@ impl<const D: usize> Model<D> {
             contact.moved(path);
         }
         self.indenters.iter_mut().for_each(|i| i.moved(path));
-    }
-
-    /// The linear body about the displacements of now, points that touch too.
-    fn tangent_now(&mut self) -> LinearBody<D> {
-        self.refresh_images();
-        let contact = self.contact.as_ref();
-        statics::linear_body_touching(&self.body, self.interaction.as_mut(), contact, &self.u)
-    }
-
-    /// What indenters resist with at points (force / length).
-    fn pushed(&self) -> Vec<f64> {
-        let mut sum = vec![0.0; self.body.len];
-        for indenter in &self.indenters {
-            indenter.add_stiffness(&self.body, &self.u, &mut sum);
-        }
-        self.by_id(|i| sum[i])
     }
 
     pub(in crate::run) fn factored(&self, options: Statics, support: &Support<D>) -> bool {
@@ -217,13 +201,12 @@ impl<const D: usize> Model<D> {
         let goal = self.goal(state.options);
         let mut r = vec![[0.0; D]; now.x.len()];
         let reference = self.residual_of_reference(support);
-        let mut scale = self
-            .missing(&now, inertia, &mut r, support)
-            .hypot(reference);
+        let mut missing = self.missing(&now, inertia, &mut r, support);
+        let mut scale = missing.scale.hypot(reference);
         let mut iterations = 0;
         for _ in 0..NEWTON {
             goal.go_on()?;
-            let size = norm(&r);
+            let size = missing.size;
             if !size.is_finite() {
                 return Err(SolveError::NotFinite);
             }
@@ -235,61 +218,22 @@ impl<const D: usize> Model<D> {
             if size <= goal.tolerance * scale {
                 return Ok((solved, now));
             }
-            let mut step = vec![[0.0; D]; now.x.len()];
+            let equations = self.equations(state, support, inertia)?;
+            let (unstable, old) = (equations.unstable, equations.old);
             let rough = Goal {
                 tolerance: ROUGH,
                 ..goal
             };
-            let (mut unstable, mut old) = (false, false);
-            let linear = if self.factored(state.options, support) {
-                let shift = inertia.map_or(0.0, Inertia::shift);
-                let kept = state.factors.take();
-                let kept = kept.filter(|(_, f)| inertia.is_some() && f.shift() == shift);
-                old = kept.is_some();
-                let (body, factors) = match kept {
-                    Some(kept) => kept,
-                    None => {
-                        let mut body = self.tangent_now();
-                        if let Some(inertia) = inertia {
-                            inertia.load(&mut body, &self.pushed());
-                        }
-                        let factors = match Direct::new(&body, support, shift) {
-                            Err(SolveError::Indefinite { .. })
-                                if !self.at_peace() && inertia.is_none() =>
-                            {
-                                unstable = true;
-                                downhill(&body, support)?
-                            }
-                            made => made?,
-                        };
-                        (body, factors)
-                    }
-                };
-                let operator = &mut Assembled(&body);
-                let added = inertia.map_or(vec![], |m| m.of_loaded(&body));
-                let added = &added;
-                let linear =
-                    factors.solve_held(&mut Shifted { operator, added }, support, &r, &mut step);
-                if inertia.is_some() {
-                    state.factors = Some((body, factors));
-                }
-                linear
-            } else if self.at_peace() && self.contact.is_none() {
-                let added = &self.added(inertia);
-                let operator = &mut Swept::new(&self.body, self.interaction.as_mut());
-                let mut operator = Shifted { operator, added };
-                cg::solve(&mut operator, support, &r, &mut step, rough)?
-            } else {
-                let added = self.added(inertia);
-                let body = self.tangent_now();
-                solve_assembled(&body, &added, support, &r, &mut step, rough)?
-            };
-            iterations += linear.iterations.max(1);
+            let (step, took) = self.step_of(&equations, support, &r, &missing.bodies, rough)?;
+            iterations += took;
+            if inertia.is_some() && equations.factored() {
+                state.step = Some(equations);
+            }
             let longest = |x: &[[f64; D]]| {
                 let all = x.as_flattened().iter();
                 all.fold(0.0f64, |m, s| m.max(s.abs()))
             };
-            let far = longest(&step);
+            let far = longest(&step.x);
             let least = match inertia {
                 None => LEAST_STEP * self.body.spacing,
                 // points may have gone far from where they were
@@ -313,20 +257,19 @@ impl<const D: usize> Model<D> {
             };
             for halving in 0..=HALVINGS {
                 let tried = now.along(&step, part, inertia);
-                let new = self.missing(&tried, inertia, &mut r, support);
-                let left = norm(&r);
+                missing = self.missing(&tried, inertia, &mut r, support);
+                let left = missing.size;
                 if old && !(left < SERVES * size) {
-                    state.factors = None;
+                    state.step = None;
                 }
                 if left < size || unstable || halving == HALVINGS {
-                    (now, scale) = (tried, new.hypot(reference));
+                    (now, scale) = (tried, missing.scale.hypot(reference));
                     break;
                 }
                 if old {
                     // with factors of here
-                    scale = self
-                        .missing(&now, inertia, &mut r, support)
-                        .hypot(reference);
+                    missing = self.missing(&now, inertia, &mut r, support);
+                    scale = missing.scale.hypot(reference);
                     break;
                 }
                 part *= 0.5;
@@ -334,34 +277,36 @@ impl<const D: usize> Model<D> {
         }
         Err(SolveError::NotConverged {
             iterations,
-            residual: norm(&r) / scale,
+            residual: missing.size / scale,
             tolerance: goal.tolerance,
         })
     }
 
-    /// What inertia and indenters add to the stiffness at points (force / length); empty: nothing.
-    fn added(&self, inertia: Option<&Inertia<D>>) -> Vec<f64> {
-        let Some(inertia) = inertia else {
-            return vec![];
-        };
-        let both = inertia.added.iter().zip(self.pushed());
-        both.map(|(a, b)| a + b).collect()
-    }
-
-    /// Forces that are missing on the free components, less what inertia takes, and what they are compared with.
+    /// Forces that are missing on the free components and on bodies, less what inertia takes.
     fn missing(
         &mut self,
         tried: &Tried<D>,
         inertia: Option<&Inertia<D>>,
         r: &mut [[f64; D]],
         support: &Support<D>,
-    ) -> f64 {
+    ) -> Missing {
         let Some(inertia) = inertia else {
-            return self.imbalance(&tried.x, r, support);
+            let scale = self.imbalance(&tried.x, r, support);
+            return Missing {
+                size: norm(r),
+                scale,
+                bodies: vec![],
+            };
         };
         self.set_velocities_of(tried);
+        self.place_bodies(tried, inertia);
         let scale = self.imbalance(&tried.x, r, support);
-        scale.hypot(inertia.take(tried, r, support))
+        let (bodies, [left, acting]) = self.missing_of_bodies(tried, inertia);
+        Missing {
+            scale: scale.hypot(inertia.take(tried, r, support)).hypot(acting),
+            size: norm(r).hypot(left),
+            bodies,
+        }
     }
 
     /// What atoms at their sites pull at each other without any load; 0 of other laws.
@@ -411,44 +356,10 @@ impl<const D: usize> Model<D> {
     }
 }
 
-/// Factors of a tangent that is not positive definite with enough of the masses added that steps lower the energy.
-fn downhill<const D: usize>(
-    body: &LinearBody<D>,
-    support: &Support<D>,
-) -> Result<Direct<D>, SolveError> {
-    let stiff = Assembled(body).diagonal();
-    let stiff: f64 = stiff
-        .iter()
-        .map(|k| (0..D).map(|a| k[a][a]).sum::<f64>())
-        .sum();
-    let mass: f64 = body
-        .volume
-        .iter()
-        .zip(&body.density)
-        .map(|(v, rho)| v * rho)
-        .sum();
-    let typical = stiff / (D as f64 * mass);
-    let mut shift = 1e-2 * typical;
-    loop {
-        match Direct::new(body, support, shift) {
-            Err(SolveError::Indefinite { .. }) if shift < 10.0 * typical => shift *= 4.0,
-            made => return made,
-        }
-    }
-}
-
-fn solve_assembled<const D: usize>(
-    body: &LinearBody<D>,
-    added: &[f64],
-    support: &Support<D>,
-    b: &[[f64; D]],
-    x: &mut [[f64; D]],
-    goal: Goal,
-) -> Result<Solved, SolveError> {
-    let asymmetry = body.soundness().asymmetry;
-    if asymmetry > statics::SYMMETRIC {
-        return Err(SolveError::NotSymmetric { asymmetry });
-    }
-    let operator = &mut Assembled(body);
-    cg::solve(&mut Shifted { operator, added }, support, b, x, goal)
+/// What a trial leaves, and what that is compared with (force).
+struct Missing {
+    size: f64,
+    scale: f64,
+    /// Of rigid bodies with mass.
+    bodies: Vec<Wrench>,
 }

@@ -1,5 +1,6 @@
 //! What statics keeps between increments.
 
+use super::equations::Equations;
 use crate::body::Field;
 use crate::spec::{LinearBody, Statics};
 use crate::statics::{Direct, Solved};
@@ -8,8 +9,12 @@ pub(in crate::run) struct StaticState<const D: usize> {
     pub options: Statics,
     /// The linear body about the reference and its factors, as long as no bond broke.
     pub(super) factors: Option<(LinearBody<D>, Direct<D>)>,
+    /// Factored equations of a step in time, which may serve the next.
+    pub(super) step: Option<Equations<D>>,
     /// Where bonds break in turn: which are next.
     pub(super) sequence: Option<Sequence<D>>,
+    /// Where a path is followed: the last increment.
+    pub(super) followed: Option<Followed<D>>,
     /// Of the operator about the reference, once looked at.
     pub(super) asymmetry: Option<f64>,
     /// Of the last increment.
@@ -21,7 +26,9 @@ impl<const D: usize> StaticState<D> {
         StaticState {
             options,
             factors: None,
+            step: None,
             sequence: None,
+            followed: None,
             asymmetry: None,
             solved: Solved::default(),
         }
@@ -30,6 +37,7 @@ impl<const D: usize> StaticState<D> {
     /// Factors belong to other equations.
     pub fn forget(&mut self) {
         self.factors = None;
+        self.step = None;
         self.asymmetry = None;
     }
 }
@@ -51,4 +59,16 @@ pub(in crate::run) struct Sequence<const D: usize> {
     pub f: Field<D>,
     /// Its factor.
     pub factor: f64,
+}
+
+/// The last increment along a path.
+pub(in crate::run) struct Followed<const D: usize> {
+    /// `[N]` displacements that it added.
+    pub way: Vec<[f64; D]>,
+    /// What it added to the factor of the load.
+    pub factor: f64,
+    /// Its length over what is asked for.
+    pub part: f64,
+    /// The largest loads and reactions up to here (force).
+    pub most: f64,
 }

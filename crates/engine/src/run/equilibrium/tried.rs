@@ -1,7 +1,7 @@
 //! What Newton's method tries: displacements, and within a step in time the velocities and accelerations that go with them.
 
+use crate::condition::rigid::{NewmarkStep, Wrench};
 use crate::run::model::Model;
-use crate::spec::LinearBody;
 use crate::statics::Support;
 
 /// A state on trial, in order of ids.
@@ -13,6 +13,17 @@ pub(in crate::run) struct Tried<const D: usize> {
     pub v: Vec<[f64; D]>,
     /// Accelerations; empty in equilibrium.
     pub a: Vec<[f64; D]>,
+    /// `(m a, dL/dt)` of rigid bodies with mass.
+    pub bodies: Vec<Wrench>,
+}
+
+/// Where a step of Newton's method goes.
+#[derive(Debug, Clone)]
+pub(in crate::run) struct Onward<const D: usize> {
+    /// Displacements.
+    pub x: Vec<[f64; D]>,
+    /// Of rigid bodies with mass.
+    pub bodies: Vec<Wrench>,
 }
 
 impl<const D: usize> Tried<D> {
@@ -21,14 +32,15 @@ impl<const D: usize> Tried<D> {
             x,
             v: vec![],
             a: vec![],
+            bodies: vec![],
         }
     }
 
     /// `part` of a step of the displacements further. Accelerations are no difference of displacements: round-off of
     /// these divided by Δt² would be all that is left of small ones.
-    pub fn along(&self, step: &[[f64; D]], part: f64, inertia: Option<&Inertia<D>>) -> Self {
+    pub fn along(&self, step: &Onward<D>, part: f64, inertia: Option<&Inertia<D>>) -> Self {
         let further = |of: &[[f64; D]], rate: f64| {
-            let both = of.iter().zip(step);
+            let both = of.iter().zip(&step.x);
             both.map(|(x, s)| std::array::from_fn(|a| x[a] + part * (rate * s[a])))
                 .collect()
         };
@@ -37,12 +49,17 @@ impl<const D: usize> Tried<D> {
             x: further(&self.x, 1.0),
             v: further(&self.v, v),
             a: further(&self.a, a),
+            bodies: { self.bodies.iter().zip(&step.bodies) }
+                .map(|(z, s)| std::array::from_fn(|k| z[k] + part * s[k]))
+                .collect(),
         }
     }
 }
 
 /// What a step in time adds to the equations of equilibrium: `f(u, v, t) = (m a + α f₀)/(1 + α)`, with v and a that follow u.
 pub(in crate::run) struct Inertia<const D: usize> {
+    /// `1/(1 + α)`
+    pub weight: f64,
     /// `[N]` over `1 + α`.
     pub mass: Vec<f64>,
     /// `[N]` `α f₀/(1 + α)` (force); empty: α is 0.
@@ -55,25 +72,19 @@ pub(in crate::run) struct Inertia<const D: usize> {
     pub acceleration: f64,
     /// Δt
     pub step: f64,
+    /// Of rigid bodies with mass: `(m a, dL/dt)` where the step began, and as `past`.
+    pub bodies: Vec<Wrench>,
+    pub bodies_before: Vec<Wrench>,
 }
 
 impl<const D: usize> Inertia<D> {
-    /// Which part of the densities of [`Inertia::load`] is added to the stiffness.
-    pub fn shift(&self) -> f64 {
-        self.acceleration
-    }
-
-    /// Densities whose inertia alone is what this one adds, and what resists at points by itself (force / length).
-    pub fn load(&self, body: &mut LinearBody<D>, resists: &[f64]) {
-        for (n, added) in self.added.iter().zip(resists).enumerate() {
-            body.density[n] = (added.0 + added.1) / (self.acceleration * body.volume[n]);
+    pub fn newmark(&self) -> NewmarkStep {
+        let beta = 1.0 / (self.acceleration * self.step * self.step);
+        NewmarkStep {
+            beta,
+            gamma: self.velocity * beta * self.step,
+            step: self.step,
         }
-    }
-
-    /// What a body loaded so adds to its stiffness.
-    pub fn of_loaded(&self, body: &LinearBody<D>) -> Vec<f64> {
-        let each = body.density.iter().zip(&body.volume);
-        each.map(|(rho, v)| self.acceleration * rho * v).collect()
     }
 
     /// Takes `m a` from the forces on the free components; how large it and `m v/Δt` are.

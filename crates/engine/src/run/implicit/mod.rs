@@ -24,9 +24,11 @@ use crate::body::Field;
 use crate::condition::driven::Driven;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
+use crate::condition::rigid::Wrench;
 use crate::error::{BuildError, RunError, SolveError};
+use crate::interaction::friction::Pressed;
 use crate::quantity::rounded;
-use crate::spec::{IndenterSpec, Newmark, Release, Solver, Spec};
+use crate::spec::{Newmark, Release, Solver, Spec};
 use crate::statics::{self, Support};
 
 /// Can bonds break?
@@ -88,27 +90,12 @@ impl<const D: usize> Model<D> {
             )
             .help("leave release out, or take integrator = \"verlet\""));
         }
-        if self.friction.is_some() {
-            return Err(BuildError::unsupported(
-                "contact.friction",
-                "friction has no tangent, which an implicit step needs",
-            )
-            .help("leave friction out, or take integrator = \"verlet\""));
-        }
-        if self.indenters.iter().any(Indenter::is_free) {
+        if self.indenters.iter().any(Indenter::is_free) && self.held().unknowns() == 0 {
             return Err(BuildError::unsupported(
                 "indenters",
-                "an indenter with a mass moves by explicit steps",
+                "an indenter with a mass moves implicitly beside points that are free, and all are held",
             )
-            .help("leave mass out and write center as a function of t, or take integrator = \"verlet\""));
-        }
-        let sticks = |i: &IndenterSpec| i.friction.is_some() || i.cohesion.is_some();
-        if let Some(n) = spec.indenters.iter().position(sticks) {
-            return Err(BuildError::unsupported(
-                format!("indenters[{n}]"),
-                "friction and cohesion of an indenter have no tangent, which an implicit step needs",
-            )
-            .help("leave them out, or take integrator = \"verlet\""));
+            .help("take integrator = \"verlet\""));
         }
         if let Err(SolveError::NoTangent { what }) = self.all_have_tangents() {
             return Err(BuildError::unsupported(
@@ -177,11 +164,12 @@ impl<const D: usize> Model<D> {
             return Ok(());
         };
         let (u, v, f) = (self.u.clone(), self.v.clone(), self.f.clone());
-        let accelerations = state.acceleration.clone();
+        let (accelerations, bodies) = (state.acceleration.clone(), state.bodies.clone());
         let before: Vec<Vec<[f64; D]>> = loads(&self.loads, &self.driven)
             .map(|l| l.acting().to_vec())
             .collect();
         let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
+        self.touch_departs(Pressed::Now);
         let moved = self.move_implicitly(&mut state);
         let error = match (moved, self.fault) {
             (Err(error), _) => Some(self.not_solved(error)),
@@ -190,13 +178,14 @@ impl<const D: usize> Model<D> {
         };
         if let Some(error) = error {
             (self.u, self.v) = (u, v);
-            state.acceleration = accelerations;
+            (state.acceleration, state.bodies) = (accelerations, bodies);
             state.equations.forget();
             self.implicit = Some(state);
             self.retreat_transfers();
             self.step -= 1;
-            let t = self.time();
-            self.indenters.iter_mut().for_each(|i| i.place(t));
+            self.touch_retreats();
+            // and the forces of before are found from there
+            self.touch_departs(Pressed::Now);
             self.look_again();
             self.forces_held();
             return Err(error);
@@ -213,6 +202,9 @@ impl<const D: usize> Model<D> {
         }
         for (indenter, before) in self.indenters.iter_mut().zip(&pushed) {
             indenter.account(before, body, [&u, now]);
+        }
+        if let Some(friction) = &mut self.friction {
+            friction.arrive(body, now);
         }
         let end = self.time();
         for c in &mut self.constraints {
@@ -309,17 +301,20 @@ impl<const D: usize> Model<D> {
             x: self.values(&self.u),
             v: self.values(&self.v),
             a,
+            bodies: self.bodies_before(state),
         };
         if support.unknowns() > 0 {
-            let inertia = self.inertia(state.options, t, &f);
+            let inertia = self.inertia(state, t, &f);
             let (solved, found) =
                 self.solve_from(&mut state.equations, &support, start, Some(&inertia))?;
             state.equations.solved = solved;
             // trials may have gone further than what was taken
             self.set_values(&found.x);
             self.set_velocities_of(&found);
+            self.place_bodies(&found, &inertia);
             if alpha != 0.0 {
                 state.acceleration = found.a;
+                state.bodies = found.bodies;
             }
         }
         match state.breaks {
@@ -330,8 +325,18 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
+    /// `(m a, dL/dt)` of rigid bodies with mass where the step began.
+    fn bodies_before(&self, state: &Implicit<D>) -> Vec<Wrench> {
+        let free = self.indenters.iter().filter(|i| i.is_free());
+        let known = |n: usize| state.bodies.get(n).copied();
+        let each = free.enumerate();
+        each.map(|(n, i)| known(n).unwrap_or_else(|| i.departed_under()))
+            .collect()
+    }
+
     /// `f` are the force densities at the start of the step.
-    fn inertia(&self, options: Newmark, t: f64, f: &Field<D>) -> Inertia<D> {
+    fn inertia(&self, state: &Implicit<D>, t: f64, f: &Field<D>) -> Inertia<D> {
+        let options = state.options;
         let velocity = options.gamma / (options.beta * self.dt);
         let acceleration = 1.0 / (options.beta * self.dt * self.dt);
         let mut viscosity = vec![0.0; self.body.len];
@@ -348,13 +353,19 @@ impl<const D: usize> Model<D> {
                 .by_id(|i| std::array::from_fn(|a| options.alpha * weight * volume(i) * f[a][i])),
             false => vec![],
         };
+        let free = self.indenters.iter().filter(|i| i.is_free());
+        let part = options.alpha * weight;
+        let bodies_before = free.map(|i| i.departed_under().map(|f| part * f)).collect();
         Inertia {
             added: both.map(|(m, c)| acceleration * m + velocity * c).collect(),
             mass,
             past,
+            weight,
             velocity,
             acceleration,
             step: self.dt,
+            bodies: self.bodies_before(state),
+            bodies_before,
         }
     }
 

@@ -1,5 +1,6 @@
 //! What the implicit stepper keeps between steps.
 
+use crate::condition::rigid::Wrench;
 use crate::run::equilibrium::state::StaticState;
 use crate::spec::{Control, Method, Newmark, Statics};
 use crate::statics::Support;
@@ -12,6 +13,8 @@ pub(in crate::run) struct Implicit<const D: usize> {
     pub held: Support<D>,
     /// `[N]` accelerations at the end of the last step; empty: those of the forces.
     pub acceleration: Vec<[f64; D]>,
+    /// `(m a, dL/dt)` of rigid bodies with mass at the end of the last step; empty: what acts on them.
+    pub bodies: Vec<Wrench>,
     /// Can bonds break?
     pub breaks: bool,
 }
@@ -31,6 +34,7 @@ impl<const D: usize> Implicit<D> {
             equations,
             held: Support::none(0),
             acceleration: vec![],
+            bodies: vec![],
             breaks: false,
         }
     }

@@ -79,7 +79,7 @@ impl<const D: usize> Model<D> {
         if statics.control != Control::Load {
             return Err(BuildError::unsupported(
                 "preload.statics.control",
-                "statics that breaks bond after bond ends where a bond breaks, not where motion could begin",
+                "statics whose load is what the body bears ends anywhere, not where motion could begin",
             )
             .help("leave control out"));
         }
@@ -196,7 +196,7 @@ impl<const D: usize> Model<D> {
 
     /// Time of a frame, which only grows: where t is a factor that may fall, the number of the equilibrium.
     pub(super) fn frame_time(&self) -> f64 {
-        let falls = |s: &StaticState<D>| s.options.control == Control::Breaking;
+        let falls = |s: &StaticState<D>| s.options.control != Control::Load;
         match self.statics.as_ref().is_some_and(falls) {
             true => self.step as f64,
             false => self.shown_time(),

@@ -275,13 +275,13 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
         ));
     }
     if let Some(statics) = &spec.schedule.statics() {
-        lines.push(equilibrium(statics, spec.schedule.steps));
+        lines.push(equilibrium(statics, spec.schedule.steps, units));
         return lines.join("\n");
     }
     if let Some(preload) = &spec.preload {
         lines.push(format!(
             "{}, under {} conditions",
-            equilibrium(&preload.statics, preload.increments),
+            equilibrium(&preload.statics, preload.increments, units),
             preload.conditions.len()
         ));
         if !preload.cuts.is_empty() {
@@ -326,15 +326,20 @@ pub fn describe(spec: &Spec, units: UnitSystem) -> String {
 }
 
 /// Increments of load and how each finds its equilibrium.
-fn equilibrium(statics: &Statics, increments: u64) -> String {
+fn equilibrium(statics: &Statics, increments: u64, units: UnitSystem) -> String {
     let method = match statics.method {
         Method::Linear => "linear equations about the reference",
         Method::Newton => "Newton's method",
         Method::Relaxation => "adaptive dynamic relaxation",
     };
     let what = match statics.control {
-        Control::Load => "increments of load",
-        Control::Breaking => "equilibria, each where the next bond breaks",
+        Control::Load => "increments of load".to_string(),
+        Control::Breaking => "equilibria, each where the next bond breaks".to_string(),
+        Control::Opening(by) => format!("equilibria, bonds open by {} in each", short(by)),
+        Control::ArcLength(by) => {
+            let by = units.write(by, Dim::LENGTH);
+            format!("equilibria, points go by {by} in each")
+        }
     };
     format!(
         "statics    {increments} {what}, {method}, tolerance {}",

@@ -104,7 +104,6 @@ names! {
         /// Atoms within the cut-off now.
         Neighbours,
     }
-    /// How a motion goes on in time.
     /// What says how far an increment goes.
     ControlName {
         /// t, of which loads are functions.
@@ -112,6 +111,10 @@ names! {
         /// The next bond: loads are proportional to t, an increment goes to where a bond is at its critical stretch, however little t is
         /// there, and the next one begins without it.
         Breaking,
+        /// How far bonds open, `opening`: loads are proportional to t, and t is what the body bears, which may rise and fall.
+        Opening,
+        /// How far points go, `arc_length`: the same, of bodies that snap through or buckle.
+        ArcLength,
     }
     /// Of a deck with [statics] and [run].
     StageName {
@@ -120,6 +123,7 @@ names! {
         /// From its last equilibrium on.
         Motion,
     }
+    /// How a motion goes on in time.
     IntegratorName {
         /// Velocity Verlet: explicit, stable below a limit of the step.
         Verlet,

@@ -58,8 +58,16 @@ pub enum ReleaseName {
 pub struct Statics {
     /// linear (about the reference) when left out, newton before [run]; newton for large deformation, relaxation for contact.
     pub method: Option<MethodName>,
-    /// load when left out; breaking follows bond after bond, also where load and displacement fall (snap-back), with method = "linear".
+    /// load when left out; breaking follows bond after bond, also where load and displacement fall (snap-back), with method = "linear";
+    /// opening and arc_length follow softening and large deformation there, with method = "newton".
     pub control: Option<At<ControlName>>,
+    /// control = "opening": growth of the stretch of the bonds that open fastest, per increment. A part of the critical stretch less that
+    /// at which bonds begin to soften, a tenth, say.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub opening: Option<Number>,
+    /// control = "arc_length": how far points go in an increment, the root of the mean square of all.
+    #[schemars(extend("dimension" = Dim::LENGTH.name()))]
+    pub arc_length: Option<Number>,
     /// auto when left out: factors of small systems, conjugate gradients of large ones.
     pub solver: Option<SolverName>,
     /// Increments of load while t goes from 0 to 1 (or to `duration`); 1 when left out, and 0 looks at modes only. With control =

@@ -6,7 +6,7 @@ use crate::deck::document::{
     SolverName, Statics,
 };
 use crate::deck::units::{Dim, short};
-use crate::deck::value::{At, Or, Written};
+use crate::deck::value::{At, Number, Or, Written};
 use crate::deck::{OutputSpec, PictureSpec};
 use crate::write::folder::stays;
 use crate::write::trajectory::Format;
@@ -77,25 +77,14 @@ pub(super) fn schedule(context: &Context, document: &Document) -> Result<RunSpec
 
 fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<RunSpec> {
     let written = &written.value;
+    let control = control(context, written)?;
     let method = match written.method {
+        None if matches!(control, Control::Opening(_) | Control::ArcLength(_)) => Method::Newton,
         None => usual,
         Some(MethodName::Linear) => Method::Linear,
         Some(MethodName::Newton) => Method::Newton,
         Some(MethodName::Relaxation) => Method::Relaxation,
     };
-    let control = written
-        .control
-        .as_ref()
-        .map_or(ControlName::Load, |c| c.value);
-    if control == ControlName::Breaking
-        && let Some(duration) = &written.duration
-    {
-        return Err(context.error_with(
-            &duration.span,
-            "t is the factor of the load where bonds break in turn, and no time",
-            "leave duration out",
-        ));
-    }
     let tolerance = match &written.tolerance {
         Some(number) => context.positive(number, Dim::NUMBER, "the tolerance")?,
         None => match method {
@@ -125,10 +114,7 @@ fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<Ru
             force_unstable: false,
             stepper: Stepper::Statics(peridyne::spec::Statics {
                 method,
-                control: match control {
-                    ControlName::Load => Control::Load,
-                    ControlName::Breaking => Control::Breaking,
-                },
+                control,
                 solver: solver(written.solver),
                 tolerance,
                 most_iterations: written.iterations.as_ref().map_or(100_000, |n| n.value),
@@ -141,6 +127,61 @@ fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<Ru
         duration: None,
         modes,
         preload: None,
+    })
+}
+
+fn control(context: &Context, written: &Statics) -> Result<Control> {
+    let name = { written.control.as_ref() }.map_or(ControlName::Load, |c| c.value);
+    if name != ControlName::Load
+        && let Some(duration) = &written.duration
+    {
+        return Err(context.error_with(
+            &duration.span,
+            "t is the factor of the load here, and no time",
+            "leave duration out, or control",
+        ));
+    }
+    let lengths = [
+        ("opening", &written.opening, ControlName::Opening),
+        ("arc_length", &written.arc_length, ControlName::ArcLength),
+    ];
+    for (key, length, of) in lengths {
+        match (length, &written.control) {
+            (Some(length), _) if name != of => {
+                return Err(context.error_with(
+                    &length.span,
+                    format!("{key} is the length of increments of control = \"{key}\""),
+                    format!("write control = \"{key}\", or leave {key} out"),
+                ));
+            }
+            (None, Some(control)) if name == of => {
+                return Err(context.error_with(
+                    &control.span,
+                    format!("control = \"{key}\" does not say how long an increment is"),
+                    match of {
+                        ControlName::ArcLength => {
+                            "add arc_length, how far points go in an increment"
+                        }
+                        _ => "add opening, a tenth of the critical stretch, say",
+                    },
+                ));
+            }
+            _ => {}
+        }
+    }
+    let long = |number: &Option<Number>, dimension, what| match number {
+        Some(number) => context.positive(number, dimension, what),
+        None => Ok(0.0),
+    };
+    Ok(match name {
+        ControlName::Load => Control::Load,
+        ControlName::Breaking => Control::Breaking,
+        ControlName::Opening => {
+            Control::Opening(long(&written.opening, Dim::NUMBER, "the opening")?)
+        }
+        ControlName::ArcLength => {
+            Control::ArcLength(long(&written.arc_length, Dim::LENGTH, "the arc length")?)
+        }
     })
 }
 

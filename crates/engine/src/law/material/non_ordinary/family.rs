@@ -121,6 +121,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     type Memory<N: Number> = [N; 0];
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 1;
+    const OF_FAMILY: bool = true;
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;

@@ -297,7 +297,10 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
             Ok(Box::new(made.map_err(unfit)?))
         }
         _ => {
-            let list = HorizonList::new(body, horizon)?;
+            let (list, weight) = match body.horizon.is_empty() {
+                true => (HorizonList::new(body, horizon)?, weight),
+                false => own_horizons::<D, M>(body, horizon, weight)?,
+            };
             let remembers = <M::Memory<f64> as Numbers<f64>>::COUNT > 0;
             let near_horizon = list.near_horizon;
             let made = MaterialInteraction::new(MaterialParts {
@@ -314,6 +317,26 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
             Ok(Box::new(made.map_err(unfit)?))
         }
     }
+}
+
+/// Bonds of points with horizons of their own, up to `horizon`; at these volumes fade by themselves.
+fn own_horizons<const D: usize, M: Material<D>>(
+    body: &Body<D>,
+    horizon: f64,
+    weight: BondWeight,
+) -> Result<(HorizonList, BondWeight), BuildError> {
+    if !M::OF_FAMILY {
+        return Err(BuildError::unsupported(
+            "own_horizon",
+            "bonds of this law have the stiffness of one horizon",
+        )
+        .help("take pmb, lps, elastic_plastic, viscoelastic or a law with gradient = \"family\", or leave own_horizon out"));
+    }
+    let half = 0.5 * body.spacing;
+    let own = |i: usize| body.horizon[i];
+    let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
+    let list = HorizonList::within(body, horizon, reach)?;
+    Ok((list, weight.whole()))
 }
 
 /// Has the law what its bonds shall break by?

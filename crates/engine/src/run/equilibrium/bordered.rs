@@ -1,0 +1,163 @@
+//! Rigid bodies with mass in an implicit step: their few unknowns border the equations of the points,
+//!
+//! `[A C; Cᵀ S] (δu, δX) = (r, R)`, `C = −B G`, `S = Σ GᵀBG + M ∂²/∂t²`
+//!
+//! with B the tangents of what they touch, `G_i` what a place at a point does when the body moves (axes) and turns about its centre (axes in space),
+//! and M its mass and moments of inertia. So `δX = (S − CᵀA⁻¹C)⁻¹ (R − CᵀA⁻¹r)`, with a solution for each unknown of a body.
+//!
+//! What is sought of a body is `(m a, dL/dt)` at the end of the step; its place follows as in [`Rigid::step_implicitly`](crate::condition::rigid::Rigid::step_implicitly).
+
+use super::tried::{Inertia, Tried};
+use crate::condition::indenter::Indenter;
+use crate::condition::rigid::Wrench;
+use crate::error::SolveError;
+use crate::run::model::Model;
+use crate::space::{cross, full};
+use crate::statics::dot;
+use peridyne_algebra::Factors;
+
+/// Unknowns of a rigid body in D dimensions, by their place among the six of a [`Wrench`].
+pub(super) const fn unknowns(d: usize) -> &'static [usize] {
+    match d {
+        1 => &[0],
+        2 => &[0, 1, 5],
+        _ => &[0, 1, 2, 3, 4, 5],
+    }
+}
+
+/// What rigid bodies add to the equations.
+pub(super) struct Border<const D: usize> {
+    /// A column of C for each unknown.
+    pub columns: Vec<Vec<[f64; D]>>,
+    /// S, by columns.
+    own: Vec<Vec<f64>>,
+    /// `∂(m a, dL/dt)/∂X` of every body.
+    inertia: Vec<[[f64; 6]; 6]>,
+}
+
+/// Where a place at `arm` goes when its body does what unknown `k` is, in D axes.
+fn moves<const D: usize>(k: usize, arm: &[f64; D]) -> [f64; D] {
+    let mut axis = [0.0; 3];
+    axis[k % 3] = 1.0;
+    let way = match k < 3 {
+        true => axis,
+        false => cross(&axis, &full(arm)),
+    };
+    std::array::from_fn(|a| way[a])
+}
+
+impl<const D: usize> Border<D> {
+    /// How far points and bodies go: `y = A⁻¹ r`, and Z of `A⁻¹ C`; y becomes the step of the points.
+    pub fn solve(
+        &self,
+        y: &mut [[f64; D]],
+        z: &[Vec<[f64; D]>],
+        rest: &[Wrench],
+    ) -> Result<Vec<Wrench>, SolveError> {
+        let n = self.columns.len();
+        let each = unknowns(D);
+        let mut entries = vec![];
+        for (row, c) in self.columns.iter().enumerate() {
+            for (column, z) in z.iter().enumerate() {
+                entries.push((row, column, self.own[column][row] - dot(c, z)));
+            }
+        }
+        let mut x: Vec<f64> = (0..n)
+            .map(|k| rest[k / each.len()][each[k % each.len()]] - dot(&self.columns[k], y))
+            .collect();
+        let factors = Factors::general(n, &entries).map_err(|_| SolveError::Singular)?;
+        factors.solve(&mut x);
+        for (z, x) in z.iter().zip(&x) {
+            for (y, z) in y.iter_mut().zip(z) {
+                for a in 0..D {
+                    y[a] -= x * z[a];
+                }
+            }
+        }
+        let of = |(body, inertia): (usize, &[[f64; 6]; 6])| {
+            let mut out = [0.0; 6];
+            for row in 0..6 {
+                for (k, &column) in each.iter().enumerate() {
+                    out[row] += inertia[row][column] * x[body * each.len() + k];
+                }
+            }
+            out
+        };
+        Ok(self.inertia.iter().enumerate().map(of).collect())
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// What bodies with mass add to the equations of now.
+    pub(super) fn border(&self, inertia: &Inertia<D>) -> Border<D> {
+        let each = unknowns(D);
+        let id = self.ids();
+        let mut border = Border {
+            columns: vec![],
+            own: vec![],
+            inertia: vec![],
+        };
+        let bodies: Vec<&Indenter<D>> = self.indenters.iter().filter(|i| i.is_free()).collect();
+        let all = bodies.len() * each.len();
+        for (n, body) in bodies.iter().enumerate() {
+            let mass = body.rigid.inertia(inertia.acceleration);
+            for &unknown in each {
+                let mut column = vec![[0.0; D]; self.body.points()];
+                let mut own = vec![0.0; all];
+                body.each_tangent(&self.body, &self.u, |slot, arm, block| {
+                    let way = moves(unknown, arm);
+                    // force on the point if the place goes there
+                    let force: [f64; D] =
+                        std::array::from_fn(|a| (0..D).map(|b| block[a][b] * way[b]).sum());
+                    for a in 0..D {
+                        column[id[slot] as usize][a] -= force[a];
+                    }
+                    for (other, &unknown) in each.iter().enumerate() {
+                        let way = moves(unknown, arm);
+                        own[n * each.len() + other] +=
+                            (0..D).map(|a| force[a] * way[a]).sum::<f64>();
+                    }
+                });
+                for (other, &row) in each.iter().enumerate() {
+                    own[n * each.len() + other] += inertia.weight * mass[row][unknown];
+                }
+                border.columns.push(column);
+                border.own.push(own);
+            }
+            border.inertia.push(mass);
+        }
+        border
+    }
+
+    /// Bodies with mass go where they are tried.
+    pub(in crate::run) fn place_bodies(&mut self, tried: &Tried<D>, inertia: &Inertia<D>) {
+        let free = self.indenters.iter_mut().filter(|i| i.is_free());
+        for ((body, start), end) in free.zip(&inertia.bodies).zip(&tried.bodies) {
+            body.step_implicitly([start, end], inertia.newmark());
+        }
+    }
+
+    /// What is missing of the equations of bodies with mass, and what it is compared with, torques over radii of gyration.
+    pub(super) fn missing_of_bodies(
+        &self,
+        tried: &Tried<D>,
+        inertia: &Inertia<D>,
+    ) -> (Vec<Wrench>, [f64; 2]) {
+        let free = self.indenters.iter().filter(|i| i.is_free());
+        let (mut rest, mut left, mut scale) = (vec![], 0.0f64, 0.0f64);
+        for (n, (body, end)) in free.zip(&tried.bodies).enumerate() {
+            let (acting, radius) = (body.rigid.wrench(), body.rigid.gyration());
+            let past = inertia.bodies_before.get(n);
+            let mut missing = [0.0; 6];
+            for &k in unknowns(D) {
+                let per = if k < 3 { 1.0 } else { 1.0 / radius };
+                let takes = inertia.weight * end[k] + past.map_or(0.0, |f| f[k]);
+                missing[k] = acting[k] - takes;
+                left = left.hypot(per * missing[k]);
+                scale = scale.hypot(per * acting[k]).hypot(per * takes);
+            }
+            rest.push(missing);
+        }
+        (rest, [left, scale])
+    }
+}

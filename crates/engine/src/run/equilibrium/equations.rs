@@ -1,0 +1,214 @@
+//! The linear equations of a step of Newton's method: factored, assembled, or by sweeps.
+
+use super::bordered::Border;
+use super::state::StaticState;
+use super::tried::{Inertia, Onward};
+use crate::condition::rigid::Wrench;
+use crate::error::SolveError;
+use crate::run::model::Model;
+use crate::spec::LinearBody;
+use crate::statics::cg::{self, Goal};
+use crate::statics::{
+    self, Assembled, Block, Direct, LinearOperator, Shifted, Solved, Support, Swept, Touching, norm,
+};
+
+/// See the module.
+pub(super) struct Equations<const D: usize> {
+    /// The tangent; `None`: sweeps about the reference.
+    body: Option<LinearBody<D>>,
+    factors: Option<Direct<D>>,
+    /// `[N]` what inertia and rigid bodies add at points; empty: nothing.
+    added: Vec<Block<D>>,
+    /// What rigid bodies with mass add.
+    border: Option<Border<D>>,
+    /// `∂a/∂u` of the step in time that it was made for; 0 of equilibrium.
+    acceleration: f64,
+    /// Of no minimum of the energy.
+    pub unstable: bool,
+    /// Of an earlier state.
+    pub old: bool,
+}
+
+impl<const D: usize> Equations<D> {
+    pub fn factored(&self) -> bool {
+        self.factors.is_some()
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// The linear body about the displacements of now, points that touch too.
+    pub(super) fn tangent_now(&mut self) -> LinearBody<D> {
+        self.refresh_images();
+        let touch = Touching {
+            contact: self.contact.as_ref(),
+            friction: self.friction.as_ref(),
+        };
+        statics::linear_body_touching(&self.body, self.interaction.as_mut(), touch, &self.u)
+    }
+
+    /// What indenters resist with at points.
+    fn pushed(&self) -> Vec<Block<D>> {
+        let mut sum = vec![[[0.0; D]; D]; self.body.len];
+        for indenter in &self.indenters {
+            indenter.each_tangent(&self.body, &self.u, |slot, _, block| {
+                for a in 0..D {
+                    for b in 0..D {
+                        sum[slot][a][b] += block[a][b];
+                    }
+                }
+            });
+        }
+        self.by_id(|i| sum[i])
+    }
+
+    /// The equations of a step of Newton's method.
+    pub(super) fn equations(
+        &mut self,
+        state: &mut StaticState<D>,
+        support: &Support<D>,
+        inertia: Option<&Inertia<D>>,
+    ) -> Result<Equations<D>, SolveError> {
+        let border = |model: &Self| match inertia {
+            Some(inertia) if !inertia.bodies.is_empty() => Some(model.border(inertia)),
+            Some(_) | None => None,
+        };
+        let acceleration = inertia.map_or(0.0, |m| m.acceleration);
+        let factored = self.factored(state.options, support);
+        let kept = state.step.take();
+        if let Some(kept) = kept.filter(|k| factored && k.acceleration == acceleration) {
+            return Ok(Equations { old: true, ..kept });
+        }
+        let mut unstable = false;
+        let swept = !factored && self.at_peace() && self.contact.is_none();
+        let body = (!swept).then(|| self.tangent_now());
+        let added = self.added(inertia);
+        let factors = match &body {
+            Some(body) if factored => {
+                let made = match inertia {
+                    Some(_) => Direct::against(body, support, &added),
+                    None => Direct::new(body, support, 0.0),
+                };
+                Some(match made {
+                    Err(SolveError::Indefinite { .. }) if !self.at_peace() && inertia.is_none() => {
+                        unstable = true;
+                        downhill(body, support)?
+                    }
+                    made => made?,
+                })
+            }
+            _ => None,
+        };
+        Ok(Equations {
+            body,
+            factors,
+            added,
+            border: border(self),
+            acceleration,
+            unstable,
+            old: false,
+        })
+    }
+
+    /// The step that leaves nothing of residuals of points and bodies, and iterations that it took.
+    pub(super) fn step_of(
+        &mut self,
+        equations: &Equations<D>,
+        support: &Support<D>,
+        r: &[[f64; D]],
+        rest: &[Wrench],
+        goal: Goal,
+    ) -> Result<(Onward<D>, usize), SolveError> {
+        let (mut x, mut iterations) = (vec![[0.0; D]; r.len()], 0);
+        let mut solve = |b: &[[f64; D]], x: &mut [[f64; D]]| {
+            let added = &equations.added;
+            let solved = match (&equations.body, &equations.factors) {
+                (Some(body), Some(factors)) => {
+                    let operator = &mut Assembled(body);
+                    factors.solve_held(&mut Shifted { operator, added }, support, b, x)
+                }
+                (Some(body), None) => solve_assembled(body, added, support, b, x, goal)?,
+                (None, _) => {
+                    let operator = &mut Swept::new(&self.body, self.interaction.as_mut());
+                    let mut operator = Shifted { operator, added };
+                    cg::solve(&mut operator, support, b, x, goal)?
+                }
+            };
+            iterations += solved.iterations.max(1);
+            Ok::<(), SolveError>(())
+        };
+        solve(r, &mut x)?;
+        let mut bodies = vec![];
+        if let Some(border) = &equations.border {
+            let mut z = vec![];
+            for column in &border.columns {
+                let mut masked = column.clone();
+                support.mask(&mut masked);
+                let mut x = vec![[0.0; D]; r.len()];
+                // nothing touches: conjugate gradients need something to seek
+                if norm(&masked) > 0.0 {
+                    solve(&masked, &mut x)?;
+                }
+                z.push(x);
+            }
+            bodies = border.solve(&mut x, &z, rest)?;
+        }
+        Ok((Onward { x, bodies }, iterations))
+    }
+
+    /// What inertia and indenters add to the stiffness at points; empty: nothing.
+    fn added(&self, inertia: Option<&Inertia<D>>) -> Vec<Block<D>> {
+        let Some(inertia) = inertia else {
+            return vec![];
+        };
+        let both = inertia.added.iter().zip(self.pushed());
+        both.map(|(mass, mut block)| {
+            for a in 0..D {
+                block[a][a] += mass;
+            }
+            block
+        })
+        .collect()
+    }
+}
+
+/// Factors of a tangent that is not positive definite with enough of the masses added that steps lower the energy.
+fn downhill<const D: usize>(
+    body: &LinearBody<D>,
+    support: &Support<D>,
+) -> Result<Direct<D>, SolveError> {
+    let stiff = Assembled(body).diagonal();
+    let stiff: f64 = stiff
+        .iter()
+        .map(|k| (0..D).map(|a| k[a][a]).sum::<f64>())
+        .sum();
+    let mass: f64 = body
+        .volume
+        .iter()
+        .zip(&body.density)
+        .map(|(v, rho)| v * rho)
+        .sum();
+    let typical = stiff / (D as f64 * mass);
+    let mut shift = 1e-2 * typical;
+    loop {
+        match Direct::new(body, support, shift) {
+            Err(SolveError::Indefinite { .. }) if shift < 10.0 * typical => shift *= 4.0,
+            made => return made,
+        }
+    }
+}
+
+pub(super) fn solve_assembled<const D: usize>(
+    body: &LinearBody<D>,
+    added: &[Block<D>],
+    support: &Support<D>,
+    b: &[[f64; D]],
+    x: &mut [[f64; D]],
+    goal: Goal,
+) -> Result<Solved, SolveError> {
+    let asymmetry = body.soundness().asymmetry;
+    if asymmetry > statics::SYMMETRIC {
+        return Err(SolveError::NotSymmetric { asymmetry });
+    }
+    let operator = &mut Assembled(body);
+    cg::solve(&mut Shifted { operator, added }, support, b, x, goal)
+}
