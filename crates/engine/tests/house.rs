@@ -263,23 +263,13 @@ fn a_circle_is_seen() {
 const ELSEWHERE: &[(&str, &str, &str)] = &[
     (
         "Thermoelastic",
-        "engine/src/run/transfers/expansion.rs",
-        "what pmb becomes where bodies expand",
+        "engine/src/run/constitutive/general.rs",
+        "what pmb is among the laws of law/material",
     ),
     (
         "ThermoelasticSolid",
-        "engine/src/run/transfers/expansion.rs",
-        "what lps becomes where bodies expand",
-    ),
-    (
-        "Thermoelastic",
-        "engine/src/run/constitutive/criteria.rs",
-        "what pmb becomes where bonds remember",
-    ),
-    (
-        "ThermoelasticSolid",
-        "engine/src/run/constitutive/criteria.rs",
-        "what lps becomes where bonds remember",
+        "engine/src/run/constitutive/general.rs",
+        "what lps is among the laws of law/material",
     ),
     (
         "elastic_plastic",

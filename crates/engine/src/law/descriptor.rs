@@ -539,6 +539,8 @@ pub trait Shelved: Sized {
     const ISOTROPIC: bool = true;
     /// Do its constants hold the critical stretch, so that toughness cannot depend on place and time?
     const ENDS: bool = false;
+    /// Do its bonds bear nothing any more where they break?
+    const FADES: bool = false;
     /// Do its bonds store energy by turning, too? Then a fracture energy gives no critical stretch.
     const TURNS: bool = false;
     /// Do some of its bonds break at a stretch of their own? Then bonds break by nothing else, and toughness of places spares points at most.

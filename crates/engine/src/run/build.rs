@@ -374,7 +374,7 @@ pub fn build_in<const D: usize>(
                     Control::Load => {}
                     Control::Breaking => model.check_sequence(statics, spec)?,
                     Control::Opening(_) | Control::ArcLength(_) => {
-                        model.check_path(statics, spec)?;
+                        model.check_path(statics, spec, shelf)?;
                     }
                 }
             }

@@ -2,31 +2,23 @@
 
 use crate::body::{Body, Layout};
 use crate::error::BuildError;
-use crate::law::material::ThermoelasticSolid;
-use crate::law::solid::linear::{Linear, Lps};
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{
-    Calibration, Criterion, FractureSpec, Influence, LawSpec, NamedLaw, Spec, Stepper,
-};
+use crate::run::constitutive::general;
+use crate::spec::{Calibration, Criterion, FractureSpec, Influence, LawSpec, Spec, Stepper};
 
 /// What is longer by this part is so by round-off.
 const ROUND_OFF: f64 = 1.0 + 1e-9;
 
-/// Where points have horizons of their own, `lps` is `thermoelastic_solid`: its own kernel knows one horizon. Were laws changed?
+/// Where points have horizons of their own, `lps` is a law of `law/material`: its own kernel knows one horizon. Were laws changed?
 pub(super) fn resolve(spec: &mut Spec) -> bool {
     let mut changed = false;
     if spec.own_horizon.is_none() {
         return changed;
     }
     for m in &mut spec.materials {
-        if let (LawSpec::Lps(_), Some(parameters)) = (&m.law, Lps::parameters(&m.law)) {
-            m.law = LawSpec::Named(NamedLaw {
-                name: ThermoelasticSolid::NAME.into(),
-                parameters,
-                isotropic: true,
-                linear: None,
-            });
+        if let (LawSpec::Lps(_), Some(law)) = (&m.law, general(&m.law)) {
+            m.law = law;
             changed = true;
         }
     }

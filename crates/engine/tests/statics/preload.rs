@@ -266,3 +266,53 @@ fn what_cannot_begin_in_equilibrium_is_refused() {
     let mut sim = started(&held);
     (0..10).for_each(|_| sim.step().unwrap());
 }
+
+/// The work that statics did on a bond counts in the motion that follows: a plate that is stretched nearly to its end breaks by little more, which
+/// alone does nothing to it; and statics breaks it where statics alone does.
+#[test]
+fn work_on_bonds_goes_on_from_statics_to_motion() {
+    let plate = |end: &str| {
+        let mut spec = block([12.0, 4.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+        spec.horizon = Horizon::Ratio(2);
+        spec.materials[0].fracture = Some(FractureSpec::new(Criterion::BondEnergy(5e-4)));
+        hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+        hold(&mut spec, "high", [text(end), number(0.0), None]);
+        spec
+    };
+    let newton = |spec: &mut Spec, increments: u64| {
+        spec.schedule.stepper = Stepper::Statics(Statics {
+            method: Method::Newton,
+            tolerance: 1e-12,
+            ..Statics::default()
+        });
+        spec.schedule.steps = increments;
+        spec.schedule.time_step = TimeStep::Fixed(1.0 / increments as f64);
+    };
+    // where does the first bond break?
+    let mut alone = plate("0.4*t");
+    newton(&mut alone, 200);
+    let mut sim = started(&alone);
+    let most = loop {
+        let before = sim.time();
+        let broke = sim.step().is_err() || sim.broken() > 0;
+        assert!(sim.time() <= 1.0, "nothing breaks");
+        if broke {
+            break 0.4 * before;
+        }
+    };
+    let after = |stretch: f64, more: f64| {
+        let mut spec = plate(&format!("{:e}*t", stretch * most));
+        then(&mut spec, 10, Stepper::Verlet, 0.2);
+        let pulled = format!("{:e} + {:e}*min(t/200, 1)", stretch * most, more * most);
+        spec.conditions = plate(&pulled).conditions;
+        let mut sim = started(&spec);
+        (0..10).for_each(|_| sim.step().unwrap());
+        let statics = sim.broken();
+        (0..1500).for_each(|_| sim.step().unwrap());
+        [statics, sim.broken()]
+    };
+    assert_eq!(after(0.9, 0.0), [0, 0]);
+    let [none, some] = after(0.9, 0.2);
+    assert!(none == 0 && some > 0, "{none} {some}");
+    assert_eq!(after(0.0, 0.2), [0, 0]);
+}

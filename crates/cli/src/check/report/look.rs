@@ -1,6 +1,7 @@
 //! The three things to look at first.
 
 use super::advice;
+use super::waves::increments;
 use crate::check::directions::percent;
 use crate::check::{Findings, mean};
 use crate::numbers::{digits, duration};
@@ -49,8 +50,9 @@ fn time(found: &Findings) -> Option<String> {
     let (info, spec) = (found.sim.info(), found.spec);
     if let Some(statics) = spec.schedule.statics() {
         return Some(format!(
-            "equilibrium: {} increments of load, each to a residual of {}",
+            "equilibrium: {} {}, each to a residual of {}",
             found.steps,
+            increments(statics.control),
             rounded(statics.tolerance, 4)
         ));
     }

@@ -3,7 +3,7 @@
 use super::row;
 use crate::check::Findings;
 use crate::numbers::whole;
-use peridyne::spec::{Criterion, Method, Stepper};
+use peridyne::spec::{Control, Criterion, Method, Statics, Stepper};
 use peridyne_io::deck::{Dim, rounded};
 
 /// How long a run is.
@@ -16,8 +16,16 @@ fn lasts(found: &Findings) -> String {
     )
 }
 
-fn equilibrium(out: &mut String, name: &str, method: Method, increments: u64) {
-    let how = match method {
+/// What a step of statics is.
+pub(super) fn increments(control: Control) -> &'static str {
+    match control {
+        Control::Load => "increments of load",
+        Control::Breaking | Control::Opening(_) | Control::ArcLength(_) => "equilibria",
+    }
+}
+
+fn equilibrium(out: &mut String, name: &str, statics: &Statics, increments: u64) {
+    let how = match statics.method {
         Method::Linear => "linear about the reference",
         Method::Newton => "by Newton's method",
         Method::Relaxation => "by relaxation, which finds its own step",
@@ -25,7 +33,11 @@ fn equilibrium(out: &mut String, name: &str, method: Method, increments: u64) {
     row(
         out,
         name,
-        format!("{} increments of load, {how}", whole(increments)),
+        format!(
+            "{} {}, {how}",
+            whole(increments),
+            self::increments(statics.control)
+        ),
     );
 }
 
@@ -84,14 +96,14 @@ pub(super) fn waves(found: &Findings) -> String {
         );
     }
     if let Some(statics) = found.spec.schedule.statics() {
-        equilibrium(&mut out, "equilibrium", statics.method, found.steps);
+        equilibrium(&mut out, "equilibrium", &statics, found.steps);
         return out;
     }
     if let Some(preload) = &found.spec.preload {
         equilibrium(
             &mut out,
             "before motion",
-            preload.statics.method,
+            &preload.statics,
             found.increments,
         );
     }

@@ -215,6 +215,7 @@ fn curve(parameters: &Parameters) -> Result<Curve, String> {
 
 impl Shelved for Softening {
     const ENDS: bool = true;
+    const FADES: bool = true;
 
     fn descriptor() -> Descriptor {
         Descriptor {

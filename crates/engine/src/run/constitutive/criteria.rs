@@ -1,17 +1,15 @@
 //! What materials break by beside their critical stretch.
 
 use super::Shelf;
+use super::general::general;
 use crate::error::BuildError;
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::law::descriptor::Memory;
 use crate::law::fracture_energy;
-use crate::law::material::{Thermoelastic, ThermoelasticSolid};
 use crate::law::micromodulus::Moments;
-use crate::law::solid::linear::{Linear, Lps, of_stiffness};
 use crate::quantity::Message;
 use crate::spec::{
-    BodySpec, Control, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, NamedLaw, Plane,
-    Spec,
+    BodySpec, Control, Criterion, FractureSpec, LawSpec, MaterialSpec, Method, Plane, Spec,
 };
 
 fn unsupported(n: usize, key: &str, message: impl Into<Message>) -> BuildError {
@@ -36,13 +34,13 @@ pub(in crate::run) fn remembering(spec: &mut Spec) -> Result<bool, BuildError> {
         ));
     }
     for (n, m) in spec.materials.iter_mut().enumerate() {
-        let (name, parameters) = match &m.law {
-            LawSpec::Pmb(stiffness) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
-            law @ LawSpec::Lps(_) => {
-                let parameters = Lps::parameters(law).unwrap_or_default();
-                (ThermoelasticSolid::NAME, parameters)
+        match &m.law {
+            LawSpec::Pmb(_) | LawSpec::Lps(_) => {
+                if let Some(law) = general(&m.law) {
+                    m.law = law;
+                }
             }
-            LawSpec::Named(_) => continue,
+            LawSpec::Named(_) => {}
             LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. } => {
                 return Err(unsupported(
                     n,
@@ -55,13 +53,7 @@ pub(in crate::run) fn remembering(spec: &mut Spec) -> Result<bool, BuildError> {
                 return Err(unsupported(n, "law", "bonds of this law never break")
                     .help("remove fracture, or take pmb or lps"));
             }
-        };
-        m.law = LawSpec::Named(NamedLaw {
-            name: name.into(),
-            parameters,
-            isotropic: true,
-            linear: None,
-        });
+        }
     }
     Ok(true)
 }
@@ -188,9 +180,7 @@ pub(in crate::run) fn consistent(spec: &Spec) -> Result<(), BuildError> {
     };
     let statics = spec.schedule.statics();
     if let Some(n) = find(&FractureSpec::remembers) {
-        let else_where = if spec.preload.is_some() {
-            Some(("statics before motion", "leave [statics] out"))
-        } else if statics.is_some_and(|s| s.control != Control::Load) {
+        let else_where = if statics.is_some_and(|s| s.control != Control::Load) {
             Some(("loads that follow what bonds bear", "leave control out"))
         } else if spec.own_horizon.is_some() {
             Some(("horizons of points", "leave own_horizon out"))

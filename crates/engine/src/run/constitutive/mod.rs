@@ -2,6 +2,7 @@
 
 mod constants;
 pub(super) mod criteria;
+mod general;
 mod interaction;
 mod pairs;
 pub(super) mod shelf;
@@ -20,6 +21,7 @@ use crate::law::micromodulus::Moments;
 use crate::spec::{Calibration, Horizon, Influence, InterfaceRule, Spec};
 pub(super) use constants::Laws;
 use constants::{Constants, constants};
+pub(super) use general::general;
 pub(super) use pairs::contact_stiffness;
 pub(super) use shelf::AnyPotentials;
 pub use shelf::Shelf;

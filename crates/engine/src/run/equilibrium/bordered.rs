@@ -7,33 +7,12 @@
 //!
 //! What is sought of a body is `(m a, dL/dt)` at the end of the step; its place follows as in [`Rigid::step_implicitly`](crate::condition::rigid::Rigid::step_implicitly).
 
+use super::system::{Border, unknowns};
 use super::tried::{Inertia, Tried};
 use crate::condition::indenter::Indenter;
 use crate::condition::rigid::Wrench;
-use crate::error::SolveError;
 use crate::run::model::Model;
 use crate::space::{cross, full};
-use crate::statics::dot;
-use peridyne_algebra::Factors;
-
-/// Unknowns of a rigid body in D dimensions, by their place among the six of a [`Wrench`].
-pub(super) const fn unknowns(d: usize) -> &'static [usize] {
-    match d {
-        1 => &[0],
-        2 => &[0, 1, 5],
-        _ => &[0, 1, 2, 3, 4, 5],
-    }
-}
-
-/// What rigid bodies add to the equations.
-pub(super) struct Border<const D: usize> {
-    /// A column of C for each unknown.
-    pub columns: Vec<Vec<[f64; D]>>,
-    /// S, by columns.
-    own: Vec<Vec<f64>>,
-    /// `∂(m a, dL/dt)/∂X` of every body.
-    inertia: Vec<[[f64; 6]; 6]>,
-}
 
 /// Where a place at `arm` goes when its body does what unknown `k` is, in D axes.
 fn moves<const D: usize>(k: usize, arm: &[f64; D]) -> [f64; D] {
@@ -44,47 +23,6 @@ fn moves<const D: usize>(k: usize, arm: &[f64; D]) -> [f64; D] {
         false => cross(&axis, &full(arm)),
     };
     std::array::from_fn(|a| way[a])
-}
-
-impl<const D: usize> Border<D> {
-    /// How far points and bodies go: `y = A⁻¹ r`, and Z of `A⁻¹ C`; y becomes the step of the points.
-    pub fn solve(
-        &self,
-        y: &mut [[f64; D]],
-        z: &[Vec<[f64; D]>],
-        rest: &[Wrench],
-    ) -> Result<Vec<Wrench>, SolveError> {
-        let n = self.columns.len();
-        let each = unknowns(D);
-        let mut entries = vec![];
-        for (row, c) in self.columns.iter().enumerate() {
-            for (column, z) in z.iter().enumerate() {
-                entries.push((row, column, self.own[column][row] - dot(c, z)));
-            }
-        }
-        let mut x: Vec<f64> = (0..n)
-            .map(|k| rest[k / each.len()][each[k % each.len()]] - dot(&self.columns[k], y))
-            .collect();
-        let factors = Factors::general(n, &entries).map_err(|_| SolveError::Singular)?;
-        factors.solve(&mut x);
-        for (z, x) in z.iter().zip(&x) {
-            for (y, z) in y.iter_mut().zip(z) {
-                for a in 0..D {
-                    y[a] -= x * z[a];
-                }
-            }
-        }
-        let of = |(body, inertia): (usize, &[[f64; 6]; 6])| {
-            let mut out = [0.0; 6];
-            for row in 0..6 {
-                for (k, &column) in each.iter().enumerate() {
-                    out[row] += inertia[row][column] * x[body * each.len() + k];
-                }
-            }
-            out
-        };
-        Ok(self.inertia.iter().enumerate().map(of).collect())
-    }
 }
 
 impl<const D: usize> Model<D> {

@@ -1,7 +1,7 @@
 //! The linear equations of a step of Newton's method: factored, assembled, or by sweeps.
 
-use super::bordered::Border;
 use super::state::StaticState;
+use super::system::Equations;
 use super::tried::{Inertia, Onward};
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
@@ -11,29 +11,6 @@ use crate::statics::cg::{self, Goal};
 use crate::statics::{
     self, Assembled, Block, Direct, LinearOperator, Shifted, Solved, Support, Swept, Touching, norm,
 };
-
-/// See the module.
-pub(super) struct Equations<const D: usize> {
-    /// The tangent; `None`: sweeps about the reference.
-    body: Option<LinearBody<D>>,
-    factors: Option<Direct<D>>,
-    /// `[N]` what inertia and rigid bodies add at points; empty: nothing.
-    added: Vec<Block<D>>,
-    /// What rigid bodies with mass add.
-    border: Option<Border<D>>,
-    /// `∂a/∂u` of the step in time that it was made for; 0 of equilibrium.
-    acceleration: f64,
-    /// Of no minimum of the energy.
-    pub unstable: bool,
-    /// Of an earlier state.
-    pub old: bool,
-}
-
-impl<const D: usize> Equations<D> {
-    pub fn factored(&self) -> bool {
-        self.factors.is_some()
-    }
-}
 
 impl<const D: usize> Model<D> {
     /// The linear body about the displacements of now, points that touch too.

@@ -8,6 +8,7 @@ mod relaxed;
 mod sequence;
 mod solve;
 pub(super) mod state;
+mod system;
 pub(super) mod tried;
 
 use self::state::StaticState;

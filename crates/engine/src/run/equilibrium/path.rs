@@ -19,6 +19,7 @@ use super::state::{Followed, StaticState};
 use crate::body::Field;
 use crate::error::{BuildError, SolveError};
 use crate::interaction::BondState;
+use crate::run::Shelf;
 use crate::run::model::Model;
 use crate::spec::{Control, LawSpec, Method, Solver, Spec, Statics};
 use crate::statics::{Assembled, Direct, Solved, Support, dot, norm};
@@ -64,6 +65,7 @@ impl<const D: usize> Model<D> {
         &mut self,
         options: Statics,
         spec: &Spec,
+        shelf: &Shelf,
     ) -> Result<(), BuildError> {
         let refused = |path: &str, message: &str, help: &str| {
             Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
@@ -111,14 +113,14 @@ impl<const D: usize> Model<D> {
             );
         }
         // a bond that lets go at once leaves a state that is on no path
-        let softens = |law: &LawSpec| matches!(law, LawSpec::Named(law) if law.name == "softening");
+        let fades = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.fades(&law.name));
         let mut materials = spec.materials.iter();
-        if let Some(n) = materials.position(|m| m.fracture.is_some() && !softens(&m.law)) {
+        if let Some(n) = materials.position(|m| m.fracture.is_some() && !fades(&m.law)) {
             return Err(BuildError::unsupported(
                 format!("materials[{n}].fracture"),
                 "bonds of this law let go while they bear: the load jumps there, and has no path",
             )
-            .help("write the law softening, or control = \"breaking\", which follows linear bodies bond after bond"));
+            .help("take a law whose bonds soften to nothing, or control = \"breaking\", which follows linear bodies bond after bond"));
         }
         if spec.interfaces.iter().any(|i| i.fracture.is_some()) {
             return refused(

@@ -1,6 +1,6 @@
 //! What statics keeps between increments.
 
-use super::equations::Equations;
+use super::system::Equations;
 use crate::body::Field;
 use crate::spec::{LinearBody, Statics};
 use crate::statics::{Direct, Solved};

@@ -2,12 +2,11 @@
 
 use super::state::Transfers;
 use crate::error::BuildError;
-use crate::law::material::{Thermoelastic, ThermoelasticSolid};
-use crate::law::solid::linear::{Linear, Lps, of_stiffness};
+use crate::run::constitutive::general;
 use crate::run::model::Model;
-use crate::spec::{LawSpec, Method, NamedLaw, Spec, Statics, Stepper, TransferSpec};
+use crate::spec::{Method, Spec, Statics, Stepper, TransferSpec};
 
-/// Where a material expands, `pmb` is `thermoelastic` and `lps` `thermoelastic_solid`: their own kernels know no temperature. Were laws changed?
+/// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
 pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     let expands = |t: &TransferSpec| t.materials.iter().any(|m| m.expansion != 0.0);
     if !spec.transfers.iter().any(expands) {
@@ -15,18 +14,10 @@ pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
     }
     let mut changed = false;
     for m in &mut spec.materials {
-        let (name, parameters) = match (&m.law, Lps::parameters(&m.law)) {
-            (LawSpec::Pmb(stiffness), _) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
-            (_, Some(moduli)) => (ThermoelasticSolid::NAME, moduli),
-            _ => continue,
-        };
-        m.law = LawSpec::Named(NamedLaw {
-            name: name.into(),
-            parameters,
-            isotropic: true,
-            linear: None,
-        });
-        changed = true;
+        if let Some(law) = general(&m.law) {
+            m.law = law;
+            changed = true;
+        }
     }
     changed
 }

@@ -48,6 +48,8 @@ pub(super) struct Materials {
     pub isotropic: bool,
     /// [`Shelved::ENDS`]
     pub ends: bool,
+    /// [`Shelved::FADES`]
+    pub fades: bool,
     /// [`Shelved::TURNS`]
     pub turns: bool,
     /// [`Shelved::KINDS`]
@@ -92,6 +94,7 @@ impl Materials {
             brittle_energy: M::brittle_energy,
             isotropic: M::ISOTROPIC,
             ends: M::ENDS,
+            fades: M::FADES,
             turns: M::TURNS,
             kinds: M::KINDS,
             binders: [
@@ -330,7 +333,7 @@ fn own_horizons<const D: usize, M: Material<D>>(
             "own_horizon",
             "bonds of this law have the stiffness of one horizon",
         )
-        .help("take pmb, lps, elastic_plastic, viscoelastic or a law with gradient = \"family\", or leave own_horizon out"));
+        .help("take pmb, lps or another law of sums over families, or leave own_horizon out"));
     }
     let half = 0.5 * body.spacing;
     let own = |i: usize| body.horizon[i];

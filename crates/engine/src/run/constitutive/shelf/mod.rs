@@ -325,6 +325,14 @@ impl Shelf {
         }
     }
 
+    /// [`Shelved::FADES`](crate::law::descriptor::Shelved::FADES) of a law.
+    pub(crate) fn fades(&self, name: &str) -> bool {
+        match self.entry(name).map(|e| &e.runs) {
+            Some(Runs::Material(material)) => material.fades,
+            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
+        }
+    }
+
     /// Do its bonds store energy by turning, too?
     pub(crate) fn turns(&self, name: &str) -> bool {
         match self.entry(name).map(|e| &e.runs) {
