@@ -91,7 +91,7 @@ fn without_clock(page: &[u8]) -> Vec<u8> {
     format!("{before}{meta}{after}").into_bytes()
 }
 
-/// One deck on one thread, on two and on four.
+/// One deck on one thread and on three, which halve no work evenly.
 fn compare(dir: &Path, deck: &Path) {
     let name = deck.file_stem().unwrap().to_str().unwrap();
     let run = |threads: &str| {
@@ -108,13 +108,11 @@ fn compare(dir: &Path, deck: &Path) {
     };
     let one = run("1");
     assert!(one.len() >= 2, "{name}");
-    for threads in ["2", "4"] {
-        let many = run(threads);
-        assert!(one.keys().eq(many.keys()), "{name}: other files");
-        for (file, bytes) in &one {
-            let same = many[file] == *bytes;
-            assert!(same, "{name}: {} on {threads} threads", file.display());
-        }
+    let many = run("3");
+    assert!(one.keys().eq(many.keys()), "{name}: other files");
+    for (file, bytes) in &one {
+        let same = many[file] == *bytes;
+        assert!(same, "{name}: {} on 3 threads", file.display());
     }
 }
 

@@ -208,6 +208,38 @@ fn tumbled(solver: Solver) -> Vec<f64> {
         .concat()
 }
 
+/// A ball bounces off points that are held, beside some that are free and never move: it comes back as fast as it came, by both kinds of solver.
+#[test]
+fn a_ball_bounces_off_held_points() {
+    for solver in [Solver::Direct, Solver::ConjugateGradients] {
+        let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, None, 0.04);
+        let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+            panic!()
+        };
+        (free.center, free.velocity) = ([2.5, 2.5, 4.6], [0.0, 0.0, -0.3]);
+        free.spin = [0.0; 3];
+        spec.sets = vec![SetSpec {
+            name: "held".into(),
+            members: Members::Where(text("x > 0.5 || z < 1.5").unwrap()),
+        }];
+        spec.conditions = vec![ConditionSpec {
+            set: "held".into(),
+            kind: ConditionKind::Displacement([text("0"), text("0"), text("0")]),
+        }];
+        spec.schedule.stepper = Stepper::Newmark(Newmark {
+            solver,
+            ..Newmark::default()
+        });
+        let mut sim = made(&spec);
+        run(sim.as_mut(), 500);
+        assert_eq!(seen(sim.as_mut(), "force"), [0.0; 3], "it has left");
+        let back = seen(sim.as_mut(), "velocity")[2];
+        println!("{solver:?}: back at {back}");
+        assert!((back / 0.3 - 1.0).abs() < 1e-3, "{back}");
+        assert!(sim.displacements().iter().flatten().all(|u| *u == 0.0));
+    }
+}
+
 /// A head that holds points by cohesion is drawn off, in implicit steps: they follow it as in explicit ones, and let go.
 #[test]
 fn a_head_with_cohesion_draws_points_along() {

@@ -34,6 +34,7 @@ impl<const D: usize> Model<D> {
             columns: vec![],
             own: vec![],
             inertia: vec![],
+            radius: vec![],
         };
         let bodies: Vec<&Indenter<D>> = self.indenters.iter().filter(|i| i.is_free()).collect();
         let all = bodies.len() * each.len();
@@ -63,6 +64,7 @@ impl<const D: usize> Model<D> {
                 border.own.push(own);
             }
             border.inertia.push(mass);
+            border.radius.push(body.rigid.gyration());
         }
         border
     }

@@ -97,6 +97,10 @@ impl<const D: usize> Model<D> {
     ) -> Result<(Onward<D>, usize), SolveError> {
         let (mut x, mut iterations) = (vec![[0.0; D]; r.len()], 0);
         let mut solve = |b: &[[f64; D]], x: &mut [[f64; D]]| {
+            // conjugate gradients need something to seek
+            if norm(b) == 0.0 {
+                return Ok(());
+            }
             let added = &equations.added;
             let solved = match (&equations.body, &equations.factors) {
                 (Some(body), Some(factors)) => {
@@ -114,22 +118,19 @@ impl<const D: usize> Model<D> {
             Ok::<(), SolveError>(())
         };
         solve(r, &mut x)?;
-        let mut bodies = vec![];
+        let (mut bodies, mut far) = (vec![], 0.0);
         if let Some(border) = &equations.border {
             let mut z = vec![];
             for column in &border.columns {
                 let mut masked = column.clone();
                 support.mask(&mut masked);
                 let mut x = vec![[0.0; D]; r.len()];
-                // nothing touches: conjugate gradients need something to seek
-                if norm(&masked) > 0.0 {
-                    solve(&masked, &mut x)?;
-                }
+                solve(&masked, &mut x)?;
                 z.push(x);
             }
-            bodies = border.solve(&mut x, &z, rest)?;
+            (bodies, far) = border.solve(&mut x, &z, rest)?;
         }
-        Ok((Onward { x, bodies }, iterations))
+        Ok((Onward { x, bodies, far }, iterations))
     }
 
     /// What inertia and indenters add to the stiffness at points; empty: nothing.

@@ -233,7 +233,7 @@ impl<const D: usize> Model<D> {
                 let all = x.as_flattened().iter();
                 all.fold(0.0f64, |m, s| m.max(s.abs()))
             };
-            let far = longest(&step.x);
+            let far = longest(&step.x).max(step.far);
             let least = match inertia {
                 None => LEAST_STEP * self.body.spacing,
                 // points may have gone far from where they were

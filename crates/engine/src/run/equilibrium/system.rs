@@ -46,16 +46,19 @@ pub(super) struct Border<const D: usize> {
     pub own: Vec<Vec<f64>>,
     /// `∂(m a, dL/dt)/∂X` of every body.
     pub inertia: Vec<[[f64; 6]; 6]>,
+    /// Radii of gyration (length).
+    pub radius: Vec<f64>,
 }
 
 impl<const D: usize> Border<D> {
-    /// How far points and bodies go: `y = A⁻¹ r`, and Z of `A⁻¹ C`; y becomes the step of the points.
+    /// How far points and bodies go: `y = A⁻¹ r`, and Z of `A⁻¹ C`; y becomes the step of the points. What bodies do, and the longest way of any, turns at
+    /// radii of gyration.
     pub fn solve(
         &self,
         y: &mut [[f64; D]],
         z: &[Vec<[f64; D]>],
         rest: &[Wrench],
-    ) -> Result<Vec<Wrench>, SolveError> {
+    ) -> Result<(Vec<Wrench>, f64), SolveError> {
         let n = self.columns.len();
         let each = unknowns(D);
         let mut entries = vec![];
@@ -85,6 +88,11 @@ impl<const D: usize> Border<D> {
             }
             out
         };
-        Ok(self.inertia.iter().enumerate().map(of).collect())
+        let way = |(k, x): (usize, &f64)| match each[k % each.len()] < 3 {
+            true => x.abs(),
+            false => self.radius[k / each.len()] * x.abs(),
+        };
+        let far = x.iter().enumerate().map(way).fold(0.0, f64::max);
+        Ok((self.inertia.iter().enumerate().map(of).collect(), far))
     }
 }

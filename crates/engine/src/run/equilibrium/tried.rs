@@ -24,6 +24,8 @@ pub(in crate::run) struct Onward<const D: usize> {
     pub x: Vec<[f64; D]>,
     /// Of rigid bodies with mass.
     pub bodies: Vec<Wrench>,
+    /// How far the fastest of them goes (length).
+    pub far: f64,
 }
 
 impl<const D: usize> Tried<D> {
