@@ -158,20 +158,10 @@ fn a_shallow_truss_snaps_through() {
     );
 }
 
-/// A bar five times as long as it is wide, with a notch, whose bonds soften.
+/// The bar of `sequence` with bonds that soften.
 fn slender(opening: f64, increments: u64) -> Spec {
-    let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    let mut spec = super::sequence::slender();
     spec.materials = vec![softening(0.01)];
-    spec.horizon = Horizon::Ratio(2);
-    spec.precracks.push(PrecrackSpec {
-        shape: CrackShape::Segment {
-            from: [20.5, -1.0, 0.0],
-            to: [20.5, 1.5, 0.0],
-        },
-        kind: CrackKind::Broken,
-    });
-    hold(&mut spec, "low", [number(0.0), number(0.0), None]);
-    hold(&mut spec, "high", [text("t"), number(0.0), None]);
     spec.schedule.steps = increments;
     followed(&mut spec, Control::Opening(opening), 1e-9);
     spec

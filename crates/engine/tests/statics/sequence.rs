@@ -38,8 +38,8 @@ fn a_chain_bears_the_critical_stretch_of_all_its_springs() {
     assert_eq!(sim.ledger().unwrap().released, 0.0);
 }
 
-/// A bar five times as long as it is wide, with a notch.
-fn slender() -> Spec {
+/// A bar five times as long as it is wide, with a notch, pulled by t.
+pub(super) fn slender() -> Spec {
     let mut spec = block([40.0, 7.0, 0.0], 2, LawSpec::Pmb(PmbStiffness::Young(1.0)));
     spec.horizon = Horizon::Ratio(2);
     spec.precracks.push(PrecrackSpec {

@@ -9,7 +9,7 @@ mod rub;
 mod surface;
 
 use super::reaction::Reaction;
-use super::rigid::{Kept, NewmarkStep, Rigid, Wrench};
+use super::rigid::{Kept, NewmarkStep, Path, Rigid, Wrench};
 use crate::body::{Body, Field};
 use crate::interaction::friction::{Coefficients, Pressed};
 use crate::space::rigid::RigidShape;
@@ -166,7 +166,13 @@ impl<const D: usize> Indenter<D> {
         self.rub_away(body, v, dt);
         std::mem::swap(&mut self.rubbed, &mut self.rubbed_before);
         let path = self.rigid.advance(t, dt);
-        self.slack -= moved + path.way;
+        self.slack -= moved;
+        self.went(path);
+    }
+
+    /// It has gone so far since the last look around.
+    fn went(&mut self, path: Path) {
+        self.slack -= path.way;
         if let Surface::Turned(shape) = &self.surface
             && path.angle > 0.0
         {
@@ -416,12 +422,7 @@ impl<const D: usize> Indenter<D> {
     pub fn step_implicitly(&mut self, ends: [&Wrench; 2], by: NewmarkStep) {
         let Some(from) = &self.from else { return };
         let path = self.rigid.step_implicitly(&from.rigid, ends, by);
-        self.slack -= path.way;
-        if let Surface::Turned(shape) = &self.surface
-            && path.angle > 0.0
-        {
-            self.slack -= path.angle * shape.reach(D);
-        }
+        self.went(path);
     }
 
     /// What acted on it where the step began.

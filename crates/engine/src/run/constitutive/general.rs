@@ -7,10 +7,15 @@ use crate::spec::{LawSpec, NamedLaw};
 
 /// The same law there; `None`: it has no kernel of its own, or is not among them.
 pub(in crate::run) fn general(law: &LawSpec) -> Option<LawSpec> {
-    let (name, parameters) = match (law, Lps::parameters(law)) {
-        (LawSpec::Pmb(stiffness), _) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
-        (_, Some(moduli)) => (ThermoelasticSolid::NAME, moduli),
-        _ => return None,
+    let (name, parameters) = match law {
+        LawSpec::Pmb(stiffness) => (Thermoelastic::NAME, of_stiffness(*stiffness)),
+        LawSpec::Lps(_) => (ThermoelasticSolid::NAME, Lps::parameters(law)?),
+        LawSpec::LpsAsTyped { .. }
+        | LawSpec::EamLike { .. }
+        | LawSpec::Springs(_)
+        | LawSpec::Micromoduli(_)
+        | LawSpec::Atoms(_)
+        | LawSpec::Named(_) => return None,
     };
     Some(LawSpec::Named(NamedLaw {
         name: name.into(),

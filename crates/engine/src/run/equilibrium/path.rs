@@ -84,34 +84,14 @@ impl<const D: usize> Model<D> {
                 "leave solver out",
             );
         }
-        if options.cycles.is_some() || !spec.transfers.is_empty() {
+        if options.cycles.is_some() {
             return refused(
-                "statics.control",
-                "t is the factor of the load here: neither cycles nor heat or a species know it as time",
-                "leave control out",
+                "statics.cycles",
+                "cycles say the greatest load, which is sought here",
+                "leave cycles or control out",
             );
         }
-        if !self.at_peace() {
-            return refused(
-                "statics.control",
-                "a path begins where the body bears no forces",
-                "leave control out",
-            );
-        }
-        if spec.periodic.iter().any(Option::is_some) {
-            return refused(
-                "statics.control",
-                "paths of periodic bodies are not followed",
-                "leave periodic or control out",
-            );
-        }
-        if !self.loads_are_proportional() {
-            return refused(
-                "conditions",
-                "loads that are not proportional to t have no factor that rises and falls",
-                "write each as t times what it is at t = 1; what is held is held at 0",
-            );
-        }
+        self.check_factor(spec)?;
         // a bond that lets go at once leaves a state that is on no path
         let fades = |law: &LawSpec| matches!(law, LawSpec::Named(law) if shelf.fades(&law.name));
         let mut materials = spec.materials.iter();

@@ -51,27 +51,7 @@ impl<const D: usize> Model<D> {
                 "write method = \"linear\", or leave it out",
             );
         }
-        if !self.at_peace() || !spec.transfers.is_empty() {
-            return refused(
-                "statics.control",
-                "bonds are broken in turn where the reference is without forces, in which nothing spreads",
-                "leave control out",
-            );
-        }
-        if spec.periodic.iter().any(Option::is_some) {
-            return refused(
-                "statics.control",
-                "bonds through periodic faces are not broken one by one",
-                "leave periodic or control out",
-            );
-        }
-        if !self.loads_are_proportional() {
-            return refused(
-                "conditions",
-                "loads that are not proportional to t have no factor that grows or falls until the next bond breaks",
-                "write each as t times what it is at t = 1; what is held is held at 0",
-            );
-        }
+        self.check_factor(spec)?;
         let alpha = |m: &crate::spec::MaterialSpec| m.fracture.is_some_and(|f| f.alpha != 0.0);
         if spec.materials.iter().any(alpha) {
             return refused(
@@ -100,6 +80,35 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
+    /// Has the load a factor that is sought, in a body that begins without forces?
+    pub(super) fn check_factor(&mut self, spec: &Spec) -> Result<(), BuildError> {
+        let refused = |path: &str, message: &str, help: &str| {
+            Err(BuildError::unsupported(path, message.to_string()).help(help.to_string()))
+        };
+        if !self.at_peace() || !spec.transfers.is_empty() {
+            return refused(
+                "statics.control",
+                "the factor of a load is sought where the reference is without forces, in which nothing spreads",
+                "leave control out",
+            );
+        }
+        if spec.periodic.iter().any(Option::is_some) {
+            return refused(
+                "statics.control",
+                "bonds through periodic faces are not followed one by one",
+                "leave periodic or control out",
+            );
+        }
+        if !self.loads_are_proportional() {
+            return refused(
+                "conditions",
+                "loads that are not proportional to t have no factor that rises and falls",
+                "write each as t times what it is at t = 1; what is held is held at 0",
+            );
+        }
+        Ok(())
+    }
+
     /// Critical values of `e` by slot; none where bonds do not break.
     pub(super) fn criticals(&self) -> Vec<f64> {
         let mut out = vec![];
@@ -108,7 +117,7 @@ impl<const D: usize> Model<D> {
         out
     }
 
-    pub(super) fn loads_are_proportional(&mut self) -> bool {
+    fn loads_are_proportional(&mut self) -> bool {
         let mut at = |t: f64| {
             let mut u = self.body.at_rest();
             for c in &self.constraints {

@@ -142,10 +142,22 @@ fn control(context: &Context, written: &Statics) -> Result<Control> {
         ));
     }
     let lengths = [
-        ("opening", &written.opening, ControlName::Opening),
-        ("arc_length", &written.arc_length, ControlName::ArcLength),
+        (
+            ("opening", &written.opening),
+            (
+                ControlName::Opening,
+                "add opening, a tenth of the critical stretch, say",
+            ),
+        ),
+        (
+            ("arc_length", &written.arc_length),
+            (
+                ControlName::ArcLength,
+                "add arc_length, how far points go in an increment",
+            ),
+        ),
     ];
-    for (key, length, of) in lengths {
+    for ((key, length), (of, help)) in lengths {
         match (length, &written.control) {
             (Some(length), _) if name != of => {
                 return Err(context.error_with(
@@ -158,15 +170,10 @@ fn control(context: &Context, written: &Statics) -> Result<Control> {
                 return Err(context.error_with(
                     &control.span,
                     format!("control = \"{key}\" does not say how long an increment is"),
-                    match of {
-                        ControlName::ArcLength => {
-                            "add arc_length, how far points go in an increment"
-                        }
-                        _ => "add opening, a tenth of the critical stretch, say",
-                    },
+                    help,
                 ));
             }
-            _ => {}
+            (Some(_) | None, _) => {}
         }
     }
     let long = |number: &Option<Number>, dimension, what| match number {
