@@ -269,6 +269,15 @@ pub trait Interaction<const D: usize>: Send + Sync {
         false
     }
 
+    /// Adds the stress across a body in plane strain to `σ_xx + σ_yy` of every slot (force / area), at displacements whose images are fresh;
+    /// nothing where the section is free. False: the law does not say it.
+    ///
+    /// # Panics
+    /// If the body is another one, or the number of stresses is not that of its slots.
+    fn add_stress_across(&mut self, _body: &Body<D>, _u: &Field<D>, _trace: &mut [f64]) -> bool {
+        false
+    }
+
     /// Bonds wear as long as it takes until some are worn out, at most so many cycles: of a load under which the displacements are `u`, images
     /// of which are fresh, and whose least is a part of it. Those that are worn out break in the next sweep. How many cycles; `None`: none
     /// of them wears.

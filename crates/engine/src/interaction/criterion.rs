@@ -22,8 +22,8 @@ pub enum Measure {
     /// The work w that the force states of both its ends have done on it, `∫ (T_i − T_j)·dη` (energy / volume²), where it is longer than
     /// in the reference (Foster, Silling & Chen 2011).
     Work(Vec<f64>),
-    /// Von Mises stress (pressure), the mean of both ends. `across` is σ_zz over σ_xx + σ_yy in the plane.
-    VonMises { limit: Vec<f64>, across: Vec<f64> },
+    /// Von Mises stress (pressure), the mean of both ends.
+    VonMises(Vec<f64>),
     /// Equivalent plastic strain (–), the mean of both ends.
     PlasticStrain(Vec<f64>),
 }
@@ -42,10 +42,7 @@ impl Criteria {
                 Measure::Stretch => Measure::Stretch,
                 Measure::Work(limit) => Measure::Work(one(limit)),
                 Measure::PlasticStrain(limit) => Measure::PlasticStrain(one(limit)),
-                Measure::VonMises { limit, across } => Measure::VonMises {
-                    limit: one(limit),
-                    across: one(across),
-                },
+                Measure::VonMises(limit) => Measure::VonMises(one(limit)),
             },
             rate: self.rate.get(n).copied().into_iter().collect(),
             fatigue: self.fatigue.get(n).copied().into_iter().collect(),

@@ -3,6 +3,7 @@
 mod compact;
 mod plastic;
 mod relaxing;
+mod section;
 mod shock;
 mod wound;
 

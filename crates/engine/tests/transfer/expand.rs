@@ -2,6 +2,7 @@
 
 use crate::sample::*;
 use peridyne::error::BuildErrorKind;
+use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
 use peridyne::spec::*;
 use std::f64::consts::PI;
@@ -47,7 +48,6 @@ fn block(d: usize, law: LawSpec, cloud: bool, heat: TransferSpec) -> Spec {
         });
     }
     let mut spec = still(d, body, 2, 0.5, heat);
-    spec.plane = Plane::Strain;
     spec.horizon = match cloud {
         true => Horizon::Length(2.3),
         false => Horizon::Ratio(2),
@@ -157,14 +157,18 @@ fn a_held_bar_is_under_pressure() {
 /// Tangents are slopes of the forces, of bodies that are warm in places.
 #[test]
 fn tangents_know_the_temperature() {
-    for law in laws() {
+    for (law, plane) in laws()
+        .into_iter()
+        .flat_map(|l| [Plane::Stress, Plane::Strain].map(|p| (l.clone(), p)))
+    {
         for cloud in [false, true] {
-            let spec = block(
+            let mut spec = block(
                 2,
                 law.clone(),
                 cloud,
                 told(1e-3, "20 + 30*sin(x) + 20*cos(y)"),
             );
+            spec.plane = plane;
             let mut sim = built(&spec);
             let wave = |scale: f64, n: usize, a: usize| scale * ((3 * n + 2 * a) as f64).sin();
             let of = |scale: f64, more: f64| -> Vec<[f64; 3]> {
@@ -194,6 +198,188 @@ fn tangents_know_the_temperature() {
             }
             assert!(off < 1e-7 * size, "{law:?} {cloud}: {off:e} of {size:e}");
         }
+    }
+}
+
+/// The point in the middle of a block that follows these displacements, warm in plane strain or in space: stress, energy, temperature.
+fn strained(d: usize, law: LawSpec, u: [&str; 2], heat: TransferSpec) -> [f64; 5] {
+    let mut spec = still(d, cells(d, 1.0, [0.0; 3], [9.0; 3]), 2, 0.5, heat);
+    spec.plane = Plane::Strain;
+    spec.influence = Influence::Inverse;
+    spec.materials[0].law = law;
+    spec.schedule.stepper = Stepper::Verlet;
+    spec.conditions = vec![ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::Displacement([Some(text(u[0])), Some(text(u[1])), Some(text("0"))]),
+    }];
+    let options = Options {
+        trust_time_step: true,
+        ..Options::default()
+    };
+    let mut sim = build(&spec, options).unwrap();
+    sim.start(true);
+    run(&mut *sim, 40);
+    let middle = sim.info().points as usize / 2;
+    let stress = sim.column("stress").unwrap();
+    let names = stress.declaration.shape.components();
+    let component = |c: &str| {
+        let place = names.iter().position(|n| *n == c).unwrap();
+        stress.values.at(middle, place)
+    };
+    let stress = ["xx", "yy", "xy"].map(component);
+    let energy = scalars(&mut *sim, "strain_energy_density")[middle];
+    let [xx, yy, xy] = stress;
+    [xx, yy, xy, energy, temperature(&mut *sim)[middle]]
+}
+
+/// Laws on the shelf, and how far families of a lattice are from round ones.
+fn shelf() -> Vec<(LawSpec, f64)> {
+    let solid = [("young", 1.0), ("poisson", 0.3)];
+    let lattice = 0.06;
+    let written = |energy: &str| {
+        let formula = Expression::of(&["I1", "I2", "J"], energy, &[]).unwrap();
+        let formula = Parameter::Formula(formula);
+        LawSpec::named(
+            "hyperelastic",
+            Parameters::default().with("energy", formula),
+        )
+    };
+    let correspondence = |stress: &str| {
+        let word = Parameter::Word(stress.into());
+        LawSpec::named(
+            "correspondence",
+            Parameters::numbers(&solid).with("stress", word),
+        )
+    };
+    let of = |name: &str, more: &[(&str, f64)]| law(name, &[&solid[..], more].concat());
+    let branches = Parameter::Rows(vec![vec![0.5, 3.0], vec![0.2, 40.0]]);
+    let bond = |law: LawSpec| match law {
+        LawSpec::Named(mut law) => {
+            let word = Parameter::Word("bond".into());
+            law.parameters.set("gradient", word);
+            LawSpec::Named(law)
+        }
+        other => other,
+    };
+    let ply = Parameters::default()
+        .with("young", Parameter::List(vec![3.0, 1.0, 0.8]))
+        .with("poisson", Parameter::List(vec![0.3, 0.25, 0.35]))
+        .with("shear", Parameter::List(vec![0.5, 0.4, 0.3]))
+        .with("fibre", Parameter::List(vec![1.0, 0.5, 0.0]));
+    let ply = LawSpec::named("anisotropic", ply);
+    vec![
+        (LawSpec::Pmb(PmbStiffness::Young(1.0)), lattice),
+        (
+            LawSpec::Lps(Moduli {
+                young: 1.0,
+                poisson: 0.3,
+            }),
+            lattice,
+        ),
+        (of("position_aware", &[]), 1e-3),
+        (
+            law("bond_rotation", &[("young", 1.0), ("poisson", 0.2)]),
+            lattice,
+        ),
+        (
+            LawSpec::named(
+                "viscoelastic",
+                Parameters::numbers(&solid).with("branches", branches),
+            ),
+            lattice,
+        ),
+        (of("elastic_plastic", &[("yield_stress", 5e-4)]), lattice),
+        (correspondence("linear"), 1e-9),
+        (correspondence("neo_hookean"), 1e-9),
+        (bond(correspondence("neo_hookean")), 1e-9),
+        (
+            LawSpec::named(
+                "correspondence",
+                Parameters::numbers(&[solid[0], solid[1], ("second_invariant", 0.1)])
+                    .with("stress", Parameter::Word("mooney_rivlin".into())),
+            ),
+            1e-9,
+        ),
+        (
+            written("0.2*(I1 - 3 - 2*ln(J)) + 0.1*(I2 - 3 - 4*ln(J)) + 0.5*(J - 1)^2"),
+            1e-9,
+        ),
+        (of("hypoelastic", &[]), 1e-9),
+        (of("hypoelastic_plastic", &[("yield_stress", 5e-4)]), 1e-9),
+        (
+            bond(of("hypoelastic_plastic", &[("yield_stress", 5e-4)])),
+            1e-9,
+        ),
+        (ply.clone(), 1e-9),
+        (law("fluid", &[("bulk", 1.0)]), 1e-9),
+    ]
+}
+
+/// A warm body in plane strain is a slice of the solid whose thickness is held.
+#[test]
+fn a_warm_slice_is_one_of_the_solid() {
+    let u = [
+        "min(t/10, 1)*(1e-3*x + 5e-4*y)",
+        "min(t/10, 1)*(2e-4*x - 7e-4*y)",
+    ];
+    let mut wrong = vec![];
+    for (law, apart) in shelf() {
+        let of = |d: usize| strained(d, law.clone(), u, told(2e-5, "20 + 5*min(t, 12)"));
+        let (slice, solid) = (of(2), of(3));
+        let size = solid[..3].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let off = (0..3).map(|k| (slice[k] - solid[k]).abs() / size);
+        let off = off.fold((slice[3] / solid[3] - 1.0).abs(), f64::max);
+        println!("{law:?}: {off:.2e}\n  {slice:?}\n  {solid:?}");
+        if !(off < apart) {
+            wrong.push(format!("{law:?}: {off:e}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Held on all sides, warmed, and of no stress but a pressure: `σ = −3Kε` in every direction, and nothing flows.
+#[test]
+fn a_slice_that_is_held_on_all_sides_bears_a_pressure_alone() {
+    let (grown, bulk) = (1e-4, 1.0 / 1.2);
+    for law in [
+        law(
+            "elastic_plastic",
+            &[("young", 1.0), ("poisson", 0.3), ("yield_stress", 1e-5)],
+        ),
+        law(
+            "hypoelastic_plastic",
+            &[("young", 1.0), ("poisson", 0.3), ("yield_stress", 1e-5)],
+        ),
+    ] {
+        let found = strained(2, law.clone(), ["0", "0"], told(grown, "20 + min(t/10, 1)"));
+        for k in 0..2 {
+            let off = found[k] / (-3.0 * bulk * grown) - 1.0;
+            assert!(off.abs() < 4.0 * grown, "{law:?}: {found:?}");
+        }
+    }
+}
+
+/// `T = T0 exp(−3αKθ/(ρ c))` at constant stress per temperature: in plane strain as in space the whole mean stress heats.
+#[test]
+fn a_slice_cools_as_the_solid_does() {
+    let alpha = 1e-4;
+    let mut heat = heat(EXPLICIT);
+    heat.reference = 300.0;
+    heat.deformation = true;
+    heat.materials[0].expansion = alpha;
+    heat.materials[0].conductivity = 1e-9;
+    heat.initial = vec![("all".into(), text("300"))];
+    let u = ["1e-5*x*min(t, 1)", "1e-5*y*min(t, 1)"];
+    for (law, apart) in shelf() {
+        let isotropic = !format!("{law:?}").contains("anisotropic");
+        if !isotropic {
+            continue;
+        }
+        let of = |d: usize| strained(d, law.clone(), u, heat.clone())[4] - 300.0;
+        let (slice, solid) = (of(2), of(3));
+        let off = (slice / solid - 1.0).abs();
+        println!("{law:?}: {slice:e} {solid:e}: {off:.2e}");
+        assert!(off < apart.max(2e-4), "{law:?}: {slice} {solid}");
     }
 }
 

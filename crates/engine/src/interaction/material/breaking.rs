@@ -141,7 +141,7 @@ impl<const D: usize, F: Family<D>> Kernel for Test<'_, D, F> {
                         let of: [f64; TILE] = std::array::from_fn(|l| limit[material(l)]);
                         L::load(of.as_ptr())
                     }
-                    Measure::Stretch | Measure::VonMises { .. } | Measure::PlasticStrain(_) => {
+                    Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => {
                         history::next_critical(self.toughness, material, lowest, alone)
                     }
                 };

@@ -276,7 +276,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             self.expansion = Column::new(body.len, 0.0, field::line(4));
         }
         self.expansion.copy_from_slice(strain);
+        if !M::SECTION && !self.held.is_empty() {
+            for i in 0..body.len {
+                let Some([poisson, _]) = self.held[self.material_at(i)] else {
+                    return false;
+                };
+                self.expansion[i] *= 1.0 + poisson;
+            }
+        }
         true
+    }
+
+    fn add_stress_across(&mut self, body: &Body<D>, u: &Field<D>, trace: &mut [f64]) -> bool {
+        self.check(body, &[u]);
+        assert_eq!(trace.len(), body.len, "a number for each slot");
+        self.held.is_empty() || self.add_across(body, u, trace)
     }
 
     fn wear(&mut self, body: &Body<D>, u: &Field<D>, cycles: &Cycles, left: f64) -> Option<f64> {

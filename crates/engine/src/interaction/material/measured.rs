@@ -12,7 +12,7 @@ use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::criterion::{Measure, SPENT, Wearing, cycles};
 use crate::interaction::history;
-use crate::law::material::{ForceState, Material};
+use crate::law::material::{ForceState, Material, Site};
 use crate::spec::Cycles;
 
 /// The end of the step before, from which the work of a step is counted.
@@ -71,8 +71,8 @@ pub struct VonMises<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
     pub body: &'a Body<D>,
     pub limit: &'a [f64],
-    /// σ_zz over σ_xx + σ_yy in the plane.
-    pub across: &'a [f64],
+    /// Per material in plane strain, and empty else: σ_zz over σ_xx + σ_yy, and what it is less by the strain that temperature gives.
+    pub across: &'a [[f64; 2]],
     pub out: Shared,
 }
 
@@ -109,17 +109,36 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for VonMises<'_, D, F,
                         square = mean.fma(mean, square);
                     }
                 }
-                let per = |of: &[f64]| -> [f64; TILE] {
-                    std::array::from_fn(|l| of[self.body.material_of(at.rows.slot(l))])
+                let per = |of: &dyn Fn(usize) -> f64| -> [f64; TILE] {
+                    std::array::from_fn(|l| of(self.body.material_of(at.rows.slot(l))))
                 };
-                if D == 2 {
-                    let across = L::load(per(self.across).as_ptr()) * trace;
+                if D == 2 && !self.across.is_empty() {
+                    let across = if M::ACROSS {
+                        let form = at.rows.load::<L, M::Form<L>>(v.form);
+                        let past = at.rows.load::<L, M::Past<L>>(v.past);
+                        let site = Site {
+                            constants: &at.constants,
+                            form: &form,
+                            past: &past,
+                            around: v.around::<L>(at.rows),
+                        };
+                        v.law.across(&site, &point)
+                    } else {
+                        let poisson = per(&|m: usize| self.across[m][0]);
+                        let mut across = L::load(poisson.as_ptr()) * trace;
+                        if !v.expansion.is_empty() {
+                            let stiff = per(&|m: usize| self.across[m][1]);
+                            let grown = at.rows.one::<L>(v.expansion.as_ptr());
+                            across = across - L::load(stiff.as_ptr()) * grown;
+                        }
+                        across
+                    };
                     trace = trace + across;
                     square = across.fma(across, square);
                 }
                 // 3/2 s:s = 3/2 σ:σ − 1/2 tr²σ
                 let mises = L::splat(1.5) * square - half * trace * trace;
-                let limit = L::load(per(self.limit).as_ptr());
+                let limit = L::load(per(&|m: usize| self.limit[m]).as_ptr());
                 put(
                     mises.max(L::splat(0.0)).sqrt().div(limit),
                     self.out,
@@ -186,12 +205,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             });
         }
         let out = Shared(self.damage.as_mut_ptr());
-        if let Measure::VonMises { limit, across } = &self.criteria.measure {
+        if let Measure::VonMises(limit) = &self.criteria.measure {
+            let of = |held: &Option<[f64; 2]>| {
+                let [poisson, twice_shear] = held.unwrap_or_default();
+                let grown = if M::SECTION { 1.0 + poisson } else { 1.0 };
+                [poisson, grown * twice_shear]
+            };
+            let across: Vec<[f64; 2]> = self.held.iter().map(of).collect();
             let kernel = VonMises {
                 view: self.view(u, room),
                 body,
                 limit,
-                across,
+                across: &across,
                 out,
             };
             run_blocks(self.simd, &kernel, self.sums.blocks());
@@ -203,7 +228,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     pub(super) fn measures(&self) -> bool {
         matches!(
             self.criteria.measure,
-            Measure::Work(_) | Measure::VonMises { .. }
+            Measure::Work(_) | Measure::VonMises(_)
         )
     }
 
@@ -225,7 +250,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// Number of the material of a slot in what is per material.
-    fn material_at(&self, slot: usize) -> usize {
+    pub(super) fn material_at(&self, slot: usize) -> usize {
         self.material.get(slot).map_or(0, |m| *m as usize)
     }
 

@@ -76,6 +76,8 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     life: Vec<f64>,
     /// Strain by temperature or swelling per slot; empty: none.
     expansion: Column,
+    /// In plane strain, per material: ν and 2G of the linear isotropic solid of its moduli, if it is isotropic; else empty.
+    held: Vec<Option<[f64; 2]>>,
     /// Bits of bonds that break in a sweep, and marks of their groups.
     breaks: Vec<u8>,
     torn: Vec<u8>,
@@ -109,6 +111,8 @@ pub struct MaterialParts<'a, const D: usize, F, M> {
     pub toughness: Vec<Toughness>,
     pub criteria: Criteria,
     pub repulsion: Option<Repulsion>,
+    /// In plane strain ν and 2G of each material that is isotropic; else empty.
+    pub held: Vec<Option<[f64; 2]>>,
     pub simd: Simd,
 }
 
@@ -147,6 +151,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             toughness,
             criteria,
             repulsion,
+            held,
             simd,
         } = parts;
         let mut alive = vec![0u8; family.bytes_of_bits()];
@@ -163,7 +168,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
         let measured = matches!(
             criteria.measure,
-            Measure::VonMises { .. } | Measure::PlasticStrain(_)
+            Measure::VonMises(_) | Measure::PlasticStrain(_)
         );
         let fails = measured || law.failure().is_some();
         let works = matches!(criteria.measure, Measure::Work(_));
@@ -215,6 +220,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }),
             life: bonds(wears, 1.0),
             expansion: Column::default(),
+            held,
             breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
             torn: vec![0; if breaks { family.groups() } else { 0 }],
             step: 0.0,
@@ -291,6 +297,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             past: self.past.view(),
             memory: Shared(self.memory.as_ptr().cast_mut()),
             expansion: &self.expansion,
+            held: !self.held.is_empty(),
         }
     }
 
@@ -330,13 +337,29 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         out: Option<&mut PointEnergies>,
     ) -> [f64; 2] {
         let fields = out.map(|out| EnergyFields::of(out, body.len));
+        let held = self.held_energies();
         let kernel = Energies {
             view: self.view(u, room),
+            held: &held,
             pushed: self.pushed(body),
             volume: &body.volume,
             fields,
         };
         self.sums.sum(self.simd, &kernel)
+    }
+
+    /// `½ E ε²` of a section that is held against the strain ε is `G/(1 + ν)` times the square of what bonds expand by: energy that laws without
+    /// a section leave out. Per material; empty: the law has it, or nothing is held.
+    fn held_energies(&self) -> Vec<f64> {
+        let of = |held: &Option<[f64; 2]>| {
+            held.map_or(0.0, |[poisson, twice_shear]| {
+                0.5 * twice_shear / (1.0 + poisson)
+            })
+        };
+        match M::SECTION || self.expansion.is_empty() {
+            true => vec![],
+            false => self.held.iter().map(of).collect(),
+        }
     }
 
     fn seen(&self, body: &Body<D>, u: &Field<D>, room: &Room, out: &mut PointEnergies) {

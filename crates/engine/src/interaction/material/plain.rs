@@ -93,6 +93,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     constants: &constants,
                     form: &form,
                     past: &past,
+                    // SAFETY: rows of the family
+                    around: unsafe { view.around::<f64>(rows) },
                 };
                 let bonds = self.bonds_of(group, l);
                 let bond = |xi: &[f64; D], omega: f64| Bond::new(*xi, along(gradient, xi), omega);
@@ -134,6 +136,52 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
         }
         self.dilate(out);
+    }
+
+    /// Adds the stress across a body in plane strain to σ_xx + σ_yy of every slot, at displacements that are settled. False: it is not known.
+    pub(super) fn add_across(&mut self, body: &Body<D>, u: &Field<D>, trace: &mut [f64]) -> bool {
+        if !M::ACROSS {
+            let known = self.held.iter().all(Option::is_some);
+            for &s in &body.slots {
+                let i = s as usize;
+                let [poisson, twice_shear] = self.held[self.material_at(i)].unwrap_or_default();
+                let grown = self.swelling(i) * twice_shear;
+                trace[i] += poisson * trace[i] - grown;
+            }
+            return known;
+        }
+        let room = self.take_room(u, self.step);
+        self.settle(body, u, &room);
+        let view = self.view(u, &room);
+        for &s in &body.slots {
+            let Some((group, l)) = self.family.find(s as usize) else {
+                continue;
+            };
+            // SAFETY: a point of the family
+            trace[s as usize] += unsafe {
+                let at = view.group::<f64>(group, l);
+                let form = at.rows.load::<f64, M::Form<f64>>(view.form);
+                let past = at.rows.load::<f64, M::Past<f64>>(view.past);
+                let site = Site {
+                    constants: &at.constants,
+                    form: &form,
+                    past: &past,
+                    around: view.around::<f64>(at.rows),
+                };
+                self.law.across(&site, &view.point::<f64>(at.rows))
+            };
+        }
+        self.room = room;
+        true
+    }
+
+    /// Strain across a body in plane strain that temperature or swelling would give a point, times 1 + ν.
+    fn swelling(&self, slot: usize) -> f64 {
+        let strain = self.expansion.get(slot).copied().unwrap_or(0.0);
+        match (M::SECTION, self.held[self.material_at(slot)]) {
+            (true, Some([poisson, _])) => (1.0 + poisson) * strain,
+            (true, None) | (false, _) => strain,
+        }
     }
 
     /// Forces bond by bond, in order of slots.

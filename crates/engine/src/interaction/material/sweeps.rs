@@ -266,6 +266,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                     constants: &at.constants,
                     form: &form,
                     past: &before,
+                    around: v.around::<L>(at.rows),
                 };
                 lost = lost + v.law.remember(&site, &point, &mut past);
                 save(self.past, at.rows, &past);
@@ -326,6 +327,7 @@ impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece for EnergyOf<'
                 constants: &at.constants,
                 form: self.form,
                 past: &past,
+                around: v.around::<L>(at.rows),
             };
             let mut point = <M::Point<L> as Numbers<L>>::constant(0.0);
             let mut sum = <M::Sum<L> as Numbers<L>>::constant(0.0);
@@ -363,6 +365,8 @@ impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece for EnergyOf<'
 /// Energy pass: strain and repulsion energy densities, `Σ ω ν V |ξ|² s` and `Σ ω ν V |ξ|²` over whole bonds.
 pub struct Energies<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
+    /// What a section stores that is held, per material; empty: nothing ([`MaterialInteraction::held_energies`](super::MaterialInteraction)).
+    pub held: &'a [f64],
     pub pushed: Option<Pushed<'a, D>>,
     pub volume: &'a crate::body::Values,
     pub fields: Option<EnergyFields>,
@@ -393,9 +397,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Energies<'_, D, F,
                     Some(pushed) => pushed.energy::<L, F>(v.family, &v.moved, group),
                     None => [0.0; TILE],
                 };
-                let all = strain.to_array();
+                let mut all = strain.to_array();
                 for l in 0..TILE {
                     if v.family.is_point(group, l) {
+                        if !self.held.is_empty() {
+                            let slot = at.rows.slot(l);
+                            let material = v.material.get(slot).map_or(0, |m| usize::from(*m));
+                            all[l] += self.held[material] * v.expansion[slot].powi(2);
+                        }
                         let volume = self.volume.at(at.rows.slot(l));
                         sums[0] += all[l] * volume;
                         sums[1] += repulsion[l] * volume;
@@ -410,7 +419,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Energies<'_, D, F,
                     share = part.fma(bond.stretch, share);
                     weight = weight + part;
                 }
-                put(strain, out.strain, at.rows);
+                put(L::load(all.as_ptr()), out.strain, at.rows);
                 for l in 0..TILE {
                     *out.repulsion.at(at.rows.slot(l)) = repulsion[l];
                 }

@@ -8,7 +8,7 @@ use super::view::mirrored;
 use super::{MaterialInteraction, Room};
 use crate::body::{Body, Field};
 use crate::interaction::{BondTangent, Channel};
-use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site};
+use crate::law::material::{Around, Bond, End, ForceState, Material, Numbers, Site};
 use crate::law::number::Dual;
 
 type Real = Dual<f64>;
@@ -84,11 +84,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let rows = self.family.rows(group).from(l);
         let slot = rows.slot(0);
         // SAFETY: rows of the family
-        let (constants, form, past) = unsafe {
+        let (constants, form, past, around) = unsafe {
             (
                 view.constants_at::<f64>(rows),
                 rows.load::<f64, M::Form<f64>>(view.form),
                 rows.load::<f64, M::Past<f64>>(view.past),
+                view.around::<f64>(rows),
             )
         };
         let half = |(k, xi, omega, weight): (usize, [f64; D], f64, f64)| {
@@ -119,13 +120,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             bonds: bonds.collect(),
         };
         for pass in 0..M::PASSES {
-            self.pass(pass, &mut node, &form, &past);
+            self.pass(pass, &mut node, (&form, &past, around));
         }
         node
     }
 
     /// One pass: point, shares and gains.
-    fn pass(&self, pass: usize, node: &mut Node<D, M>, form: &M::Form<f64>, past: &M::Past<f64>) {
+    fn pass(
+        &self,
+        pass: usize,
+        node: &mut Node<D, M>,
+        (form, past, around): (&M::Form<f64>, &M::Past<f64>, Around<f64>),
+    ) {
         let points = <M::Point<f64> as Numbers<f64>>::COUNT;
         let sums = <M::Sum<f64> as Numbers<f64>>::COUNT;
         let constants: M::Constants<Real> = lift(&node.constants, None);
@@ -172,6 +178,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 constants: &constants,
                 form: &lifted_form,
                 past: &lifted_past,
+                around: Around {
+                    section: still(around.section),
+                },
             };
             let mut point: M::Point<Real> = lift(&node.point, by_point);
             self.law.settle(pass, &site, lift(&sum, by_sum), &mut point);

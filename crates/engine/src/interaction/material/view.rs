@@ -7,7 +7,7 @@ use crate::execute::blocks::Shared;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::interaction::bond::relative_square_stretch;
-use crate::law::material::{Bond, End, Material, Numbers, Sink, Site};
+use crate::law::material::{Around, Bond, End, Material, Numbers, Sink, Site};
 use crate::law::number::Number;
 
 /// Groups per block of work.
@@ -34,6 +34,8 @@ pub struct View<'a, const D: usize, F, M> {
     pub memory: Shared,
     /// Strain by temperature or swelling per slot; empty: none.
     pub expansion: &'a [f64],
+    /// Is the section held, as in plane strain?
+    pub held: bool,
 }
 
 /// The points of a group.
@@ -196,6 +198,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         (bond, r.weight)
     }
 
+    /// What points have from outside.
+    ///
+    /// # Safety
+    /// Slots of the family.
+    #[inline(always)]
+    pub unsafe fn around<L: Lane>(&self, slots: F::Slots) -> Around<L> {
+        let mut section = L::splat(0.0);
+        if M::SECTION && D == 2 && self.held && !self.expansion.is_empty() {
+            // SAFETY: a number per slot
+            let strain = unsafe { slots.one::<L>(self.expansion.as_ptr()) };
+            section = (L::splat(0.0) - strain).div(L::splat(1.0) + strain);
+        }
+        Around { section }
+    }
+
     /// `1/(1 + ε)` of the bonds from a group to these ends: what forces are multiplied by, since the law answers to `(ξ + η)/(1 + ε)`.
     ///
     /// # Safety
@@ -304,6 +321,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                 constants: &at.constants,
                 form: &form,
                 past: &past,
+                around: self.around::<L>(at.rows),
             };
             self.law.settle(pass, &site, sum, point);
         }

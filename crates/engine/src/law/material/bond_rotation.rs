@@ -133,7 +133,7 @@ impl<const D: usize> Material<D> for BondRotation {
     fn settle<N: Number>(
         &self,
         _: usize,
-        site: &Site<[N; 2], Form<N, D>, [N; 0]>,
+        site: &Site<N, [N; 2], Form<N, D>, [N; 0]>,
         sum: Matrix<N, D>,
         point: &mut Point<N, D>,
     ) {

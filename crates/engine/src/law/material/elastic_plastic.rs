@@ -9,7 +9,12 @@
 //! With the stress that this norm stands for in shear, `σ = ‖t‖ √(3m/(n(n+2)))`, the return is the classical one:
 //! `Δε̄ = (σ_trial − σ_y(ε̄))/(3G + H)`, and `ψ0 = n(n+2) σ_y²/(6m)`: for a full ball and ω = 1 that is Mitchell's `25 σ_y²/(8πδ⁵)`,
 //! which points near a surface have, too, where constants are those of the continuum. Perfect plasticity is H = 0. Step by step the energy is the incremental potential, whose derivative is the force.
+//!
+//! The deviator that flows is that of the three-dimensional solid: in one and two dimensions a point remembers the plastic part z of the
+//! deviator d across ([`section`]), and yields where `σ_b² + σ_a² = σ_y²`, with the σ_b of its bonds and `σ_a = 3G √(2c/D) (d − z)`. Both return by the same
+//! `γ = Δε̄/σ`, to `σ_b/(1 + S_b γ)` and `σ_a/(1 + S_a γ)`, with S = 3G where d is given, less by what a free section gives way, and `S_b = α m_y/(n(n+2)/3)` of the bonds.
 
+use super::section::{self, Section};
 use super::{Along, Bond, Columns, End, Kin, Material, Site};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, MODULI, Memory, Shelved};
@@ -21,6 +26,7 @@ use crate::spec::{Influence, LawSpec, Parameters, Plane};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElasticPlasticConstants {
     pub solid: Solid,
+    pub section: Section<f64>,
     /// Weighted volume of the family that the yield surface is that of; `None`: of each point's own.
     pub weighted_volume: Option<f64>,
     /// Yield stress σ_y in tension.
@@ -52,8 +58,15 @@ const MEAN: usize = 3; // μ
 const REST: usize = 4; // ρ
 const FLOW: usize = 5; // Δε̄
 const DILATED: usize = 6; // θ/n
+const ACROSS: usize = 7; // z
 
-type Ends<'a, N> = End<'a, [N; 6], [N; 7], [N; 1]>;
+type Constants<N> = ([N; 6], Section<N>);
+type Ends<'a, N> = End<'a, Constants<N>, [N; 8], [N; 1]>;
+/// ε̄, z
+type SiteOf<'a, N> = Site<'a, N, Constants<N>, N, [N; 2]>;
+
+/// Most steps of the search for γ, which Newton's method finds from below: where both return alike in one.
+const STEPS: usize = 40;
 
 impl ElasticPlastic {
     /// `e^d` before the step's flow.
@@ -71,49 +84,61 @@ impl ElasticPlastic {
 }
 
 impl<const D: usize> Material<D> for ElasticPlastic {
-    type Constants<N: Number> = [N; 6];
+    type Constants<N: Number> = Constants<N>;
     /// 1/m
     type Form<N: Number> = N;
     /// `Σ ω|ξ|e`, `Σ ω|ξ|(e − e^p)`, `Σ ω (e − e^p)²`, `Σ ω|ξ|²`.
     type Sum<N: Number> = [N; 4];
-    type Point<N: Number> = [N; 7];
-    /// ε̄
-    type Past<N: Number> = [N; 1];
+    type Point<N: Number> = [N; 8];
+    /// ε̄, z
+    type Past<N: Number> = [N; 2];
     /// e^p
     type Memory<N: Number> = [N; 1];
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
     const OF_FAMILY: bool = true;
+    const SECTION: bool = true;
+    const ACROSS: bool = true;
 
     fn columns(&self) -> Columns {
+        let mut past = vec![Declaration::of_points(
+            "plastic_strain",
+            Shape::Scalar,
+            Dimension::NUMBER,
+            "Equivalent plastic strain ε̄, work-conjugate to the yield stress.",
+        )];
+        if D < 3 {
+            past.push(Declaration::of_points(
+                "plastic_strain_across",
+                Shape::Scalar,
+                Dimension::NUMBER,
+                "Plastic part z of the deviatoric strain across a line or a plane.",
+            ));
+        }
         Columns {
             memory: vec![Declaration::of_bonds(
                 "plastic_extension",
                 Dimension::LENGTH,
                 "Plastic part e^p of the extension of a bond (Mitchell 2011).",
             )],
-            past: vec![Declaration::of_points(
-                "plastic_strain",
-                Shape::Scalar,
-                Dimension::NUMBER,
-                "Equivalent plastic strain ε̄, work-conjugate to the yield stress.",
-            )],
+            past,
             point: vec![],
             ..Columns::default()
         }
     }
 
-    fn constants(&self, material: usize, _: f64) -> [f64; 6] {
+    fn constants(&self, material: usize, _: f64) -> Constants<f64> {
         let m = &self.materials[material];
         let n = m.solid.n;
-        [
+        let own = [
             n * n * m.solid.kappa,
             m.solid.beta,
             n * (n + 2.0) / 3.0,
             m.yield_stress,
             m.hardening,
             m.weighted_volume.map_or(0.0, f64::recip),
-        ]
+        ];
+        (own, m.section)
     }
 
     fn form(&self, _: usize, kin: Kin<D>) -> f64 {
@@ -136,11 +161,11 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     fn settle<N: Number>(
         &self,
         _: usize,
-        site: &Site<[N; 6], N, [N; 1]>,
+        site: &SiteOf<N>,
         [dilated, elastic, square, whole]: [N; 4],
-        point: &mut [N; 7],
+        point: &mut [N; 8],
     ) {
-        let (c, per_m) = (site.constants, *site.form);
+        let ((c, section), per_m) = (site.constants, *site.form);
         let zero = N::constant(0.0);
         point[DILATED] = per_m * dilated;
         point[ALPHA] = c[BETA] * per_m;
@@ -152,18 +177,47 @@ impl<const D: usize> Material<D> for ElasticPlastic {
         // ‖t‖ per stress
         let per_ball = zero.choose(c[BALL], c[BALL], per_m);
         let scale = (c[RADIUS] * per_ball).sqrt();
-        let limit = scale * c[HARDENING].fma(site.past[0], c[YIELD]);
-        let beyond = norm - limit;
+        let limit = c[HARDENING].fma(site.past[0], c[YIELD]);
         // α/scale², 3G in a family of that weighted volume
         let shear = point[ALPHA].div(c[RADIUS] * per_ball);
-        let rest = (beyond * shear).div((shear + c[HARDENING]) * norm);
-        let flow = beyond.div((shear + c[HARDENING]) * scale);
-        let rest = limit.choose(norm, rest, zero);
+        let (rest, pressure);
+        if D == 3 {
+            let limit = scale * limit;
+            let beyond = norm - limit;
+            let part = (beyond * shear).div((shear + c[HARDENING]) * norm);
+            let flow = beyond.div((shear + c[HARDENING]) * scale);
+            rest = limit.choose(norm, part, zero);
+            point[FLOW] = limit.choose(norm, flow, zero);
+            pressure = zero;
+        } else {
+            let strain = site.around.section;
+            let theta = N::constant(D as f64) * point[DILATED];
+            let kept = N::constant(1.0) - section::gives(section);
+            let across = section::deviator::<N, D>(section, theta, strain) - kept * site.past[1];
+            let triple = N::constant(3.0) * section::shear(section);
+            let returned = Return {
+                stresses: [norm.div(scale), section::mises::<N, D>(section, across)],
+                stiffnesses: [shear, triple * kept],
+                limit,
+                hardening: c[HARDENING],
+            }
+            .of_step();
+            let stiff = shear * returned.per_stress;
+            // a point without bonds has no stiffness, and no flow
+            let part = stiff.div(N::constant(1.0) + stiff);
+            rest = zero.choose(returned.per_stress, part, zero);
+            point[FLOW] = returned.strain;
+            let stiff = triple * returned.per_stress;
+            let moved = (stiff * across).div(N::constant(1.0) + kept * stiff);
+            point[ACROSS] = site.past[1] + moved;
+            let along = section::pressure::<N, D>(section, point[ACROSS], strain);
+            pressure = N::constant(D as f64) * per_m * along;
+        }
         point[REST] = rest;
-        point[FLOW] = limit.choose(norm, flow, zero);
         let flows = point[ALPHA] * rest;
         point[STIFF] = point[ALPHA] - flows;
-        point[ALONG] = flows.fma(mean, c[BULK] * per_m * point[DILATED]);
+        let volume = (c[BULK] * per_m).fma(point[DILATED], pressure);
+        point[ALONG] = flows.fma(mean, volume);
     }
 
     #[inline(always)]
@@ -180,18 +234,26 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn point_energy<N: Number>(
-        &self,
-        site: &Site<[N; 6], N, [N; 1]>,
-        _: [N; 4],
-        point: &[N; 7],
-    ) -> N {
-        let dilated = point[DILATED];
-        (N::constant(0.5) * site.constants[BULK] * dilated).fma(dilated, work(site, point))
+    fn point_energy<N: Number>(&self, site: &SiteOf<N>, _: [N; 4], point: &[N; 8]) -> N {
+        let (c, section) = site.constants;
+        let (dilated, z) = (point[DILATED], point[ACROSS]);
+        let mut lost = work(site, point);
+        if D < 3 {
+            let theta = N::constant(D as f64) * dilated;
+            let strain = site.around.section;
+            lost = lost + section::energy::<N, D>(section, theta, (z, z * z), strain);
+        }
+        (N::constant(0.5) * c[BULK] * dilated).fma(dilated, lost)
     }
 
     #[inline(always)]
-    fn moves<N: Number>(&self, point: &[N; 7]) -> bool {
+    fn across<N: Number>(&self, site: &SiteOf<N>, point: &[N; 8]) -> N {
+        let theta = N::constant(D as f64) * point[DILATED];
+        section::stress(&site.constants.1, theta, point[ACROSS], site.around.section)
+    }
+
+    #[inline(always)]
+    fn moves<N: Number>(&self, point: &[N; 8]) -> bool {
         (N::constant(0.0) - point[FLOW]).any_below(0.0)
     }
 
@@ -202,23 +264,90 @@ impl<const D: usize> Material<D> for ElasticPlastic {
     }
 
     #[inline(always)]
-    fn remember<N: Number>(
-        &self,
-        site: &Site<[N; 6], N, [N; 1]>,
-        point: &[N; 7],
-        past: &mut [N; 1],
-    ) -> N {
+    fn remember<N: Number>(&self, site: &SiteOf<N>, point: &[N; 8], past: &mut [N; 2]) -> N {
         past[0] = site.past[0] + point[FLOW];
+        if D < 3 {
+            past[1] = point[ACROSS];
+        }
         work(site, point)
     }
 }
 
 /// `∫σ_y dε̄` of the step's flow: what it dissipates, by the trapezoidal rule, which is exact for linear hardening.
 #[inline(always)]
-fn work<N: Number>(site: &Site<[N; 6], N, [N; 1]>, point: &[N; 7]) -> N {
-    let c = site.constants;
+fn work<N: Number>(site: &SiteOf<N>, point: &[N; 8]) -> N {
+    let c = &site.constants.0;
     let middle = N::constant(0.5).fma(point[FLOW], site.past[0]);
     c[HARDENING].fma(middle, c[YIELD]) * point[FLOW]
+}
+
+/// The return of two stresses, whose squares add up, to the yield surface.
+struct Return<N> {
+    /// Of the trial.
+    stresses: [N; 2],
+    stiffnesses: [N; 2],
+    /// σ_y before the flow.
+    limit: N,
+    hardening: N,
+}
+
+/// How much it is.
+struct Returned<N> {
+    /// Δε̄.
+    strain: N,
+    /// γ (1 / pressure).
+    per_stress: N,
+}
+
+impl<N: Number> Return<N> {
+    /// σ after a return by γ, and `d(1/σ)/dγ`.
+    #[inline(always)]
+    fn stress(&self, gamma: N) -> [N; 2] {
+        let one = N::constant(1.0);
+        let (mut square, mut slope) = (N::constant(0.0), N::constant(0.0));
+        for k in 0..2 {
+            let less = self.stiffnesses[k].fma(gamma, one);
+            let stress = self.stresses[k].div(less);
+            square = stress.fma(stress, square);
+            slope = (self.stiffnesses[k] * stress * stress).fma(less.recip(), slope);
+        }
+        let stress = square.sqrt();
+        [stress, slope.div(square * stress)]
+    }
+
+    /// `1/σ(γ) = (1 − Hγ)/σ_y`, whose left side is concave: from γ = 0 Newton's method comes from below.
+    #[inline(always)]
+    fn of_step(&self) -> Returned<N> {
+        let (zero, one) = (N::constant(0.0), N::constant(1.0));
+        let mut square = zero;
+        for stress in self.stresses {
+            square = stress.fma(stress, square);
+        }
+        // 1 where it flows
+        let flows = (self.limit * self.limit).choose(square, one, zero);
+        if !(zero - flows).any_below(0.0) {
+            return Returned {
+                strain: zero,
+                per_stress: zero,
+            };
+        }
+        let (inverse, mut gamma) = (self.limit.recip(), zero);
+        for _ in 0..STEPS {
+            let [stress, slope] = self.stress(gamma);
+            let off = stress.recip() - (one - self.hardening * gamma) * inverse;
+            let step = off.div(self.hardening.fma(inverse, slope));
+            let next = zero.choose(flows, gamma - step, zero);
+            let change = (next - gamma).most(gamma - next);
+            gamma = next;
+            if !(N::constant(1e-15) * gamma - change).any_below(0.0) {
+                break;
+            }
+        }
+        Returned {
+            strain: zero.choose(flows, gamma * self.stress(gamma)[0], zero),
+            per_stress: gamma,
+        }
+    }
 }
 
 impl Shelved for ElasticPlastic {
@@ -241,7 +370,7 @@ impl Shelved for ElasticPlastic {
         );
         Descriptor {
             name: "elastic_plastic".into(),
-            doc: "Linear peridynamic solid whose deviatoric extensions flow: ½ Σ t²/ω = n(n+2) σ_y²/(6m), ė^p = λ t/ω. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            doc: "Linear peridynamic solid whose deviatoric extensions flow: ½ Σ t²/ω = n(n+2) σ_y²/(6m), ė^p = λ t/ω. Two of young, poisson, bulk, shear.".into(),
             source: "Mitchell 2011, SAND2011-3166".into(),
             example: "{ young = \"200 GPa\", poisson = 0.3, yield_stress = \"250 MPa\", hardening = \"1 GPa\" }".into(),
             influence: Influence::Inverse,
@@ -257,18 +386,14 @@ impl Shelved for ElasticPlastic {
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let mut made = vec![];
         for (n, m) in materials.iter().enumerate() {
-            let refused = |message: &str| Err((n, message.to_string()));
-            if d == 2 && plane == Plane::Stress {
-                return refused(
-                    "in the plane an ordinary solid flows without a change of thickness, which is plane strain: write plane = \"strain\"",
-                );
-            }
             let Some(solid) = m.solid else {
-                return refused("an elastic-plastic solid needs its moduli");
+                return Err((n, "an elastic-plastic solid needs its moduli".into()));
             };
+            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
             let number = |key| m.parameters.number(key).unwrap_or(0.0);
             made.push(ElasticPlasticConstants {
                 solid,
+                section: section::of(d, plane, &moduli),
                 weighted_volume: m.weighted_volume,
                 yield_stress: number("yield_stress"),
                 hardening: number("hardening"),

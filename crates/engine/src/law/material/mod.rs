@@ -12,6 +12,7 @@ pub mod lamina;
 pub mod non_ordinary;
 pub mod numbers;
 pub mod position_aware;
+pub mod section;
 pub mod softening;
 pub mod tensor;
 pub mod thermoelastic;
@@ -32,7 +33,7 @@ pub use thermoelastic_solid::ThermoelasticSolid;
 
 /// All that come with the engine, a line each.
 pub fn each(kinds: &mut impl Kinds) {
-    kinds.solid::<elastic_plastic::ElasticPlastic>();
+    kinds.law::<elastic_plastic::ElasticPlastic>();
     kinds.law_or_smaller::<viscoelastic::Viscoelastic, viscoelastic::Viscoelastic<1>>(
         viscoelastic::one_branch,
     );
@@ -143,13 +144,21 @@ pub struct End<'a, C, P, M> {
 
 /// What a point has beside its bonds.
 #[derive(Debug, Clone, Copy)]
-pub struct Site<'a, C, F, H> {
+pub struct Site<'a, N, C, F, H> {
     /// Constants of its material.
     pub constants: &'a C,
     /// What [`Material::form`] made of its family.
     pub form: &'a F,
     /// What the point remembers.
     pub past: &'a H,
+    pub around: Around<N>,
+}
+
+/// What a point has from outside its body of D dimensions.
+#[derive(Debug, Clone, Copy)]
+pub struct Around<N> {
+    /// Elastic strain across a body in plane strain, `−ε/(1 + ε)` of the strain ε by temperature or swelling; else 0.
+    pub section: N,
 }
 
 /// The force state T⟨ξ⟩ of one end (force / volume²).
@@ -304,6 +313,12 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const ALIKE: bool = false;
     /// Do the sums of the family make its stiffness, with ω once in each of them and in each answer? Points may have horizons of their own then.
     const OF_FAMILY: bool = false;
+    /// Does it look at what is across a body in plane strain ([`Around::section`])? Bonds of a law that does not are expanded by (1 + ν) times
+    /// what temperature or swelling gives them there: exact where it is linear and isotropic.
+    const SECTION: bool = false;
+    /// Does it say what the stress across a body in plane strain is ([`Material::across`])? That of a law that does not is the one of the
+    /// linear isotropic solid of its moduli.
+    const ACROSS: bool = false;
     /// Does an answer read constants? False saves finding those of the other end.
     const READS: bool = true;
     /// Are its force states slopes of its energy? Laws of rates have no potential.
@@ -374,7 +389,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     fn settle<N: Number>(
         &self,
         _pass: usize,
-        _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        _site: &Site<N, Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
         _sum: Self::Sum<N>,
         _point: &mut Self::Point<N>,
     ) {
@@ -399,8 +414,18 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     #[inline(always)]
     fn point_energy<N: Number>(
         &self,
-        _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        _site: &Site<N, Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
         _sum: Self::Sum<N>,
+        _point: &Self::Point<N>,
+    ) -> N {
+        N::constant(0.0)
+    }
+
+    /// Stress across a body in plane strain, of a point that has settled.
+    #[inline(always)]
+    fn across<N: Number>(
+        &self,
+        _site: &Site<N, Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
         _point: &Self::Point<N>,
     ) -> N {
         N::constant(0.0)
@@ -437,7 +462,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     #[inline(always)]
     fn remember<N: Number>(
         &self,
-        _site: &Site<Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
+        _site: &Site<N, Self::Constants<N>, Self::Form<N>, Self::Past<N>>,
         _point: &Self::Point<N>,
         _past: &mut Self::Past<N>,
     ) -> N {

@@ -196,7 +196,7 @@ impl<const D: usize> Material<D> for PositionAware {
     fn settle<N: Number>(
         &self,
         _: usize,
-        site: &Site<[N; 2], Form<N>, [N; 0]>,
+        site: &Site<N, [N; 2], Form<N>, [N; 0]>,
         (trial, [along, square]): Sum<N>,
         point: &mut Point<N>,
     ) {
@@ -238,7 +238,7 @@ impl<const D: usize> Material<D> for PositionAware {
     #[inline(always)]
     fn point_energy<N: Number>(
         &self,
-        site: &Site<[N; 2], Form<N>, [N; 0]>,
+        site: &Site<N, [N; 2], Form<N>, [N; 0]>,
         _: Sum<N>,
         point: &Point<N>,
     ) -> N {

@@ -60,7 +60,7 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
     fn settle<N: Number>(
         &self,
         _: usize,
-        site: &Site<[N; 2], N, [N; 0]>,
+        site: &Site<N, [N; 2], N, [N; 0]>,
         sum: N,
         point: &mut [N; 3],
     ) {
@@ -84,7 +84,12 @@ impl<const D: usize> Material<D> for ThermoelasticSolid {
     }
 
     #[inline(always)]
-    fn point_energy<N: Number>(&self, site: &Site<[N; 2], N, [N; 0]>, _: N, point: &[N; 3]) -> N {
+    fn point_energy<N: Number>(
+        &self,
+        site: &Site<N, [N; 2], N, [N; 0]>,
+        _: N,
+        point: &[N; 3],
+    ) -> N {
         N::constant(0.5) * site.constants[VOLUME] * point[DILATED] * point[DILATED]
     }
 }

@@ -7,9 +7,13 @@
 //! e − θ|ξ|/n, and q is a deviator itself; in a torn one this deviator, and no other, is orthogonal to the pressure, so that no branch
 //! can gain energy.
 //! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`.
+//!
+//! The deviator that relaxes is that of the three-dimensional solid: in one and two dimensions W has what is across, too, as
+//! [`section`] has it, where a point remembers a back strain `ż_b = (d − z_b)/τ_b` of each branch, exact for a d that is linear over the step.
 
+use super::section::{self, Section};
 use super::{Along, Bond, Columns, End, Kin, Material, Site};
-use crate::columns::{Declaration, Dimension};
+use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, MODULI, Need, Shelved, Value};
 use crate::law::number::Number;
 use crate::law::solid::eam_like::Solid;
@@ -20,6 +24,7 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViscoelasticConstants {
     pub solid: Solid,
+    pub section: Section<f64>,
     /// `(λ_b, τ_b)`: part of the shear modulus that relaxes, and its time.
     pub branches: Vec<(f64, f64)>,
 }
@@ -38,7 +43,7 @@ pub struct Viscoelastic<const B: usize = BRANCHES> {
 const BULK: usize = 0;
 const BETA: usize = 1;
 
-/// Numbers of a point: nκθ/m, β/m, θ/n; and of each branch the part along |ξ| of what its back extension would grow by.
+/// Numbers of a point: `nκθ/m` with what is across, β/m, θ/n; and of each branch the part along |ξ| of what its back extension would grow by.
 const P: usize = 0;
 const ALPHA: usize = 1;
 const DILATED: usize = 2;
@@ -47,9 +52,12 @@ type Point<N, const B: usize> = ([N; 3], [N; B]);
 /// A branch: part λ; what a back extension approaches over the step, `1 − e^(−Δt/τ)`; and its growth per growth of e,
 /// `1 − (1 − e^(−Δt/τ)) τ/Δt`.
 type Branch<N> = [N; 3];
-type Constants<N, const B: usize> = ([N; 2], [Branch<N>; B]);
+type Constants<N, const B: usize> = (([N; 2], Section<N>), [Branch<N>; B]);
 /// e at the end of the last step, back extensions.
 type Memory<N, const B: usize> = (N, [N; B]);
+/// d at the end of the last step, back strains z.
+type Past<N, const B: usize> = (N, [N; B]);
+type SiteOf<'a, N, const B: usize> = Site<'a, N, Constants<N, B>, N, Past<N, B>>;
 type EndOf<'a, N, const B: usize> = End<'a, Constants<N, B>, Point<N, B>, Memory<N, B>>;
 
 impl<const B: usize> Viscoelastic<B> {
@@ -94,6 +102,61 @@ impl<const B: usize> Viscoelastic<B> {
     }
 }
 
+/// What is across a body at the end of a step.
+struct Across<N, const B: usize> {
+    dilatation: N,
+    /// d and z_b.
+    now: Past<N, B>,
+    /// `Σ λ_b z_b`, `Σ λ_b z_b²`.
+    gone: (N, N),
+}
+
+impl<N: Number, const B: usize> Across<N, B> {
+    #[inline(always)]
+    fn new<const D: usize>(site: &SiteOf<N, B>, dilatation: N) -> Self {
+        let ((_, section), branches) = site.constants;
+        let (before, back) = *site.past;
+        let zero = N::constant(0.0);
+        // of a d that ends at 0; and how Z grows with it
+        let (mut rest, mut grows) = (zero, zero);
+        let mut now = back;
+        for b in 0..B {
+            let [part, nears, growth] = branches[b];
+            now[b] = nears.fma(before - back[b], back[b]) - growth * before;
+            rest = part.fma(now[b], rest);
+            grows = part.fma(growth, grows);
+        }
+        let own = section::deviator::<N, D>(section, dilatation, site.around.section);
+        let g = section::gives(section);
+        let d = g.fma(rest, own).div(N::constant(1.0) - g * grows);
+        let (mut gone, mut squares) = (zero, zero);
+        for b in 0..B {
+            let [part, _, growth] = branches[b];
+            now[b] = growth.fma(d, now[b]);
+            gone = part.fma(now[b], gone);
+            squares = (part * now[b]).fma(now[b], squares);
+        }
+        Across {
+            dilatation,
+            now: (d, now),
+            gone: (gone, squares),
+        }
+    }
+
+    #[inline(always)]
+    fn dissipated<const D: usize>(&self, site: &SiteOf<N, B>) -> N {
+        let ((_, section), branches) = site.constants;
+        let ((before, old), (now, new)) = (*site.past, self.now);
+        let mut sum = N::constant(0.0);
+        for b in 0..B {
+            let both = (before - old[b]) + (now - new[b]);
+            let lost = section::dissipated::<N, D>(section, both, new[b] - old[b]);
+            sum = branches[b][0].fma(lost, sum);
+        }
+        sum
+    }
+}
+
 /// Of `1 − (1 − e^(−x))/x`, without cancellation where x is small.
 fn growth(x: f64) -> f64 {
     if x > 1e-3 {
@@ -110,11 +173,13 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     /// `Σ ω|ξ|e`, `Σ ω|ξ|²`; `Σ ω|ξ|` of what back extensions would grow by.
     type Sum<N: Number> = ([N; 2], [N; B]);
     type Point<N: Number> = Point<N, B>;
-    type Past<N: Number> = [N; 0];
+    type Past<N: Number> = Past<N, B>;
     type Memory<N: Number> = Memory<N, B>;
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
     const OF_FAMILY: bool = true;
+    const SECTION: bool = true;
+    const ACROSS: bool = true;
 
     fn columns(&self) -> Columns {
         let mut memory = vec![Declaration::of_bonds(
@@ -130,8 +195,26 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
                 "Back extension q of a branch, which follows the deviator of e (Mitchell 2011).",
             )
         }));
+        let mut past = vec![];
+        if D < 3 {
+            let scalar = |name: String, doc| Declaration {
+                name: Cow::Owned(name),
+                ..Declaration::of_points("", Shape::Scalar, Dimension::NUMBER, doc)
+            };
+            past.push(scalar(
+                "deviator_across".into(),
+                "Deviatoric strain d across a line or a plane at the end of the last step.",
+            ));
+            past.extend((1..=B).map(|b| {
+                scalar(
+                    format!("back_strain_across_{b}"),
+                    "Back strain z of a branch across a line or a plane, which follows d.",
+                )
+            }));
+        }
         Columns {
             memory,
+            past,
             ..Columns::default()
         }
     }
@@ -145,7 +228,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         };
         let none = [0.0; 3];
         (
-            [n * n * m.solid.kappa, m.solid.beta],
+            ([n * n * m.solid.kappa, m.solid.beta], m.section),
             std::array::from_fn(|b| m.branches.get(b).map_or(none, branch)),
         )
     }
@@ -168,13 +251,19 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     fn settle<N: Number>(
         &self,
         _: usize,
-        site: &Site<Constants<N, B>, N, [N; 0]>,
+        site: &SiteOf<N, B>,
         ([dilated, whole], growth): ([N; 2], [N; B]),
         (point, along): &mut Point<N, B>,
     ) {
-        let (c, per_m) = (site.constants.0, *site.form);
+        let ((c, section), per_m) = (&site.constants.0, *site.form);
         point[DILATED] = per_m * dilated;
         point[P] = c[BULK] * per_m * point[DILATED];
+        if D < 3 {
+            let n = N::constant(D as f64);
+            let across = Across::new::<D>(site, n * point[DILATED]);
+            let pressure = section::pressure::<N, D>(section, across.gone.0, site.around.section);
+            point[P] = (n * per_m).fma(pressure, point[P]);
+        }
         point[ALPHA] = c[BETA] * per_m;
         let zero = N::constant(0.0);
         let per_whole = zero.choose(whole, N::constant(1.0).div(whole), zero);
@@ -213,11 +302,31 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     #[inline(always)]
     fn point_energy<N: Number>(
         &self,
-        site: &Site<Constants<N, B>, N, [N; 0]>,
+        site: &SiteOf<N, B>,
         _: ([N; 2], [N; B]),
         (point, _): &Point<N, B>,
     ) -> N {
-        N::constant(0.5) * site.constants.0[BULK] * point[DILATED] * point[DILATED]
+        let (c, section) = &site.constants.0;
+        let volume = N::constant(0.5) * c[BULK] * point[DILATED] * point[DILATED];
+        if D == 3 {
+            return volume;
+        }
+        let across = Across::new::<D>(site, N::constant(D as f64) * point[DILATED]);
+        let strain = site.around.section;
+        let stored = section::energy::<N, D>(section, across.dilatation, across.gone, strain);
+        volume + stored + across.dissipated::<D>(site)
+    }
+
+    #[inline(always)]
+    fn across<N: Number>(&self, site: &SiteOf<N, B>, (point, _): &Point<N, B>) -> N {
+        let across = Across::new::<D>(site, N::constant(D as f64) * point[DILATED]);
+        let (_, section) = &site.constants.0;
+        section::stress(
+            section,
+            across.dilatation,
+            across.gone.0,
+            site.around.section,
+        )
     }
 
     #[inline(always)]
@@ -230,6 +339,21 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         let back = Self::next(bond, end);
         *memory = (bond.extension(), back);
         Self::dissipation(bond, end, &back)
+    }
+
+    #[inline(always)]
+    fn remember<N: Number>(
+        &self,
+        site: &SiteOf<N, B>,
+        (point, _): &Point<N, B>,
+        past: &mut Past<N, B>,
+    ) -> N {
+        if D == 3 {
+            return N::constant(0.0);
+        }
+        let across = Across::new::<D>(site, N::constant(D as f64) * point[DILATED]);
+        *past = across.now;
+        across.dissipated::<D>(site)
     }
 }
 
@@ -268,7 +392,7 @@ impl<const B: usize> Shelved for Viscoelastic<B> {
         descriptor::moduli(parameters).map(LawSpec::Lps)
     }
 
-    fn make(_: usize, _: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
+    fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let mut made = vec![];
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: String| Err((n, message));
@@ -288,8 +412,10 @@ impl<const B: usize> Shelved for Viscoelastic<B> {
             let Some(solid) = m.solid else {
                 return refused("a viscoelastic solid needs its moduli".into());
             };
+            let moduli = descriptor::moduli(m.parameters).map_err(|message| (n, message))?;
             made.push(ViscoelasticConstants {
                 solid,
+                section: section::of(d, plane, &moduli),
                 branches: rows.iter().map(|r| (r[0], r[1])).collect(),
             });
         }

@@ -112,12 +112,12 @@ pub(super) fn criteria<const D: usize>(
             Measure::Work(limits(fracture_energy::of_unit_work(D, moments)))
         }
         Criterion::PlasticStrain(_) => Measure::PlasticStrain(limits(1.0)),
-        Criterion::VonMises(_) => Measure::VonMises {
-            limit: limits(1.0),
-            across: all()
-                .map(|(n, m)| across::<D>(spec, n, m, shelf))
-                .collect::<Result<_, _>>()?,
-        },
+        Criterion::VonMises(_) => {
+            for (n, m) in all() {
+                across_known::<D>(spec, n, m, shelf)?;
+            }
+            Measure::VonMises(limits(1.0))
+        }
     };
     let rates = || all().map(|(_, m)| m.fracture.and_then(|f| f.rate));
     let fatigues = || all().map(|(_, m)| m.fracture.and_then(|f| f.fatigue));
@@ -134,20 +134,21 @@ pub(super) fn criteria<const D: usize>(
     })
 }
 
-/// σ_zz over σ_xx + σ_yy of a material in the plane.
-fn across<const D: usize>(
+/// Is the stress across a body in plane strain known?
+fn across_known<const D: usize>(
     spec: &Spec,
     n: usize,
     m: &MaterialSpec,
     shelf: &Shelf,
-) -> Result<f64, BuildError> {
+) -> Result<(), BuildError> {
     if D != 2 || spec.plane == Plane::Stress {
-        return Ok(0.0);
+        return Ok(());
     }
-    let elastic = match &m.law {
+    let known = match &m.law {
         LawSpec::Named(law) => {
             let of = shelf.descriptor(&law.name);
-            law.isotropic && of.is_some_and(|d| d.memory == Memory::Nothing)
+            let elastic = law.isotropic && of.is_some_and(|d| d.memory == Memory::Nothing);
+            elastic || shelf.across(&law.name)
         }
         LawSpec::Pmb(_)
         | LawSpec::Springs(_)
@@ -157,15 +158,14 @@ fn across<const D: usize>(
         | LawSpec::Micromoduli(_)
         | LawSpec::Atoms(_) => true,
     };
-    match m.law.linear() {
-        LawSpec::Lps(moduli) if elastic => Ok(moduli.poisson),
-        LawSpec::Pmb(_) if elastic => Ok(0.25),
-        _ => Err(unsupported(
+    match known {
+        true => Ok(()),
+        false => Err(unsupported(
             n,
             "fracture",
-            "the stress across plane strain is known of isotropic elastic laws alone",
+            "the stress across plane strain does not follow from that in the plane: this law is anisotropic, or its bonds soften",
         )
-        .help("give plastic_strain, or take three dimensions")),
+        .help("give another criterion, or take three dimensions")),
     }
 }
 

@@ -130,7 +130,7 @@ impl ConstitutiveModels {
     pub fn critical_works(&self, count: usize) -> Vec<f64> {
         self.per_material(count, |r| match &r.criteria.measure {
             Measure::Work(limit) => limit.clone(),
-            Measure::Stretch | Measure::VonMises { .. } | Measure::PlasticStrain(_) => vec![],
+            Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => vec![],
         })
     }
 

@@ -122,6 +122,15 @@ impl<const D: usize> Model<D> {
             )
             .help("take integrator = \"verlet\", or leave deformation out"));
         }
+        let mut trace = vec![0.0; self.body.len];
+        let (body, u) = (&self.body, &self.u);
+        if D == 2 && self.expands() && !self.interaction.add_stress_across(body, u, &mut trace) {
+            return Err(BuildError::unsupported(
+                transfers[n].quantity.name(),
+                "deformation heats by the change of the whole mean stress, and the stress across plane strain does not follow from that in the plane: this law is anisotropic",
+            )
+            .help("leave deformation out, or take three dimensions"));
+        }
         let strains = transfers[n].materials.iter().map(|m| m.expansion);
         self.transfers.heated = Some((n, strains.collect()));
         Ok(())
@@ -132,7 +141,19 @@ impl<const D: usize> Model<D> {
         self.transfers.heated.as_ref()?;
         self.refresh_images();
         let all = self.virials_of_bonds();
-        Some(all.iter().map(|w| w[0] + w[1] + w[2]).collect())
+        if D != 2 {
+            return Some(all.iter().map(|w| w[0] + w[1] + w[2]).collect());
+        }
+        let volume = |i: usize| self.body.volume.at(i);
+        let per = |(i, w): (usize, &[f64; 6])| match volume(i) > 0.0 {
+            true => -(w[0] + w[1]) / volume(i),
+            false => 0.0,
+        };
+        let mut trace: Vec<f64> = all.iter().enumerate().map(per).collect();
+        self.interaction
+            .add_stress_across(&self.body, &self.u, &mut trace);
+        let whole = trace.iter().enumerate();
+        Some(whole.map(|(i, s)| -volume(i) * s).collect())
     }
 
     /// Heat of the deformation since `−V tr σ` was this, at the temperatures of now.

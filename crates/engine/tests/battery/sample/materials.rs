@@ -164,19 +164,13 @@ pub fn materials() -> Vec<Material> {
             },
             Influence::CubicSpline,
         ),
-        Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
-            ..one("elastic-plastic", plastic(0.2, 0.3), Influence::Inverse)
-        },
-        Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
-            ..two(
-                "plastic mixed",
-                plastic(0.3, 0.0),
-                plastic(0.2, 1.0),
-                Influence::Gaussian,
-            )
-        },
+        one("elastic-plastic", plastic(0.2, 0.3), Influence::Inverse),
+        two(
+            "plastic mixed",
+            plastic(0.3, 0.0),
+            plastic(0.2, 1.0),
+            Influence::Gaussian,
+        ),
         Material {
             lives: |d, _| d > 1,
             ..two(

@@ -86,7 +86,7 @@ impl<const D: usize> Classical<D> for Anisotropic {
         c: &[N; 21],
         past: &[N; 0],
         h: &Matrix<N, D>,
-        _: &Unseen<N>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, [N; 0], D> {
         let (half, zero) = (N::constant(0.5), N::constant(0.0));
         // 2E = H + Hᵀ + HᵀH
@@ -121,6 +121,17 @@ impl<const D: usize> Classical<D> for Anisotropic {
             }
         }
         let (mut stress, mut energy) = (tensor::zero::<N, D>(), zero);
+        if D == 2 {
+            // E₃₃ and what it does
+            let across = unseen.across * half.fma(unseen.across, N::constant(1.0));
+            let mut own = c[ACROSS_FIRST + 3] * across;
+            for n in 0..count {
+                let coupled = c[ACROSS_FIRST + n];
+                own = coupled.fma(e[n], own);
+                voigt[n] = coupled.fma(across, voigt[n]);
+            }
+            energy = own * across;
+        }
         for n in 0..count {
             let [r, s] = place(n);
             stress[r][s] = voigt[n];
@@ -162,7 +173,10 @@ fn written(parameters: &Parameters) -> Result<Stiffness, String> {
     }
 }
 
-/// The upper triangle about the axes of the body, line by line; in the plane that of 11, 22, 12 first.
+/// Where in plane strain stiffnesses of 33 begin, with 11, 22, 12 and with itself.
+const ACROSS_FIRST: usize = 6;
+
+/// The upper triangle about the axes of the body, line by line; in the plane that of 11, 22, 12 first, then those of 33.
 fn upper(
     own: &Stiffness,
     axes: &[Point; 3],
@@ -185,6 +199,9 @@ fn upper(
     if d == 2 {
         let q = in_plane(&c, plane);
         (0..3).for_each(|r| (r..3).for_each(|s| next(q[r][s])));
+        if plane == Plane::Strain {
+            [0, 1, 5, 2].into_iter().for_each(|r| next(c[2][r]));
+        }
     } else {
         (0..6).for_each(|r| (r..6).for_each(|s| next(c[r][s])));
     }
@@ -270,6 +287,7 @@ mod tests {
     const SEEN: Unseen<f64> = Unseen {
         stiffness: 0.0,
         square: 0.0,
+        across: 0.0,
     };
     const H: [[f64; 3]; 3] = [[0.11, -0.07, 0.3], [0.2, -0.05, 0.1], [-0.15, 0.02, 0.08]];
 

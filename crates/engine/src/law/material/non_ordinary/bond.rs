@@ -31,12 +31,12 @@ pub struct BondAssociated<L> {
 
 /// `K⁻¹`, and 1 where K can be inverted.
 type Form<N, const D: usize> = (Matrix<N, D>, N);
-/// H and what T is linear in ωξ with, and `1/Σ ω ν V`; 0 where bonds span no space.
-type Point<N, const D: usize> = ([Matrix<N, D>; 2], N);
+/// H and what T is linear in ωξ with, and `1/Σ ω ν V`, 0 where bonds span no space, and the strain of the section.
+type Point<N, const D: usize> = ([Matrix<N, D>; 2], [N; 2]);
 type EndOf<'a, N, L, const D: usize> =
     End<'a, <L as Classical<D>>::Constants<N>, Point<N, D>, <L as Classical<D>>::Past<N>>;
 type SiteOf<'a, N, L, const D: usize> =
-    Site<'a, <L as Classical<D>>::Constants<N>, Form<N, D>, <L as Classical<D>>::Past<N>>;
+    Site<'a, N, <L as Classical<D>>::Constants<N>, Form<N, D>, <L as Classical<D>>::Past<N>>;
 
 /// What a bond's gradient gives.
 struct Answered<N, P, const D: usize> {
@@ -91,6 +91,7 @@ impl<L> BondAssociated<L> {
             unseen: Unseen {
                 stiffness: zero,
                 square: zero,
+                across: end.point.1[1],
             },
         });
         let trace = tensor::contraction(&stress, &h) + tensor::trace(&stress);
@@ -143,7 +144,7 @@ const STEPS: usize = 5;
 #[inline(always)]
 fn known<N: Number, const D: usize>(point: &Point<N, D>, x: N) -> N {
     let zero = N::constant(0.0);
-    zero.choose(point.1, x, zero)
+    zero.choose(point.1[0], x, zero)
 }
 
 impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
@@ -155,6 +156,8 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     type Memory<N: Number> = L::Past<N>;
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 2;
+    const SECTION: bool = true;
+    const ACROSS: bool = L::ACROSS;
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
@@ -243,7 +246,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     ) {
         let (inverse, sound) = site.form;
         let (zero, one) = (N::constant(0.0), N::constant(1.0));
-        let ([h, q], part) = point;
+        let ([h, q], [part, section]) = point;
         if pass == 0 {
             let whole = |x: N| sound.choose(N::constant(0.5), zero, x);
             let gradient = tensor::product(&sum, inverse);
@@ -252,6 +255,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
                     h[r][c] = whole(gradient[r][c]);
                 }
             }
+            *section = site.around.section;
             *part = whole(sound.choose(N::constant(0.5), one, weight).recip());
             return;
         }
@@ -275,7 +279,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
 
     #[inline(always)]
     fn answer<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> Free<N, D> {
-        let ([_, q], part) = end.point;
+        let ([_, q], [part, _]) = end.point;
         let across = self.stressed(bond, end).across;
         let along = tensor::times(&across, &bond.xi);
         let mut t = tensor::times(q, &bond.xi);
@@ -289,7 +293,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     #[inline(always)]
     fn energy<N: Number>(&self, bond: &Bond<N, D>, end: &EndOf<N, L, D>) -> N {
         let energy = self.stressed(bond, end).energy;
-        known(end.point, end.point.1 * bond.omega * energy)
+        known(end.point, end.point.1[0] * bond.omega * energy)
     }
 
     #[inline(always)]
@@ -302,10 +306,13 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         let now = self.stressed(bond, end).past;
         for n in 0..<L::Past<N> as Numbers<N>>::COUNT {
             let zero = N::constant(0.0);
-            memory.set(n, zero.choose(end.point.1, now.get(n), end.memory.get(n)));
+            memory.set(
+                n,
+                zero.choose(end.point.1[0], now.get(n), end.memory.get(n)),
+            );
         }
         let lost = self.law.dissipated(end.memory, memory);
-        end.point.1 * bond.omega * lost
+        end.point.1[0] * bond.omega * lost
     }
 
     #[inline(always)]
@@ -315,7 +322,13 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         end: &EndOf<N, L, D>,
         memory: &L::Past<N>,
     ) -> L::Past<N> {
-        <L::Past<N> as Numbers<N>>::constant(0.0).plus(end.point.1 * bond.omega, *memory)
+        <L::Past<N> as Numbers<N>>::constant(0.0).plus(end.point.1[0] * bond.omega, *memory)
+    }
+
+    /// Of the last step: what bonds remember in this one is not gathered yet.
+    #[inline(always)]
+    fn across<N: Number>(&self, site: &SiteOf<N, L, D>, _: &Point<N, D>) -> N {
+        self.law.across(site.past)
     }
 
     /// Points whose bonds span no space any more show what they had.
@@ -328,7 +341,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     ) -> N {
         let zero = N::constant(0.0);
         for n in 0..<L::Past<N> as Numbers<N>>::COUNT {
-            past.set(n, zero.choose(point.1, past.get(n), site.past.get(n)));
+            past.set(n, zero.choose(point.1[0], past.get(n), site.past.get(n)));
         }
         zero
     }

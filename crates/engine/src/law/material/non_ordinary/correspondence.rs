@@ -69,8 +69,9 @@ impl<const D: usize> Classical<D> for Correspondence {
         c: &[N; 3],
         past: &[N; 0],
         h: &Matrix<N, D>,
-        _: &Unseen<N>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, [N; 0], D> {
+        let held = D == 2 && !self.plane_stress;
         let (half, two) = (N::constant(0.5), N::constant(2.0));
         let mut f = *h;
         for a in 0..D {
@@ -84,7 +85,11 @@ impl<const D: usize> Classical<D> for Correspondence {
                 twice[r][s] = square[r][s] + h[r][s] + h[s][r];
             }
         }
-        let strain = tensor::trace(&twice);
+        let mut strain = tensor::trace(&twice);
+        let across = unseen.across * (two + unseen.across);
+        if held {
+            strain = strain + across;
+        }
         let (stress, energy) = match self.stress {
             Stress::Linear => {
                 let lame = if self.plane_stress {
@@ -100,8 +105,12 @@ impl<const D: usize> Classical<D> for Correspondence {
                     }
                     s[r][r] = s[r][r] + pressure;
                 }
-                let energy = half * half * (half * lame * strain * strain)
-                    + half * half * c[SHEAR] * tensor::contraction(&twice, &twice);
+                let mut double = tensor::contraction(&twice, &twice);
+                if held {
+                    double = across.fma(across, double);
+                }
+                let energy =
+                    half * half * (half * lame * strain * strain) + half * half * c[SHEAR] * double;
                 (tensor::product(&f, &s), energy)
             }
             Stress::NeoHookean => {
@@ -110,6 +119,8 @@ impl<const D: usize> Classical<D> for Correspondence {
                 // ln of the square of the stretch across
                 let across = if self.plane_stress && D == 2 {
                     thickness(c, plane)
+                } else if held && (N::constant(0.0) - across * across).any_below(0.0) {
+                    two * unseen.across.ln_1p()
                 } else {
                     N::constant(0.0)
                 };
@@ -136,7 +147,7 @@ impl<const D: usize> Classical<D> for Correspondence {
                 let energy = half * c[SHEAR] * shear + half * pull * volume;
                 (p, energy)
             }
-            Stress::MooneyRivlin => mooney_rivlin(c, h, &twice),
+            Stress::MooneyRivlin => mooney_rivlin(c, h, &twice, unseen),
         };
         Stressed {
             stress,
@@ -146,21 +157,27 @@ impl<const D: usize> Classical<D> for Correspondence {
     }
 }
 
-/// P and ψ of Mooney and Rivlin, from H and A = C − 1: `F − ⅓ I₁ F⁻ᵀ = F⁻ᵀ dev A`, and so on, so that nothing large is taken away. In the
-/// plane nothing is stretched across.
+/// P and ψ of Mooney and Rivlin, from H and A = C − 1: `F − ⅓ I₁ F⁻ᵀ = F⁻ᵀ dev A`, and so on, so that nothing large is taken away.
 #[inline(always)]
 fn mooney_rivlin<N: Number, const D: usize>(
     c: &[N; 3],
     h: &Matrix<N, D>,
     a: &Matrix<N, D>,
+    unseen: &Unseen<N>,
 ) -> (Matrix<N, D>, N) {
     let (half, third, two) = (N::constant(0.5), N::constant(1.0 / 3.0), N::constant(2.0));
     let (one, three) = (N::constant(1.0), N::constant(3.0));
-    let trace = tensor::trace(a);
-    let second = half * (trace * trace - tensor::contraction(a, a));
-    let beyond = tensor::dilation(h);
+    let (mut trace, mut double) = (tensor::trace(a), tensor::contraction(a, a));
+    let (cofactors, beyond) = unseen.space(h);
     // J² − 1 = tr A + rest, and t = ⅓ ln J²
-    let rest = tensor::dilation_beyond(a);
+    let mut rest = tensor::dilation_beyond(a);
+    if D == 2 {
+        let across = unseen.across * (two + unseen.across);
+        rest = across.fma(trace + rest, rest);
+        trace = trace + across;
+        double = across.fma(across, double);
+    }
+    let second = half * (trace * trace - double);
     let square = trace + rest;
     let t = third * square.ln_1p();
     let log = ln_rest(square);
@@ -185,7 +202,6 @@ fn mooney_rivlin<N: Number, const D: usize>(
         let level = first * trace + other * (trace + two * second);
         state[r][r] = state[r][r] - third * level;
     }
-    let cofactors = tensor::cofactor_beyond(h);
     let mut cofactor = cofactors;
     for r in 0..D {
         cofactor[r][r] = cofactors[r][r] + one;
@@ -324,6 +340,7 @@ mod tests {
     const SEEN: Unseen<f64> = Unseen {
         stiffness: 0.0,
         square: 0.0,
+        across: 0.0,
     };
 
     /// P is the slope of ψ, in plane stress too, and small strains are Hooke's.

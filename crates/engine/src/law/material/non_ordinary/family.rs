@@ -42,6 +42,7 @@ type EndOf<'a, N, L, const D: usize> = End<
 >;
 type SiteOf<'a, N, L, const D: usize> = Site<
     'a,
+    N,
     Constants<N, <L as Classical<D>>::Constants<N>>,
     Form<N, D>,
     <L as Classical<D>>::Past<N>,
@@ -60,13 +61,14 @@ fn gradient<N: Number, const D: usize>(form: &Form<N, D>, sum: &Sum<N, D>) -> Ma
 #[inline(always)]
 fn unseen<N: Number, const D: usize>(
     form: &Form<N, D>,
-    control: N,
+    (control, across): (N, N),
     sum: &Sum<N, D>,
     h: &Matrix<N, D>,
 ) -> Unseen<N> {
     Unseen {
         stiffness: control * form.1[0],
         square: (sum.1 - tensor::contraction(&sum.0, h)).most(N::constant(0.0)),
+        across,
     }
 }
 
@@ -122,6 +124,8 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     type State<N: Number> = Free<N, D>;
     const PASSES: usize = 1;
     const OF_FAMILY: bool = true;
+    const SECTION: bool = true;
+    const ACROSS: bool = L::ACROSS;
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
@@ -205,7 +209,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
             constants,
             past: site.past,
             h: &h,
-            unseen: unseen(form, *control, &sum, &h),
+            unseen: unseen(form, (*control, site.around.section), &sum, &h),
         });
         let along = tensor::product(&now.stress, &form.0);
         let either = Either {
@@ -256,11 +260,16 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
             constants: &site.constants.1,
             past: site.past,
             h: &h,
-            unseen: unseen(site.form, site.constants.0, &sum, &h),
+            unseen: unseen(site.form, (site.constants.0, site.around.section), &sum, &h),
         });
         let energy = strained.energy;
         let seen = N::constant(0.5) * point.0.1 * tensor::contraction(&sum.0, &h);
         known(site.form, energy, N::constant(0.0)) - seen
+    }
+
+    #[inline(always)]
+    fn across<N: Number>(&self, _: &SiteOf<N, L, D>, point: &Self::Point<N>) -> N {
+        self.law.across(&point.1)
     }
 
     #[inline(always)]

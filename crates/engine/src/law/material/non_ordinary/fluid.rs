@@ -8,7 +8,7 @@ use super::equation_of_state::{self, EquationOfState, HUGONIOT, Kind, VISCOSITY,
 use super::{Classical, Stressed, Unseen};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Memory, Need, Shelved, Value};
-use crate::law::material::tensor::{self, Matrix};
+use crate::law::material::tensor::Matrix;
 use crate::law::number::Number;
 use crate::spec::{Influence, LawSpec, Moduli, Parameters, Plane};
 
@@ -22,6 +22,7 @@ pub struct Fluid {
 
 /// What a point remembers: J − 1, p, q, and how much energy it got.
 const DILATION: usize = 0;
+const PRESSURE: usize = 1;
 const SHOCK: usize = 2;
 const GAINED: usize = 3;
 
@@ -29,6 +30,7 @@ impl<const D: usize> Classical<D> for Fluid {
     type Constants<N: Number> = equation_of_state::Constants<N>;
     type Past<N: Number> = [N; 4];
     const POTENTIAL: bool = false;
+    const ACROSS: bool = true;
 
     fn columns(&self) -> Vec<Declaration> {
         let scalar =
@@ -61,17 +63,24 @@ impl<const D: usize> Classical<D> for Fluid {
         0.6 * self.materials[material].bulk
     }
 
+    /// The pressure is the same in all directions; less what it is in the reference, as in the plane.
+    #[inline(always)]
+    fn across<N: Number>(&self, past: &[N; 4]) -> N {
+        let all = past[PRESSURE] + past[SHOCK];
+        N::constant(0.0) - all * (N::constant(1.0) + past[DILATION])
+    }
+
     #[inline(always)]
     fn stress<N: Number>(
         &self,
         c: &equation_of_state::Constants<N>,
         past: &[N; 4],
         h: &Matrix<N, D>,
-        _: &Unseen<N>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, [N; 4], D> {
         let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
         let at_rest = energy_at_rest(c);
-        let beyond = tensor::dilation(h);
+        let (cofactors, beyond) = unseen.space(h);
         let before = at_rest + past[GAINED];
         let old = self.kind.at(c, past[DILATION]).pressure(before);
         let ends = [past[DILATION], beyond];
@@ -84,7 +93,6 @@ impl<const D: usize> Classical<D> for Fluid {
         let gained = above.div(one - state.per_energy * shrunk);
         let pressure = state.pressure(at_rest + gained);
         let all = zero - (pressure + q);
-        let cofactors = tensor::cofactor_beyond(h);
         let mut p = cofactors;
         for r in 0..D {
             for k in 0..D {

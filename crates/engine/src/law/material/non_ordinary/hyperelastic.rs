@@ -3,7 +3,7 @@
 //! `P = 2ψ₁ F + 2ψ₂ (I₁ F − F C) + ψ_J cof F` (Holzapfel 2000, (6.32) with J beside I₁ and I₂). With slopes g at the reference, where
 //! `2g₁ + 4g₂ + g_J = 0` as it is without stress, and h beyond them,
 //! `P = (2g₁ + 4g₂) (F − cof F) + 2g₂ B + 2h₁ F + 2h₂ (2F + B) + h_J cof F`, `B = tr A F − F A`, `A = C − 1`: nothing large is taken away.
-//! In the plane nothing is stretched across.
+//! In the plane nothing is stretched across but by temperature or swelling.
 
 use super::energy::{Energy, INVARIANTS};
 use super::{Classical, Stressed, Unseen};
@@ -54,7 +54,12 @@ impl Hyperelastic {
         let zero = Dual::constant(0.0);
         let mut h = [[zero; 3]; 3];
         h[0][0] = stretched;
-        let p = law.at(0, &h).0;
+        let seen = Unseen {
+            stiffness: zero,
+            square: zero,
+            across: zero,
+        };
+        let p = law.at(0, &h, &seen).0;
         let (along, across) = (p[0][0].slope, p[1][1].slope);
         let shear = 0.5 * (along - across);
         let bulk = across + 2.0 / 3.0 * shear;
@@ -80,6 +85,7 @@ impl Hyperelastic {
         &self,
         material: usize,
         h: &Matrix<N, D>,
+        unseen: &Unseen<N>,
     ) -> (Matrix<N, D>, N) {
         let (half, two) = (N::constant(0.5), N::constant(2.0));
         let energy = &self.materials[material].0;
@@ -95,13 +101,22 @@ impl Hyperelastic {
                 a[r][c] = square[r][c] + h[r][c] + h[c][r];
             }
         }
-        let trace = tensor::trace(&a);
-        let second = half * (trace * trace - tensor::contraction(&a, &a));
-        let change = [trace, two.fma(trace, second), tensor::dilation(h)];
+        let (mut trace, mut double) = (tensor::trace(&a), tensor::contraction(&a, &a));
+        // of H
+        let (mut inner, mut volume) = (tensor::contraction(h, h), tensor::dilation_beyond(h));
+        if D == 2 {
+            let across = unseen.across * (two + unseen.across);
+            trace = trace + across;
+            double = across.fma(across, double);
+            inner = unseen.across.fma(unseen.across, inner);
+            volume = unseen.across.fma(tensor::dilation(h), volume);
+        }
+        let second = half * (trace * trace - double);
+        let (cofactors, dilation) = unseen.space(h);
+        let change = [trace, two.fma(trace, second), dilation];
         let beyond = energy.beyond(&change);
         let [w1, w2, _] = energy.slope;
         // F − cof F, B, cof F
-        let cofactors = tensor::cofactor_beyond(h);
         let product = tensor::product(&f, &a);
         let [h1, h2, hj] = beyond.slope;
         let (h1, h2) = (two * h1, two * h2);
@@ -120,8 +135,6 @@ impl Hyperelastic {
             }
         }
         // ΔI₁ − 2ΔJ and ΔI₂ − 4ΔJ, in which all that is linear in H is gone
-        let inner = tensor::contraction(h, h);
-        let volume = tensor::dilation_beyond(h);
         let first = inner - two * volume;
         let other = two * first + second;
         let psi = first.times(w1) + other.times(w2) + beyond.rest;
@@ -149,7 +162,7 @@ impl<const D: usize> Classical<D> for Hyperelastic {
         c: &[N; 1],
         past: &[N; 0],
         h: &Matrix<N, D>,
-        _: &Unseen<N>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, [N; 0], D> {
         let mut stress = *h;
         let mut energy = N::constant(0.0);
@@ -159,7 +172,7 @@ impl<const D: usize> Classical<D> for Hyperelastic {
             if !far.any_below(0.25) {
                 continue;
             }
-            let (p, psi) = self.at(n, h);
+            let (p, psi) = self.at(n, h, unseen);
             energy = far.below(0.25, psi, energy);
             for r in 0..D {
                 for k in 0..D {
@@ -228,6 +241,7 @@ mod tests {
     const SEEN: Unseen<f64> = Unseen {
         stiffness: 0.0,
         square: 0.0,
+        across: 0.0,
     };
     const LAMBDA: f64 = 1.3;
     const MU: f64 = 0.7;
@@ -301,6 +315,7 @@ mod tests {
                     let seen = Unseen {
                         stiffness: zero,
                         square: zero,
+                        across: zero,
                     };
                     let constant = c.map(Dual::constant);
                     let a = law.stress(&[zero], &[], &h, &seen).stress;
@@ -381,7 +396,7 @@ mod tests {
                     [0.0, across - 1.0, 0.0],
                     [0.0, 0.0, across - 1.0],
                 ];
-                let p = law.at(0, &h).0;
+                let p = law.at(0, &h, &SEEN).0;
                 let i1 = stretch * stretch + 2.0 / stretch;
                 let pull = p[0][0] - p[1][1] * across / stretch;
                 let exact = 2.0 * slope(i1) * (stretch - stretch.powi(-2));

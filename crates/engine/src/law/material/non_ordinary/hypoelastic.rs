@@ -9,7 +9,7 @@
 
 use super::rate::{self, INCREMENT, Increment, Step};
 use super::{Classical, Stressed, Unseen};
-use crate::columns::Declaration;
+use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Descriptor, Given, MODULI, Memory, Shelved};
 use crate::law::material::tensor::{self, Matrix};
 use crate::law::number::Number;
@@ -34,16 +34,27 @@ pub struct Hypoelastic {
 const LAME: usize = 0;
 const SHEAR: usize = 1;
 
-/// U − 1 and σ_u at the end of the last step, and the work so far.
-type Past<N, const D: usize> = ([Matrix<N, D>; 2], N);
+/// U − 1 and σ_u at the end of the last step; the work so far; strain and stress across a plane.
+type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 3]);
 
 impl<const D: usize> Classical<D> for Hypoelastic {
     type Constants<N: Number> = [N; 2];
     type Past<N: Number> = Past<N, D>;
     const POTENTIAL: bool = false;
+    const ACROSS: bool = true;
 
     fn columns(&self) -> Vec<Declaration> {
-        rate::columns()
+        let mut all = rate::columns();
+        if D == 2 {
+            all.push(rate::across_column());
+            all.push(Declaration::of_points(
+                "stress_across",
+                Shape::Scalar,
+                Dimension::PRESSURE,
+                "Cauchy stress across a plane.",
+            ));
+        }
+        all
     }
 
     fn constants(&self, material: usize, _: f64) -> [f64; 2] {
@@ -56,18 +67,23 @@ impl<const D: usize> Classical<D> for Hypoelastic {
     }
 
     #[inline(always)]
+    fn across<N: Number>(&self, ([stretch, _], own): &Past<N, D>) -> N {
+        own[2] * (N::constant(1.0) + tensor::dilation(stretch))
+    }
+
+    #[inline(always)]
     fn stress<N: Number>(
         &self,
         c: &[N; 2],
         past: &Past<N, D>,
         h: &Matrix<N, D>,
-        _: &Unseen<N>,
+        unseen: &Unseen<N>,
     ) -> Stressed<N, Past<N, D>, D> {
-        let ([before, s0], work) = past;
-        let step = Step::new(self.increment, before, h);
+        let ([before, s0], [work, thin, across]) = past;
+        let step = Step::new(self.increment, (before, *thin), (h, unseen.across));
         let strain = &step.strain;
         let two = N::constant(2.0);
-        let pressure = c[LAME] * tensor::trace(strain);
+        let pressure = c[LAME] * step.spread()[0];
         let mut s = *s0;
         for r in 0..D {
             for k in 0..D {
@@ -75,11 +91,15 @@ impl<const D: usize> Classical<D> for Hypoelastic {
             }
             s[r][r] = s[r][r] + pressure;
         }
-        let work = *work + step.work(s0, &s);
+        let mut now = *across;
+        if D == 2 {
+            now = (two * c[SHEAR]).fma(step.across.grown, *across + pressure);
+        }
+        let work = *work + step.work((s0, *across), (&s, now));
         Stressed {
             stress: step.nominal(&s),
             energy: work,
-            past: ([step.stretch, s], work),
+            past: ([step.stretch, s], [work, unseen.across, now]),
         }
     }
 }
@@ -139,6 +159,7 @@ mod tests {
     const SEEN: Unseen<f64> = Unseen {
         stiffness: 0.0,
         square: 0.0,
+        across: 0.0,
     };
 
     const LAMBDA: f64 = 1.3;
@@ -154,7 +175,7 @@ mod tests {
             increment,
             materials: vec![],
         };
-        let mut past = ([[[0.0; D]; D]; 2], 0.0);
+        let mut past = ([[[0.0; D]; D]; 2], [0.0; 3]);
         let mut p = [[0.0; D]; D];
         for n in 1..=steps {
             let h = path(f64::from(n) / f64::from(steps));
@@ -211,7 +232,7 @@ mod tests {
         let errors = [20, 40, 80].map(|n| {
             let (p, past) = along(Increment::Middle, n, path);
             assert!((past.0[1][1][1] - LAMBDA * p[0][0] / (LAMBDA + 2.0 * MU)).abs() < 1e-14);
-            [p[0][0] - exact, past.1 - work]
+            [p[0][0] - exact, past.1[0] - work]
         });
         for k in 0..2 {
             let falls = [errors[0][k] / errors[1][k], errors[1][k] / errors[2][k]];
@@ -243,7 +264,7 @@ mod tests {
                 );
             }
         }
-        assert!((past.1 - turned.1).abs() < 1e-15);
+        assert!((past.1[0] - turned.1[0]).abs() < 1e-15);
         let mut rigid = turn;
         (0..3).for_each(|a| rigid[a][a] -= 1.0);
         let (p, _) = along(Increment::Middle, 1, |_| rigid);

@@ -20,7 +20,7 @@ pub mod stiffness;
 pub use bond::BondAssociated;
 pub use family::NonOrdinary;
 
-use super::tensor::Matrix;
+use super::tensor::{self, Matrix};
 use super::{Kinds, Numbers};
 use crate::columns::Declaration;
 use crate::execute::lane::Piece;
@@ -87,6 +87,15 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         N::constant(0.0)
     }
 
+    /// [`Material::ACROSS`](super::Material::ACROSS)
+    const ACROSS: bool = false;
+
+    /// Stress across a body in plane strain, of what is remembered (force / area of the reference).
+    #[inline(always)]
+    fn across<N: Number>(&self, _past: &Self::Past<N>) -> N {
+        N::constant(0.0)
+    }
+
     /// What is left of its control, 1 at first.
     #[inline(always)]
     fn control<N: Number>(&self, _past: &Self::Past<N>) -> N {
@@ -103,13 +112,34 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
     ) -> Stressed<N, Self::Past<N>, D>;
 }
 
-/// What F does not see of a deformation; of a law whose control does not soften 0.
+/// What F does not see of a deformation: the first two of a law whose control does not soften 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Unseen<N> {
     /// g of the control that is not softened (pressure / length² volume).
     pub stiffness: N,
     /// `Σ ω ν V z²` (length² volume).
     pub square: N,
+    /// [`Around::section`](super::Around::section)
+    pub across: N,
+}
+
+impl<N: Number> Unseen<N> {
+    /// `cof F − 1` and det F − 1 of the solid, from H of a plane.
+    #[inline(always)]
+    pub fn space<const D: usize>(&self, h: &Matrix<N, D>) -> (Matrix<N, D>, N) {
+        let mut cofactors = tensor::cofactor_beyond(h);
+        let mut dilation = tensor::dilation(h);
+        if D == 2 {
+            for r in 0..D {
+                for c in 0..D {
+                    cofactors[r][c] = self.across.fma(cofactors[r][c], cofactors[r][c]);
+                }
+                cofactors[r][r] = cofactors[r][r] + self.across;
+            }
+            dilation = self.across.fma(dilation, dilation) + self.across;
+        }
+        (cofactors, dilation)
+    }
 }
 
 /// What a classical law answers to a deformation gradient.

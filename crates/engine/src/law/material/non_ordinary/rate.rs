@@ -67,6 +67,45 @@ pub fn columns() -> Vec<Declaration> {
     ]
 }
 
+/// The column of [`Step::across`] that a plane remembers.
+pub fn across_column() -> Declaration {
+    Declaration::of_points(
+        "strain_across",
+        Shape::Scalar,
+        Dimension::NUMBER,
+        "Elastic strain across a plane, the reverse of what temperature or swelling would give it.",
+    )
+}
+
+/// What is across a plane.
+#[derive(Debug, Clone, Copy)]
+pub struct Across<N> {
+    /// Stretch less 1, at the end of a step.
+    pub strain: N,
+    /// Δε, and with the mean of both ends.
+    pub grown: N,
+    pub mean: N,
+}
+
+impl<N: Number> Across<N> {
+    /// From the strain before to that of now.
+    #[inline(always)]
+    fn new(rule: Increment, before: N, now: N) -> Self {
+        let (one, half) = (N::constant(1.0), N::constant(0.5));
+        let change = now - before;
+        let mean = change.div(half.fma(before + now, one));
+        let grown = match rule {
+            Increment::Middle => mean,
+            Increment::End => change.div(one + now),
+        };
+        Across {
+            strain: now,
+            grown,
+            mean,
+        }
+    }
+}
+
 /// A step of the deformation.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<N, const D: usize> {
@@ -77,14 +116,19 @@ pub struct Step<N, const D: usize> {
     pub strain: Matrix<N, D>,
     /// Δε with the mean of both ends.
     pub mean: Matrix<N, D>,
+    pub across: Across<N>,
     /// J at both ends.
     pub volumes: [N; 2],
 }
 
 impl<N: Number, const D: usize> Step<N, D> {
-    /// From U − 1 before to `F = 1 + H`.
+    /// From U − 1 before to `F = 1 + H`, each with the strain across a plane.
     #[inline(always)]
-    pub fn new(rule: Increment, before: &Matrix<N, D>, h: &Matrix<N, D>) -> Self {
+    pub fn new(
+        rule: Increment,
+        (before, thin): (&Matrix<N, D>, N),
+        (h, thick): (&Matrix<N, D>, N),
+    ) -> Self {
         let (turn, stretch) = tensor::polar(h);
         let half = N::constant(0.5);
         let (mut change, mut middle) = (stretch, stretch);
@@ -105,19 +149,37 @@ impl<N: Number, const D: usize> Step<N, D> {
             stretch,
             strain,
             mean,
+            across: Across::new(rule, thin, thick),
             volumes: [
-                one + tensor::dilation(before),
-                one + tensor::dilation(&stretch),
+                (one + tensor::dilation(before)) * (one + thin),
+                (one + tensor::dilation(&stretch)) * (one + thick),
             ],
         }
     }
 
-    /// Work of stresses at both ends per reference volume, `½ Σ J σ_u : Δε`: the trapezoidal rule.
+    /// tr Δε, and that with the mean of both ends.
     #[inline(always)]
-    pub fn work(&self, before: &Matrix<N, D>, after: &Matrix<N, D>) -> N {
-        let before = self.volumes[0] * tensor::contraction(before, &self.mean);
-        let after = self.volumes[1] * tensor::contraction(after, &self.mean);
-        N::constant(0.5) * (before + after)
+    pub fn spread(&self) -> [N; 2] {
+        let (spread, mean) = (tensor::trace(&self.strain), tensor::trace(&self.mean));
+        match D {
+            2 => [spread + self.across.grown, mean + self.across.mean],
+            _ => [spread, mean],
+        }
+    }
+
+    /// Work of stresses at both ends per reference volume, `½ Σ J σ_u : Δε`: the trapezoidal rule. Each comes with that across a plane.
+    #[inline(always)]
+    pub fn work(&self, before: (&Matrix<N, D>, N), after: (&Matrix<N, D>, N)) -> N {
+        let of = [before, after];
+        let mut ends = self.volumes;
+        for k in 0..2 {
+            let mut rate = tensor::contraction(of[k].0, &self.mean);
+            if D == 2 {
+                rate = self.across.mean.fma(of[k].1, rate);
+            }
+            ends[k] = ends[k] * rate;
+        }
+        N::constant(0.5) * (ends[0] + ends[1])
     }
 
     /// `P = R σ_u cof(U)` at its end.
@@ -135,6 +197,9 @@ impl<N: Number, const D: usize> Step<N, D> {
         for r in 0..D {
             for c in 0..D {
                 p[r][c] = turned[r][c] + more[r][c];
+                if D == 2 {
+                    p[r][c] = self.across.strain.fma(p[r][c], p[r][c]);
+                }
             }
         }
         p

@@ -18,7 +18,9 @@ use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
 use crate::quantity;
-use crate::spec::{Calibration, LawSpec, NamedLaw, Parameter, Parameters, Plane, Spec};
+use crate::spec::{
+    Calibration, LawSpec, NamedLaw, Parameter, Parameters, Plane, PmbStiffness, Spec,
+};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -54,6 +56,8 @@ pub(super) struct Materials {
     pub turns: bool,
     /// [`Shelved::KINDS`]
     pub kinds: bool,
+    /// [`Material::ACROSS`]
+    pub across: bool,
     binders: Binders,
     /// Another law, and whether it fits the parameters of a material.
     other: Option<(fn(&Parameters) -> bool, Binders)>,
@@ -97,6 +101,7 @@ impl Materials {
             fades: M::FADES,
             turns: M::TURNS,
             kinds: M::KINDS,
+            across: <M as Material<2>>::ACROSS,
             binders: [
                 line,
                 Arc::new(bind::<2, M> as Binder<2>),
@@ -128,6 +133,22 @@ struct Made {
     critical_stretch: f64,
     breaks: bool,
     density: f64,
+    /// In plane strain ν and 2G of the linear solid, if it is isotropic.
+    held: Option<[f64; 2]>,
+}
+
+/// ν and 2G in plane strain.
+fn held(solid: Option<Solid>, young: Option<f64>) -> Option<[f64; 2]> {
+    match (solid, young) {
+        (Some(s), _) => {
+            let shear = s.beta / (s.n * (s.n + 2.0));
+            let lame = s.kappa + shear;
+            Some([lame / (2.0 * (lame + shear)), 2.0 * shear])
+        }
+        // bonds have ν = ¼
+        (None, Some(young)) => Some([0.25, young / 1.25]),
+        (None, None) => None,
+    }
 }
 
 /// The law of the shelf that a body's materials name; `None`: they name none.
@@ -158,13 +179,21 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
             .help("give all materials the same kind of law: bonds across need one"));
         };
         let of = &spec.materials[n].law;
+        let solid = Solid::of_law(D, spec.plane, of.linear());
+        let modulus = |stiffness| micromodulus(D, spec.plane, stiffness, moments);
+        let micromodulus = match of.linear() {
+            LawSpec::Pmb(stiffness) => Some(modulus(*stiffness)),
+            _ => None,
+        };
+        let young = micromodulus.map(|c| c / modulus(PmbStiffness::Young(1.0)));
         materials.push(Made {
             parameters: law.parameters.clone(),
-            solid: Solid::of_law(D, spec.plane, of.linear()),
-            micromodulus: match of.linear() {
-                LawSpec::Pmb(stiffness) => Some(micromodulus(D, spec.plane, *stiffness, moments)),
-                _ => None,
+            held: match law.isotropic {
+                true => held(solid, young),
+                false => None,
             },
+            solid,
+            micromodulus,
             critical_stretch: toughness[n].s00,
             breaks: spec.materials[n].fracture.is_some(),
             density: spec.materials[n].density,
@@ -272,6 +301,10 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
         ..
     } = place;
     able(&law, &criteria)?;
+    let held = match D == 2 && chosen.plane == Plane::Strain {
+        true => numbers.iter().map(|n| chosen.materials[*n].held).collect(),
+        false => vec![],
+    };
     let unfit = |(slot, why): (usize, String)| {
         let n = match numbers[..] {
             [one] => one,
@@ -295,6 +328,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 toughness,
                 criteria,
                 repulsion,
+                held,
                 simd,
             });
             Ok(Box::new(made.map_err(unfit)?))
@@ -315,6 +349,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
                 toughness,
                 criteria,
                 repulsion,
+                held,
                 simd,
             });
             Ok(Box::new(made.map_err(unfit)?))
@@ -347,7 +382,7 @@ fn able<const D: usize, M: Material<D>>(law: &M, criteria: &Criteria) -> Result<
     let refused = |message: &str| Err(BuildError::unsupported("materials[0].fracture", message));
     let measured = match &criteria.measure {
         Measure::Stretch | Measure::Work(_) => return Ok(()),
-        Measure::VonMises { .. } => true,
+        Measure::VonMises(_) => true,
         Measure::PlasticStrain(_) => {
             let past = law.columns().past;
             past.iter().any(|c| c.name == PLASTIC_STRAIN)

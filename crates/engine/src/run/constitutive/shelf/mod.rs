@@ -333,6 +333,14 @@ impl Shelf {
         }
     }
 
+    /// Does a law say what the stress across plane strain is?
+    pub(crate) fn across(&self, name: &str) -> bool {
+        match self.entry(name).map(|e| &e.runs) {
+            Some(Runs::Material(material)) => material.across,
+            Some(Runs::Linear { .. } | Runs::Atoms(_)) | None => false,
+        }
+    }
+
     /// Do its bonds store energy by turning, too?
     pub(crate) fn turns(&self, name: &str) -> bool {
         match self.entry(name).map(|e| &e.runs) {

@@ -74,8 +74,9 @@ const SOFTENED: usize = 6;
 const UNSEEN: usize = 7;
 const LOST: usize = 8;
 const SHOCK: usize = 9;
+const ACROSS: usize = 10;
 /// U − 1 and σ_u, and the rest.
-type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 10]);
+type Past<N, const D: usize> = ([Matrix<N, D>; 2], [N; 11]);
 
 /// Most steps of the search for Δε̄; from the elastic estimate it takes 2 to 8.
 const STEPS: usize = 80;
@@ -102,6 +103,12 @@ fn double<N: Number, const D: usize>(a: &Matrix<N, D>, b: &Matrix<N, D>) -> N {
     }
 }
 
+/// σ and what it is across a plane, from its mean.
+#[inline(always)]
+fn with_across<N: Number, const D: usize>(stress: &Matrix<N, D>, p: N) -> (&Matrix<N, D>, N) {
+    (stress, N::constant(3.0) * p - tensor::trace(stress))
+}
+
 /// `σ − p 1`
 #[inline(always)]
 fn beside<N: Number, const D: usize>(stress: &Matrix<N, D>, p: N) -> Matrix<N, D> {
@@ -126,7 +133,7 @@ impl HypoelasticPlastic {
     fn flow<N: Number, const D: usize>(
         &self,
         (c, (hard, _)): &Constants<N>,
-        memory: &[N; 10],
+        memory: &[N; 11],
         trial: &Trial<N, D>,
     ) -> Flow<N> {
         let (zero, one, third) = (N::constant(0.0), N::constant(1.0), N::constant(1.0 / 3.0));
@@ -198,12 +205,17 @@ impl HypoelasticPlastic {
         deviator: &Matrix<N, D>,
     ) -> (N, N) {
         let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
-        let ends = [tensor::dilation(before), tensor::dilation(&step.stretch)];
+        let volumes = step.volumes;
+        let ends = match D {
+            2 => [volumes[0] - one, volumes[1] - one],
+            _ => [tensor::dilation(before), tensor::dilation(&step.stretch)],
+        };
         let q = self.state.viscosity(c, ends, memory[WORK], memory[SHOCK]);
         let state = self.state.at(c, ends[1]);
         // E′ = E + the work of all but the new mean stress m, and ½ J′ m tr Δε of that: linear in m = −a − q − b E′
-        let known = memory[WORK] + step.work(s0, deviator);
-        let spread = half * step.volumes[1] * tensor::trace(&step.mean);
+        let known =
+            memory[WORK] + step.work(with_across(s0, memory[MEAN]), with_across(deviator, zero));
+        let spread = half * volumes[1] * step.spread()[1];
         let mean = zero - (state.pressure(known) + q);
         (mean.div(state.per_energy.fma(spread, one)), q)
     }
@@ -235,6 +247,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
     type Constants<N: Number> = Constants<N>;
     type Past<N: Number> = Past<N, D>;
     const POTENTIAL: bool = false;
+    const ACROSS: bool = true;
     const SOFTENS: bool = true;
 
     fn columns(&self) -> Vec<Declaration> {
@@ -284,6 +297,9 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
             ),
             equation_of_state::column(),
         ]);
+        if D == 2 {
+            all.push(rate::across_column());
+        }
         all
     }
 
@@ -326,6 +342,12 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
     }
 
     #[inline(always)]
+    fn across<N: Number>(&self, ([stretch, s], memory): &Past<N, D>) -> N {
+        let (_, across) = with_across(s, memory[MEAN]);
+        across * (N::constant(1.0) + tensor::dilation(stretch))
+    }
+
+    #[inline(always)]
     fn stress<N: Number>(
         &self,
         constants: &Constants<N>,
@@ -336,9 +358,9 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         let c = &constants.0;
         let ([before, s0], memory) = past;
         let (zero, half, two) = (N::constant(0.0), N::constant(0.5), N::constant(2.0));
-        let step = Step::new(self.increment, before, h);
+        let step = Step::new(self.increment, (before, memory[ACROSS]), (h, unseen.across));
         // the elastic trial
-        let spread = tensor::trace(&step.strain);
+        let [spread, _] = step.spread();
         let third = N::constant(1.0 / 3.0) * spread;
         let bulk = N::constant(2.0 / 3.0).fma(c[SHEAR], c[LAME]);
         let old = beside(s0, memory[MEAN]);
@@ -377,7 +399,9 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
             s[a][a] = s[a][a] + flow.mean;
         }
         let mut now = *memory;
-        now[WORK] = memory[WORK] + step.work(s0, &s);
+        let work = step.work(with_across(s0, memory[MEAN]), with_across(&s, flow.mean));
+        now[WORK] = memory[WORK] + work;
+        now[ACROSS] = unseen.across;
         now[MEAN] = flow.mean;
         now[STRAIN] = memory[STRAIN] + flow.strain;
         now[PLASTIC_WORK] = memory[PLASTIC_WORK] + plastic;
