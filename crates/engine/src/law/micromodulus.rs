@@ -18,44 +18,52 @@ impl Moments {
     /// Integrals over the ball (3-D), disk (2-D, times thickness) or segment (1-D, times area) of radius δ, by
     /// composite Gauss quadrature of the influence function (exact to round-off for the polynomial ones).
     pub fn continuum(dimension: usize, horizon: f64, section: f64, kind: Influence) -> Moments {
-        let shell = |r: f64| match dimension {
-            1 => 2.0 * section,
-            2 => 2.0 * std::f64::consts::PI * r * section,
-            _ => 4.0 * std::f64::consts::PI * r * r,
-        };
-        let integral = |p: i32, kind: Influence| {
-            // five-point Gauss on 64 pieces; the spline's knot at δ/2 is a border
-            const X: [f64; 5] = [
-                -0.906179845938664,
-                -0.5384693101056831,
-                0.0,
-                0.5384693101056831,
-                0.906179845938664,
-            ];
-            const W: [f64; 5] = [
-                0.2369268850561891,
-                0.4786286704993665,
-                0.5688888888888889,
-                0.4786286704993665,
-                0.2369268850561891,
-            ];
-            let pieces = 64;
-            let h = horizon / pieces as f64;
-            (0..pieces)
-                .flat_map(|k| {
-                    X.iter()
-                        .zip(W)
-                        .map(move |(x, w)| (h * (k as f64 + 0.5 + 0.5 * x), 0.5 * h * w))
-                })
-                .map(|(r, w)| w * influence(kind, r, horizon) * r.powi(p) * shell(r))
-                .sum()
-        };
+        let integral = |p: i32, kind: Influence| radial(dimension, horizon, section, p, kind);
         Moments {
             first: integral(1, kind),
             second: integral(2, kind),
             bare: integral(1, Influence::Constant),
         }
     }
+}
+
+/// `Σ ω ν V r0³ / Σ ω ν V r0²` of the full family (length).
+pub fn mean_length(dimension: usize, horizon: f64, kind: Influence) -> f64 {
+    radial(dimension, horizon, 1.0, 3, kind) / radial(dimension, horizon, 1.0, 2, kind)
+}
+
+/// `∫ ω r^p dV` over the ball, the disk or the segment of radius δ.
+fn radial(dimension: usize, horizon: f64, section: f64, p: i32, kind: Influence) -> f64 {
+    let shell = |r: f64| match dimension {
+        1 => 2.0 * section,
+        2 => 2.0 * std::f64::consts::PI * r * section,
+        _ => 4.0 * std::f64::consts::PI * r * r,
+    };
+    // five-point Gauss on 64 pieces; the spline's knot at δ/2 is a border
+    const X: [f64; 5] = [
+        -0.906179845938664,
+        -0.5384693101056831,
+        0.0,
+        0.5384693101056831,
+        0.906179845938664,
+    ];
+    const W: [f64; 5] = [
+        0.2369268850561891,
+        0.4786286704993665,
+        0.5688888888888889,
+        0.4786286704993665,
+        0.2369268850561891,
+    ];
+    let pieces = 64;
+    let h = horizon / pieces as f64;
+    (0..pieces)
+        .flat_map(|k| {
+            X.iter()
+                .zip(W)
+                .map(move |(x, w)| (h * (k as f64 + 0.5 + 0.5 * x), 0.5 * h * w))
+        })
+        .map(|(r, w)| w * influence(kind, r, horizon) * r.powi(p) * shell(r))
+        .sum()
 }
 
 /// Micromodulus c of the bond-based solid in `dimension` dimensions.

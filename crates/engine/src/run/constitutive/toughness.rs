@@ -57,7 +57,9 @@ pub(super) fn toughness<const D: usize>(
             let of_unit_stretch = match m.law.linear() {
                 LawSpec::Pmb(s) => bonds(*s),
                 LawSpec::Lps(m) if D == 1 => bonds(PmbStiffness::Young(m.young)),
-                LawSpec::Lps(m) => fracture_energy::state_based(D, spec.plane, m, horizon),
+                LawSpec::Lps(m) => {
+                    fracture_energy::state_based(D, spec.plane, m, horizon, spec.influence)
+                }
                 LawSpec::LpsAsTyped { .. }
                 | LawSpec::EamLike { .. }
                 | LawSpec::Springs(_)

@@ -211,8 +211,9 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
         materials,
         plane: spec.plane,
         weighted_volume: match spec.calibration {
-            Calibration::Continuum => Some(moments.second),
-            Calibration::Discrete => None,
+            // points with horizons of their own have balls of their own
+            Calibration::Continuum if spec.own_horizon.is_none() => Some(moments.second),
+            Calibration::Continuum | Calibration::Discrete => None,
         },
         first_moment: moments.first,
         horizon,
