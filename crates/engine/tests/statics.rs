@@ -382,6 +382,154 @@ fn the_ledger_of_statics_closes_through_breaks() {
     }
 }
 
+/// The same where bonds break by the work done on them: what they pull up to the break is work, too.
+#[test]
+fn the_ledger_of_statics_closes_through_breaks_of_every_criterion() {
+    let of = |criterion, increments: u64| {
+        let law = LawSpec::Lps(Moduli {
+            young: 2.0,
+            poisson: 0.3,
+        });
+        let mut spec = block([10.0, 13.0, 0.0], 2, law);
+        spec.plane = Plane::Strain;
+        spec.horizon = Horizon::Ratio(3);
+        spec.materials[0].fracture = Some(FractureSpec::new(criterion));
+        // grips as thick as the horizon
+        let grip = |name: &str, sign: f64, x: f64| SetSpec {
+            name: name.into(),
+            members: Members::Region(Region::HalfSpace {
+                point: [x, 0.0, 0.0],
+                normal: [sign, 0.0, 0.0],
+            }),
+        };
+        spec.sets = vec![grip("low", 1.0, 2.5), grip("high", -1.0, 7.5)];
+        hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+        hold(&mut spec, "high", [text("6e-5*t"), number(0.0), None]);
+        spec.schedule.steps = increments;
+        spec.schedule.time_step = TimeStep::Fixed(1.0 / increments as f64);
+        let spec = with(&spec, Method::Newton, Solver::Auto, 1e-9);
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let mut last = sim.ledger().unwrap();
+        while sim.step_number() < increments && sim.step().is_ok() {
+            last = sim.ledger().unwrap();
+        }
+        let off = last.residual().abs() / last.work_conditions;
+        println!("{criterion:?} in {increments}: {off:e}, {last:?}");
+        assert!(sim.broken() > 0, "{criterion:?}: nothing breaks");
+        assert!(last.released > 0.0, "{criterion:?}: {last:?}");
+        assert!(
+            off < 1e-4,
+            "{criterion:?} in {increments}: {off:e} {last:?}"
+        );
+    };
+    for increments in [2, 4, 16] {
+        of(Criterion::BondEnergy(3e-10), increments);
+        of(Criterion::Stretch(7e-6), increments);
+    }
+}
+
+/// A body that begins out of equilibrium goes to it in the first increment; what that sets free is all it had, is lost, and is said.
+#[test]
+fn a_start_out_of_equilibrium_is_accounted_for() {
+    for law in [
+        LawSpec::Pmb(PmbStiffness::Young(2.0)),
+        LawSpec::Lps(Moduli {
+            young: 2.0,
+            poisson: 0.2,
+        }),
+    ] {
+        for (method, tolerance) in [
+            (Method::Newton, 1e-9),
+            (Method::Relaxation, 1e-8),
+            (Method::Linear, 1e-9),
+        ] {
+            let mut spec = block([12.0, 7.0, 0.0], 2, law.clone());
+            spec.horizon = Horizon::Ratio(3);
+            hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+            hold(&mut spec, "high", [text("1e-6*t"), number(0.0), None]);
+            spec.schedule.steps = 4;
+            spec.schedule.time_step = TimeStep::Fixed(0.25);
+            let spec = with(&spec, method, Solver::Auto, tolerance);
+            let started = |size: f64| {
+                let mut sim = build(&spec, Options::default()).unwrap();
+                let bent = |x: &[f64; 3]| {
+                    let inside = (x[0] * (12.0 - x[0])).max(0.0);
+                    [size * inside * x[1], size * inside * x[0].sin(), 0.0]
+                };
+                let u: Vec<_> = sim.vectors("reference").iter().map(bent).collect();
+                sim.set_displacements(&u);
+                sim.start(true);
+                let first = sim.ledger().unwrap();
+                (0..4).for_each(|_| sim.step().unwrap());
+                let last = sim.ledger().unwrap();
+                let said = sim.info().warnings.iter();
+                let said = said.filter(|w| w.contains("not in equilibrium at the start"));
+                (first, last, said.count())
+            };
+            let (first, last, said) = started(1e-7);
+            let case = format!("{law:?} {method:?}: {last:?}");
+            assert!(
+                first.strain > 0.0 && last.residual().abs() < 1e-4 * first.strain,
+                "{case}"
+            );
+            // it bears the pull in the end, and nothing else
+            let lost = last.dissipated - (first.strain + last.work_conditions - last.strain);
+            let told = usize::from(method != Method::Linear);
+            assert!(
+                lost.abs() < 1e-4 * first.strain && said == told,
+                "{case} {said}"
+            );
+            let (_, rest, silent) = started(0.0);
+            assert!(silent == 0 && rest.dissipated == 0.0, "{rest:?}");
+            assert!((rest.strain / last.strain - 1.0).abs() < 1e-4, "{case}");
+        }
+    }
+}
+
+/// A notched plate whose bonds resist turning: families beside the notch are askew, and one solution is the same as the others.
+#[test]
+fn linear_solutions_of_torn_bodies_agree_with_newtons() {
+    for law in [
+        LawSpec::named(
+            "bond_rotation",
+            Parameters::numbers(&[("young", 2.0), ("poisson", 0.1)]),
+        ),
+        LawSpec::named(
+            "position_aware",
+            Parameters::numbers(&[("young", 2.0), ("poisson", 0.2)]),
+        ),
+    ] {
+        let mut spec = block([11.0, 11.0, 0.0], 2, law.clone());
+        spec.plane = Plane::Strain;
+        spec.horizon = Horizon::Ratio(3);
+        spec.precracks.push(PrecrackSpec {
+            shape: CrackShape::Segment {
+                from: [5.5, -1.0, 0.0],
+                to: [5.8, 5.7, 0.0],
+            },
+            kind: CrackKind::Broken,
+        });
+        hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+        hold(&mut spec, "high", [number(1e-6), number(0.0), None]);
+        let of = |method, solver| {
+            let l = { solved(&with(&spec, method, solver, 1e-10)) }
+                .ledger()
+                .unwrap();
+            let off = (l.strain / l.work_conditions - 1.0).abs();
+            assert!(off < 1e-5, "{law:?} {method:?} {solver:?}: {l:?}");
+            l.strain
+        };
+        let newton = of(Method::Newton, Solver::Direct);
+        for solver in [Solver::Direct, Solver::ConjugateGradients] {
+            for method in [Method::Linear, Method::Newton] {
+                let off = of(method, solver) / newton - 1.0;
+                assert!(off.abs() < 1e-5, "{law:?} {method:?} {solver:?}: {off:e}");
+            }
+        }
+    }
+}
+
 /// A cantilever of rubber in plane strain, bent by a load at its end.
 fn bent(load: f64, steps: u64) -> Spec {
     let law = LawSpec::Lps(Moduli {

@@ -119,6 +119,38 @@ impl<T> Copy for Shared<T> {}
 unsafe impl<T: Send> Send for Shared<T> {}
 unsafe impl<T: Send> Sync for Shared<T> {}
 
+/// A pointer that blocks only read through: what was borrowed without `mut` is not written.
+pub struct Seen<T = f64>(pub *const T);
+
+impl<T> Clone for Seen<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Seen<T> {}
+
+// SAFETY: whoever writes what it points to does so at other points than those that other blocks read meanwhile
+unsafe impl<T: Sync> Send for Seen<T> {}
+unsafe impl<T: Sync> Sync for Seen<T> {}
+
+impl<T> Seen<T> {
+    /// # Safety
+    /// `i` lies inside the array.
+    #[inline(always)]
+    pub unsafe fn at(self, i: usize) -> *const T {
+        // SAFETY: the caller's promise
+        unsafe { self.0.add(i) }
+    }
+}
+
+impl<T> Shared<T> {
+    /// For those who read beside those who write.
+    #[inline(always)]
+    pub fn seen(self) -> Seen<T> {
+        Seen(self.0)
+    }
+}
+
 impl Shared {
     pub const NULL: Shared = Shared(std::ptr::null_mut());
 }

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::body::{Body, Field, Identity};
 use crate::columns::Declaration;
-use crate::execute::blocks::{PerBlock, Shared, run_blocks};
+use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::simd::Simd;
 use crate::family::horizon::HorizonList;
 use crate::law::Law;
@@ -68,17 +68,12 @@ pub struct ListInteraction<const D: usize, W: Law> {
 impl<const D: usize, W: Law> ListInteraction<D, W> {
     /// For kernels that only read.
     fn view<'a>(&'a self, moved: &'a [f64]) -> View<'a, D, W> {
-        let alive = Shared(self.alive.as_ptr().cast_mut());
-        let fields = Shared(self.fields.as_ptr().cast_mut());
+        let alive = Seen(self.alive.as_ptr());
+        let fields = Seen(self.fields.as_ptr());
         self.view_of(moved, alive, fields)
     }
 
-    fn view_of<'a>(
-        &'a self,
-        moved: &'a [f64],
-        alive: Shared<u8>,
-        fields: Shared,
-    ) -> View<'a, D, W> {
+    fn view_of<'a>(&'a self, moved: &'a [f64], alive: Seen<u8>, fields: Seen) -> View<'a, D, W> {
         View {
             law: self.law,
             weight: self.weight,
@@ -116,10 +111,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
     }
 
     fn share(&mut self) {
-        let alive = Shared(self.alive.as_mut_ptr());
+        let alive = Seen(self.alive.as_ptr());
         let fields = Shared(self.fields.as_mut_ptr());
         let kernel = Share::<D, W> {
-            view: self.view_of(&self.moved, alive, fields),
+            view: self.view_of(&self.moved, alive, fields.seen()),
+            fields,
         };
         run_blocks(self.simd, &kernel, self.sums.blocks());
     }
@@ -131,10 +127,11 @@ impl<const D: usize, W: Law> ListInteraction<D, W> {
         motion: Option<Motion<D>>,
     ) -> Tally {
         let alive = Shared(self.alive.as_mut_ptr());
-        let fields = Shared(self.fields.as_mut_ptr());
+        let fields = Seen(self.fields.as_ptr());
         let next = Shared(self.next.as_mut_ptr());
         let kernel = Forces::<D, W, FULL> {
-            view: self.view_of(&self.moved, alive, fields),
+            view: self.view_of(&self.moved, alive.seen(), fields),
+            alive,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             next,
             toughness: &self.toughness,

@@ -17,7 +17,7 @@ use super::{
 use crate::body::{Body, Column, Field, Identity};
 use crate::columns::Declaration;
 use crate::error::BuildError;
-use crate::execute::blocks::{PerBlock, Shared, run_blocks};
+use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::family::offsets::OffsetSet;
@@ -83,8 +83,8 @@ pub struct StencilInteraction<const D: usize, W: Law> {
 impl<const D: usize, W: Law> StencilInteraction<D, W> {
     /// For kernels that only read.
     fn view<'a>(&'a self, body: &'a Body<D>, u: &'a Field<D>) -> View<'a, D, W> {
-        let alive = Shared(self.alive.as_ptr().cast_mut());
-        let state = Shared(self.state.as_ptr().cast_mut());
+        let alive = Seen(self.alive.as_ptr());
+        let state = Seen(self.state.as_ptr());
         self.view_of(body, u, alive, state)
     }
 
@@ -92,8 +92,8 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         &'a self,
         body: &'a Body<D>,
         u: &'a Field<D>,
-        alive: Shared<u8>,
-        state: Shared<u8>,
+        alive: Seen<u8>,
+        state: Seen<u8>,
     ) -> View<'a, D, W> {
         let grid = body.grid();
         View {
@@ -129,7 +129,9 @@ impl<const D: usize, W: Law> StencilInteraction<D, W> {
         let next = Shared(self.next.as_mut_ptr());
         let next = (!self.settled).then_some(next);
         let kernel = Forces::<D, W, FULL> {
-            view: self.view_of(body, u, alive, state),
+            view: self.view_of(body, u, alive.seen(), state.seen()),
+            alive,
+            state,
             f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
             critical: &self.critical,
             next,

@@ -307,6 +307,7 @@ pub fn build_in<const D: usize>(
         },
         part: None,
         pending: false,
+        stale: false,
         broken: 0,
         cycles: 0.0,
         released: 0.0,

@@ -46,12 +46,6 @@ fn refused(spec: &Spec, healing: &HealingSpec) -> Result<(), BuildError> {
             "leave healing out",
         );
     }
-    if !spec.transfers.is_empty() {
-        return unsupported(
-            "what heat and species pass through is not mended: healed bonds would conduct nothing",
-            "leave healing out, or [heat] and [species]",
-        );
-    }
     if healing.below.depends_on_position() {
         return unsupported(
             "the stretch below which bonds heal depends on the place, expected an expression of t",
@@ -133,5 +127,7 @@ impl<const D: usize> Model<D> {
         self.interaction.mend(body, u, &heals);
         let [after, _] = self.interaction.energy(body, u);
         self.released -= after - before;
+        // they conduct again
+        self.break_transfers();
     }
 }

@@ -95,6 +95,8 @@ pub struct Model<const D: usize> {
     pub(super) part: Option<StepPart>,
     /// Does `v` wait for the last half kick?
     pub(super) pending: bool,
+    /// Were columns written since the forces were found?
+    pub(super) stale: bool,
     /// When a bond past its critical stretch lets go.
     pub(super) release: Release,
     /// Has somebody had enough of a search for an equilibrium?
@@ -216,6 +218,7 @@ impl<const D: usize> Simulation for Model<D> {
         if self.is_loaded() {
             self.set_in_motion()?;
         }
+        self.refresh();
         if self.statics.is_some() {
             return self.increment();
         }

@@ -160,9 +160,29 @@ impl<const D: usize> Model<D> {
             implicit.acceleration.clear();
         }
         self.forces(bonds, 0.0);
+        self.stale = false;
         // energy that came in from outside counts as initial
         let now = self.energy_now();
         self.initial_energy = Some(ledger_base(&now));
+    }
+
+    /// Forces of what columns say that were written since: the next step begins with them.
+    pub(super) fn refresh(&mut self) {
+        if !std::mem::take(&mut self.stale) || self.stands {
+            return;
+        }
+        self.finish();
+        if let Some(implicit) = &mut self.implicit {
+            implicit.acceleration.clear();
+        }
+        let implicit = self.implicit.as_mut().map(|i| &mut i.equations);
+        if let Some(state) = self.statics.as_mut().or(implicit) {
+            state.forget();
+        }
+        match self.statics.is_some() {
+            true => self.forces_of_statics(),
+            false => self.forces_held(),
+        }
     }
 
     /// A step in which points stand where they are.

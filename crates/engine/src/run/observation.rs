@@ -6,6 +6,7 @@ use crate::columns::{Declaration, Life, On};
 use crate::error::BuildError;
 use crate::expression::nearest;
 use crate::fracture::fragments::Fragments;
+use crate::interaction::history;
 use crate::interaction::{BondForce, BondState};
 use crate::observe::observables::{Needs, Observable};
 use crate::observe::{Column, FamilyBond, Observed, PointForce, Snapshot, State, Values};
@@ -289,27 +290,49 @@ impl<const D: usize> Model<D> {
         names.filter_map(|name| view.column(name)).collect()
     }
 
-    /// Sets a persistent column of the law, by point id or in the order of its bonds.
+    /// Sets a persistent column of the law, by point id or in the order of its bonds; what follows from it is found anew.
     pub(super) fn store(&mut self, name: &str, values: &[f64]) -> bool {
+        // velocities belong to the forces of before
+        self.finish();
         if self.set_transferred(name, values) {
+            self.stale = true;
             return true;
         }
         let mut declared = self.interaction.columns().into_iter();
         let Some(column) = declared.find(|c| c.name == name && c.life == Life::Persistent) else {
             return false;
         };
-        if column.on == On::Bonds {
-            return self.interaction.write_column(&self.body, name, values);
+        let broken = (name == history::WHOLE).then(|| self.count_broken());
+        let written = match column.on {
+            On::Bonds => self.interaction.write_column(&self.body, name, values),
+            On::Points => {
+                let n = column.shape.stored(D);
+                if values.len() != n * self.body.points() {
+                    return false;
+                }
+                let mut stored = vec![0.0; n * self.body.len];
+                for (value, &s) in values.chunks_exact(n).zip(&self.body.slots) {
+                    stored[n * s as usize..n * (s as usize + 1)].copy_from_slice(value);
+                }
+                self.interaction.write_column(&self.body, name, &stored)
+            }
+        };
+        if let Some(before) = broken.filter(|_| written) {
+            self.broken = (self.broken + self.count_broken()).saturating_sub(before);
+            self.break_transfers();
         }
-        let n = column.shape.stored(D);
-        if values.len() != n * self.body.points() {
-            return false;
-        }
-        let mut stored = vec![0.0; n * self.body.len];
-        for (value, &s) in values.chunks_exact(n).zip(&self.body.slots) {
-            stored[n * s as usize..n * (s as usize + 1)].copy_from_slice(value);
-        }
-        self.interaction.write_column(&self.body, name, &stored)
+        self.stale |= written;
+        written
+    }
+
+    /// Directed bonds of the family that are broken.
+    fn count_broken(&self) -> u64 {
+        let mut broken = 0;
+        self.interaction
+            .each_bond(&self.body, &mut |_, _, _, state| {
+                broken += 2 * u64::from(state == BondState::Broken);
+            });
+        broken
     }
 
     pub(super) fn record(&mut self, fields: &[&str], bonds: bool) -> Snapshot {

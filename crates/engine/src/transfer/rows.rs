@@ -12,6 +12,9 @@ pub struct Rows {
     /// First bond of each row, and where the last ends.
     start: Vec<usize>,
     partner: Vec<u32>,
+    /// `D k ω ν V_i V_j` of bonds, and what each has in the weighted volume of its point, `ω ν |ξ|² V_j`.
+    reach: Vec<f64>,
+    part: Vec<f64>,
     /// g_ij (power / temperature); 0: broken.
     conductance: Vec<f64>,
     /// Σ_j g_ij
@@ -42,7 +45,7 @@ impl Rows {
     ) -> Result<Rows, BuildError> {
         let points = body.points();
         let bonds = interaction.directed_bonds() as f64;
-        let bytes = 12.0 * bonds + 64.0 * points as f64;
+        let bytes = 28.0 * bonds + 64.0 * points as f64;
         memory::afford(
             path,
             "the conductances of the bonds",
@@ -51,71 +54,76 @@ impl Rows {
         )?;
         let place = |slot: usize| of.place[slot] as usize;
         let volume = |slot: usize| body.volume.at(slot);
-        let mut count = vec![0usize; points + 1];
-        let mut moment = vec![0.0; points];
-        interaction.each_bond(body, &mut |i, j, xi, state| {
-            let square: f64 = xi.iter().map(|x| x * x).sum();
-            let weight = match state {
-                BondState::Whole => (of.weight)(i, j, square.sqrt()) * square,
-                BondState::Broken => 0.0,
-            };
-            for (a, b) in [(i, j), (j, i)] {
-                count[place(a) + 1] += 1;
-                moment[place(a)] += weight * volume(b);
+        let mut start = vec![0usize; points + 1];
+        interaction.each_bond(body, &mut |i, j, _, _| {
+            for slot in [i, j] {
+                start[place(slot) + 1] += 1;
             }
         });
-        let mut start = count;
         for n in 1..=points {
             start[n] += start[n - 1];
         }
         let bonds = start[points];
         let mut rows = Rows {
             partner: vec![0; bonds],
+            reach: vec![0.0; bonds],
+            part: vec![0.0; bonds],
             conductance: vec![0.0; bonds],
             total: vec![0.0; points],
             start,
         };
         let mut next = rows.start.clone();
-        interaction.each_bond(body, &mut |i, j, xi, state| {
-            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+        interaction.each_bond(body, &mut |i, j, xi, _| {
+            let square: f64 = xi.iter().map(|x| x * x).sum();
             let [a, b] = [(of.conductivity)(i), (of.conductivity)(j)];
             let k = match a == b {
                 true => a,
                 false => 2.0 * a * b / (a + b),
             };
-            let ends = 1.0 / moment[place(i)] + 1.0 / moment[place(j)];
-            let weight = D as f64 * (of.weight)(i, j, length) * ends;
-            let g = match state {
-                BondState::Whole => k * weight * volume(i) * volume(j),
-                BondState::Broken => 0.0,
-            };
-            for (a, b) in [(place(i), place(j)), (place(j), place(i))] {
-                rows.partner[next[a]] = b as u32;
-                rows.conductance[next[a]] = g;
-                next[a] += 1;
+            let weight = (of.weight)(i, j, square.sqrt());
+            let reach = k * (D as f64 * weight) * volume(i) * volume(j);
+            for (a, b) in [(i, j), (j, i)] {
+                let at = next[place(a)];
+                rows.partner[at] = place(b) as u32;
+                rows.reach[at] = reach;
+                rows.part[at] = weight * square * volume(b);
+                next[place(a)] += 1;
             }
         });
-        rows.add_up();
+        rows.conduct(body, interaction, of.place);
         Ok(rows)
     }
 
-    /// Bonds that are broken conduct no longer.
-    pub fn break_bonds<const D: usize>(
+    /// Conductances of the bonds that are whole now: the same of faces that were cut before and of those that opened since.
+    pub fn conduct<const D: usize>(
         &mut self,
         body: &Body<D>,
         interaction: &dyn Interaction<D>,
         place: &[u32],
     ) {
         let mut next = self.start.clone();
+        let mut moment = vec![0.0; self.total.len()];
+        let (conductance, part) = (&mut self.conductance, &self.part);
         interaction.each_bond(body, &mut |i, j, _, state| {
             for slot in [i, j] {
                 let row = place[slot] as usize;
-                if state == BondState::Broken {
-                    self.conductance[next[row]] = 0.0;
-                }
+                let at = next[row];
                 next[row] += 1;
+                conductance[at] = match state {
+                    BondState::Whole => 1.0,
+                    BondState::Broken => 0.0,
+                };
+                moment[row] += conductance[at] * part[at];
             }
         });
+        for row in 0..moment.len() {
+            for at in self.start[row]..self.start[row + 1] {
+                if self.conductance[at] > 0.0 {
+                    let other = moment[self.partner[at] as usize];
+                    self.conductance[at] = self.reach[at] * (1.0 / moment[row] + 1.0 / other);
+                }
+            }
+        }
         self.add_up();
     }
 
@@ -177,6 +185,6 @@ impl Rows {
     }
 
     pub fn bytes(&self) -> usize {
-        8 * self.start.len() + 12 * self.partner.len() + 8 * self.total.len()
+        8 * self.start.len() + 28 * self.partner.len() + 8 * self.total.len()
     }
 }

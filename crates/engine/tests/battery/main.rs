@@ -12,6 +12,7 @@ mod equivalence;
 mod healing;
 mod lamina;
 mod mechanics;
+mod memory;
 mod motion;
 /// The law of a user, who has no other way in than this crate's face.
 #[allow(dead_code)]

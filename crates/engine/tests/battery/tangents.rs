@@ -3,7 +3,7 @@
 use super::sample::{Case, H, build, cases};
 use peridyne::run::{Options, Simulation};
 use peridyne::space::Point;
-use peridyne::spec::{FamilyChoice, Spec, TimeStep};
+use peridyne::spec::{CrackKind, CrackShape, FamilyChoice, PrecrackSpec, Spec, TimeStep};
 
 /// A fixed sequence of numbers in ±1.
 fn noise(k: usize) -> f64 {
@@ -102,6 +102,52 @@ fn both(case: &Case, spec: &Spec) {
 fn linear_bodies_are_derivatives_of_forces() {
     for case in cases() {
         both(&case, &case.spec());
+    }
+}
+
+/// The operator of conjugate gradients and of energies of linear statics is a sweep at 1e-60 spacings ([`peridyne::statics::Swept`]): of any
+/// law, torn askew and on a cloud that is no lattice, it is the tangent at rest to the last digits, or a linear solution would be another one.
+#[test]
+fn sweeps_at_tiny_displacements_are_the_tangent_at_rest_of_torn_bodies() {
+    fn swept<const D: usize>(name: &str, spec: &Spec) {
+        let mut m = model(spec);
+        let n = m.info().points as usize;
+        m.start(true);
+        m.set_displacements(&field(n, D, 0.0, 0));
+        let body = m.linear_body().of::<D>().unwrap();
+        let size = 1e-60 * H;
+        let u = field(n, D, size, 29);
+        let found = m.forces_under(&u);
+        let linear: Vec<[f64; D]> = { u.iter() }
+            .map(|u| std::array::from_fn(|a| u[a] / size))
+            .collect();
+        let (mut worst, mut most) = (0.0f64, 0.0f64);
+        for (i, found) in found.iter().enumerate() {
+            let exact = body.force(&linear, i);
+            for a in 0..D {
+                worst = worst.max((found[a] / size - exact[a]).abs());
+                most = most.max(exact[a].abs());
+            }
+        }
+        assert!(worst < 1e-11 * most, "{name}: {:e}", worst / most);
+    }
+    for case in cases().iter().filter(|c| c.d() > 1) {
+        for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+            let mut spec = case.spec();
+            spec.family = family;
+            spec.precracks = vec![PrecrackSpec {
+                kind: CrackKind::Broken,
+                shape: CrackShape::Segment {
+                    from: [-H, 0.3 * H, 0.0],
+                    to: [2.2 * H, 1.9 * H, 0.0],
+                },
+            }];
+            let name = format!("{} as {family:?}", case.name());
+            match case.d() {
+                2 => swept::<2>(&name, &spec),
+                _ => swept::<3>(&name, &spec),
+            }
+        }
     }
 }
 

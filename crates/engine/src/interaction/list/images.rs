@@ -2,7 +2,7 @@
 
 use super::ListInteraction;
 use super::kernel::View;
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::Seen;
 use crate::execute::lane::TILE;
 use crate::family::horizon::HorizonList;
 use crate::law::Law;
@@ -77,7 +77,7 @@ impl Images {
         View {
             list: &self.list,
             reference: &self.reference,
-            fields: Shared(self.fields.as_ptr().cast_mut()),
+            fields: Seen(self.fields.as_ptr()),
             materials: &self.materials,
             periodic: false,
             ..of.view(moved)

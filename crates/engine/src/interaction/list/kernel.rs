@@ -5,7 +5,7 @@ mod energies;
 mod forces;
 mod share;
 
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::series::{Extension, Function};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::execute::simd::Kernel;
@@ -28,13 +28,13 @@ pub struct View<'a, const D: usize, W> {
     pub weight: BondWeight,
     pub list: &'a HorizonList,
     /// `[lines]`: bits of whole bonds.
-    pub alive: Shared<u8>,
+    pub alive: Seen<u8>,
     /// `[slots][4]`: x, y, z, volume.
     pub reference: &'a [f64],
     /// `[slots][4]`: displacement and critical `e`.
     pub moved: &'a [f64],
     /// `[slots][2]`: point fields of the law; empty where it has none.
-    pub fields: Shared,
+    pub fields: Seen,
     /// Pressure factors per slot where materials differ; else the law's own.
     pub pressure: &'a [f64],
     /// 0 on free axes.

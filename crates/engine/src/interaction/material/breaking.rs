@@ -1,6 +1,7 @@
 //! Which bonds break, what their points lose with them, and the next critical stretch.
 
 use super::family::{Family, Moved, Slots, put};
+use super::store::OwnRows;
 use super::sweeps::EnergyOf;
 use super::view::{BLOCK, Drift, View, grown, save};
 use crate::body::{Body, Field};
@@ -269,6 +270,9 @@ pub struct Tear<'a, const D: usize, F, M> {
     pub torn: &'a [u8],
     /// Bits of bonds that break; then of those that are left.
     pub breaks: Shared<u8>,
+    /// Bits of whole bonds and forms of families, to be written.
+    pub alive: Shared<u8>,
+    pub form: OwnRows,
     pub v: &'a Field<D>,
     /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
     /// it), or will be (it pulls once more).
@@ -338,10 +342,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
                     }
                 }
                 for (k, bits) in after.iter().enumerate() {
-                    *v.alive.at(first + k) = *bits;
+                    *self.alive.at(first + k) = *bits;
                 }
                 if M::FORM_OF_WHOLE {
-                    save(v.form, at.rows, &new);
+                    save(self.form, at.rows, &new);
                 }
             }
         }

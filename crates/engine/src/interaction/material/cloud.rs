@@ -3,7 +3,7 @@
 use super::family::{Family, Moved, Reference, Slots};
 use super::store::{Layout, Rows};
 use crate::body::Body;
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::Seen;
 use crate::execute::lane::{self, Lane, TILE};
 use crate::family::horizon::HorizonList;
 use crate::interaction::weight::BondWeight;
@@ -236,7 +236,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
     #[inline(always)]
     unsafe fn back<L: Lane>(
         &self,
-        memory: Shared,
+        memory: Seen,
         group: usize,
         k: usize,
         part: usize,

@@ -163,6 +163,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     false => self.alive[at] &= !(1 << l),
                 }
             }
+            if self.prepared {
+                self.look(body);
+            }
             return true;
         }
         if self.beside(name).is_some() {
@@ -173,7 +176,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             let into = match name {
                 LIFE => &mut self.life,
                 _ => {
-                    // work is counted from here on
+                    // work is counted from the next sweep on
                     self.before = None;
                     &mut self.work
                 }

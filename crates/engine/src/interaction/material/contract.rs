@@ -63,6 +63,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         }
         if motion.is_some() {
             total += self.remember(body, u, &room);
+        }
+        if motion.is_some() || self.before.is_none() {
             self.keep(u, &room);
         }
         if let (Some(seen), Some(whole)) = (seen, &mut whole) {

@@ -2,7 +2,7 @@
 
 use super::store::Rows;
 use crate::body::Field;
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::{Seen, Shared};
 use crate::execute::lane::{Lane, TILE};
 use crate::law::material::Numbers;
 
@@ -92,7 +92,7 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     /// A bond of the group; memory as large as [`Family::memory`] says.
     unsafe fn back<L: Lane>(
         &self,
-        memory: Shared,
+        memory: Seen,
         group: usize,
         k: usize,
         part: usize,

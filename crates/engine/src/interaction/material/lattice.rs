@@ -3,7 +3,7 @@
 use super::family::{Family, Moved, Reference, Slots};
 use super::store::{Layout, Rows};
 use crate::body::{Body, Grid};
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::Seen;
 use crate::execute::lane::{Lane, TILE, prefetch};
 use crate::family::links::Links;
 use crate::family::stencil::Stencil;
@@ -247,7 +247,7 @@ impl<const D: usize> Family<D> for LatticeFamily<D> {
     #[inline(always)]
     unsafe fn back<L: Lane>(
         &self,
-        memory: Shared,
+        memory: Seen,
         group: usize,
         k: usize,
         part: usize,

@@ -21,7 +21,7 @@ pub use lattice::LatticeFamily;
 use super::criterion::{Criteria, Measure};
 use super::{EnergyFields, PointEnergies, Repulsion, Tally, Toughness};
 use crate::body::{Body, Column, Field, Identity, field};
-use crate::execute::blocks::{PerBlock, Shared, run_blocks};
+use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::law::material::fibres::Fibres;
@@ -286,8 +286,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 columns: u,
                 records: &room.records,
             },
-            // sweeps that write were given these by `&mut self`
-            alive: Shared(self.alive.as_ptr().cast_mut()),
+            alive: Seen(self.alive.as_ptr()),
             constants: &room.constants,
             material: &self.material,
             placed: self.placed.view(),
@@ -295,7 +294,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             form: self.form.view(),
             point: self.point.view(),
             past: self.past.view(),
-            memory: Shared(self.memory.as_ptr().cast_mut()),
+            memory: Seen(self.memory.as_ptr()),
             expansion: &self.expansion,
             held: !self.held.is_empty(),
         }
@@ -316,7 +315,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         for pass in 0..M::PASSES {
             let out = point.shared();
             let mut view = self.view(u, room);
-            view.point = out;
+            view.point = out.seen();
             let kernel = Sums { view, pass, out };
             run_blocks(self.simd, &kernel, self.sums.blocks());
             point.fill_images(&body.images);
@@ -410,13 +409,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let form = self.form.shared();
         let alive = Shared(self.alive.as_mut_ptr());
         let mut view = self.view(u, room);
-        (view.form, view.alive) = (form, alive);
+        (view.form, view.alive) = (form.seen(), alive.seen());
         let kernel = Tear {
             view,
             still: &room.still,
             body,
             torn: &self.torn,
             breaks,
+            alive,
+            form,
             v,
             drift,
         };
@@ -451,10 +452,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let past = self.past.shared();
         let memory = Shared(self.memory.as_mut_ptr());
         let mut view = self.view(u, room);
-        (view.past, view.memory) = (past, memory);
+        (view.past, view.memory) = (past.seen(), memory.seen());
         let kernel = Remember {
             view,
             past,
+            memory,
             volume: &body.volume,
         };
         let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);

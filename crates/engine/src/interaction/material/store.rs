@@ -1,6 +1,6 @@
 //! Where numbers of points lie: a column for each, or records of four for gathers.
 
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::{Seen, Shared};
 
 /// Columns begin so far apart that a sweep's loads do not compete for the same cache lines (see [`crate::body::field`]).
 const PAGE: usize = 512;
@@ -83,8 +83,8 @@ impl Store {
     }
 
     /// For sweeps that write their own points.
-    pub fn shared(&mut self) -> Rows {
-        Rows {
+    pub fn shared(&mut self) -> OwnRows {
+        OwnRows {
             layout: self.layout,
             data: Shared(self.data.as_mut_ptr()),
         }
@@ -94,7 +94,7 @@ impl Store {
     pub fn view(&self) -> Rows {
         Rows {
             layout: self.layout,
-            data: Shared(self.data.as_ptr().cast_mut()),
+            data: Seen(self.data.as_ptr()),
         }
     }
 
@@ -117,5 +117,22 @@ impl Store {
 #[derive(Clone, Copy)]
 pub struct Rows {
     pub layout: Layout,
+    pub data: Seen,
+}
+
+/// A store that a sweep writes, each block its own points.
+#[derive(Clone, Copy)]
+pub struct OwnRows {
+    pub layout: Layout,
     pub data: Shared,
+}
+
+impl OwnRows {
+    /// For those who read beside that.
+    pub fn seen(self) -> Rows {
+        Rows {
+            layout: self.layout,
+            data: self.data.seen(),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The sweeps of a law: sums of each pass, answers of bonds, what is remembered, energies.
 
 use super::family::{Family, Slots, put};
-use super::store::Rows;
+use super::store::OwnRows;
 use super::view::{Drift, GroupOf, View, mirrored, save};
 use crate::execute::blocks::Shared;
 use crate::execute::lane::{Lane, Piece, TILE};
@@ -14,7 +14,7 @@ use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site};
 pub struct Sums<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
     pub pass: usize,
-    pub out: Rows,
+    pub out: OwnRows,
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> {
@@ -209,7 +209,9 @@ pub unsafe fn own_pull<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
 /// What bonds and points remember at the end of a step.
 pub struct Remember<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
-    pub past: Rows,
+    pub past: OwnRows,
+    /// What bonds remember, to be written.
+    pub memory: Shared,
     /// Volume per slot.
     pub volume: &'a crate::body::Values,
 }
@@ -257,7 +259,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                             // a line that did not change is not written
                             if L::any(old.lt(new)) || L::any(new.lt(old)) {
                                 let x = L::select(dead, old, new);
-                                x.store(v.memory.at(v.family.own(group, k, n, count)));
+                                x.store(self.memory.at(v.family.own(group, k, n, count)));
                             }
                         }
                     }

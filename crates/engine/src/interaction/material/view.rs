@@ -1,9 +1,9 @@
 //! What all sweeps of a law read, and the arithmetic of one bond. No closure touches a lane (see the stencil's kernel).
 
 use super::family::{Family, Moved, Slots};
-use super::store::Rows;
+use super::store::{OwnRows, Rows};
 use crate::body::Field;
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::Seen;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::interaction::bond::relative_square_stretch;
@@ -18,7 +18,7 @@ pub struct View<'a, const D: usize, F, M> {
     pub family: &'a F,
     pub moved: Moved<'a, D>,
     /// Bits of whole bonds.
-    pub alive: Shared<u8>,
+    pub alive: Seen<u8>,
     /// `[materials][numbers]`
     pub constants: &'a [f64],
     /// Material per slot; empty: one.
@@ -31,7 +31,7 @@ pub struct View<'a, const D: usize, F, M> {
     pub point: Rows,
     pub past: Rows,
     /// What bonds remember.
-    pub memory: Shared,
+    pub memory: Seen,
     /// Strain by temperature or swelling per slot; empty: none.
     pub expansion: &'a [f64],
     /// Is the section held, as in plane strain?
@@ -359,12 +359,12 @@ pub fn mirrored<N: Number, const D: usize>(bond: &Bond<N, D>) -> Bond<N, D> {
 /// # Safety
 /// Rows of the store's family, and nobody else writes them.
 #[inline(always)]
-pub unsafe fn save<L: Lane, S: Slots, N: Numbers<L>>(rows: Rows, slots: S, value: &N) {
+pub unsafe fn save<L: Lane, S: Slots, N: Numbers<L>>(rows: OwnRows, slots: S, value: &N) {
     value.write(&mut RowsOf(rows, slots), 0);
 }
 
 /// The numbers of a group, made where nobody else writes them.
-struct RowsOf<S>(Rows, S);
+struct RowsOf<S>(OwnRows, S);
 
 impl<L: Lane, S: Slots> Sink<L> for RowsOf<S> {
     #[inline(always)]

@@ -10,7 +10,7 @@ mod offsets;
 mod share;
 
 use crate::body::{Body, Grid};
-use crate::execute::blocks::Shared;
+use crate::execute::blocks::Seen;
 use crate::execute::lane::{Lane, TILE};
 use crate::interaction::Repulsion;
 use crate::interaction::bond::relative_square_stretch;
@@ -67,9 +67,9 @@ pub struct View<'a, const D: usize, W> {
     pub width: usize,
     pub tiles: &'a [u32],
     /// `[tiles][width]`
-    pub alive: Shared<u8>,
+    pub alive: Seen<u8>,
     /// `[tiles]`: [`WHOLE`], perhaps with [`ALIKE`], or 0.
-    pub state: Shared<u8>,
+    pub state: Seen<u8>,
     /// `[tiles]`: which row of `reaches`.
     pub reach: &'a [u32],
     /// `[different][words]`: a bit per offset that any point of a tile ever had a partner at.
@@ -199,7 +199,7 @@ impl<const D: usize, W: Law> View<'_, D, W> {
 
     /// Bond bits of the `n`-th active tile.
     #[inline(always)]
-    unsafe fn row(&self, n: usize) -> *mut u8 {
+    unsafe fn row(&self, n: usize) -> *const u8 {
         // SAFETY: `width` bytes per active tile
         unsafe { self.alive.at(n * self.width) }
     }

@@ -138,27 +138,34 @@ impl<const D: usize> Material<D> for BondRotation {
         point: &mut Point<N, D>,
     ) {
         let (shape, [per_mean, known]) = site.form;
-        let mut n = *shape;
+        let (half, zero, one) = (N::constant(0.5), N::constant(0.0), N::constant(1.0));
+        // K is symmetric: what turns is the sum's alone, and must not be lost beside K
+        let (mut n, mut skew) = (*shape, *shape);
         for r in 0..D {
             for c in 0..D {
-                n[r][c] = per_mean.fma(sum[r][c], shape[r][c]);
+                n[r][c] = (half * *per_mean).fma(sum[r][c] + sum[c][r], shape[r][c]);
+                skew[r][c] = (half * *per_mean) * (sum[r][c] - sum[c][r]);
             }
         }
         // N and its cofactors are turned alike; together they are so also where the family is flat
-        let cofactors = tensor::cofactor_beyond(&n);
-        let (half, zero, one) = (N::constant(0.5), N::constant(0.0), N::constant(1.0));
+        let [cofactors, turned] = tensor::cofactor_apart(&n, &skew);
         for r in 0..D {
             for c in 0..D {
                 n[r][c] = half * (n[r][c] + cofactors[r][c]);
+                skew[r][c] = half * (skew[r][c] + turned[r][c]);
             }
         }
-        let volume = (one + tensor::dilation(&n)) * *known;
+        let volume = (one + tensor::dilation_apart(&n, &skew)) * *known;
         for r in 0..D {
             for c in 0..D {
                 n[r][c] = volume.below(FLAT, zero, n[r][c]);
+                skew[r][c] = volume.below(FLAT, zero, skew[r][c]);
             }
         }
-        *point = (tensor::rotation(&n, STEPS), volume.below(FLAT, zero, one));
+        *point = (
+            tensor::rotation(&n, &skew, STEPS),
+            volume.below(FLAT, zero, one),
+        );
     }
 
     #[inline(always)]

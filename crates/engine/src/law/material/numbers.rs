@@ -12,8 +12,52 @@ pub trait Sink<N> {
     fn put(&mut self, n: usize, x: N);
 }
 
-/// A fixed count of numbers, in one order.
-pub trait Numbers<N>: Copy {
+/// Kernels read and write as many numbers as [`Numbers`] says, without looking: only this crate says how many.
+mod sealed {
+    use crate::law::number::Number;
+
+    pub trait Sealed<N> {}
+    impl<N: Number> Sealed<N> for N {}
+    impl<N: Copy, A: Sealed<N>, const C: usize> Sealed<N> for [A; C] {}
+    impl<N: Copy, A: Sealed<N>, B: Sealed<N>> Sealed<N> for (A, B) {}
+}
+
+/// A fixed count of numbers, in one order: a number, and arrays and pairs of such, as deep as a law wants. Nobody else makes one,
+///
+/// ```compile_fail,E0277
+/// use peridyne::law::{material::{Numbers, Sink, Source}, number::Number};
+///
+/// #[derive(Clone, Copy)]
+/// struct Astray<N>(N);
+/// impl<N: Number> Numbers<N> for Astray<N> {
+///     const COUNT: usize = 1;
+///     fn read(source: &impl Source<N>, first: usize) -> Self { Astray(source.number(first)) }
+///     fn write(&self, sink: &mut impl Sink<N>, _: usize) { sink.put(1 << 24, self.0) }
+///     fn constant(x: f64) -> Self { Astray(N::constant(x)) }
+///     fn get(&self, _: usize) -> N { self.0 }
+///     fn set(&mut self, _: usize, x: N) { self.0 = x }
+///     fn plus(self, factor: N, x: Self) -> Self { Astray(factor.fma(x.0, self.0)) }
+/// }
+/// ```
+///
+/// since a kernel writes to the places that it names; nor can a law remember something else than one,
+///
+/// ```compile_fail,E0277
+/// use peridyne::law::{material::Numbers, number::Number};
+///
+/// fn remembered<N: Number, P: Numbers<N>>(_: P) {}
+/// remembered::<f64, Vec<f64>>(vec![1.0]);
+/// ```
+///
+/// while nested ones are
+///
+/// ```
+/// use peridyne::law::material::Numbers;
+///
+/// type Own = ([f64; 3], ([[f64; 2]; 2], f64));
+/// assert_eq!(<Own as Numbers<f64>>::COUNT, 8);
+/// ```
+pub trait Numbers<N>: Copy + sealed::Sealed<N> {
     const COUNT: usize;
 
     /// All of them, from place `first` on. Part by part: what nobody looks at is then not read, however many there are.

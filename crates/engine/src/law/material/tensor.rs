@@ -181,29 +181,78 @@ pub fn polar<N: Number, const D: usize>(h: &Matrix<N, D>) -> (Matrix<N, D>, Matr
     (turn, stretch)
 }
 
-/// R − 1 of `1 + H = R U` by so many steps of [`polar`]'s iteration; exactly 0 of a symmetric H.
+/// R − 1 of `1 + S + A = R U` by so many steps of [`polar`]'s iteration, S symmetric and A not at all. Each has a column of its own all the way,
+/// so that a rotation far below the last digit of S is there to its own last digit; exactly 0 of an A that is.
+///
+/// `cof(P + A) = (cof P + cof A) + (A tr P − PA − AP)`, symmetric and not, and `det(P + A) = det P + cof A : P`; in the plane `cof A = A`.
 #[inline(always)]
-pub fn rotation<N: Number, const D: usize>(h: &Matrix<N, D>, steps: usize) -> Matrix<N, D> {
-    let turn = orthogonal(h, steps);
-    let half = N::constant(0.5);
-    // R = 1 + A + A²/(1 + cos θ) of its antisymmetric part A (Rodrigues), in D = 2 and 3; good below a right angle
-    let cosine = half.fma(trace(&turn), N::constant(1.0));
-    let mut skew = turn;
-    for r in 0..D {
-        for c in 0..D {
-            skew[r][c] = half * (turn[r][c] - turn[c][r]);
+pub fn rotation<N: Number, const D: usize>(
+    symmetric: &Matrix<N, D>,
+    skew: &Matrix<N, D>,
+    steps: usize,
+) -> Matrix<N, D> {
+    let (half, one) = (N::constant(0.5), N::constant(1.0));
+    let (mut s, mut a) = (*symmetric, *skew);
+    for _ in 0..steps {
+        let (more, [cofactors, turned]) = (dilation_apart(&s, &a), cofactor_apart(&s, &a));
+        let inverse = (one + more).recip();
+        for r in 0..D {
+            for c in 0..D {
+                // X⁻ᵀ − 1 = ((cof X − 1) − (det X − 1) 1)/det X
+                let mut x = cofactors[r][c];
+                if r == c {
+                    x = x - more;
+                }
+                s[r][c] = half * inverse.fma(x, s[r][c]);
+                a[r][c] = half * inverse.fma(turned[r][c], a[r][c]);
+            }
         }
     }
-    let square = product(&skew, &skew);
-    let per = (N::constant(1.0) + cosine.most(N::constant(0.0))).recip();
-    let mut out = turn;
+    // R = 1 + A + A²/(1 + cos θ) of its antisymmetric part A (Rodrigues), in D = 2 and 3; good below a right angle
+    let cosine = half.fma(trace(&s), one);
+    let square = product(&a, &a);
+    let per = (one + cosine.most(N::constant(0.0))).recip();
+    let mut out = s;
     for r in 0..D {
         for c in 0..D {
-            let near = per.fma(square[r][c], skew[r][c]);
-            out[r][c] = cosine.below(0.0, turn[r][c], near);
+            let near = per.fma(square[r][c], a[r][c]);
+            out[r][c] = cosine.below(0.0, s[r][c] + a[r][c], near);
         }
     }
     out
+}
+
+/// `det(1 + S + A) − 1` of a symmetric S and an antisymmetric A.
+#[inline(always)]
+pub fn dilation_apart<N: Number, const D: usize>(s: &Matrix<N, D>, a: &Matrix<N, D>) -> N {
+    // cof A : (1 + S), in the plane det A
+    let cofactors = cofactor(a);
+    let more = match D {
+        1 => N::constant(0.0),
+        2 => determinant(a),
+        _ => trace(&cofactors) + contraction(&cofactors, s),
+    };
+    dilation(s) + more
+}
+
+/// `cof(1 + S + A) − 1` of a symmetric S and an antisymmetric A: what is symmetric of it, and what is not.
+#[inline(always)]
+pub fn cofactor_apart<N: Number, const D: usize>(
+    s: &Matrix<N, D>,
+    a: &Matrix<N, D>,
+) -> [Matrix<N, D>; 2] {
+    let (mut even, mut odd) = (cofactor_beyond(s), *a);
+    if D == 3 {
+        let (cofactors, t) = (cofactor(a), trace(s));
+        let (one_way, other) = (product(s, a), product(a, s));
+        for r in 0..D {
+            for c in 0..D {
+                even[r][c] = even[r][c] + cofactors[r][c];
+                odd[r][c] = t.fma(a[r][c], a[r][c]) - (one_way[r][c] + other[r][c]);
+            }
+        }
+    }
+    [even, odd]
 }
 
 /// Newton's iteration of [`polar`].

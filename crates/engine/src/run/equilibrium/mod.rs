@@ -24,7 +24,8 @@ use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::interaction::friction::Pressed;
 use crate::law::descriptor::Memory;
-use crate::quantity::rounded;
+use crate::message;
+use crate::quantity::{Dimension, rounded};
 use crate::run::Simulation;
 use crate::run::constitutive::{ConstitutiveModel, Laws};
 use crate::space::Point;
@@ -40,8 +41,10 @@ const ROUNDS: usize = 10_000;
 struct Way {
     /// Of loads and reactions (energy).
     work: f64,
-    /// What bonds that let go set free beside their own energy.
+    /// What states that were released set free on their way to equilibrium.
     lost: f64,
+    /// So much of it from where the increment began.
+    relaxed: f64,
 }
 
 impl<const D: usize> Model<D> {
@@ -222,6 +225,16 @@ impl<const D: usize> Model<D> {
     pub(super) fn unloaded(&mut self) {
         self.start_transfers();
         self.v.iter_mut().for_each(|c| c.fill(0.0));
+        self.forces_of_statics();
+        self.stale = false;
+        self.learn_strength();
+        // energy that came in from outside counts as initial
+        let now = self.energy_now();
+        self.initial_energy = Some(ledger_base(&now));
+    }
+
+    /// Forces from which the next increment sets out; before the first one nothing acts but bonds.
+    pub(super) fn forces_of_statics(&mut self) {
         self.refresh_images();
         if self.is_linear() {
             self.linear_forces();
@@ -230,10 +243,9 @@ impl<const D: usize> Model<D> {
             self.interaction
                 .forces(body, u, &mut self.f, Sweep::Hold, None);
         }
-        self.learn_strength();
-        // energy that came in from outside counts as initial
-        let now = self.energy_now();
-        self.initial_energy = Some(ledger_base(&now));
+        if self.step > self.origin.0 {
+            self.other_forces(0.0);
+        }
     }
 
     /// Points know what they bear once they were asked: a first time without load, or the bonds of the first increment would never break.
@@ -299,6 +311,9 @@ impl<const D: usize> Model<D> {
             return Err(self.unsolved(error));
         }
         let (solved, way) = result.unwrap_or_default();
+        if first && way.relaxed != 0.0 {
+            self.warn_of_start(way.relaxed);
+        }
         state.solved = solved;
         self.past_work[0] += way.lost;
         self.past_work[1] += way.work;
@@ -390,7 +405,8 @@ impl<const D: usize> Model<D> {
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
         let support = self.support();
-        let breaks = !self.criticals().is_empty();
+        // a start that is no equilibrium goes to one, whatever acts
+        let mut released = self.is_unbalanced(&support, f, state.options.tolerance);
         let mut total = Solved::default();
         let mut way = Way::default();
         let mut from = [u.clone(), f.clone(), external.clone()];
@@ -410,24 +426,23 @@ impl<const D: usize> Model<D> {
             total.iterations += solved.iterations;
             total.residual = solved.residual;
             if state.options.method == Method::Linear {
-                self.follow(&support, &from, round > 0, &mut way);
+                self.follow(&support, &from, released, &mut way);
                 return Ok((total, way));
             }
-            // what bonds pull that are about to break counts up to here
-            if breaks {
-                self.hold();
-                self.follow(&support, &from, round > 0, &mut way);
-                self.forces(true, 0.0);
-            } else {
-                self.forces(true, 0.0);
-                self.follow(&support, &from, round > 0, &mut way);
+            // what bonds pull that are about to break, whatever they break by, counts up to here
+            self.hold();
+            self.follow(&support, &from, released, &mut way);
+            if round == 0 {
+                way.relaxed = way.lost;
             }
+            self.forces(true, 0.0);
             if self.broken == before {
                 return Ok((total, way));
             }
             // without what let go, whatever it did in the evaluation that found it
             self.hold();
             from = [self.u.clone(), self.f.clone(), self.external()];
+            released = true;
             state.forget();
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
@@ -441,13 +456,37 @@ impl<const D: usize> Model<D> {
         self.other_forces(0.0);
     }
 
-    /// The way from a state to that of now, by the trapezoidal rule: work of loads and reactions, and, `torn`, what sets free on its way to
-    /// equilibrium a state whose bonds have just let go. In motion that would fly, here it is lost.
+    /// The start of the run was no equilibrium.
+    fn warn_of_start(&mut self, lost: f64) {
+        self.info.warnings.push(message![
+            "the body is not in equilibrium at the start: on its way there it sets ",
+            Dimension::ENERGY.of(lost),
+            " free, which counts as dissipated; begin from where nothing pulls (values of heat and species at their reference), or let motion follow",
+        ]);
+    }
+
+    /// Are these forces (per volume) of points that were let go, more than a solver leaves beside those of points that are held?
+    fn is_unbalanced(&self, support: &Support<D>, f: &Field<D>, tolerance: f64) -> bool {
+        let [mut loose, mut held] = [0.0; 2];
+        for (n, force) in self.per_point(f).into_iter().enumerate() {
+            for a in 0..D {
+                match support.free[n][a] {
+                    true => loose += force[a] * force[a],
+                    false => held += force[a] * force[a],
+                }
+            }
+        }
+        loose.sqrt() > tolerance.sqrt() * held.sqrt()
+    }
+
+    /// The way from a state to that of now, by the trapezoidal rule: work of loads and reactions, and, of a state that was `released` (whose bonds
+    /// have just let go, or which was out of equilibrium at the start), what it sets free on its way to equilibrium. In motion that would fly,
+    /// here it is lost.
     fn follow(
         &mut self,
         support: &Support<D>,
         [u, f, external]: &[Field<D>; 3],
-        torn: bool,
+        released: bool,
         way: &mut Way,
     ) {
         let now = self.external();
@@ -459,7 +498,7 @@ impl<const D: usize> Model<D> {
                 let loads = external[a][i] + now[a][i];
                 if support.free[n][a] {
                     way.work += loads * moved;
-                    if torn {
+                    if released {
                         way.lost += all * moved;
                     }
                 } else {

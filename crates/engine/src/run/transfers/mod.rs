@@ -46,16 +46,15 @@ impl<const D: usize> Model<D> {
         self.expand();
     }
 
-    /// Broken bonds stop conducting, where they broke since.
-    fn break_transfers(&mut self) {
+    /// The bonds that are whole now conduct, where others broke or healed since.
+    pub(super) fn break_transfers(&mut self) {
         self.transfers.seen = self.broken;
         if self.transfers.all.is_empty() {
             return;
         }
         let place = &self.transfers.place;
         for t in self.transfers.all.iter_mut().filter(|t| !t.across_broken) {
-            t.rows
-                .break_bonds(&self.body, self.interaction.as_ref(), place);
+            t.rows.conduct(&self.body, self.interaction.as_ref(), place);
         }
     }
 
@@ -132,6 +131,8 @@ impl<const D: usize> Model<D> {
             placed[self.transfers.place[*s as usize] as usize] = *value;
         }
         found.set_values(&placed);
+        // bonds have other lengths now
+        self.expand();
         true
     }
 

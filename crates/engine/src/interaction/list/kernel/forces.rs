@@ -13,6 +13,8 @@ use crate::spec::Release;
 /// Force pass.
 pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub view: View<'a, D, W>,
+    /// Bits of whole bonds, which breaking writes.
+    pub alive: Shared<u8>,
     pub f: [Shared; D],
     pub next: Shared,
     pub toughness: &'a [Toughness],
@@ -86,7 +88,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                             && L::any(breaks)
                         {
                             let which = L::bits(breaks);
-                            *v.alive.at(line) &= !(which as u8);
+                            *self.alive.at(line) &= !(which as u8);
                             tally.broken += which.count_ones() as u64;
                             let s = Stretch::exact(e);
                             let share = b.k * b.r0_squared * s;

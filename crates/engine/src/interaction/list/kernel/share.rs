@@ -1,6 +1,7 @@
 //! The share pass: what bonds tell their points, of laws with a scalar for each point.
 
 use super::{View, scatter};
+use crate::execute::blocks::Shared;
 use crate::execute::lane::Lane;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::simd::Kernel;
@@ -9,6 +10,8 @@ use crate::law::Law;
 /// Share pass: `P = q Σ k r0² s` into field 0.
 pub struct Share<'a, const D: usize, W> {
     pub view: View<'a, D, W>,
+    /// Point fields of the law, of which the first is written.
+    pub fields: Shared,
 }
 
 impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
@@ -35,7 +38,7 @@ impl<const D: usize, W: Law> Kernel for Share<'_, D, W> {
                     sum = kr.fma(s.zero_if(dead), sum);
                 }
                 let q = v.pressure_factor(rows, L::gather2(v.fields.0, rows)[1]);
-                scatter(q * sum, v.fields, rows, 2);
+                scatter(q * sum, self.fields, rows, 2);
             }
         }
     }

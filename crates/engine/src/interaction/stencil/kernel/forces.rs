@@ -20,6 +20,9 @@ type Waiting = [MaybeUninit<u16>; MOST];
 /// Force pass; `FULL` with breaking and repulsion.
 pub struct Forces<'a, const D: usize, W, const FULL: bool> {
     pub view: View<'a, D, W>,
+    /// What breaking writes: bits of whole bonds, and the tiles that have lost one.
+    pub alive: Shared<u8>,
+    pub state: Shared<u8>,
     pub f: [Shared; D],
     pub critical: &'a [f64],
     /// `[tiles][8]`, the next critical stretch; none once it cannot change any more.
@@ -344,8 +347,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     let breaks = history::limit(limit, at.critical).lt(e);
                     let which = L::bits(breaks);
                     if which != 0 {
-                        *bits &= !(which as u8);
-                        *v.state.at(at.tile) = 0;
+                        *self.alive.at(at.tile * v.width + n) &= !(which as u8);
+                        *self.state.at(at.tile) = 0;
                         tally.broken += which.count_ones() as u64;
                         let s = Stretch::exact(e);
                         let mut share = L::splat(b.share) * s;
