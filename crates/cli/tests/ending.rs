@@ -424,7 +424,7 @@ every = 1
         let output = program(&[verb, case.file.to_str().unwrap()])
             .output()
             .unwrap();
-        let errors = String::from_utf8_lossy(&output.stderr).to_string();
+        let errors = String::from_utf8_lossy(&output.stderr).replace("\n  │ ", " ");
         assert_eq!(output.status.code(), Some(2), "{errors}");
         assert!(errors.contains("images of the cell"), "{errors}");
         assert!(begun.elapsed() < Duration::from_secs(10));
