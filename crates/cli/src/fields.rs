@@ -7,7 +7,7 @@ use crate::failure::{Failure, note, say};
 use crate::run::with_threads;
 use peridyne_fields::residuals::{self, Residuals};
 use peridyne_fields::{Fields, Frame, Method, Progress, Targets, evaluate};
-use peridyne_io::continuum::frame;
+use peridyne_io::continuum::{frame, of_unit_mass};
 use peridyne_io::deck::rounded;
 use peridyne_io::read::Atoms;
 use peridyne_io::read::frames::Frames;
@@ -290,6 +290,15 @@ fn computed(
     clock: Option<&Arc<Clock>>,
 ) -> Result<Computed, Failure> {
     let wrong = |message: String| wrong(request, index, message);
+    if index == request.skip {
+        let all = of_unit_mass(&atoms, request.units, &request.masses, &request.model);
+        if !all.is_empty() {
+            note(&format!(
+                "nobody says the mass of {}: it is taken as 1, the unit of mass (--mass NAME=MASS says another)",
+                all.join(", ")
+            ));
+        }
+    }
     let state = frame(&atoms, request.units, &request.masses, &request.model).map_err(wrong)?;
     let method = request
         .whole_method(&state.cell, state.len())

@@ -15,7 +15,7 @@ use peridyne::run::Simulation;
 use peridyne::space::rigid::RigidShape;
 use peridyne::spec::{BodySpec, IndenterMotion, IndenterSpec, Schedule, Stepper, TimeStep};
 use peridyne_io::continuum::Units;
-use peridyne_io::continuum::run::FieldsPlan;
+use peridyne_io::continuum::run::{FieldsPlan, efforts};
 use peridyne_io::deck::{Deck, Dim, UnitSystem};
 use peridyne_io::drive::{AtomsPlan, ExodusPlan, Plan, default_dir, drive, too_many_threads};
 use peridyne_io::write::SeriesOptions;
@@ -99,6 +99,10 @@ fn run_deck(arguments: &RunArguments, deck: &Deck, threads: usize) -> Result<(),
     let steps = deck.steps(sim.info().time_step);
     let mut plan = plan(deck, pictures, steps, dir, threads, arguments.allow_outside);
     plan.command = deck::command(&arguments.input);
+    if let Some(asked) = &mut plan.continuum {
+        efforts(sim.as_mut(), asked).map_err(|e| Failure::input(format!("[[fields]] {e}")))?;
+        asked.stop = || signals::received().is_some();
+    }
     plan.warnings = warnings;
     let end = (steps - plan.increments) as f64 * sim.info().time_step;
     plan.indenters = indenters(deck, end);
@@ -457,5 +461,7 @@ pub fn continuum(deck: &Deck) -> Option<FieldsPlan> {
         spec: deck.spec.clone(),
         corner: deck.corner,
         units: Units::Deck(deck.units),
+        // a signal ends what only looks at once
+        stop: || false,
     })
 }

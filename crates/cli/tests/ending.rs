@@ -382,3 +382,51 @@ iterations = 1000000000
     assert_eq!(report["steps"], 0);
     assert!(drawn(&case.out));
 }
+
+/// Fields with a φ that reaches over many periods take long, and a frame of them ends, too; more than a day of them is not begun.
+#[test]
+fn a_long_frame_of_fields_ends_when_asked() {
+    let deck = |width: &str| {
+        format!(
+            r#"units = "lj"
+periodic = ["x", "y", "z"]
+body = {{ lattice = "fcc", spacing = 1.6, cells = [3, 3, 3] }}
+material = {{ mass = 1, law = {{ lennard_jones = {{ epsilon = 1, sigma = 1, cutoff = 1.5, end = "smooth" }} }} }}
+run = {{ steps = 3, time_step = 0.001 }}
+output = {{ vtu = false, picture = false, report = false }}
+[[fields]]
+kernel = "bspline"
+width = {width}
+grid = [12, 12, 12]
+residuals = 0
+every = 1
+"#
+        )
+    };
+    let case = Case::new("wide.toml", &deck("100"));
+    let mut child = case.command(&[]).stderr(Stdio::piped()).spawn().unwrap();
+    let until = Instant::now() + Duration::from_secs(60);
+    while !case.out.join("history.csv").exists() {
+        assert!(Instant::now() < until, "it never began");
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    std::thread::sleep(Duration::from_millis(500));
+    signal(&child, "TERM");
+    let asked = Instant::now();
+    let (code, errors) = code(child);
+    assert_eq!(code, Some(143), "{errors}");
+    assert!(asked.elapsed() < Duration::from_secs(1), "{errors}");
+    assert_eq!(report(&case.out)["status"], "ended");
+    let case = Case::new("wider.toml", &deck("1e6"));
+    for verb in ["run", "check"] {
+        let begun = Instant::now();
+        let output = program(&[verb, case.file.to_str().unwrap()])
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr).replace("\n  │ ", " ");
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(errors.contains("images of the cell"), "{errors}");
+        assert!(begun.elapsed() < Duration::from_secs(10));
+    }
+}

@@ -369,3 +369,180 @@ fn kinds_that_do_not_fit_are_named() {
         assert!(!dir.path().join("out").exists(), "{part}");
     }
 }
+
+/// A file of two isotopes of argon, which are one species: `--mass` overrides the masses of the file.
+const ISOTOPES: &str = "4\nLattice=\"30 0 0 0 30 0 0 0 30\" Properties=species:S:1:pos:R:3:velo:R:3:masses:R:1 pbc=\"F F F\"\n\
+Ar 10 10 10 1 0 0 36\nAr 14 10 10 -1 2 0 40\nAr 10 14 10 0 -1 3 38\nAr 10 10 14 2 0 -1 40\n";
+
+/// Columns of `points.csv` by their names, the first point.
+fn at_first(out: &Path, names: &[&str]) -> Vec<f64> {
+    let text = std::fs::read_to_string(out.join("points.csv")).unwrap();
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let row: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let of = |n: &&str| head.iter().position(|h| h == n).unwrap();
+    names.iter().map(|n| row[of(n)].parse().unwrap()).collect()
+}
+
+#[test]
+fn every_atom_has_its_own_mass() {
+    let dir = TempDir::new().unwrap();
+    let at = |name: &str, text: &str| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let points = at("points.txt", "11 11 11\n");
+    let dump = "ITEM: UNITS\nmetal\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n4\nITEM: BOX BOUNDS ff ff ff\n0 30\n0 30\n0 30\n\
+ITEM: ATOMS id type mass x y z vx vy vz\n4 1 40 10 10 14 2 0 -1\n1 1 36 10 10 10 1 0 0\n3 1 38 10 14 10 0 -1 3\n2 1 40 14 10 10 -1 2 0\n";
+    let columns = ["rho", "px", "py", "pz", "T", "qK_x"];
+    let measured = |frames: &str, more: &str| {
+        let out = dir.path().join("out");
+        let all = format!(
+            "--frames {frames} --potential lj --with epsilon=0.01 --with sigma=3.4 --with cutoff=8 --units metal --kernel step --width 9 \
+             --points {points} --residuals 0 --out {} {more}",
+            out.display()
+        );
+        let (code, error) = fields(&words(&all));
+        assert_eq!(code, Some(0), "{error}");
+        at_first(&out, &columns)
+    };
+    let xyz = at("isotopes.xyz", ISOTOPES);
+    let found = measured(&xyz, "");
+    // all four are within the step: sums over its volume
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 729.0;
+    let sums = [154.0, 36.0 - 40.0 + 80.0, 80.0 - 38.0, 114.0 - 40.0];
+    for (a, b) in found.iter().zip(sums) {
+        assert!((a * volume - b).abs() < 1e-9 * 154.0, "{found:?}");
+    }
+    let dumped = measured(&at("isotopes.dump", dump), "");
+    for (a, b) in found.iter().zip(&dumped) {
+        assert!((a - b).abs() <= 1e-9 * b.abs(), "{found:?} {dumped:?}");
+    }
+    // what is said of the species is said of all its atoms
+    let alike = measured(&xyz, "--mass Ar=39");
+    assert!((alike[0] * volume - 156.0).abs() < 1e-9, "{alike:?}");
+}
+
+#[test]
+fn what_says_nothing_of_these_frames_is_refused() {
+    let dir = TempDir::new().unwrap();
+    let at = |name: &str, text: &str| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let xyz = at("isotopes.xyz", ISOTOPES);
+    let bare = at(
+        "bare.xyz",
+        &ISOTOPES
+            .replace(":masses:R:1", "")
+            .replace(" 36\n", "\n")
+            .replace(" 40\n", "\n")
+            .replace(" 38\n", "\n"),
+    );
+    let real = at(
+        "real.dump",
+        "ITEM: UNITS\nreal\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n0 9\n0 9\n0 9\nITEM: ATOMS id type x y z\n1 1 1 1 1\n",
+    );
+    let data = at(
+        "real.data",
+        "LAMMPS data file via write_data, version 22 Jul 2025, timestep = 0, units = real\n\n1 atoms\n1 atom types\n\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nMasses\n\n1 40\n\nAtoms # atomic\n\n1 1 1 1 1\n",
+    );
+    let mixture = at("mixture.toml", MIXTURE);
+    let lj = "--potential lj --with epsilon=0.01 --with sigma=3.4 --with cutoff=8";
+    for (arguments, part) in [
+        (
+            format!("{lj} --units metal --mass Xe=131 --frames {xyz}"),
+            "there is no Xe; the frame has Ar",
+        ),
+        (
+            format!("{lj} --units none --frames {bare}"),
+            "Ar has no mass",
+        ),
+        (
+            format!("{lj} --units metal --frames {real} --mass 1=4"),
+            "says that it is in real units",
+        ),
+        (
+            format!("{lj} --units metal --frames {data}"),
+            "says that it is in real units",
+        ),
+        (
+            format!("--model {mixture} --with cutoff=3 --frames {xyz}"),
+            "--with",
+        ),
+        (
+            format!("--model {mixture} --element Ar --frames {xyz}"),
+            "--element",
+        ),
+        (
+            format!("{lj} --units metal --special 0,0,1 --frames {xyz}"),
+            "--molecules",
+        ),
+    ] {
+        let out = dir.path().join("out").display().to_string();
+        let all = format!("{arguments} --kernel gaussian --width 1 --grid 2,2,2 --out {out}");
+        let (code, error) = fields(&words(&all));
+        assert_eq!(code, Some(2), "{arguments}: {error}");
+        assert!(error.contains(part), "{arguments}: {error}");
+    }
+    // reduced by the mass of an atom, which is said
+    let out = dir.path().join("lj").display().to_string();
+    let all = format!(
+        "{lj} --units lj --frames {bare} --kernel gaussian --width 1 --grid 2,2,2 --out {out}"
+    );
+    let (code, error) = fields(&words(&all));
+    assert!(
+        code == Some(0) && error.contains("the mass of Ar: it is taken as 1"),
+        "{error}"
+    );
+}
+
+const CARBON: &str = "3\nProperties=species:S:1:pos:R:3:velo:R:3 pbc=\"F F F\"\nC 0 0 0 0 0 0\nC 1.5 0 0 0 0 0\nC 4.0 0 0 0 0 0\n";
+
+/// An element may stand twice, and types that are one element are one: fields by types are those by names.
+#[test]
+fn an_element_may_stand_twice() {
+    let dir = TempDir::new().unwrap();
+    let at = |name: &str, text: &str| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let head = "4\nProperties=species:S:1:pos:R:3 pbc=\"F F F\"\n";
+    let places = ["0 0 0", "1.8 0 0", "0.2 2.3 0", "1.9 1.5 0.3"];
+    let frame = |names: [&str; 4]| {
+        let rows: Vec<String> = { names.iter().zip(places) }
+            .map(|(n, x)| format!("{n} {x}\n"))
+            .collect();
+        head.to_string() + &rows.concat()
+    };
+    let points = at("points.txt", "0.5 0.5 0.1\n");
+    let folder = folder();
+    let carbide = folder.join("fans/SiC.tersoff").display().to_string();
+    let out = dir.path().join("out");
+    let stress = |frames: &str, elements: &str| {
+        let all = format!(
+            "--frames {frames} --potential tersoff --file {carbide} --element {elements} --units metal --kernel gaussian --width 1 \
+             --points {points} --residuals 0 --out {}",
+            out.display()
+        );
+        let (code, error) = fields(&words(&all));
+        assert_eq!(code, Some(0), "{error}");
+        at_first(&out, &["e_pot", "sU_xx", "sU_xy", "sU_zz"])
+    };
+    let named = stress(&at("named.xyz", &frame(["Si", "C", "Si", "C"])), "C,Si");
+    let typed = stress(&at("typed.xyz", &frame(["2", "1", "2", "3"])), "C,Si,C");
+    let other = stress(&at("other.xyz", &frame(["1", "3", "2", "3"])), "Si,Si,C");
+    assert!(named[0].abs() > 1e-3);
+    for (a, b) in named.iter().zip(&typed).chain(named.iter().zip(&other)) {
+        assert!(
+            (a - b).abs() <= 1e-12 * a.abs(),
+            "{named:?} {typed:?} {other:?}"
+        );
+    }
+    // one element, several times
+    let carbon = at("carbon.xyz", CARBON);
+    assert_eq!(stress(&carbon, "C"), stress(&carbon, "C,C"));
+}

@@ -148,7 +148,10 @@ fn all_bonds(kernel: &Kernel, patch: &Patch, bonds: &Bonds, parts: usize, form: 
                 numbers(form, bond, v, factor, &mut terms);
             }
         }
-        for Seen { brick, shift } in &seen {
+        for (n, Seen { brick, shift }) in seen.iter().enumerate() {
+            if n.is_multiple_of(ASKED) && patch.stopped() {
+                return BondSums { form, values };
+            }
             let [centre, half] = patch.middle(*brick);
             let mut from = [0.0; 3];
             let mut middle = [0.0; 3];
@@ -215,6 +218,8 @@ pub(crate) struct ParticleSums {
     values: Vec<Lanes>,
 }
 
+/// Bricks after which somebody may have had enough.
+const ASKED: usize = 256;
 /// Numbers that are summed at once.
 const SIX: usize = 6;
 /// Particles that look for bricks together.
@@ -272,7 +277,10 @@ fn all_particles(kernel: &Kernel, patch: &Patch, of: &Particles) -> ParticleSums
             terms.extend_from_slice(&of.value[n * of.width..][..of.width]);
             terms.resize((n + 1 - first) * padded, 0.0);
         }
-        for Seen { brick, shift } in &seen {
+        for (n, Seen { brick, shift }) in seen.iter().enumerate() {
+            if n.is_multiple_of(ASKED) && patch.stopped() {
+                return out;
+            }
             let points = &patch.bricks[*brick as usize];
             let [centre, half] = patch.middle(*brick);
             let wide = dot(half, half).sqrt() + radius * (1.0 + 1e-9);

@@ -5,6 +5,7 @@
 
 use crate::FieldsError;
 use crate::bonds::{Block, Bonds};
+use crate::method::STOPPED;
 use crate::molecules::Molecules;
 use crate::neighbours::Partner;
 use crate::room::{Collector, Here, NONE, Room};
@@ -48,6 +49,9 @@ impl Collector<'_> {
         self.rows(centres, &mut room, rows);
         let mut near: Vec<Near> = vec![];
         for (row, &i) in centres.iter().enumerate() {
+            if (self.stop)() {
+                return Err(FieldsError(STOPPED.into()));
+            }
             let end = rows.first.get(row + 1).copied().unwrap_or(rows.here.len());
             room.here.clear();
             room.here.push(Here {

@@ -26,10 +26,12 @@ pub mod average;
 pub mod bond;
 mod bonds;
 mod collect;
+pub mod effort;
 pub mod fields;
 pub mod frame;
 mod gauss;
 pub mod kernel;
+pub mod method;
 pub mod molecules;
 pub mod neighbours;
 pub mod pairs;
@@ -51,8 +53,9 @@ mod wide;
 pub use fields::{Fields, Quantity};
 pub use frame::{Cell, Frame};
 pub use kernel::{Kernel, Shape};
+pub use method::{Method, Progress};
 pub use partition::{PairForce, Partition};
-pub use sums::{Method, Progress, evaluate};
+pub use sums::evaluate;
 pub use targets::Targets;
 
 /// Why fields cannot be had.

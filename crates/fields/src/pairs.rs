@@ -8,13 +8,15 @@
 use crate::FieldsError;
 use crate::accumulate::{self, BOND, Form};
 use crate::bonds::{Bonds, WIDTH};
+use crate::effort::Effort;
 use crate::fields::{Fields, Layout, NO_POTENTIAL, Quantity, Sums, Totals};
 use crate::frame::Frame;
 use crate::kernel::dot;
+use crate::method::Method;
 use crate::neighbours::Neighbours;
 use crate::partition::{PairForce, Partition};
 use crate::patch::Patch;
-use crate::sums::{Method, Moving, Own};
+use crate::sums::{Moving, Own};
 use crate::targets::{Bins, Targets};
 use rayon::prelude::*;
 
@@ -45,6 +47,8 @@ pub fn method(method: Method) -> Method {
     }
 }
 
+/// Bonds of a point, each once, about.
+pub const FAMILY: f64 = 60.0;
 /// Pairs that are held at a time, and those of a block.
 const HELD: usize = 1 << 16;
 const BLOCK: usize = 1 << 10;
@@ -68,9 +72,12 @@ pub fn evaluate(
             frame.len()
         )));
     }
+    // those of a family of three spacings, about
+    Effort::of(frame, FAMILY * frame.len() as f64, 0.0, targets, method).check(targets, method)?;
     // for blocks of particles alone
     let neighbours = Neighbours::new(frame, method.kernel.width())?;
-    let bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    let mut bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    bins.stop = method.stop;
     let drift = frame.drift();
     let velocity = frame.velocities_beside(drift);
     let layout = Layout {
@@ -97,6 +104,7 @@ pub fn evaluate(
     };
     pulls(&mut |pull| gather.take(&pull));
     gather.flush();
+    method.go_on()?;
     let Gather {
         own,
         mut totals,
@@ -116,7 +124,7 @@ pub fn evaluate(
         layout: &layout,
     };
     let sums = Sums {
-        particles: moving.sums(&neighbours, &bins, &own, method),
+        particles: moving.sums(&neighbours, &bins, &own, method)?,
         bonds: sums,
     };
     let mut fields = Fields::finish(
@@ -166,6 +174,9 @@ struct Gather<'a> {
 
 impl Gather<'_> {
     fn take(&mut self, pull: &Pull) {
+        if self.held.is_empty() && (self.method.stop)() {
+            return;
+        }
         let [i, k] = [pull.i, pull.k].map(|n| n as usize);
         let Pull { force, .. } = *pull;
         if !(force.iter().chain(&pull.y).all(|c| c.is_finite())) {

@@ -132,6 +132,12 @@ impl<'a> Patch<'a> {
         patch
     }
 
+    /// Has somebody had enough? What is made of the patch is then nothing.
+    #[inline(always)]
+    pub fn stopped(&self) -> bool {
+        (self.bins.stop)()
+    }
+
     /// No points?
     pub fn is_empty(&self) -> bool {
         self.bricks.is_empty()
@@ -169,6 +175,9 @@ impl<'a> Patch<'a> {
         let groups = std::array::from_fn(|a| (many[a] + group[a] - 1) / group[a]);
         let mut some = vec![];
         for g in places([0; 3], groups) {
+            if self.stopped() {
+                break;
+            }
             self.first.push(self.bricks.len() as u32);
             let from: [i32; 3] = std::array::from_fn(|a| g[a] * group[a]);
             let to = std::array::from_fn(|a| (from[a] + group[a]).min(many[a]));
@@ -264,6 +273,9 @@ impl<'a> Patch<'a> {
         let reach = reach * (1.0 + 1e-9);
         for i in images[0][0]..=images[0][1] {
             for j in images[1][0]..=images[1][1] {
+                if self.stopped() {
+                    return;
+                }
                 for k in images[2][0]..=images[2][1] {
                     let shift = self.project(self.bins.cell.shift([i, j, k]));
                     let own = self.project(x);

@@ -8,7 +8,8 @@
 use crate::FieldsError;
 use crate::fields::{Fields, Quantity, Rates};
 use crate::frame::Frame;
-use crate::sums::{Method, evaluate};
+use crate::method::Method;
+use crate::sums::evaluate;
 use crate::targets::Targets;
 use peridyne::law::terms::Sites;
 

@@ -23,6 +23,8 @@ pub struct Collector<'a> {
     pub parts: usize,
     /// Velocities from which the drift is taken; empty if there are none.
     pub velocity: &'a [[f64; 3]],
+    /// Has somebody had enough?
+    pub stop: fn() -> bool,
 }
 
 /// Numbers as keys: multiplied and folded.

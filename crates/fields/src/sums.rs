@@ -8,64 +8,22 @@ use crate::FieldsError;
 use crate::accumulate::{self, BOND, Form, ParticleSums, Particles};
 use crate::bonds::Block;
 use crate::collect::Spare;
+use crate::effort::{Effort, bonds_within};
 use crate::fields::{Fields, Layout, Sums, Totals};
 use crate::frame::Frame;
-use crate::kernel::{Kernel, dot};
-use crate::molecules::Molecules;
+use crate::kernel::dot;
+use crate::method::{Method, Progress};
 use crate::neighbours::Neighbours;
-use crate::partition::{PairForce, Partition};
+use crate::partition::PairForce;
 use crate::patch::Patch;
 use crate::room::Collector;
 use crate::targets::{Bins, Targets};
 use peridyne::law::terms::Sites;
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex};
-
-/// How fields are made.
-#[derive(Debug, Clone)]
-pub struct Method {
-    pub kernel: Kernel,
-    pub partition: Partition,
-    pub pair_force: PairForce,
-    /// Keep stress, churning and heat flux of the parts of the potential apart.
-    pub by_part: bool,
-    /// What is bonded whatever moves.
-    pub molecules: Option<Arc<Molecules>>,
-    /// Also the exact rates of ρ, π and e, for residuals.
-    pub rates: bool,
-    /// k_B (energy / temperature); 1 in reduced units.
-    pub boltzmann: f64,
-    /// Is told how much of a frame is done.
-    pub progress: Option<Progress>,
-}
-
-/// Called with the part of a frame's work that is done, about: above 0, 1 at the end, on the thread that asked for the fields.
-#[derive(Clone)]
-pub struct Progress(pub Arc<dyn Fn(f64) + Send + Sync>);
-
-impl std::fmt::Debug for Progress {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Progress")
-    }
-}
+use std::sync::Mutex;
 
 /// The part of bonds in a frame's work, about; the rest is that of particles.
 const OF_BONDS: f64 = 0.9;
-
-impl Method {
-    pub fn new(kernel: Kernel) -> Method {
-        Method {
-            kernel,
-            partition: Partition::Site,
-            pair_force: PairForce::Distances,
-            by_part: false,
-            molecules: None,
-            rates: false,
-            boltzmann: 1.0,
-            progress: None,
-        }
-    }
-}
 
 /// Particles of a block, about.
 const BLOCK: usize = 4096;
@@ -75,7 +33,8 @@ const BLOCKS: usize = 64;
 /// Fields of a frame.
 ///
 /// # Errors
-/// A frame that makes no sense, particles that coincide, a potential without a cut-off.
+/// A frame that makes no sense, particles that coincide, a potential without a cut-off; more than memory holds or a day computes
+/// ([`Effort`]); somebody stops it.
 pub fn evaluate(
     frame: &Frame,
     sites: &dyn Sites,
@@ -84,7 +43,10 @@ pub fn evaluate(
 ) -> Result<Fields, FieldsError> {
     frame.check()?;
     let neighbours = Neighbours::new(frame, sites.reach())?;
-    let bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    let bonds = bonds_within(frame, sites.reach());
+    Effort::of(frame, bonds, sites.reach(), targets, method).check(targets, method)?;
+    let mut bins = Bins::new(targets, &frame.cell, &method.kernel)?;
+    bins.stop = method.stop;
     let molecules = method.molecules.as_deref();
     if let Some(molecules) = molecules {
         molecules.check(frame.len(), sites)?;
@@ -109,6 +71,7 @@ pub fn evaluate(
         pair_force: method.pair_force,
         parts,
         velocity: &velocity,
+        stop: method.stop,
     };
     let blocks = Blocks::new(&neighbours, frame.len());
     let mut layout = Layout {
@@ -154,6 +117,7 @@ pub fn evaluate(
                 Ok((block, Some((patch.index, sums)), true))
             })
             .collect();
+        method.go_on()?;
         for result in some {
             let (block, part, seen) = result?;
             if let Some((index, part)) = part {
@@ -175,7 +139,7 @@ pub fn evaluate(
     };
     let sums = Sums {
         bonds,
-        particles: moving.sums(&neighbours, &bins, &own, method),
+        particles: moving.sums(&neighbours, &bins, &own, method)?,
     };
     Ok(Fields::finish(
         targets.positions(&frame.cell),
@@ -219,7 +183,7 @@ impl Moving<'_> {
         bins: &Bins,
         own: &Own,
         method: &Method,
-    ) -> Vec<f64> {
+    ) -> Result<Vec<f64>, FieldsError> {
         let layout = self.layout;
         let blocks = Blocks::new(neighbours, self.frame.len());
         let mut sums = vec![0.0; bins.points() * layout.stride()];
@@ -249,13 +213,14 @@ impl Moving<'_> {
                     (patch.index, sums)
                 })
                 .collect();
+            method.go_on()?;
             for (index, part) in some {
                 part.add_to(&mut sums, &index);
             }
             let done = (first + batch).min(blocks.count) as f64 / blocks.count as f64;
             tell(method, OF_BONDS + (1.0 - OF_BONDS) * done);
         }
-        sums
+        Ok(sums)
     }
 }
 

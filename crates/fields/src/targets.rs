@@ -3,6 +3,7 @@
 use crate::FieldsError;
 use crate::frame::Cell;
 use crate::kernel::{Kernel, dot};
+use peridyne::execute::memory::afford;
 
 /// Where fields are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,13 +58,23 @@ impl Targets {
     pub fn len(&self) -> usize {
         match self {
             Targets::Points(points) => points.len(),
-            Targets::Grid(n) => n.iter().product(),
+            Targets::Grid(n) => n.iter().fold(1, |all: usize, n| all.saturating_mul(*n)),
         }
     }
 
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// Do so many points fit into memory?
+///
+/// # Errors
+/// They do not.
+pub fn affordable(points: f64) -> Result<(), FieldsError> {
+    let what = format!("{points} points");
+    afford("points", &what, 24.0 * points, "")
+        .map_err(|e| FieldsError(format!("{}: take fewer", e.message)))
 }
 
 /// Points in bins of a cell.
@@ -84,6 +95,8 @@ pub(crate) struct Bins<'a> {
     pub wrapped: Vec<[f64; 3]>,
     /// Distance of the points along each edge of the cell, where they are a grid: a point in each bin.
     pub spacing: Option<[f64; 3]>,
+    /// Has somebody had enough?
+    pub stop: fn() -> bool,
 }
 
 const MOST: usize = 200_000_000;
@@ -164,6 +177,7 @@ impl<'a> Bins<'a> {
             order: vec![0; positions.len()],
             wrapped,
             spacing,
+            stop: crate::method::never,
         };
         let place: Vec<usize> = all.wrapped.iter().map(|x| all.place(*x)).collect();
         for p in &place {

@@ -25,6 +25,8 @@ fn sample(step: u64) -> Atoms {
         step: Some(step),
         time: Some(0.001 * step as f64),
         from_momenta: false,
+        mass: None,
+        units: None,
         bonded: false,
         edges: None,
     }

@@ -1,4 +1,4 @@
-//! Atoms that leave the box: they are lost when LAMMPS would rebuild its neighbour lists.
+//! What happens when LAMMPS would rebuild its neighbour lists: the box follows the atoms, and those that left it are lost.
 
 use crate::domain::Face;
 use crate::error::{Problem, Result};
@@ -8,12 +8,10 @@ use crate::thermo::Lost;
 use peridyne::quantity::rounded;
 
 impl Session<'_> {
-    /// Can atoms be lost at all?
-    fn can_lose(&self) -> bool {
-        self.space
-            .domain
-            .as_ref()
-            .is_some_and(|d| d.faces.iter().flatten().any(|f| *f == Face::Fixed))
+    /// Does a rebuild change anything: can atoms be lost, or does the box follow them?
+    fn is_open(&self) -> bool {
+        let domain = self.space.domain.as_ref();
+        domain.is_some_and(|d| !(0..3).all(|a| d.periodic(a)))
     }
 
     /// A rebuild at the start of a run.
@@ -21,7 +19,7 @@ impl Session<'_> {
     /// # Errors
     /// The atoms cannot be read.
     pub fn rebuild(&mut self) -> Result<()> {
-        if !self.can_lose() {
+        if !self.is_open() {
             return Ok(());
         }
         self.shrink_box()?;
@@ -40,7 +38,7 @@ impl Session<'_> {
     /// # Errors
     /// The atoms cannot be read.
     pub fn rebuild_if_due(&mut self, path: f64) -> Result<()> {
-        if !self.can_lose() {
+        if !self.is_open() {
             return Ok(());
         }
         let (schedule, trigger) = (self.neighbors.schedule, 0.5 * self.neighbors.skin);

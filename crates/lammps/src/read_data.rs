@@ -71,6 +71,7 @@ impl Session<'_> {
         self.population.ids = atoms.ids.clone();
         self.space.domain = Some(domain);
         self.population.store = Store::Atoms(atoms);
-        Ok(())
+        // faces that follow the atoms do so at once
+        self.shrink_box()
     }
 }

@@ -1,7 +1,8 @@
-//! When LAMMPS would rebuild its neighbour lists, and which atoms it loses then.
+//! When LAMMPS would rebuild its neighbour lists, which atoms it loses then, and when its box follows the atoms.
 //!
 //! Atoms that are outside a fixed face when the lists are rebuilt are gone: `thermo_modify lost` says whether that is an
-//! error, and the next line of output notices. Lists are rebuilt at the start of a run, and when an atom has moved by more
+//! error, and the next line of output notices. Faces that follow the atoms (`s`, `m`) do so then alone: volume, pressure and
+//! the box of dumps are those of the last rebuild. Lists are rebuilt at the start of a run, and when an atom has moved by more
 //! than half the skin since the last time, looked for as often as `neigh_modify` says.
 
 /// `neigh_modify`.

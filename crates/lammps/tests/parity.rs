@@ -1,5 +1,8 @@
 //! Scripts of `verify/lammps/cases`, unchanged, against the numbers that LAMMPS computed for them.
 
+#[path = "boxes/mod.rs"]
+mod boxes;
+
 use std::path::{Path, PathBuf};
 
 use peridyne_lammps::host::Console;

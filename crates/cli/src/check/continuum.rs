@@ -4,10 +4,12 @@ use crate::failure::Failure;
 use peridyne::run::Simulation;
 use peridyne_fields::Quantity;
 use peridyne_io::continuum::plan::FieldsSpec;
-use peridyne_io::continuum::run::{FieldsPlan, foresee};
+use peridyne_io::continuum::run::{FieldsPlan, efforts, foresee};
 
 /// Points above which no frame is made to see what it is and takes.
 const PATIENCE: u64 = 200_000;
+/// The same of seconds that it would take.
+const LONG: f64 = 20.0;
 
 /// The fields of a table `[[fields]]`.
 pub(super) struct Found {
@@ -39,7 +41,10 @@ pub(super) fn find(
     steps: u64,
 ) -> Result<Vec<Found>, Failure> {
     let most = plan.asked.iter().map(|a| a.place.points()).max();
-    let patient = sim.info().points.max(most.unwrap_or(0)) <= PATIENCE;
+    let efforts = efforts(sim, plan).map_err(|e| Failure::input(format!("[[fields]] {e}")))?;
+    let seconds = efforts.iter().fold(0.0, |s: f64, e| s + e.seconds);
+    let few = sim.info().points.max(most.unwrap_or(0)) <= PATIENCE;
+    let patient = few && seconds <= LONG;
     let mut seen = match patient {
         true => foresee(sim, plan).map_err(|e| Failure::input(format!("fields: {e}")))?,
         false => vec![],

@@ -4,6 +4,7 @@ use super::words::Words;
 use crate::failure::Failure;
 use peridyne::spec::BondedSpec;
 use peridyne_fields::molecules::Molecules;
+use peridyne_fields::targets::affordable;
 use peridyne_fields::{Cell, FieldsError, Kernel, Method, PairForce, Partition, Shape, Targets};
 use peridyne_io::continuum::potential::{ModelError, Words as PotentialWords};
 use peridyne_io::continuum::{Masses, Model, Units, model, of_deck};
@@ -148,6 +149,16 @@ fn model_of(words: &Words) -> Result<(Model, Units), Failure> {
         if words.potential.is_some() {
             return Err(Failure::input("--model and --potential: give one of them"));
         }
+        let others = [
+            ("with", words.with.is_empty()),
+            ("file", words.files.is_empty()),
+            ("element", words.elements.is_empty()),
+        ];
+        if let Some((flag, _)) = others.iter().find(|(_, left_out)| !left_out) {
+            return Err(Failure::input(format!(
+                "--{flag}: the deck of --model says all of its potentials; leave the flag out, or change the deck"
+            )));
+        }
         let (model, own) = of_deck(path).map_err(wrong("model"))?;
         return match units {
             Some(units) if units.name() != own.name() => Err(Failure::input(format!(
@@ -219,6 +230,7 @@ fn targets(words: &Words) -> Result<Targets, Failure> {
                 "--line: expected a number of points from 2 to {MANY}, found `{count}`"
             ))
         })?;
+        room_for("line", count as f64)?;
         return Ok(Targets::line(
             vector("line", from)?,
             vector("line", to)?,
@@ -236,6 +248,7 @@ fn targets(words: &Words) -> Result<Targets, Failure> {
                 "--plane: expected N,M, from 2 points along each edge to {MANY} in all, found `{counts}`"
             ))
         })?;
+        room_for("plane", counts[0] as f64 * counts[1] as f64)?;
         let edges = [vector("plane", e)?, vector("plane", f)?];
         return Ok(Targets::plane(vector("plane", corner)?, edges, counts));
     }
@@ -251,6 +264,11 @@ fn targets(words: &Words) -> Result<Targets, Failure> {
             "--grid {text}: expected three positive numbers, e.g. 32,32,1"
         ))),
     }
+}
+
+/// Points that are made here, before anything else is known.
+fn room_for(flag: &str, points: f64) -> Result<(), Failure> {
+    affordable(points).map_err(|e| Failure::input(format!("--{flag}: {e}")))
 }
 
 /// x y z in each row; a first row of words names the columns, `#` begins a comment.
@@ -291,7 +309,10 @@ fn points(path: &Path) -> Result<Vec<[f64; 3]>, Failure> {
 /// Topology and coefficients of a data file.
 fn bonded(words: &Words) -> Result<Option<BondedSpec>, Failure> {
     let Some(path) = &words.molecules else {
-        return Ok(None);
+        return match words.special {
+            Some(_) => Err(missing("molecules", "--special is of atoms that it bonds")),
+            None => Ok(None),
+        };
     };
     let Some(text) = &words.special else {
         return Err(missing(

@@ -4,6 +4,7 @@
 mod balance;
 mod churning;
 mod duals;
+mod effort;
 mod force_states;
 mod pair_forces;
 mod sample;

@@ -6,6 +6,7 @@ use peridyne::law::terms::Sites;
 use peridyne::observe::Values;
 use peridyne::run::{Shelf, Simulation};
 use peridyne::spec::{FamilyChoice, Spec};
+use peridyne_fields::effort::{Effort, bonds_within};
 use peridyne_fields::fields::NO_TEMPERATURE;
 use peridyne_fields::molecules::Molecules;
 use peridyne_fields::pairs::{self, Pull};
@@ -166,6 +167,22 @@ impl Live {
             Place::Points(points) => Targets::Points(points.clone()),
         };
         Ok((targets, method))
+    }
+
+    /// What a frame will take.
+    pub fn effort(
+        &self,
+        sim: &mut dyn Simulation,
+        cell: &Cell,
+        targets: &Targets,
+        method: &Method,
+    ) -> Effort {
+        let frame = self.frame(sim, cell);
+        let (bonds, reach) = match &self.forces {
+            Forces::Sites(sites, _) => (bonds_within(&frame, sites.reach()), sites.reach()),
+            Forces::Bonds => (0.5 * sim.info().directed_bonds as f64, 0.0),
+        };
+        Effort::of(&frame, bonds, reach, targets, method)
     }
 
     /// The points of now.

@@ -9,7 +9,7 @@ pub mod potential;
 pub mod run;
 pub mod units;
 
-pub use frame::{Masses, frame};
+pub use frame::{Masses, frame, of_unit_mass};
 pub use kinds::Kind;
 pub use potential::{Model, model, of_deck};
 pub use units::Units;

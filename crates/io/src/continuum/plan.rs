@@ -53,7 +53,9 @@ impl Place {
     /// Number of points.
     pub fn points(&self) -> u64 {
         match self {
-            Place::Grid { counts, .. } => counts.iter().map(|n| *n as u64).product(),
+            Place::Grid { counts, .. } => counts
+                .iter()
+                .fold(1, |all: u64, n| all.saturating_mul(*n as u64)),
             Place::Points(points) => points.len() as u64,
         }
     }

@@ -138,7 +138,7 @@ fn flags(words: &Words, of: &Descriptor, units: Units) -> Result<Vec<Flag>, Mode
     let count = words.elements.len().max(words.files.len()).max(1);
     match file {
         Some(_) if !words.files.is_empty() && units == Units::Real => {
-            return wrong("files of potentials are in Å and eV: use --units metal".into());
+            return wrong("files of potentials are read in Å and eV, those that say `UNITS: real` too, whose kcal/mol are converted: use --units metal".into());
         }
         Some((_, true)) if words.files.is_empty() => {
             return wrong(format!("{key} needs a file: --file FILE"));

@@ -7,6 +7,7 @@ use crate::write::atomic::WriteError;
 use crate::write::continuum::{Collected, Origin, examined};
 use peridyne::run::Simulation;
 use peridyne::spec::Spec;
+use peridyne_fields::effort::Effort;
 use peridyne_fields::{Cell, FieldsError, Frame, Method, Quantity, Targets};
 use std::ffi::OsStr;
 use std::path::Path;
@@ -20,6 +21,8 @@ pub struct FieldsPlan {
     /// Lower corner of the periods.
     pub corner: [f64; 3],
     pub units: Units,
+    /// Has somebody had enough? Fields end then, and so does the run.
+    pub stop: fn() -> bool,
 }
 
 /// What a deck's fields will be, from a frame of the start.
@@ -32,6 +35,23 @@ pub struct Foreseen {
     pub missing: Vec<(Quantity, &'static str)>,
     /// What a frame took (seconds).
     pub seconds: f64,
+}
+
+/// What one frame of each field will take, and that it can be had.
+///
+/// # Errors
+/// What is asked for makes no sense with this model, or is more than memory holds or a day computes.
+pub fn efforts(sim: &mut dyn Simulation, plan: &FieldsPlan) -> Result<Vec<Effort>, FieldsError> {
+    let live = Live::new(sim, &plan.spec, plan.corner)?;
+    let one = |asked: &FieldsSpec| -> Result<Effort, FieldsError> {
+        let cell = live.cell(&asked.place)?;
+        let (targets, method) = live.method(asked, &cell)?;
+        let effort = live.effort(&mut *sim, &cell, &targets, &method);
+        let named = |FieldsError(why)| FieldsError(format!("{}: {why}", asked.name));
+        effort.check(&targets, &method).map_err(named)?;
+        Ok(effort)
+    };
+    plan.asked.iter().map(one).collect()
 }
 
 /// Makes each field once, of the model as it is now.
@@ -104,7 +124,10 @@ impl RunningFields {
         let mut each = vec![];
         for asked in &plan.asked {
             let cell = live.cell(&asked.place)?;
-            let (targets, method) = live.method(asked, &cell)?;
+            let (targets, mut method) = live.method(asked, &cell)?;
+            method.stop = plan.stop;
+            live.effort(sim, &cell, &targets, &method)
+                .check(&targets, &method)?;
             each.push(One {
                 collected: Collected::new(
                     dir.join(&asked.name),

@@ -76,6 +76,8 @@ impl AtomsPlan {
         }
         Atoms {
             bonded: false,
+            mass: None,
+            units: None,
             species: species.collect(),
             kind,
             velocity: Some(sim.velocities()),

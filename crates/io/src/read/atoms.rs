@@ -7,7 +7,7 @@ use std::collections::HashMap;
 pub struct Species {
     /// "Cu"; the number of the type where a file has no names.
     pub name: String,
-    /// Where the file says it.
+    /// Where the file says it, and says the same of all its atoms.
     pub mass: Option<f64>,
 }
 
@@ -19,6 +19,8 @@ pub struct Atoms {
     pub kind: Vec<u32>,
     /// As in the file: wrapped into the box or not.
     pub position: Vec<[f64; 3]>,
+    /// Of each atom, where those of a species differ (isotopes).
+    pub mass: Option<Vec<f64>>,
     pub velocity: Option<Vec<[f64; 3]>>,
     pub force: Option<Vec<[f64; 3]>>,
     /// The velocities come from momenta over masses: they are in Å, eV and g/mol, as ASE has them, whatever the units of others.
@@ -35,6 +37,8 @@ pub struct Atoms {
     pub bonded: bool,
     /// Edges of a box that is not along the axes, one per row, from the corner `low`; `high` is then no more than a bound.
     pub edges: Option<[[f64; 3]; 3]>,
+    /// Units that the file says it is in, by LAMMPS's names.
+    pub units: Option<String>,
     /// Of the frame, where the file says it.
     pub step: Option<u64>,
     pub time: Option<f64>,
@@ -47,6 +51,18 @@ impl Atoms {
 
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
+    }
+
+    /// Takes masses of single atoms: a species has one if all of its atoms have it.
+    pub(super) fn take_masses(&mut self, masses: Vec<f64>) {
+        let mut alike = vec![true; self.species.len()];
+        for (kind, mass) in self.kind.iter().zip(&masses) {
+            let known = self.species[*kind as usize].mass.get_or_insert(*mass);
+            alike[*kind as usize] &= *known == *mass;
+        }
+        let unlike = { self.species.iter_mut().zip(&alike) }.filter(|(_, alike)| !**alike);
+        unlike.for_each(|(species, _)| species.mass = None);
+        self.mass = alike.contains(&false).then_some(masses);
     }
 
     /// Name of the atom's species.

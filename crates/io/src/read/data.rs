@@ -17,6 +17,13 @@ pub fn data(path: &Path) -> Result<Atoms, ReadError> {
     parse_data(&text, &name)
 }
 
+/// `units = metal` in the title, as LAMMPS writes it.
+fn units(text: &str) -> Option<String> {
+    let (_, rest) = text.lines().next()?.split_once("units = ")?;
+    let word = rest.split(|c: char| !c.is_alphanumeric()).next();
+    word.filter(|w| !w.is_empty()).map(str::to_string)
+}
+
 /// The same from a text; `name` is for messages.
 pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
     let file: DataFile = lammps::file(text, name)?;
@@ -50,6 +57,7 @@ pub fn parse_data(text: &str, name: &str) -> Result<Atoms, ReadError> {
         high: file.high,
         periodic: [true; 3],
         bonded: file.bonded,
+        units: units(text),
         ..Atoms::default()
     })
 }

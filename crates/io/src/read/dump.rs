@@ -43,6 +43,8 @@ pub(super) struct Head {
     periodic: [bool; 3],
     edges: Option<[[f64; 3]; 3]>,
     columns: Vec<String>,
+    /// What `ITEM: UNITS` says.
+    units: Option<String>,
 }
 
 /// How the box is written.
@@ -142,6 +144,7 @@ pub(super) fn head<R: BufRead>(
         high: [0.0; 3],
         periodic: [false; 3],
         edges: None,
+        units: None,
         columns: Vec::new(),
     };
     let (mut begun, mut boxed) = (false, false);
@@ -207,6 +210,7 @@ pub(super) fn head<R: BufRead>(
                     .map_err(|_| stream.error(format!("expected a time step, found `{text}`")))?;
             }
             "NUMBER OF ATOMS" => frame.count = stream.count(&text, "the number of atoms")?,
+            "UNITS" => frame.units = Some(text),
             "TIME" => frame.time = Some(stream.finite(&text, "the time")?),
             _ => {}
         }
@@ -353,9 +357,6 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
             let written = number.map_or(words[kind], |c| words[c]);
             numbers.push(written.parse().unwrap_or(u32::MAX));
         }
-        if let Some(mass) = mass {
-            names.species[species as usize].mass = Some(stream.finite(words[mass], "mass")?);
-        }
         for (c, (_, values)) in more.iter().zip(&mut others) {
             values.push(words[*c].parse().unwrap_or(f64::NAN));
         }
@@ -370,6 +371,15 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
             energy
                 .map(|c| stream.finite(words[c], "c_pe"))
                 .transpose()?,
+            match mass
+                .map(|c| stream.finite(words[c], "the mass"))
+                .transpose()?
+            {
+                Some(m) if m <= 0.0 => {
+                    return Err(stream.error(format!("the mass is {m}: it must be positive")));
+                }
+                own => own,
+            },
         ));
     }
     rows.sort_by_key(|r| r.0);
@@ -393,8 +403,10 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
     for (place, old) in order.iter().enumerate() {
         new[*old as usize] = place as u32;
     }
-    Ok(Atoms {
+    let mut atoms = Atoms {
         bonded: false,
+        mass: None,
+        units: head.units,
         species: order
             .iter()
             .map(|k| names.species[*k as usize].clone())
@@ -412,5 +424,9 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
         time: head.time,
         from_momenta: false,
         columns: others,
-    })
+    };
+    if mass.is_some() {
+        atoms.take_masses(rows.iter().filter_map(|r| r.6).collect());
+    }
+    Ok(atoms)
 }

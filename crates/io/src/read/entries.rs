@@ -79,18 +79,24 @@ pub fn names(entries: &[Entry]) -> Vec<&str> {
     all
 }
 
-/// Rows of the kinds i, j, k and the numbers, of those entries whose elements are among `kinds`.
+/// Rows of the kinds i, j, k and the numbers, of those entries whose elements are among `kinds`, where one may stand several times.
 pub fn rows(entries: &[Entry], kinds: &[&str]) -> Vec<Vec<f64>> {
-    let kind = |name: &String| kinds.iter().position(|k| k == name);
-    let row = |entry: &Entry| {
-        let mut row = vec![];
-        for name in &entry.elements {
-            row.push(kind(name)? as f64);
-        }
-        row.extend(&entry.numbers);
-        Some(row)
+    let of = |name: &String| -> Vec<f64> {
+        let all = kinds.iter().enumerate().filter(|(_, k)| *k == name);
+        all.map(|(n, _)| n as f64).collect()
     };
-    entries.iter().filter_map(row).collect()
+    let mut all = vec![];
+    for entry in entries {
+        let [first, second, third] = [0, 1, 2].map(|n| of(&entry.elements[n]));
+        for i in &first {
+            for j in &second {
+                for k in &third {
+                    all.push([&[*i, *j, *k][..], &entry.numbers[..]].concat());
+                }
+            }
+        }
+    }
+    all
 }
 
 #[cfg(test)]
@@ -111,6 +117,12 @@ mod tests {
             ]
         );
         assert_eq!(rows(&all, &["C"]), [[0.0, 0.0, 0.0, 4.0, 5.0, 6.0]]);
+        // an element may stand twice
+        let twice = rows(&all, &["C", "Si", "C"]);
+        let kinds = |row: &Vec<f64>| [0, 1, 2].map(|n| row[n] as usize);
+        let of = |a: f64| twice.iter().filter(move |r| r[3] == a).map(kinds);
+        assert_eq!(of(1.0).collect::<Vec<_>>(), [[1, 1, 0], [1, 1, 2]]);
+        assert_eq!(of(4.0).count(), 8);
     }
 
     #[test]

@@ -329,6 +329,7 @@ pub(super) fn frame<R: BufRead>(
         column(Role::Mass),
     );
     let mut names = Names::default();
+    let mut masses = vec![];
     let mut atoms = Atoms {
         velocity: velocity.or(momentum).map(|_| Vec::new()),
         force: force.map(|_| Vec::new()),
@@ -365,13 +366,13 @@ pub(super) fn frame<R: BufRead>(
             None => None,
             Some(c) => {
                 let value = stream.finite(words[c], "the mass")?;
-                let known = names.species[kind as usize].mass.get_or_insert(value);
-                if *known != value || value <= 0.0 {
+                if value <= 0.0 {
                     return Err(stream.error(format!(
-                        "the mass of {} is {value} here and {known} before: one positive mass per species",
-                        words[species]
+                        "the mass of atom {} is {value}: it must be positive",
+                        k + 1
                     )));
                 }
+                masses.push(value);
                 Some(value)
             }
         };
@@ -390,6 +391,9 @@ pub(super) fn frame<R: BufRead>(
         }
     }
     atoms.species = names.species;
+    if mass.is_some() {
+        atoms.take_masses(masses);
+    }
     if let Some(edges) = head.edges {
         atoms.low = head.origin;
         atoms.high =

@@ -23,6 +23,7 @@ mod mesh;
 pub mod molecules;
 pub mod stl;
 mod stream;
+pub mod tag;
 mod text;
 pub mod vtu;
 mod whole;
@@ -62,6 +63,10 @@ pub struct AtomsFile {
     pub periodic: Option<[bool; 3]>,
     /// The kinds of atoms that occur, with their masses where the file says them.
     pub species: Vec<Species>,
+    /// A kind whose atoms have different masses.
+    pub isotopes: Option<String>,
+    /// Units that the file says it is in, by LAMMPS's names.
+    pub units: Option<String>,
     /// The velocities are in Å, eV and g/mol.
     pub from_momenta: bool,
     /// There are bonds, angles, dihedrals or impropers.
@@ -241,6 +246,10 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
     let cell: [f64; 3] = std::array::from_fn(|a| atoms.high[a] - atoms.low[a]);
     let used: std::collections::BTreeSet<u32> = atoms.kind.iter().copied().collect();
     let kinds = || used.iter().map(|k| &atoms.species[*k as usize]);
+    let of_none = |k: &u32| atoms.mass.is_some() && atoms.species[*k as usize].mass.is_none();
+    let isotopes = { used.iter() }
+        .find(|k| of_none(k))
+        .map(|k| &atoms.species[*k as usize]);
     let volume = cell.iter().filter(|c| **c > 0.0).product::<f64>() / n as f64;
     Ok(Sourced {
         atoms: Some(AtomsFile {
@@ -248,6 +257,8 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
             cell,
             periodic: (!lammps).then_some(atoms.periodic),
             species: kinds().cloned().collect(),
+            isotopes: isotopes.map(|s| s.name.clone()),
+            units: atoms.units.clone(),
             from_momenta: atoms.from_momenta,
             bonded: atoms.bonded,
         }),

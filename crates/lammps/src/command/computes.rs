@@ -103,6 +103,7 @@ impl Session<'_> {
         self.watch.computes.push(Compute {
             id: id.as_str().to_string(),
             members,
+            counted: None,
             kind,
         });
         Ok(())

@@ -199,7 +199,7 @@ impl Script<'_> {
             let first = self.session.progress.step == begin;
             let part = super::run::RunPlan {
                 steps,
-                setup: plan.setup && first,
+                setup: plan.setup || first,
                 report: false,
                 every: None,
             };

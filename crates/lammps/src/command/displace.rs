@@ -115,7 +115,9 @@ impl Session<'_> {
             }
         }
         self.console.print("Displacing atoms ...");
-        (0..3).try_for_each(|a| self.place(a, &x))
+        (0..3).try_for_each(|a| self.place(a, &x))?;
+        // faces that follow the atoms do so at once
+        self.shrink_box()
     }
 
     /// Puts atoms to these places on one axis.

@@ -232,7 +232,6 @@ impl Session<'_> {
             self.modify(args, &mut dump)?;
         }
         args.finish()?;
-        self.shrink_box()?;
         self.write_snapshot(&mut dump)
     }
 

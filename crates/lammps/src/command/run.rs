@@ -96,7 +96,6 @@ impl Session<'_> {
                 .help("write `lattice sc CONSTANT` before `run`")
         })?;
         let lattice_constant = lattice.constant;
-        self.shrink_box()?;
         let domain = *self.space.domain()?;
         let atoms = std::mem::take(self.population.atoms()?);
         let setup = Setup {
@@ -131,14 +130,18 @@ impl Session<'_> {
         self.progress.begin = self.progress.step;
         self.progress.end = self.progress.step + plan.steps;
         self.nobody_twice()?;
-        // atoms outside are lost before there are bonds
-        self.rebuild()?;
+        // forces have to be known once, whatever `pre` says
+        let setup = plan.setup || self.progress.started.is_none();
+        if setup {
+            // atoms outside are lost before there are bonds
+            self.rebuild()?;
+            self.count_atoms();
+        }
         self.build()?;
-        self.shrink_box()?;
         if self.moving().is_none() && plan.steps > 0 {
             self.console.note("no `fix nve`: the atoms will not move");
         }
-        if plan.setup {
+        if setup {
             self.print("Setting up Verlet run ...");
             self.print(&format!("  Unit style    : {}", self.space.units.name()));
             self.print(&format!("  Current step  : {}", self.progress.step));
@@ -184,6 +187,15 @@ impl Session<'_> {
         }
         self.progress.started = Some(Instant::now());
         Ok(())
+    }
+
+    /// The atoms that temperatures count until the next set-up.
+    fn count_atoms(&mut self) {
+        let all = self.population.count();
+        self.progress.counted = Some(all);
+        for compute in &mut self.watch.computes {
+            compute.counted = Some(compute.members.count(all));
+        }
     }
 
     /// Output at the start of a run.

@@ -128,7 +128,7 @@ impl Session<'_> {
         args.finish()
     }
 
-    /// `neigh_modify`: when lists are rebuilt decides when atoms are lost.
+    /// `neigh_modify`: when lists are rebuilt decides when atoms are lost, and when the box follows them.
     pub(super) fn neigh_modify(&mut self, args: &mut Args) -> Result<()> {
         args.next("an option")?;
         args.back();
@@ -155,7 +155,7 @@ impl Session<'_> {
             }
         }
         self.console
-            .note("`neigh_modify` decides only when atoms outside fixed faces are lost");
+            .note("`neigh_modify` decides only when the box follows the atoms, and when atoms outside fixed faces are lost");
         Ok(())
     }
 

@@ -94,7 +94,7 @@ impl Session<'_> {
             "scale" => {
                 let wanted = args.number("the temperature")?;
                 options(args)?;
-                let now = self.temperature_of(&members)?;
+                let now = self.temperature_of(&members, None)?;
                 self.scale_to(&members, now, wanted)
             }
             "zero" => {
@@ -117,10 +117,10 @@ impl Session<'_> {
         }
     }
 
-    /// Temperature of a group: `2 E / (k (D N − D))`.
-    pub fn temperature_of(&self, members: &Members) -> Result<f64> {
+    /// Temperature of a group: `2 E / (k (D N − D))`, N as it was `counted` or is now.
+    pub fn temperature_of(&self, members: &Members, counted: Option<usize>) -> Result<f64> {
         let kinetic = self.reduce(Mode::Sum, members, &Tree::Field(Field::Kinetic))?;
-        let n = members.count(self.population.count());
+        let n = counted.unwrap_or_else(|| members.count(self.population.count()));
         let degrees = (self.space.dimension * n) as f64 - self.space.dimension as f64;
         Ok(if degrees > 0.0 {
             2.0 * kinetic / (degrees * self.space.units.boltzmann())
@@ -226,7 +226,7 @@ impl Session<'_> {
         if options.rotation {
             self.take_motion(members, [false; 3], true)?;
         }
-        let now = self.temperature_of(members)?;
+        let now = self.temperature_of(members, None)?;
         self.scale_to(members, now, wanted)?;
         if options.sum {
             for (a, before) in before.iter().enumerate() {

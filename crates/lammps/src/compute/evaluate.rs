@@ -245,7 +245,9 @@ impl Session<'_> {
                 self.reduce(Mode::Sum, &compute.members, &Tree::Field(Field::Kinetic))
             }
             (ComputeKind::Potential, []) => Ok(self.population.engine()?.energies()?.potential),
-            (ComputeKind::Temperature, []) => self.temperature_of(&compute.members),
+            (ComputeKind::Temperature, []) => {
+                self.temperature_of(&compute.members, compute.counted)
+            }
             (ComputeKind::Center, [k]) if [1.0, 2.0, 3.0].contains(k) => {
                 Ok(self.rigid(&compute.members)?.center[*k as usize - 1])
             }

@@ -13,6 +13,8 @@ use crate::particles::Field;
 pub struct Compute {
     pub id: String,
     pub members: Arc<Members>,
+    /// How many they were at the last set-up.
+    pub counted: Option<usize>,
     pub kind: ComputeKind,
 }
 

@@ -44,7 +44,6 @@ impl Session<'_> {
                 self.watch.dumps[k].every_variable = Some((name, Some(next as u64)));
             }
             if write {
-                self.shrink_box()?;
                 let mut dump = self.watch.dumps.remove(k);
                 let result = self.write_snapshot(&mut dump);
                 self.watch.dumps.insert(k, dump);

@@ -24,6 +24,8 @@ pub struct Progress {
     /// Seconds in the time loops of all runs.
     pub stepping_seconds: f64,
     pub steps_done: u64,
+    /// Atoms at the last set-up: those whose degrees of freedom a temperature counts, lost or not.
+    pub counted: Option<usize>,
 }
 
 impl Default for Progress {
@@ -39,6 +41,7 @@ impl Default for Progress {
             started: None,
             stepping_seconds: 0.0,
             steps_done: 0,
+            counted: None,
         }
     }
 }

@@ -59,7 +59,6 @@ impl Session<'_> {
     /// # Errors
     /// A value cannot be computed; atoms are lost.
     pub fn thermo_line(&mut self) -> Result<()> {
-        self.shrink_box()?;
         self.check_lost()?;
         let columns = self.thermo_columns();
         let mut values = Vec::with_capacity(columns.len());

@@ -2,6 +2,7 @@
 //! energy, so both say little.
 
 use super::columns::Column;
+use crate::atoms::Members;
 use crate::error::{Problem, Result};
 use crate::host::{BLOCK, Quantity};
 use crate::session::{Session, Store};
@@ -33,14 +34,7 @@ impl Session<'_> {
     }
 
     pub(super) fn temperature(&self) -> Result<f64> {
-        let degrees =
-            (self.space.dimension * self.population.count()) as f64 - self.space.dimension as f64;
-        let kinetic = self.kinetic()?;
-        Ok(if degrees > 0.0 {
-            2.0 * kinetic / (degrees * self.space.units.boltzmann())
-        } else {
-            0.0
-        })
+        self.temperature_of(&Members::All, self.progress.counted)
     }
 
     fn virial(&mut self) -> Result<[f64; 6]> {

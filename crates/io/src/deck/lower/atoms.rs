@@ -4,9 +4,10 @@ use super::Files;
 use super::context::{Context, Result};
 use crate::deck::document::{Document, Given, Law, Material, MixingName, Thermal};
 use crate::deck::error::nearest;
-use crate::deck::units::{BOLTZMANN, Dim, UnitSystem};
+use crate::deck::units::{BOLTZMANN, Constants, Dim, UnitSystem};
 use crate::deck::value::{At, Number, Written};
 use crate::read::eam::EamFile;
+use crate::read::tag;
 use peridyne::law::descriptor::{Key, Need, Value};
 use peridyne::law::{fan, scaled};
 use peridyne::run::Shelf;
@@ -17,9 +18,6 @@ use peridyne::spec::{
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-const EV: f64 = 1.602176634e-19;
-const AVOGADRO: f64 = 6.02214076e23;
 
 /// The potential of a material, and what files say of its atoms.
 pub(super) struct AtomsPotential {
@@ -98,11 +96,65 @@ fn potential(
     }
 }
 
-/// Å and eV in computed units; 1 where these have no size.
-fn metal(context: &Context) -> (f64, f64) {
-    match context.units {
-        UnitSystem::Si => (1e-10, EV),
-        UnitSystem::Metal(_) | UnitSystem::Lj | UnitSystem::None => (1.0, 1.0),
+/// Length, energy and mass of a file's numbers in computed units.
+struct Scale {
+    length: f64,
+    energy: f64,
+    /// `None` in units that know no atoms.
+    mass: Option<f64>,
+}
+
+/// Of a file of eV, Å and g/mol, or with a [tag] that says otherwise; numbers as they are where units have no size.
+fn scale(context: &Context, file: &At<String>, tagged: Option<&str>) -> Result<Scale> {
+    let own = context.units.name();
+    let plain = Scale {
+        length: 1.0,
+        energy: 1.0,
+        mass: None,
+    };
+    let name = tagged.unwrap_or(tag::METAL);
+    let Some(sizes) = tag::sizes(name) else {
+        return Err(context.error_with(
+            &file.span,
+            format!(
+                "{} says `UNITS: {name}`, which is no system of units",
+                file.value
+            ),
+            format!("expected {}", tag::names()),
+        ));
+    };
+    let of = |dim| context.units.to_si(1.0, dim);
+    match (context.units, sizes) {
+        (UnitSystem::None, _) => Ok(plain),
+        (UnitSystem::Lj, _) if tagged.is_none_or(|name| name == own) => Ok(plain),
+        (UnitSystem::Lj, _) | (UnitSystem::Si | UnitSystem::Metal(_), None) => {
+            Err(context.error_with(
+                &file.span,
+                format!(
+                    "{} says `UNITS: {name}`, and the units here are {own}: one of them has no size",
+                    file.value
+                ),
+                format!("write units = {name:?}, or constants in {own} units"),
+            ))
+        }
+        (UnitSystem::Metal(constants), Some(size)) => Ok(Scale {
+            length: size.length / 1e-10,
+            energy: match (name, constants) {
+                (tag::METAL, _) => 1.0,
+                // the number that LAMMPS converts with
+                ("real", Constants::Lammps) => 1.0 / 23.060549,
+                _ => size.energy / of(Dim::ENERGY),
+            },
+            mass: Some(match name {
+                tag::METAL | "real" => context.units.plain_factor(Dim::MASS),
+                _ => size.mass / of(Dim::MASS),
+            }),
+        }),
+        (UnitSystem::Si, Some(size)) => Ok(Scale {
+            length: size.length,
+            energy: size.energy,
+            mass: Some(size.mass),
+        }),
     }
 }
 
@@ -174,13 +226,15 @@ impl<'a> Tables<'a> {
                 return Err(context.error_with(&written.span, message, help));
             }
         };
-        let (angstrom, ev) = metal(context);
-        let kinds: Vec<&str> = match self.elements.len() {
-            0 | 1 => vec![&name],
-            _ => self.elements.iter().map(|e| &*e.value).collect(),
+        let tagged = self.files.units_of_entries(context, written)?;
+        let scale = scale(context, written, tagged.as_deref())?;
+        let kinds: Vec<&str> = match self.elements.iter().any(|e| e.value != name) {
+            // isotopes are of one kind
+            false => vec![&name],
+            true => self.elements.iter().map(|e| &*e.value).collect(),
         };
         let mut rows = crate::read::entries::rows(&all, &kinds);
-        scaled::rows(columns, &mut rows, angstrom, ev);
+        scaled::rows(columns, &mut rows, scale.length, scale.energy);
         Ok((rows, name))
     }
 
@@ -210,26 +264,35 @@ impl<'a> Tables<'a> {
                 ));
             }
         };
-        let (angstrom, ev) = metal(context);
-        let mass = match context.units {
-            UnitSystem::Si => Some(1e-3 / AVOGADRO),
-            UnitSystem::Metal(_) => Some(context.units.plain_factor(Dim::MASS)),
-            UnitSystem::Lj | UnitSystem::None => None,
+        let tagged = |file: &EamFile| {
+            let lines = file.comments.iter().map(String::as_str);
+            tag::of_comments(lines).map(str::to_string)
         };
+        let own_tag = tagged(&own);
+        let scale = scale(context, written, own_tag.as_deref())?;
         let atom = own.elements[element].clone();
         let place = |file: &EamFile| file.elements.iter().position(|e| e.name == atom.name);
         let mixed = self
             .mixed
             .as_ref()
             .filter(|_| Files::is_funcfl(&written.value));
+        if let Some(other) = mixed.and_then(|file| {
+            { file.comments.iter() }.find(|c| tag::of_comments([c.as_str()]) != own_tag.as_deref())
+        }) {
+            return Err(context.error_with(
+                &written.span,
+                format!("the files of one model say different UNITS: one begins `{other}`"),
+                "give all of them the same tag",
+            ));
+        }
         let table = match mixed.and_then(|file| Some((file, place(file)?))) {
             Some((file, element)) => table(file, element),
             None => table(&own, element),
         };
         Ok((
-            table.scaled(angstrom, ev),
+            table.scaled(scale.length, scale.energy),
             atom.name,
-            mass.map(|m| m * atom.mass),
+            scale.mass.map(|m| m * atom.mass),
         ))
     }
 }
@@ -458,7 +521,8 @@ pub(super) fn molecules(
             }
         },
     };
-    let made = files.molecules(context, file, special, metal(context))?;
+    let scale = scale(context, file, None)?;
+    let made = files.molecules(context, file, special, (scale.length, scale.energy))?;
     Ok(Some(Arc::new(made)))
 }
 

@@ -6,6 +6,7 @@ use super::region::region;
 use crate::deck::document::{Body, LatticeName};
 use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::At;
+use crate::read::AtomsFile;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
 use peridyne::spec::{BodySpec, Perturbation};
@@ -137,6 +138,9 @@ pub(super) fn body(
                 let remark = context.source.remark(&file.span, &text);
                 context.notes.push(remark);
             }
+            if let (Some(atoms), Some(file)) = (&context.atoms, &written.file) {
+                atoms_fit(context, atoms, file)?;
+            }
             if let Some(atoms) = &mut context.atoms {
                 let mass = context.units.plain_factor(Dim::MASS);
                 for species in &mut atoms.species {
@@ -150,6 +154,34 @@ pub(super) fn body(
             Ok(BodySpec::Cloud(cloud))
         }
         (None, None) => Err(context.error(&body.span, "the body needs one of lattice, file")),
+    }
+}
+
+/// A file of atoms in other units, or of isotopes, would be another body than it says.
+fn atoms_fit(context: &Context, atoms: &AtomsFile, file: &At<String>) -> Result<()> {
+    let own = context.units.name();
+    if let Some(units) = { atoms.units.as_deref() }.filter(|u| *u != own)
+        && context.units != UnitSystem::None
+    {
+        return Err(context.error_with(
+            &file.span,
+            format!(
+                "{} says that it is in {units} units, and those here are {own}",
+                file.value
+            ),
+            match ["si", "metal", "lj"].contains(&units) {
+                true => format!("write units = {units:?}, or a file in {own} units"),
+                false => format!("write the file anew in {own} units"),
+            },
+        ));
+    }
+    match &atoms.isotopes {
+        Some(name) => Err(context.error_with(
+            &file.span,
+            format!("atoms of {name} have different masses, and a material has one"),
+            "give isotopes names of their own in the file, and a [material.NAME] each",
+        )),
+        None => Ok(()),
     }
 }
 

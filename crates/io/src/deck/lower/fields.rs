@@ -6,7 +6,9 @@ use crate::deck::document::{AxisName, Centre, Fields, KernelName, PairForceName,
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Or, Vector};
 use crate::write::folder::stays;
+use peridyne_fields::targets::affordable;
 use peridyne_fields::{PairForce, Partition, Shape, Targets};
+use std::ops::Range;
 use std::path::Path;
 
 /// `atoms`: a potential between current neighbours, which leaves choices.
@@ -169,6 +171,9 @@ fn place(context: &Context, at: &At<Fields>, averaged: [bool; 3]) -> Result<Plac
         0 => Err(context.error(&n.span, "at least one point")),
         n => Ok(n),
     };
+    let fits = |span: &Range<usize>, points: f64| {
+        affordable(points).map_err(|e| context.error(span, e.to_string()))
+    };
     if let Some(grid) = &written.grid {
         return self::grid(context, written, grid, averaged);
     }
@@ -182,6 +187,7 @@ fn place(context: &Context, at: &At<Fields>, averaged: [bool; 3]) -> Result<Plac
     let made = match (&written.line, &written.plane) {
         (Some(line), _) => {
             let line = &line.value;
+            fits(&line.count.span, line.count.value as f64)?;
             Targets::line(
                 vector(&line.from)?,
                 vector(&line.to)?,
@@ -196,6 +202,8 @@ fn place(context: &Context, at: &At<Fields>, averaged: [bool; 3]) -> Result<Plac
             if plane.counts.value.contains(&0) {
                 return Err(context.error(&plane.counts.span, "at least one point"));
             }
+            let [n, m] = plane.counts.value;
+            fits(&plane.counts.span, n as f64 * m as f64)?;
             let edges = [vector(a)?, vector(b)?];
             Targets::plane(vector(&plane.corner)?, edges, plane.counts.value)
         }

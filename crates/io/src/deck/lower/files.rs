@@ -79,6 +79,16 @@ impl Files<'_> {
         read.map_err(|e| context.error(&file.span, e.to_string()))
     }
 
+    /// The units that a file of such constants says it is in.
+    pub(super) fn units_of_entries(
+        &self,
+        context: &Context,
+        file: &At<String>,
+    ) -> Result<Option<String>> {
+        crate::read::tag::of_entries(&self.folder.join(&file.value))
+            .map_err(|e| context.error(&file.span, e.to_string()))
+    }
+
     /// Triangles of a surface.
     pub(super) fn stl(
         &self,
