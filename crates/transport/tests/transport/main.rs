@@ -2,6 +2,8 @@
 
 mod conservation;
 mod convergence;
+mod errors;
+mod errors;
 mod expressions;
 mod input;
 mod operators;
