@@ -108,8 +108,14 @@ impl Stepper {
         self.stage.clear();
         self.stage.extend_from_slice(u);
         let made = match self.method {
-            Method::Ssprk3 => Ok(self.ssprk3(operator, u, t, dt)),
-            Method::Rk4 => Ok(self.rk4(operator, u, t, dt)),
+            Method::Ssprk3 => {
+                self.ssprk3(operator, u, t, dt);
+                Ok(())
+            }
+            Method::Rk4 => {
+                self.rk4(operator, u, t, dt);
+                Ok(())
+            }
             Method::Imex => self.imex(operator, u, t, dt),
         };
         if operator.stopped() {
