@@ -3,7 +3,6 @@
 mod conservation;
 mod convergence;
 mod errors;
-mod errors;
 mod expressions;
 mod input;
 mod operators;
