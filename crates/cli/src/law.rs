@@ -9,7 +9,7 @@ use peridyne_io::conservation::{self, Listener, Told, evaluation_name, method_na
 use peridyne_io::deck::conservation::LawDeck;
 use peridyne_io::deck::{Dim, rounded};
 use peridyne_io::drive::default_dir;
-use peridyne_transport::{exact, measure};
+use peridyne_transport::{RunError, StepSize, Stop, exact, measure};
 use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -18,6 +18,10 @@ use std::time::{Duration, Instant};
 const INTERVAL: Duration = Duration::from_secs(5);
 /// Time spent on trial steps.
 const TRIAL: Duration = Duration::from_millis(300);
+/// Of an addition or a product in long sums on one thread, where numbers wait for nothing (s).
+const OPERATION: f64 = 3e-11;
+/// Longest that `check` waits for a trial step.
+const LONGEST: Duration = Duration::from_secs(5);
 
 /// The law, if the deck is one of a law.
 pub fn read(input: &Input) -> Result<Option<LawDeck>, Failure> {
@@ -74,6 +78,8 @@ pub fn run(
     let mut terminal = Terminal {
         spoken: Instant::now(),
     };
+    let asked = Stop::new(|| signals::received().is_some());
+    deck.evolution.operator.stop_when(asked);
     let done = conservation::run(&mut deck, &dir, told, &mut terminal)
         .map_err(|e| Failure::Run(e.to_string()))?;
     say(&format!(
@@ -85,6 +91,20 @@ pub fn run(
             ", {ns:.1} ns per point and step"
         )),
     ));
+    if let Some(error) = done.time_error {
+        let show = |e: f64| deck.units.show(e, deck.dimension);
+        let allowed = match done.time_error_allowed {
+            Some(allowed) => format!("; {} are allowed", show(allowed)),
+            None => String::new(),
+        };
+        say(&format!(
+            "error     of u by steps, estimated: {} at most{allowed}",
+            show(error)
+        ));
+    }
+    for warning in &done.warnings[deck.warnings.len()..] {
+        note(&format!("warning: {warning}"));
+    }
     if deck.report {
         say(&report::line(&dir));
     }
@@ -127,11 +147,26 @@ fn headline(deck: &LawDeck) -> String {
         }
     }
     text += &format!(
-        "sums      {}, step by {}, stable up to {} at the start",
+        "sums      {}, step by {}, stable up to {} at the start{}",
         evaluation_name(e.operator.evaluation()),
         method_name(e.method()),
         time(e.stable_step()),
+        match e.size() {
+            StepSize::Within { tolerance, .. } => format!(
+                "; they may add {} of the largest |u|",
+                rounded(tolerance, 3)
+            ),
+            StepSize::Part(_) | StepSize::Fixed { .. } => String::new(),
+        }
     );
+    // what is wrong with a step the run says
+    if let Ok([steps, operations]) = e.work(deck.duration) {
+        text += &format!(
+            "\nwork      at least {steps:.0} steps until {}, {} s of one thread",
+            time(deck.duration),
+            rounded(operations * OPERATION, 2),
+        );
+    }
     if let Some(t) = shock_time(deck) {
         text += &format!(
             "\nshock     of the local law without diffusion at t = {}",
@@ -147,7 +182,7 @@ fn shock_time(deck: &LawDeck) -> Option<f64> {
     let law = e.operator.law();
     let flux = &law.advection.as_ref()?.flux;
     let line = deck.grid().dimension == 1;
-    line.then(|| exact::shock_time(flux, &e.u, deck.grid().spacing))
+    line.then(|| exact::shock_time(flux, &e.u, deck.grid().spacing, law.periodic()))
         .flatten()
 }
 
@@ -160,27 +195,45 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
         note(remarks.trim_start());
     }
     let grid = *deck.grid();
-    let e = &deck.evolution;
+    let begin = Instant::now();
+    let late = Stop::new(move || begin.elapsed() >= LONGEST);
+    let e = &mut deck.evolution;
+    e.operator.stop_when(late);
     let [low, high] = measure::extremes(&e.u);
     let (mass, energy) = (
         measure::mass(&e.u, grid.cell()),
         measure::energy(&e.u, grid.cell()),
     );
     let energy_rate = e.operator.energy_rate(&e.u, 0.0);
+    let energy_rate = (!e.operator.stopped()).then_some(energy_rate);
     let stable = e.stable_step();
     let [waves, decay] = e.operator.spectrum();
+    let step = e.next_step(deck.duration);
+    let step = step.map_err(|e| Failure::input(e.to_string()))?;
     let head = headline(&deck);
     let shock = shock_time(&deck);
-    let step = deck.evolution.next_step(deck.duration);
-    let step = step.map_err(|e| Failure::input(e.to_string()))?;
-    let (begin, mut steps) = (Instant::now(), 0u32);
+    let e = &mut deck.evolution;
+    e.estimate();
+    let begin = Instant::now();
+    let late = Stop::new(move || begin.elapsed() >= LONGEST);
+    e.operator.stop_when(late);
     let mut failed = None;
-    while begin.elapsed() < TRIAL && failed.is_none() {
-        failed = deck.evolution.step(step).err().map(|e| e.to_string());
-        steps += u32::from(failed.is_none());
+    while begin.elapsed() < TRIAL && failed.is_none() && e.time < deck.duration * (1.0 - 1e-12) {
+        failed = match e.step_to(deck.duration) {
+            Err(RunError::Ended { .. }) => {
+                Some(format!("a step takes longer than {} s", LONGEST.as_secs()))
+            }
+            done => done.err().map(|e| e.to_string()),
+        };
     }
-    let per_step = begin.elapsed().as_secs_f64() / f64::from(steps.max(1));
-    let all = (deck.duration / step).ceil();
+    let steps = e.steps;
+    // of none it is known that one takes longer
+    let per_step = begin.elapsed().as_secs_f64() / steps.max(1) as f64;
+    let least = if steps == 0 { "more than " } else { "" };
+    let all = match steps {
+        0 => (deck.duration / step).ceil(),
+        _ => (steps as f64 * deck.duration / e.time).ceil(),
+    };
     if json {
         let warnings = deck
             .warnings
@@ -192,7 +245,7 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
             "evaluation": evaluation_name(deck.evolution.operator.evaluation()), "method": method_name(deck.evolution.method()),
             "wave_frequency_at_unit_speed": waves, "decay_rate": decay, "stable_step": stable, "first_step": step, "steps": all,
             "shock_time": shock, "min": low, "max": high, "mass": mass, "energy": energy, "energy_rate_exact": energy_rate,
-            "seconds_per_step": per_step, "trial_failed": failed,
+            "seconds_per_step": (steps > 0).then_some(per_step), "trial_failed": failed,
             "warnings": warnings.collect::<Vec<_>>(),
         });
         say(&format!("{text:#}"));
@@ -205,12 +258,15 @@ pub fn check(mut deck: LawDeck, json: bool, outside: bool) -> Result<(), Failure
     say(&format!(
         "state     u from {} to {}, mass {}, energy {}, its rate {}\n\
          spectrum  waves {} at unit speed, decay {}\n\
-         steps     about {all:.0} of {}; {:.1} ns per point and step, {:.1} s in all",
+         steps     about {all:.0} of {}; {least}{:.1} ns per point and step, {least}{:.1} s in all",
         show(low, u),
         show(high, u),
         show(mass, u * cell),
         show(energy, u * u * cell),
-        show(energy_rate, u * u * cell / Dim::TIME),
+        energy_rate.map_or("not known".into(), |rate| show(
+            rate,
+            u * u * cell / Dim::TIME
+        )),
         show(waves, Dim::INVERSE_LENGTH),
         show(decay, Dim::FREQUENCY),
         deck.units.show(step, Dim::TIME),

@@ -302,3 +302,119 @@ fn an_interrupted_run_keeps_its_last_state() {
     assert_eq!(report["ended_by"], "SIGINT");
     assert!(out.join("frames.npz").exists());
 }
+
+/// A law that nearly has its shock, at other output times: equal to the error that both runs state, which is within the tolerance.
+#[test]
+fn output_times_change_no_more_than_the_stated_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("law.toml");
+    let text = "kind = \"conservation_law\"\nunits = \"none\"\ndomain = { x = [0, 6.283185307179586] }\npoints = 256\nboundary = \"periodic\"\nhorizon = 0.4\ninitial = \"sin(x)\"\n[advection]\nflux = \"burgers\"\nkernel = { bump = \"polynomial\", power = 3 }\n[run]\nduration = 0.9\n[output]\npictures = false\nreport = false\n";
+    std::fs::write(&file, text).unwrap();
+    let run = |name: &str, more: &[&str]| -> ([f64; 3], f64, f64) {
+        let out = dir.path().join(name);
+        let mut arguments = vec![
+            "run",
+            file.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        arguments.extend(more);
+        let done = peridyne(&arguments);
+        assert!(
+            done.status.success(),
+            "{}",
+            String::from_utf8_lossy(&done.stderr)
+        );
+        let said = String::from_utf8_lossy(&done.stdout);
+        assert!(
+            said.contains("error     of u by steps, estimated"),
+            "{said}"
+        );
+        let report: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(out.join("run.json")).unwrap()).unwrap();
+        let last = |name: &str| *column(&out.join("history.csv"), name).last().unwrap();
+        assert!(last("time_error") <= report["time_error"].as_f64().unwrap());
+        let allowed = report["time_error_allowed"]
+            .as_f64()
+            .unwrap_or(f64::INFINITY);
+        (
+            ["energy", "max", "total_variation"].map(last),
+            report["time_error"].as_f64().unwrap(),
+            allowed,
+        )
+    };
+    let many = ["--set", "output.frames=100", "--set", "output.history=100"];
+    let few = ["--set", "output.frames=1", "--set", "output.history=1"];
+    let coarse = ["--set", "run.tolerance=1e-3"];
+    let given = ["--set", "run.time_step=0.05"];
+    let (best, best_error, _) = run("best", &["--set", "run.tolerance=1e-11"]);
+    for (name, more) in [
+        ("many", many.to_vec()),
+        ("few", few.to_vec()),
+        (
+            "coarse",
+            [few, [coarse[0], coarse[1], "--set", "title=\"\""]].concat(),
+        ),
+        (
+            "given",
+            [few, [given[0], given[1], "--set", "title=\"\""]].concat(),
+        ),
+    ] {
+        let (found, error, allowed) = run(name, &more);
+        assert!(error <= 3.0 * allowed, "{name}: {error} {allowed}");
+        let error = error + best_error;
+        // ∫u du over 2π, the largest u, and four times it where it rises and falls twice
+        for ((a, b), factor) in found
+            .iter()
+            .zip(best)
+            .zip([std::f64::consts::TAU, 1.0, 4.0])
+        {
+            assert!((a - b).abs() <= factor * error, "{name}: {a} {b} {error}");
+        }
+    }
+}
+
+/// SIGTERM is heard within sums of a single step that take minutes, and what was there before it is kept.
+#[cfg(unix)]
+#[test]
+fn a_long_step_hears_that_it_is_to_end() {
+    use std::io::BufRead;
+    let dir = tempfile::tempdir().unwrap();
+    let (file, out) = (dir.path().join("law.toml"), dir.path().join("out"));
+    let text = "kind = \"conservation_law\"\nunits = \"none\"\ndomain = { x = [0, 1] }\npoints = 400000\nboundary = { left = 0, right = 0 }\nhorizon = 0.9\ninitial = \"sin(pi*x)\"\n[advection]\nflux = \"burgers\"\nkernel = { bump = \"polynomial\", power = 3 }\n[run]\nduration = 1\n[output]\npictures = false\nreport = false\n";
+    std::fs::write(&file, text).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+        .args([
+            "run",
+            file.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let lines = std::io::BufReader::new(child.stdout.take().unwrap()).lines();
+    assert!(
+        lines
+            .map_while(Result::ok)
+            .any(|l| l.contains("results in"))
+    );
+    std::thread::sleep(Duration::from_secs(2));
+    let begin = Instant::now();
+    Command::new("kill")
+        .args(["-TERM", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    // files of the state take their time too
+    assert!(
+        begin.elapsed() < Duration::from_secs(10),
+        "{:?}",
+        begin.elapsed()
+    );
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("run.json")).unwrap()).unwrap();
+    assert_eq!(report["ended_by"], "SIGTERM");
+    assert_eq!(report["steps"], 0);
+    assert!(out.join("frames.npz").metadata().unwrap().len() > 1000);
+}

@@ -9,7 +9,7 @@ use crate::write::history::{Column, History};
 use crate::write::report::{self, ReportError};
 use crate::write::run_json::{FieldNote, Setting, Status, UnitNames, deck_hash, peak_memory_bytes};
 use peridyne::quantity::rounded;
-use peridyne_transport::{Evaluation, Method, RunError, measure};
+use peridyne_transport::{Evaluation, Evolution, Method, RunError, StepSize, measure};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -74,16 +74,25 @@ fn columns(deck: &LawDeck) -> Vec<Column> {
         ("total_variation", of(1, space - 1, 0)),
         ("min", unit(u)),
         ("max", unit(u)),
+        ("time_error", unit(u)),
     ]
     .map(|(name, unit)| Column::new(name, &unit))
     .to_vec()
 }
 
 /// The row of now.
-fn row(deck: &mut LawDeck) -> Result<[f64; 8], RunError> {
+fn row(deck: &mut LawDeck) -> Result<[f64; 9], RunError> {
     let e = &mut deck.evolution;
     let dt = e.next_step(e.time + deck.duration / deck.rows as f64)?;
+    let dt = match e.size() {
+        StepSize::Within { .. } => 0.5 * dt,
+        StepSize::Part(_) | StepSize::Fixed { .. } => dt,
+    };
     let slope = e.energy_slope(dt)?;
+    let exact = e.operator.energy_rate(&e.u, e.time);
+    if e.operator.stopped() {
+        return Err(RunError::Ended { time: e.time });
+    }
     let (law, u) = (e.operator.law(), &e.u);
     let grid = law.grid;
     let [low, high] = measure::extremes(u);
@@ -92,11 +101,26 @@ fn row(deck: &mut LawDeck) -> Result<[f64; 8], RunError> {
         measure::mass(u, grid.cell()),
         measure::energy(u, grid.cell()),
         slope,
-        e.operator.energy_rate(u, e.time),
+        exact,
         measure::total_variation(u, grid.cells, grid.spacing, law.periodic()),
         low,
         high,
+        e.error().map_or(f64::NAN, |[now, _]| now),
     ])
+}
+
+/// What steps have added to u at most so far, and may add, both in u; infinite where it is not known.
+fn errors(e: &Evolution) -> (Option<f64>, Option<f64>) {
+    let allowed = match (e.size(), e.scale()) {
+        (StepSize::Within { tolerance, .. }, Some(scale)) => Some(tolerance * scale),
+        _ => None,
+    };
+    (e.error().map(|[_, most]| most), allowed)
+}
+
+/// Who ended a step before its end.
+fn who(listener: &mut dyn Listener) -> String {
+    listener.ended().unwrap_or_else(|| "its caller".into())
 }
 
 /// Steps to a time; who ended the run there, if somebody did.
@@ -112,9 +136,12 @@ fn advance(
             return Ok(Some(signal));
         }
         let begin = Instant::now();
-        let done = e.next_step(end).and_then(|dt| e.step(dt));
+        let done = e.step_to(end);
         *stepping += begin.elapsed();
-        done?;
+        match done {
+            Err(RunError::Ended { .. }) => return Ok(Some(who(listener))),
+            _ => done?,
+        }
         listener.step(e.time / deck.duration, e.steps);
     }
     Ok(None)
@@ -170,6 +197,7 @@ pub fn run(
     listener: &mut dyn Listener,
 ) -> Result<Report, LawError> {
     let _held = Folder::claim(dir)?;
+    deck.evolution.estimate();
     let mut history = History::create(&dir.join("history.csv"), &columns(deck))?;
     let mut frames = Frames::new(deck.grid());
     let (mut ended, mut stopped) = (None, None);
@@ -194,6 +222,7 @@ pub fn run(
         if whole && next_row <= due * (1.0 + 1e-12) {
             match row(deck) {
                 Ok(values) => history.push(deck.evolution.steps, &values)?,
+                Err(RunError::Ended { .. }) => ended = Some(who(listener)),
                 Err(error) => stopped = Some(error),
             }
             line += 1;
@@ -209,6 +238,14 @@ pub fn run(
         write_pictures(dir, deck, &frames)?;
     }
     let e = &deck.evolution;
+    let (time_error, allowed) = errors(e);
+    let mut warnings = deck.warnings.clone();
+    if let (Some(error), Some(allowed)) = (time_error, allowed)
+        && !(error <= allowed)
+    {
+        let [error, allowed] = [error, allowed].map(|e| deck.units.show(e, deck.dimension));
+        warnings.push(format!("steps have added up to {error} to u, more than the {allowed} of run.tolerance: the law lets small differences grow; take a smaller tolerance, or read nothing into what differs by less"));
+    }
     let seconds = stepping.as_secs_f64();
     let visits = e.u.len() as f64 * e.steps as f64;
     let report = Report {
@@ -232,7 +269,9 @@ pub fn run(
         seconds_stepping: seconds,
         ns_per_point_step: (visits > 0.0).then(|| seconds * 1e9 / visits),
         peak_memory_bytes: peak_memory_bytes(),
-        warnings: deck.warnings.clone(),
+        time_error,
+        time_error_allowed: allowed,
+        warnings,
         setting: setting(deck, told),
     };
     report.write(&dir.join("run.json"))?;

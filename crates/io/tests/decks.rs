@@ -380,6 +380,10 @@ fn decks_of_conservation_laws() {
     let mut wrong = Vec::new();
     for (path, text) in &bad {
         let name = path.file_stem().unwrap().to_str().unwrap();
+        // other systems do not say what is left
+        if name.ends_with("_beyond_memory") && !cfg!(target_os = "linux") {
+            continue;
+        }
         let (message, line) = expectation(text).unwrap_or_else(|| panic!("{name}"));
         match LawDeck::parse(text, path.to_str().unwrap(), &[]) {
             Ok(_) => wrong.push(format!("{name}: was accepted")),

@@ -89,7 +89,7 @@ impl Flux {
         self.value(u, u)
     }
 
-    /// `f′(u)`; of a function by a central difference.
+    /// `f′(u)`; of a function by a central difference, by one to the side on which it has a value where the other has none.
     pub fn speed(&self, u: f64) -> f64 {
         match self {
             Flux::Polynomial(a) => {
@@ -107,7 +107,12 @@ impl Flux {
             }
             Flux::Function(psi) => {
                 let d = 6e-6 * u.abs().max(1.0);
-                (psi.value(u + d) - psi.value(u - d)) / (2.0 * d)
+                let [low, here, high] = [u - d, u, u + d].map(|u| psi.value(u));
+                match (low.is_finite(), high.is_finite()) {
+                    (false, true) => (high - here) / d,
+                    (true, false) => (here - low) / d,
+                    _ => (high - low) / (2.0 * d),
+                }
             }
         }
     }

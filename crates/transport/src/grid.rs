@@ -4,8 +4,8 @@ use peridyne::error::BuildError;
 use std::fmt;
 use std::sync::Arc;
 
-/// Most points of a grid.
-const MOST: usize = 1 << 27;
+/// Most points of a grid: no machine holds more. What this one holds is for who runs a law to say ([`crate::memory`]).
+const MOST: usize = 1 << 48;
 
 /// Values at a place (length) and a time.
 pub type Values = Arc<dyn Fn(&[f64; 3], f64) -> f64 + Send + Sync>;

@@ -145,14 +145,14 @@ impl Law {
         self.periodic() && polynomial
     }
 
-    /// On a padded grid, for each axis.
+    /// A field of directions on a padded grid, for each axis; nothing of a constant one.
     pub(crate) fn direction(&self, padded: &Padded) -> Vec<Vec<f64>> {
         let Some(advection) = &self.advection else {
             return vec![];
         };
         let axes = 0..self.grid.dimension;
         match &advection.direction {
-            Direction::Constant(d) => axes.map(|a| vec![d[a]; padded.size()]).collect(),
+            Direction::Constant(_) => vec![],
             Direction::Field(f) => {
                 let column = |a: usize| {
                     let own = self.grid.sample(|x| f[a](x, 0.0));

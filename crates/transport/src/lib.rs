@@ -6,6 +6,7 @@
 //!
 //! The chapter has scalar laws on a line only; there are no systems in it. In a plane a scalar law carries along a direction field.
 
+pub mod evolution;
 pub mod exact;
 pub mod flux;
 pub mod formula;
@@ -13,19 +14,23 @@ pub mod grid;
 pub mod kernel;
 pub mod law;
 pub mod measure;
+pub mod memory;
 pub mod noll;
 pub mod operator;
 mod psi;
 pub mod quadrature;
 pub mod step;
+mod stop;
 mod threads;
 pub mod wave;
 pub mod weights;
 
+pub use evolution::{Evolution, StepSize};
 pub use flux::Flux;
 pub use formula::Formula;
 pub use grid::{Boundary, Grid};
 pub use kernel::{Bump, Kernel, Parity, Profile};
 pub use law::{Direction, Law};
 pub use operator::{Evaluation, Operator};
-pub use step::{Evolution, Method, RunError, StepSize};
+pub use step::{Method, RunError};
+pub use stop::Stop;

@@ -7,7 +7,12 @@ pub fn mass(u: &[f64], cell: f64) -> f64 {
 
 /// `∫u²/2`
 pub fn energy(u: &[f64], cell: f64) -> f64 {
-    0.5 * cell * exact_sum(u.iter().map(|u| u * u))
+    0.5 * product(u, u, cell)
+}
+
+/// `∫ab`, summed in the same way.
+pub fn product(a: &[f64], b: &[f64], cell: f64) -> f64 {
+    cell * exact_sum(a.iter().zip(b).map(|(a, b)| a * b))
 }
 
 fn exact_sum(values: impl Iterator<Item = f64>) -> f64 {

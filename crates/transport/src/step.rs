@@ -2,7 +2,6 @@
 //! takes diffusion implicitly: (2,3,2) of Ascher, Ruuth and Spiteri (1997, section 2.5), of order 2, L-stable in what is implicit.
 
 use crate::flux::Flux;
-use crate::measure;
 use crate::operator::Operator;
 use crate::threads::{PIECE, pieces, pieces_of_two};
 use peridyne::quantity::rounded;
@@ -26,6 +25,23 @@ impl Method {
             Method::Imex => [3f64.sqrt(), f64::INFINITY],
         }
     }
+
+    /// Evaluations of a step; implicit ones are solved besides.
+    pub fn stages(self) -> u8 {
+        match self {
+            Method::Ssprk3 | Method::Imex => 3,
+            Method::Rk4 => 4,
+        }
+    }
+
+    /// Power of the step with which errors fall.
+    pub fn order(self) -> u8 {
+        match self {
+            Method::Ssprk3 => 3,
+            Method::Rk4 => 4,
+            Method::Imex => 2,
+        }
+    }
 }
 
 /// What can go wrong in a run.
@@ -41,6 +57,12 @@ pub enum RunError {
         "the implicit step at t = {} was not solved: its residual is {} of the right side", rounded(*.time, 6), rounded(*.residual, 3)
     )]
     NotSolved { residual: f64, time: f64 },
+    #[error(
+        "no step is stable at t = {}: the flux changes too fast with u somewhere between its least and its largest value (the longest stable step is {stable})", rounded(*.time, 6)
+    )]
+    NoStep { stable: f64, time: f64 },
+    #[error("it was told to end at t = {}", rounded(*.time, 6))]
+    Ended { time: f64 },
 }
 
 /// Longest step that is stable for waves of all lengths on the state u and the collars at time t, coefficients frozen: `1/(c ρ_a/I + ε ρ_s/R)`, c the largest `|f′|`, ρ the largest
@@ -74,7 +96,7 @@ impl Stepper {
     /// From t to t + dt.
     ///
     /// # Errors
-    /// u that is not finite afterwards, an implicit step that is not solved; u is then as it was.
+    /// u that is not finite afterwards, an implicit step that is not solved, a stop that was asked for; u is then as it was.
     pub fn step(
         &mut self,
         operator: &mut Operator,
@@ -85,11 +107,21 @@ impl Stepper {
         self.rates.iter_mut().for_each(|r| r.resize(u.len(), 0.0));
         self.stage.clear();
         self.stage.extend_from_slice(u);
-        match self.method {
-            Method::Ssprk3 => self.ssprk3(operator, u, t, dt),
-            Method::Rk4 => self.rk4(operator, u, t, dt),
-            Method::Imex => self.imex(operator, u, t, dt)?,
+        let made = match self.method {
+            Method::Ssprk3 => {
+                self.ssprk3(operator, u, t, dt);
+                Ok(())
+            }
+            Method::Rk4 => {
+                self.rk4(operator, u, t, dt);
+                Ok(())
+            }
+            Method::Imex => self.imex(operator, u, t, dt),
+        };
+        if operator.stopped() {
+            return Err(RunError::Ended { time: t });
         }
+        made?;
         match self.stage.iter().position(|v| !v.is_finite()) {
             None => {
                 u.copy_from_slice(&self.stage);
@@ -201,133 +233,5 @@ impl Stepper {
             }
         });
         Ok(())
-    }
-}
-
-/// How long steps are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum StepSize {
-    /// A part of what is stable, of the state as it is.
-    Part(f64),
-    /// The same always; unstable ones are refused unless forced.
-    Fixed { step: f64, force_unstable: bool },
-}
-
-/// A state on its way.
-#[derive(Debug)]
-pub struct Evolution {
-    pub operator: Operator,
-    pub u: Vec<f64>,
-    pub time: f64,
-    /// Steps done.
-    pub steps: u64,
-    size: StepSize,
-    stepper: Stepper,
-}
-
-impl Evolution {
-    pub fn new(operator: Operator, u: Vec<f64>, method: Method, size: StepSize) -> Evolution {
-        Evolution {
-            operator,
-            u,
-            time: 0.0,
-            steps: 0,
-            size,
-            stepper: Stepper::new(method),
-        }
-    }
-
-    pub fn method(&self) -> Method {
-        self.stepper.method
-    }
-
-    /// Longest stable step of the state as it is.
-    pub fn stable_step(&self) -> f64 {
-        self.stable_until(0.0)
-    }
-
-    /// The same, with collars as they will be too: at the middle and the end of a step of that length.
-    fn stable_until(&self, step: f64) -> f64 {
-        let at = |later: f64| {
-            let t = self.time + later;
-            stable_step(&self.operator, self.stepper.method, &self.u, t)
-        };
-        let now = at(0.0);
-        match step > 0.0 && !self.operator.law().periodic() {
-            true => now.min(at(0.5 * step)).min(at(step)),
-            false => now,
-        }
-    }
-
-    /// The next step on the way to a time: whole ones until there.
-    ///
-    /// # Errors
-    /// A fixed step that is unstable.
-    pub fn next_step(&self, end: f64) -> Result<f64, RunError> {
-        let left = end - self.time;
-        let step = match self.size {
-            StepSize::Part(part) => {
-                // a collar that rises from nothing would leave the whole time for a step
-                let first = left.min(part * self.stable_step());
-                first.min(part * self.stable_until(first))
-            }
-            StepSize::Fixed {
-                step,
-                force_unstable,
-            } => {
-                let stable = self.stable_until(step.min(left));
-                if !force_unstable && step > stable * (1.0 + 1e-9) {
-                    return Err(RunError::Unstable {
-                        step,
-                        stable,
-                        time: self.time,
-                    });
-                }
-                step
-            }
-        };
-        Ok(left / (left / step - 1e-9).ceil().max(1.0))
-    }
-
-    /// A step of that length.
-    ///
-    /// # Errors
-    /// See [`Stepper::step`].
-    pub fn step(&mut self, dt: f64) -> Result<(), RunError> {
-        self.stepper
-            .step(&mut self.operator, &mut self.u, self.time, dt)?;
-        self.time += dt;
-        self.steps += 1;
-        Ok(())
-    }
-
-    /// To a time, in as many steps as it takes.
-    ///
-    /// # Errors
-    /// See [`Evolution::next_step`] and [`Stepper::step`].
-    pub fn run_to(&mut self, end: f64) -> Result<(), RunError> {
-        while self.time < end * (1.0 - 1e-12) {
-            let dt = self.next_step(end)?;
-            self.step(dt)?;
-        }
-        Ok(())
-    }
-
-    /// How fast `∫u²/2` changes now, as the steps make it: from two trial steps of `dt`, which leave no trace, by
-    /// `(−3E₀ + 4E₁ − E₂)/2dt`, of order 2.
-    ///
-    /// # Errors
-    /// See [`Stepper::step`].
-    pub fn energy_slope(&mut self, dt: f64) -> Result<f64, RunError> {
-        let cell = self.operator.law().grid.cell();
-        let energy = |u: &[f64]| measure::energy(u, cell);
-        let mut trial = self.u.clone();
-        let before = energy(&trial);
-        self.stepper
-            .step(&mut self.operator, &mut trial, self.time, dt)?;
-        let first = energy(&trial);
-        self.stepper
-            .step(&mut self.operator, &mut trial, self.time + dt, dt)?;
-        Ok((4.0 * (first - before) - (energy(&trial) - before)) / (2.0 * dt))
     }
 }

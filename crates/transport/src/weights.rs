@@ -14,6 +14,10 @@ use peridyne::quantity::rounded;
 /// Spacings that a horizon has at least: two bonds on either side, though the kernel may be 0 at the horizon, for two moments.
 pub const FEWEST: f64 = 3.0;
 
+/// Factor by which the moment of the sum may be off before it is corrected: bumps of three spacings and more are within a third, and a sum that is farther off is no
+/// quadrature of the kernel.
+const OFF: f64 = 4.0;
+
 /// Half of the bonds of a point: those of +m; a bond of −m has the weight ∓.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stencil {
@@ -26,7 +30,7 @@ pub struct Stencil {
 
 impl Stencil {
     /// # Errors
-    /// A horizon of fewer than 3 spacings, and of more than a million (in a plane 500).
+    /// A horizon of fewer than 3 spacings, and of more than a million (in a plane 500); a kernel that the grid does not resolve.
     pub fn new(kernel: &Kernel, grid: &Grid, path: &str) -> Result<Stencil, BuildError> {
         let ratio = kernel.horizon() / grid.spacing;
         let coarse = |what: String| {
@@ -64,7 +68,18 @@ impl Stencil {
                 })
                 .sum()
         };
-        let one = MOMENT / moment(power, 0);
+        let found = moment(power, 0);
+        if !(found > MOMENT / OFF && found < MOMENT * OFF) {
+            return Err(BuildError::ill_posed(
+                path,
+                format!(
+                    "this grid does not resolve the kernel: its moment, summed over bonds of {} spacings at most, is {found:.4}, and 2 in the continuum",
+                    rounded(ratio, 4)
+                ),
+            )
+            .help("write more points, or a kernel without parts that are narrower than a spacing"));
+        }
+        let one = MOMENT / found;
         let factors = match grid.dimension {
             1 => {
                 let (a, b, c, d) = (
@@ -89,8 +104,12 @@ impl Stencil {
             each.collect()
         };
         let mut corrected = with(factors);
-        // few bonds: both moments would need a weight of the other sign, one does not
-        if corrected.iter().zip(&raw).any(|(c, w)| !(c * w >= 0.0)) {
+        let first: f64 = { steps.iter().zip(&corrected) }
+            .map(|(m, w)| share * w * length(m).powi(power))
+            .sum();
+        // few bonds: both moments would need a weight of the other sign, or differ by round-off alone; one does not
+        let turned = corrected.iter().zip(&raw).any(|(c, w)| !(c * w >= 0.0));
+        if turned || !((first - MOMENT).abs() < 1e-9 * MOMENT) {
             corrected = with([one, 0.0]);
         }
         let weights = steps.iter().zip(&corrected).map(|(m, w)| {

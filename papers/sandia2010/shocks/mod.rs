@@ -139,6 +139,7 @@ fn waves(context: &Context, found: &mut Findings) -> Result<(), Failure> {
             ("constants.delta", (0.5 * DELTA).to_string()),
             ("constants.epsilon", (0.1 * DELTA).to_string()),
             ("domain.x", "[-0.75, 0.75]".into()),
+            ("run.duration", "1".into()),
             ("initial", "0.5*(1 - tanh((x + 0.375)/(4*epsilon)))".into()),
         ],
     );

@@ -5,7 +5,7 @@ use super::plot::{ColorMap, Map, Plot};
 use super::run_json::{Setting, Status};
 use crate::deck::Dim;
 use crate::deck::conservation::LawDeck;
-use ndarray::{ArrayD, IxDyn};
+use ndarray::{ArrayViewD, IxDyn};
 use ndarray_npy::NpzWriter;
 use peridyne_transport::{Grid, measure};
 use serde::Serialize;
@@ -57,17 +57,17 @@ impl Frames {
 
     fn archive(&self) -> Result<Vec<u8>, Error> {
         let mut file = NpzWriter::new_compressed(Cursor::new(vec![]));
-        let mut add = |name: &str, values: Vec<f64>, shape: &[usize]| -> Result<(), Error> {
-            let array = ArrayD::from_shape_vec(IxDyn(shape), values).map_err(Error::other)?;
+        let mut add = |name: &str, values: &[f64], shape: &[usize]| -> Result<(), Error> {
+            let array = ArrayViewD::from_shape(IxDyn(shape), values).map_err(Error::other)?;
             file.add_array(name, &array).map_err(Error::other)
         };
         let (n, d) = (self.grid.points(), self.grid.dimension);
-        let x = (0..n)
-            .flat_map(|k| self.grid.place(k)[..d].to_vec())
+        let x: Vec<f64> = (0..n)
+            .flat_map(|k| self.grid.place(k).into_iter().take(d))
             .collect();
-        add("x", x, &[n, d][..if d == 1 { 1 } else { 2 }])?;
-        add("t", self.times.clone(), &[self.times.len()])?;
-        add("u", self.values.clone(), &[self.times.len(), n])?;
+        add("x", &x, &[n, d][..if d == 1 { 1 } else { 2 }])?;
+        add("t", &self.times, &[self.times.len()])?;
+        add("u", &self.values, &[self.times.len(), n])?;
         Ok(file.finish().map_err(Error::other)?.into_inner())
     }
 }
@@ -147,7 +147,11 @@ pub struct Report {
     pub seconds_stepping: f64,
     pub ns_per_point_step: Option<f64>,
     pub peak_memory_bytes: Option<u64>,
-    /// What looked wrong in the deck.
+    /// What steps have added to u at most until the end, estimated; none where it is not known.
+    pub time_error: Option<f64>,
+    /// What they may add.
+    pub time_error_allowed: Option<f64>,
+    /// What looked wrong in the deck, and in the run.
     pub warnings: Vec<String>,
     /// What reports tell besides.
     pub setting: Setting,

@@ -26,14 +26,20 @@ pub fn characteristics(flux: &Flux, g: impl Fn(f64) -> f64, fastest: f64, x: f64
     g(0.5 * (low + high))
 }
 
-/// When characteristics first cross: `−1/min (f′(g))_x`, of values on a line, fine enough that differences are derivatives; `None` where they never do.
-pub fn shock_time(flux: &Flux, u: &[f64], spacing: f64) -> Option<f64> {
+/// When characteristics first cross: `−1/min (f′(g))_x`, of values on a line, fine enough that differences are derivatives, over the ends too where the line is `periodic`;
+/// `None` where they never do, as far as that is above the round-off of speeds.
+pub fn shock_time(flux: &Flux, u: &[f64], spacing: f64, periodic: bool) -> Option<f64> {
     let speed: Vec<f64> = u.iter().map(|u| flux.speed(*u)).collect();
-    let steepest = speed
-        .windows(2)
-        .map(|w| (w[1] - w[0]) / spacing)
-        .fold(0.0, f64::min);
-    (steepest < 0.0).then(|| -1.0 / steepest)
+    let fastest = speed.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+    // of a function slopes are differences themselves
+    let known = match flux {
+        Flux::Polynomial(_) => 8.0 * f64::EPSILON,
+        Flux::Function(_) => 1e-9,
+    };
+    let ends = (periodic && u.len() > 1).then(|| speed[0] - speed[u.len() - 1]);
+    let steps = speed.windows(2).map(|w| w[1] - w[0]).chain(ends);
+    let steepest = steps.fold(0.0, f64::min);
+    (steepest < -known * fastest).then(|| -spacing / steepest)
 }
 
 /// The viscous shock of the local Burgers equation from `left` down to `right`, at rest about 0 in its own frame:

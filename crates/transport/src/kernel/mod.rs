@@ -21,6 +21,9 @@ pub const MOMENT: f64 = 2.0;
 /// How far a moment may be off: tables and expressions have rounded constants.
 const CLOSE: f64 = 1e-6;
 
+/// Least moment, of that of |φ|: quadrature knows the first to 1e-14 of the second, and a moment is asked for to [`CLOSE`].
+const LEAST: f64 = 1e-14 / CLOSE;
+
 /// How far `φ(−z)` may be from `∓φ(z)`, of the largest value.
 const PARITY: f64 = 1e-9;
 
@@ -129,7 +132,35 @@ impl Kernel {
                 ),
             ));
         }
+        let absolute = kernel.absolute_moment();
+        if moment.abs() <= LEAST * absolute {
+            return Err(BuildError::ill_posed(
+                path,
+                format!(
+                    "the {} of this kernel is 0 but for round-off, {moment:.1e} where that of |φ| is {absolute:.3e}: there is no local limit, and no factor that brings it to 2",
+                    kernel.moment_name()
+                ),
+            )
+            .help(match parity {
+                Parity::Odd => "take a kernel whose parts for z > 0 do not cancel, such as z*(delta - abs(z))",
+                Parity::Even => "take a kernel whose parts do not cancel, such as delta - abs(z)",
+            }));
+        }
         let factor = MOMENT / moment;
+        if normalise && factor < 0.0 {
+            return Err(BuildError::ill_posed(
+                path,
+                format!(
+                    "the {} of this kernel is {moment:.6}: brought to 2 it would have the other sign, and {} the other way",
+                    kernel.moment_name(),
+                    match parity {
+                        Parity::Odd => "carry",
+                        Parity::Even => "spread",
+                    }
+                ),
+            )
+            .help("write the kernel with the other sign"));
+        }
         if normalise || kernel.profile.bump().is_some() {
             kernel.scale = factor;
         } else if (factor - 1.0).abs() > CLOSE {
@@ -300,13 +331,28 @@ impl Kernel {
         })
     }
 
+    /// The same of |φ|.
+    fn absolute_moment(&self) -> f64 {
+        self.radial(
+            match self.parity {
+                Parity::Odd => 1,
+                Parity::Even => 2,
+            },
+            f64::abs,
+        )
+    }
+
     /// `∫ |z|^p φ` on a line; in a plane with the part of one axis, `π ∫ r^{p+1} φ dr`.
     pub fn power_moment(&self, p: i32) -> f64 {
+        self.radial(p, |value| value)
+    }
+
+    fn radial(&self, p: i32, of: impl Fn(f64) -> f64) -> f64 {
         let (factor, more) = match self.dimension {
             1 => (2.0, 0),
             _ => (std::f64::consts::PI, 1),
         };
-        factor * self.integral(64, |r| r.powi(p + more) * self.value(r))
+        factor * self.integral(64, |r| r.powi(p + more) * of(self.value(r)))
     }
 
     /// `∫₀^δ f`, where f is smooth on the parts of the profile; of a function nobody says where these end.

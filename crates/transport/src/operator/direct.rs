@@ -4,23 +4,40 @@ use crate::flux::Psi;
 use crate::grid::Padded;
 use crate::kernel::Parity;
 use crate::law::{Direction, Law};
+use crate::stop::Stop;
 use crate::threads::{PIECE, pieces};
 use crate::weights::Stencil;
-use rayon::prelude::*;
 
 /// Points whose sums stay in registers: eight registers of AVX2, four of AVX-512.
 const BLOCK: usize = 32;
 
+/// Additions, about, after which it is asked whether to go on: some milliseconds.
+const UNASKED: usize = 1 << 23;
+
 /// `Σ_m w_m v(x + mh)` over all bonds, component `axis` of odd weights; of an even kernel `Σ_m w_m (v(x + mh) − v(x))`.
-pub fn convolve(stencil: &Stencil, axis: usize, padded: &Padded, v: &[f64], out: &mut [f64]) {
+pub fn convolve(
+    stencil: &Stencil,
+    axis: usize,
+    padded: &Padded,
+    v: &[f64],
+    out: &mut [f64],
+    stop: &Stop,
+) {
     let bonds: Vec<(isize, f64)> = { stencil.steps.iter().zip(&stencil.weights) }
         .filter(|(_, w)| w[axis] != 0.0)
         .map(|(m, w)| (padded.offset(*m), w[axis]))
         .collect();
     let [n, _] = padded.grid.cells;
+    let unasked = (UNASKED / bonds.len().max(1)).max(BLOCK) / BLOCK * BLOCK;
     pieces(out, line(padded), 2 * bonds.len(), |first, out| {
-        let start = padded.row(first / n) + first % n;
-        row(stencil.parity, &bonds, v, start, out);
+        let mut start = padded.row(first / n) + first % n;
+        for part in out.chunks_mut(unasked) {
+            if stop.asked() {
+                return;
+            }
+            row(stencil.parity, &bonds, v, start, part);
+            start += part.len();
+        }
     });
 }
 
@@ -106,59 +123,6 @@ fn even<const N: usize>(bonds: &[(isize, f64)], v: &[f64], at: usize, out: &mut 
     out.copy_from_slice(&sum);
 }
 
-/// The sum over bonds with an end in the grid, each once, of `of(p, q, is p in the grid, is q, flux weight, spreading weight)`, p before q in memory, of which
-/// either may be a ghost of a collar. Where the boundary is periodic the first end is a point and the other possibly its image.
-/// Bonds of a step make a sum of their own, and these are added in order.
-pub(super) fn sum_of_pairs(
-    law: &Law,
-    padded: &Padded,
-    direction: &[Vec<f64>],
-    of: impl Fn(usize, usize, bool, bool, f64, f64) -> f64 + Sync,
-) -> f64 {
-    let grid = &padded.grid;
-    let [n, rows] = grid.cells.map(|c| c as isize);
-    let collars = !law.periodic();
-    let of_step = |m: [isize; 2], w: [f64; 2], carries: bool| {
-        let offset = padded.offset(m);
-        // first ends in the grid, and behind it where the second is still inside
-        let (from_j, from_i) = match collars {
-            true => (-m[1].max(0), -m[0].max(0)),
-            false => (0, 0),
-        };
-        let to_i = if collars { n + (-m[0]).max(0) } else { n };
-        let mut sum = 0.0;
-        for j in from_j..rows {
-            for i in from_i..to_i {
-                let inside = |i: isize, j: isize| (0..n).contains(&i) && (0..rows).contains(&j);
-                let (first, second) = (inside(i, j), !collars || inside(i + m[0], j + m[1]));
-                if !(first || second) {
-                    continue;
-                }
-                let p = padded.row(0).wrapping_add_signed(padded.offset([i, j]));
-                let q = p.wrapping_add_signed(offset);
-                sum += match carries {
-                    true => {
-                        let w = { direction.iter().zip(w) }
-                            .map(|(d, w)| 0.5 * w * (d[p] + d[q]))
-                            .sum();
-                        of(p, q, first, second, w, 0.0)
-                    }
-                    false => of(p, q, first, second, 0.0, w[0]),
-                };
-            }
-        }
-        sum
-    };
-    let over = |stencil: &Stencil, carries: bool| -> f64 {
-        let steps = stencil.steps.par_iter().zip(&stencil.weights);
-        let sums: Vec<f64> = steps.map(|(m, w)| of_step(*m, *w, carries)).collect();
-        sums.iter().sum()
-    };
-    let carried = law.advection.as_ref().map(|a| over(&a.stencil, true));
-    let spread = law.diffusion.as_ref().map(|d| over(&d.stencil, false));
-    carried.unwrap_or(0.0) + spread.unwrap_or(0.0)
-}
-
 /// Adds the transport of a flux that is no polynomial, `−Σ_m w_m F(u(x), u(x + mh))`: F of each pair once, for all pairs of a step together.
 pub(super) fn carry(
     law: &Law,
@@ -166,7 +130,7 @@ pub(super) fn carry(
     padded: &Padded,
     direction: &[Vec<f64>],
     v: &[f64],
-    pairs: &mut Vec<f64>,
+    (pairs, stop): (&mut Vec<f64>, &Stop),
     out: &mut [f64],
 ) {
     /// of an evaluation
@@ -185,7 +149,13 @@ pub(super) fn carry(
         let up = m[1].unsigned_abs();
         let low = padded.margin[0] - m[0].max(0).unsigned_abs();
         let high = padded.margin[0] + n + (-m[0]).max(0).unsigned_abs();
+        if stop.asked() {
+            return;
+        }
         pieces(pairs, length, WORK, |first, piece| {
+            if stop.asked() {
+                return;
+            }
             let row = first / padded.stride;
             if row + up < padded.margin[1] || row >= padded.margin[1] + rows {
                 return;

@@ -5,6 +5,7 @@
 
 mod direct;
 mod fourier;
+mod gradients;
 
 pub use fourier::Transform;
 
@@ -12,9 +13,11 @@ use crate::flux::Flux;
 use crate::grid::{Boundary, Padded};
 use crate::law::{Direction, Law};
 use crate::measure;
+use crate::stop::Stop;
 use crate::threads::{PIECE, pieces};
 use crate::weights::Stencil;
 use fourier::Fourier;
+use gradients::conjugate_gradients;
 use peridyne::error::BuildError;
 use peridyne::quantity::rounded;
 
@@ -44,8 +47,9 @@ impl Evaluation {
 #[derive(Debug)]
 pub struct Operator {
     law: Law,
+    stop: Stop,
     padded: Padded,
-    /// On the padded grid, for each axis.
+    /// Of a field of directions, on the padded grid, for each axis.
     direction: Vec<Vec<f64>>,
     /// Kernels that carry: one for each axis, or that along a constant direction; and the one that spreads.
     carrying: Vec<Stencil>,
@@ -74,7 +78,12 @@ impl Operator {
         };
         let padded = Padded::new(law.grid, reach);
         let direction = law.direction(&padded);
-        if direction.iter().flatten().any(|d| !d.is_finite()) {
+        let constant = match law.advection.as_ref().map(|a| &a.direction) {
+            Some(Direction::Constant(d)) => *d,
+            Some(Direction::Field(_)) | None => [0.0; 2],
+        };
+        let mut all = direction.iter().flatten().chain(&constant);
+        if all.any(|d| !d.is_finite()) {
             return Err(BuildError::invalid(
                 "advection.direction",
                 "the direction is not finite everywhere",
@@ -101,7 +110,14 @@ impl Operator {
         let longest = (0..direction.first().map_or(0, Vec::len))
             .map(|p| direction.iter().map(|d| d[p] * d[p]).sum::<f64>())
             .fold(0.0, f64::max)
-            .sqrt();
+            .sqrt()
+            .max(
+                constant[..dimension]
+                    .iter()
+                    .map(|d| d * d)
+                    .sum::<f64>()
+                    .sqrt(),
+            );
         let spectrum = [
             law.advection.as_ref().map_or(0.0, |a| {
                 0.5 * longest * fourier::largest(&a.stencil, dimension)
@@ -125,6 +141,7 @@ impl Operator {
             sums: vec![0.0; law.grid.points()],
             values: vec![],
             source: vec![],
+            stop: Stop::default(),
             law,
             padded,
             direction,
@@ -205,11 +222,43 @@ impl Operator {
         &self.law
     }
 
+    /// From now on sums end early when `stop` says so; what they give is then of no use ([`Operator::stopped`]).
+    pub fn stop_when(&mut self, stop: Stop) {
+        self.stop = stop;
+    }
+
+    /// Was the last sum possibly left before its end?
+    pub fn stopped(&self) -> bool {
+        self.stop.asked()
+    }
+
     pub fn evaluation(&self) -> Evaluation {
         match self.fourier {
             Some(_) => Evaluation::Fourier,
             None => Evaluation::Direct,
         }
+    }
+
+    /// Additions and products of an evaluation, about.
+    pub fn operations(&self) -> f64 {
+        let law = &self.law;
+        let points = law.grid.points() as f64;
+        let function = law
+            .advection
+            .as_ref()
+            .is_some_and(|a| matches!(a.flux, Flux::Function(_)));
+        // two transforms; a difference, a product and a sum of each pair of bonds
+        let transforms = 2.0 * 2.5 * points.log2().max(1.0);
+        let each = law.bonds().into_iter().zip(law.convolutions());
+        let convolutions = each.enumerate().map(|(n, (bonds, number))| {
+            let of_pair = if function && n == 0 { 16.0 } else { 3.0 };
+            let once = match self.fourier {
+                Some(_) => transforms,
+                None => of_pair * bonds as f64 / 2.0,
+            };
+            number as f64 * once
+        });
+        points * convolutions.sum::<f64>()
     }
 
     /// Largest frequency of waves for a speed of 1 (half of each two-point flux is the partner's), and largest rate of decay by diffusion (1/length, 1/time).
@@ -219,7 +268,7 @@ impl Operator {
 
     /// Subtracts `∫ F φ_a dy` at time t from `out`, for all points of the grid.
     pub fn carry(&mut self, u: &[f64], t: f64, out: &mut [f64]) {
-        let Some(advection) = &self.law.advection else {
+        let Some(advection) = self.law.advection.as_ref().filter(|_| !self.stop.asked()) else {
             return;
         };
         let values = match &self.fourier {
@@ -233,8 +282,8 @@ impl Operator {
             Flux::Polynomial(a) => a,
             Flux::Function(psi) => {
                 let (padded, direction) = (&self.padded, &self.direction);
-                let pairs = &mut self.source;
-                direct::carry(&self.law, &**psi, padded, direction, values, pairs, out);
+                let room = (&mut self.source, &self.stop);
+                direct::carry(&self.law, &**psi, padded, direction, values, room, out);
                 return;
             }
         };
@@ -251,8 +300,9 @@ impl Operator {
                     evaluate(row, v, piece);
                 });
                 let mut convolve = |source: &[f64], sums: &mut [f64]| match &mut self.fourier {
+                    _ if self.stop.asked() => {}
                     Some(fourier) => fourier.convolve(number, source, sums),
-                    None => direct::convolve(stencil, axis, &self.padded, source, sums),
+                    None => direct::convolve(stencil, axis, &self.padded, source, sums, &self.stop),
                 };
                 convolve(&self.source, &mut self.sums);
                 if constant {
@@ -276,7 +326,7 @@ impl Operator {
 
     /// Adds `ε ∫ (u(y) − u(x)) φ_s dy` at time t.
     pub fn spread(&mut self, u: &[f64], t: f64, out: &mut [f64]) {
-        let Some(diffusion) = &self.law.diffusion else {
+        let Some(diffusion) = self.law.diffusion.as_ref().filter(|_| !self.stop.asked()) else {
             return;
         };
         match &mut self.fourier {
@@ -287,7 +337,8 @@ impl Operator {
             None => {
                 self.padded.fill(u, &self.law.boundary, t, &mut self.values);
                 let (padded, values) = (&self.padded, &self.values);
-                direct::convolve(&diffusion.stencil, 0, padded, values, &mut self.sums);
+                let (stencil, sums) = (&diffusion.stencil, &mut self.sums);
+                direct::convolve(stencil, 0, padded, values, sums, &self.stop);
             }
         }
         let sums = &self.sums;
@@ -309,7 +360,7 @@ impl Operator {
     /// # Errors
     /// The residual that conjugate gradients end with above 1e-13 of the right side.
     pub fn solve(&mut self, factor: f64, t: f64, u: &mut [f64]) -> Result<(), f64> {
-        let Some(diffusion) = &self.law.diffusion else {
+        let Some(diffusion) = self.law.diffusion.as_ref().filter(|_| !self.stop.asked()) else {
             return Ok(());
         };
         let factor = factor * diffusion.viscosity;
@@ -324,46 +375,29 @@ impl Operator {
             // what the collars give is known
             let zero = vec![0.0; u.len()];
             padded.fill(&zero, &around, t, &mut self.values);
-            direct::convolve(stencil, 0, padded, &self.values, &mut self.sums);
+            let (values, sums) = (&self.values, &mut self.sums);
+            direct::convolve(stencil, 0, padded, values, sums, &self.stop);
             u.iter_mut()
                 .zip(&self.sums)
                 .for_each(|(u, s)| *u += factor * s);
             around = Boundary::Collars(std::sync::Arc::new(|_, _| 0.0));
         }
-        let (values, sums) = (&mut self.values, &mut self.sums);
-        conjugate_gradients(u, |p, out| {
+        let (values, sums, stop) = (&mut self.values, &mut self.sums, &self.stop);
+        conjugate_gradients(u, stop, |p, out| {
             padded.fill(p, &around, t, values);
-            direct::convolve(stencil, 0, padded, values, sums);
+            direct::convolve(stencil, 0, padded, values, sums, stop);
             for ((out, p), s) in out.iter_mut().zip(p).zip(sums.iter()) {
                 *out = p - factor * s;
             }
         })
     }
 
-    /// The exact law of `d/dt ∫u²/2`, by pairs: each pair of points that a bond joins adds `w F(u, v)(v − u)` and `−ε w (v − u)²`. A partner in a
-    /// collar keeps its value, and only the point's part counts. Summed directly, whatever the evaluation.
-    pub fn energy_rate(&self, u: &[f64], t: f64) -> f64 {
-        let padded = Padded::new(self.law.grid, self.law.reach());
-        let direction = self.law.direction(&padded);
-        let mut v = vec![];
-        padded.fill(u, &self.law.boundary, t, &mut v);
-        let flux = self.law.advection.as_ref().map(|a| &a.flux);
-        let viscosity = self.law.diffusion.as_ref().map_or(0.0, |d| d.viscosity);
-        let sum = direct::sum_of_pairs(
-            &self.law,
-            &padded,
-            &direction,
-            |p, q, first, second, carried, spread| {
-                let inside = |k: usize, is: bool| if is { v[k] } else { 0.0 };
-                let moved = inside(q, second) - inside(p, first);
-                let flow = match flux.filter(|_| carried != 0.0) {
-                    Some(flux) => carried * flux.value(v[p], v[q]) * moved,
-                    None => 0.0,
-                };
-                flow - viscosity * spread * (v[q] - v[p]) * moved
-            },
-        );
-        sum * self.law.grid.cell()
+    /// The exact law of `d/dt ∫u²/2 = ∫ u u_t`. It is the sum over pairs that a bond joins, of `w F(u, v)(v − u)` and `−ε w (v − u)²`, since the
+    /// weights of ±m are ∓ each other and F is symmetric; a partner in a collar keeps its value, and only the point's part counts.
+    pub fn energy_rate(&mut self, u: &[f64], t: f64) -> f64 {
+        let mut rate = vec![0.0; u.len()];
+        self.rate(u, t, &mut rate);
+        measure::product(u, &rate, self.law.grid.cell())
     }
 }
 
@@ -421,47 +455,4 @@ fn add(
             }
         }
     });
-}
-
-/// Conjugate gradients for a symmetric positive operator; `u` is the right side and becomes the solution.
-fn conjugate_gradients(
-    u: &mut [f64],
-    mut apply: impl FnMut(&[f64], &mut [f64]),
-) -> Result<(), f64> {
-    const CLOSE: f64 = 1e-14;
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let right = dot(u, u);
-    let mut a = vec![0.0; u.len()];
-    // the right side is a good first guess
-    apply(u, &mut a);
-    let mut residual: Vec<f64> = u.iter().zip(&a).map(|(u, a)| u - a).collect();
-    let mut p = residual.clone();
-    let mut square = dot(&residual, &residual);
-    for _ in 0..10 * u.len() + 100 {
-        if square <= CLOSE * CLOSE * right {
-            return Ok(());
-        }
-        apply(&p, &mut a);
-        let step = square / dot(&p, &a);
-        u.iter_mut().zip(&p).for_each(|(u, p)| *u += step * p);
-        residual
-            .iter_mut()
-            .zip(&a)
-            .for_each(|(r, a)| *r -= step * a);
-        let next = dot(&residual, &residual);
-        if !(next.is_finite() && step > 0.0) {
-            break;
-        }
-        p.iter_mut()
-            .zip(&residual)
-            .for_each(|(p, r)| *p = r + next / square * *p);
-        square = next;
-    }
-    let left = (square / right).sqrt();
-    // round-off of long sums
-    if left <= 10.0 * CLOSE {
-        Ok(())
-    } else {
-        Err(left)
-    }
 }

@@ -9,6 +9,125 @@ fn start(x: f64) -> f64 {
     0.3 + x.sin() + 0.2 * (2.0 * x).sin()
 }
 
+/// `d/dt ∫u²/2` pair by pair, each bond from both ends and counted half: `w F(u, v)(v − u)` and `−ε w (v − u)²`. A partner in a collar keeps its value: of such a bond
+/// the point's part alone counts.
+fn pairs(law: &Law, u: &[f64], t: f64) -> f64 {
+    let [n, rows] = law.grid.cells.map(|c| c as isize);
+    let mut sum = 0.0;
+    let mut over = |stencil: &peridyne_transport::weights::Stencil,
+                    of: &dyn Fn(f64, f64, [f64; 2], f64) -> f64| {
+        for (m, w) in stencil.steps.iter().zip(&stencil.weights) {
+            for (sign, (j, i)) in [1, -1]
+                .into_iter()
+                .flat_map(|s| (0..rows).flat_map(move |j| (0..n).map(move |i| (s, (j, i)))))
+            {
+                let (k, l) = (i + sign * m[0], j + sign * m[1]);
+                let own = u[(j * n + i) as usize];
+                let (partner, part) = match &law.boundary {
+                    Boundary::Periodic => {
+                        (u[(l.rem_euclid(rows) * n + k.rem_euclid(n)) as usize], 0.5)
+                    }
+                    Boundary::Collars(_) if (0..n).contains(&k) && (0..rows).contains(&l) => {
+                        (u[(l * n + k) as usize], 0.5)
+                    }
+                    Boundary::Collars(given) => (given(&law.grid.middle(k, l), t), f64::NAN),
+                };
+                sum += of(own, partner, w.map(|w| w * sign as f64), part);
+            }
+        }
+    };
+    if let Some(a) = &law.advection {
+        let peridyne_transport::Direction::Constant(d) = a.direction else {
+            panic!("a constant direction")
+        };
+        over(a.stencil(), &|u, v, w, part| {
+            let flow = (w[0] * d[0] + w[1] * d[1]) * a.flux.value(u, v);
+            if part.is_nan() {
+                -flow * u
+            } else {
+                part * flow * (v - u)
+            }
+        });
+    }
+    if let Some(d) = &law.diffusion {
+        over(d.stencil(), &|u, v, w, part| {
+            let flow = d.viscosity * w[0].abs() * (v - u);
+            if part.is_nan() {
+                flow * u
+            } else {
+                -part * flow * (v - u)
+            }
+        });
+    }
+    sum * law.grid.cell()
+}
+
+/// The rate of energy of the operator is that of its pairs, which know nothing of sums: periodic and in collars, on a line and in a plane, both fluxes, summed either way.
+#[test]
+fn the_rate_of_energy_is_that_of_pairs() {
+    let line_grid = Grid::line(0.0, 2.0, 90).unwrap();
+    let plane = Grid::plane([0.0; 2], [1.0, 0.8], 20).unwrap();
+    let collars = || Boundary::Collars(Arc::new(|x: &[f64; 3], t| (3.0 * x[0] + x[1] + t).cos()));
+    for grid in [line_grid, plane] {
+        let (a, s) = (
+            crate::sample::odd(Bump::Cosine, 4.3 * grid.spacing, grid.dimension),
+            crate::sample::even(Bump::Smooth, 3.4 * grid.spacing, grid.dimension),
+        );
+        let u = grid.sample(|x| 0.3 + (7.0 * x[0]).sin() + 0.4 * (5.0 * x[1] + x[0]).cos());
+        for flux in [
+            Flux::burgers(),
+            Flux::energy_conserving(),
+            Flux::of_mean(&[0.3, 1.0, 0.0, 0.7]),
+        ] {
+            for boundary in [Boundary::Periodic, collars()] {
+                let direction = peridyne_transport::Direction::Constant(match grid.dimension {
+                    1 => [1.0, 0.0],
+                    _ => [0.6, -0.8],
+                });
+                let law = Law::new(
+                    grid,
+                    boundary,
+                    Some((flux.clone(), direction, &a)),
+                    Some((0.02, &s)),
+                )
+                .unwrap();
+                let expected = pairs(&law, &u, 0.4);
+                for evaluation in [Evaluation::Direct, Evaluation::Fourier] {
+                    if evaluation == Evaluation::Fourier && !law.is_convolution() {
+                        continue;
+                    }
+                    let found = operator(&law, evaluation).energy_rate(&u, 0.4);
+                    assert!(
+                        (found - expected).abs() < 1e-12 * expected.abs().max(1.0),
+                        "{flux:?} {evaluation:?}: {found} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A long horizon costs the rate of energy no more than an evaluation and a sum.
+#[test]
+fn the_rate_of_energy_costs_an_evaluation() {
+    let law = line(16_384, Some(Flux::burgers()), Bump::Polynomial(3), 6.0, 0.0);
+    let u = law.grid.sample(|x| x[0].sin());
+    let mut o = operator(&law, Evaluation::choose(&law));
+    let mut rate = vec![0.0; u.len()];
+    let least = |work: &mut dyn FnMut()| {
+        let times = (0..5).map(|_| {
+            let begin = std::time::Instant::now();
+            work();
+            begin.elapsed().as_secs_f64()
+        });
+        times.fold(f64::INFINITY, f64::min)
+    };
+    let evaluation = least(&mut || o.rate(&u, 0.0, &mut rate));
+    let energy = least(&mut || assert!(o.energy_rate(&u, 0.0).abs() < 1e-3));
+    // bond by bond it is thousands
+    assert!(energy < 20.0 * evaluation, "{energy} {evaluation}");
+}
+
 #[test]
 fn the_integral_is_kept_to_round_off() {
     let methods = [Method::Ssprk3, Method::Rk4, Method::Imex];
@@ -33,7 +152,7 @@ fn the_integral_is_kept_to_round_off() {
 #[test]
 fn energy_grows_in_compression_unless_the_flux_conserves_it() {
     let law = line(256, Some(Flux::burgers()), Bump::Cosine, 0.4, 0.0);
-    let operator_ = operator(&law, Evaluation::Direct);
+    let mut operator_ = operator(&law, Evaluation::Direct);
     let u = law.grid.sample(|x| start(x[0]));
     let rate = operator_.energy_rate(&u, 0.0);
     // the same from the operator itself

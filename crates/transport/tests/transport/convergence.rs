@@ -22,7 +22,7 @@ fn second_order_in_the_horizon_before_the_shock() {
             let errors = deltas.map(|delta| {
                 let law = line(1024, Some(flux.clone()), bump, delta, 0.0);
                 let u0 = law.grid.sample(|x| g(x[0]));
-                let shock = shock_time(&flux, &u0, law.grid.spacing).unwrap();
+                let shock = shock_time(&flux, &u0, law.grid.spacing, true).unwrap();
                 assert!((shock - 1.0).abs() < 1e-4, "{shock}");
                 let mut e = evolution(
                     &law,
@@ -42,6 +42,23 @@ fn second_order_in_the_horizon_before_the_shock() {
             );
         }
     }
+}
+
+/// A state without slope has no shock, whatever round-off its speeds have; on a ring a front may stand where the ends meet.
+#[test]
+fn shocks_are_found_at_seams_and_not_in_round_off() {
+    let flat: Vec<f64> = (0..100)
+        .map(|k| 1.0 + f64::EPSILON * f64::from(k % 2))
+        .collect();
+    let flux = Flux::burgers();
+    assert_eq!(shock_time(&flux, &flat, 0.01, true), None);
+    let root = Flux::Function(std::sync::Arc::new(|u: f64| u.abs()));
+    let rises: Vec<f64> = (1..100).map(f64::from).collect();
+    assert_eq!(shock_time(&root, &rises, 0.01, false), None);
+    // from 0 up to 1, and down where the ring closes: over a cell
+    let saw: Vec<f64> = (0..101).map(|k| f64::from(k) / 100.0).collect();
+    assert_eq!(shock_time(&flux, &saw, 0.01, false), None);
+    assert!((shock_time(&flux, &saw, 0.01, true).unwrap() - 0.01).abs() < 1e-15);
 }
 
 /// With viscosity second order for all times, also where the inviscid law has a shock.

@@ -62,6 +62,82 @@ fn moments_and_parities_are_asked_for() {
     assert!(told.message.contains("no second derivative"), "{told}");
 }
 
+/// A moment that is round-off of its parts has no factor, and a negative one none that leaves the kernel its sign.
+#[test]
+fn moments_that_cancel_are_refused() {
+    // ∫ z²(1 − (5/3)(z/δ)²) = 0; ∫ z²(1 − (5/3)(z/δ)²) of an even kernel too
+    let zero = |z: f64| z * (1.0 - 5.0 / 3.0 * (z / 0.5).powi(2));
+    let even = |z: f64| 1.0 - 5.0 / 3.0 * (z / 0.5).powi(2);
+    for normalise in [true, false] {
+        let told = kernel(Parity::Odd, zero, normalise).unwrap_err();
+        assert!(told.contains("0 but for round-off"), "{told}");
+        let told = kernel(Parity::Even, even, normalise).unwrap_err();
+        assert!(told.contains("0 but for round-off"), "{told}");
+    }
+    // in a plane ∫ r² φ dr is 0 for another one, and of the first it is not
+    let plane = |f: fn(f64) -> f64| {
+        let profile = Profile::Function(Arc::new(f));
+        Kernel::new(Parity::Odd, profile, 0.5, 2, true, "k").map(|_| ())
+    };
+    assert!(plane(|z| z * (1.0 - 1.5 * (z / 0.5).powi(2))).is_err());
+    assert!(plane(|z| z * (1.0 - 1.2 * (z / 0.5).powi(2))).is_ok());
+    // a table whose lines cancel: φ from 3 down to −1 on [0, δ], ∫ zφ = δ²(3/2 − 4/3) is not 0, from 2 down to −1 it is
+    let table = |top: f64| {
+        let profile = Profile::Table(vec![[0.0, top], [0.5, -1.0]]);
+        Kernel::new(Parity::Odd, profile, 0.5, 1, true, "k").map(|_| ())
+    };
+    assert!(table(3.0).is_ok());
+    assert!(
+        table(2.0)
+            .unwrap_err()
+            .message
+            .contains("0 but for round-off")
+    );
+    let told = kernel(Parity::Odd, |z| -z, true).unwrap_err();
+    assert!(told.contains("other sign"), "{told}");
+    let told = kernel(Parity::Even, |_| -1.0, true).unwrap_err();
+    assert!(told.contains("spread the other way"), "{told}");
+}
+
+/// A kernel between whose parts the points of the grid fall, or whose sum has another sign, is not brought to the moment 2 by what is left of it.
+#[test]
+fn kernels_that_a_grid_does_not_see_are_refused() {
+    let grid = Grid::line(0.0, 1.0, 100).unwrap();
+    let told = |profile: Profile, parity: Parity| {
+        let k = Kernel::new(parity, profile, 0.03, 1, true, "k").unwrap();
+        Stencil::new(&k, &grid, "k")
+            .map(|_| ())
+            .map_err(|e| e.message.to_string())
+    };
+    // all of it between the first and the second neighbour
+    let spike = vec![
+        [0.0, 0.0],
+        [0.012, 0.0],
+        [0.015, 1.0],
+        [0.018, 0.0],
+        [0.03, 0.0],
+    ];
+    let said = told(Profile::Table(spike), Parity::Odd).unwrap_err();
+    assert!(said.contains("does not resolve the kernel"), "{said}");
+    // three spacings see b″ of this bump with the wrong sign
+    let said = told(Profile::Curvature(Bump::Smooth), Parity::Even).unwrap_err();
+    assert!(said.contains("does not resolve the kernel"), "{said}");
+    // one bond alone carries all of it: its moment is 2, not what round-off makes of two equations
+    let one = vec![
+        [0.0, 0.0],
+        [0.011, 0.0],
+        [0.02, 1.0],
+        [0.029, 0.0],
+        [0.03, 0.0],
+    ];
+    let k = Kernel::new(Parity::Odd, Profile::Table(one), 0.03, 1, true, "k").unwrap();
+    let s = Stencil::new(&k, &grid, "k").unwrap();
+    let moment: f64 = { s.steps.iter().zip(&s.weights) }
+        .map(|(m, w)| 2.0 * w[0] * m[0] as f64 * grid.spacing)
+        .sum();
+    assert!((moment - 2.0).abs() < 1e-12, "{moment}");
+}
+
 #[test]
 fn a_table_is_its_lines() {
     // 24 z on both sides, and on one

@@ -2,6 +2,7 @@
 
 mod conservation;
 mod convergence;
+mod errors;
 mod expressions;
 mod input;
 mod operators;

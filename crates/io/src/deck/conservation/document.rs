@@ -37,7 +37,7 @@ pub struct LawDocument {
     /// δ, of both kernels.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub horizon: Option<Number>,
-    /// u at t = 0, of x (and y).
+    /// u at t = 0, of x (in a plane of x and y).
     #[schemars(extend("dimension" = "that of u"))]
     pub initial: Number,
     /// Transport; left out, there is diffusion alone.
@@ -145,7 +145,7 @@ pub struct KernelForm {
     pub expression: Option<At<String>>,
     /// Points [z, φ] between which lines are drawn.
     pub table: Option<At<Vec<[Number; 2]>>>,
-    /// Bring an expression or a table to the moment 2 by a factor.
+    /// Bring an expression or a table to the moment 2 by a positive factor.
     #[serde(default)]
     pub normalise: bool,
 }
@@ -180,9 +180,12 @@ pub struct LawRun {
     /// Until t is this.
     #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub duration: Number,
-    /// A time, or { safety = 0.5 } of what is stable, step by step (when left out).
+    /// A time, or { safety = 0.8 } of what is stable, step by step (when left out), or shorter where `tolerance` asks for it.
     #[schemars(extend("dimension" = Dim::TIME.name()))]
     pub time_step: Option<At<Or<Written, LawSafety>>>,
+    /// What steps may add to u until the end, over its largest |u|: 1e-6 when left out, from 1e-12 on; inf: steps are as long as they are stable. Not beside a time_step that is a time. What they do add is estimated in any case.
+    #[schemars(extend("dimension" = Dim::NUMBER.name()))]
+    pub tolerance: Option<Number>,
     /// Run even if the step is above the stability limit.
     #[serde(default)]
     pub force_unstable: bool,

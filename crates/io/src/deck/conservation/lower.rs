@@ -1,6 +1,7 @@
 //! From the deck as written to a law with its state.
 
 use super::document::*;
+use super::variables::{of_one_variable, only_names, places};
 use super::{LawDeck, explain};
 use crate::deck::error::DeckError;
 use crate::deck::lower;
@@ -10,10 +11,11 @@ use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Or, Written};
 use peridyne::execute::memory::afford;
 use peridyne::expression::Expression;
+use peridyne::quantity::rounded;
 use peridyne_transport::grid::Values;
 use peridyne_transport::{
     Boundary, Bump, Direction, Evaluation, Evolution, Flux, Formula, Grid, Kernel, Law, Method,
-    Operator, Parity, Profile, StepSize, measure,
+    Operator, Parity, Profile, StepSize, measure, memory,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,7 +24,16 @@ use std::sync::Arc;
 pub(super) const VISCOSITY: Dim = Dim([2, 0, -1, 0]);
 
 /// Safety of steps that nobody gives.
-const SAFETY: f64 = 0.5;
+const SAFETY: f64 = 0.8;
+
+/// What steps may add to u, over its largest |u|, where nobody says.
+const TOLERANCE: f64 = 1e-6;
+
+/// The least of it: sums of a run are no better.
+const LEAST_TOLERANCE: f64 = 1e-12;
+
+/// Bytes for each point of a frame that is shown: pictures and the report.
+const SHOWN: f64 = 120.0;
 
 pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> {
     // the only one there is
@@ -36,6 +47,50 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         Some(Or::Bare(FluxName::Burgers | FluxName::EnergyConserving)) => Dim::VELOCITY,
         Some(Or::Table(_)) | None => Dim::NUMBER,
     };
+    let both = &document.horizon;
+    let horizons = [
+        document
+            .advection
+            .as_ref()
+            .map(|a| (&a.value.horizon, &a.span)),
+        document
+            .diffusion
+            .as_ref()
+            .map(|d| (&d.value.horizon, &d.span)),
+    ];
+    let mut each = [None, None];
+    for (found, part) in each.iter_mut().zip(horizons) {
+        if let Some((own, span)) = part {
+            *found = Some(horizon(&context, own.as_ref().or(both.as_ref()), span)?);
+        }
+    }
+    let horizons = each;
+    let run = &document.run.value;
+    let asked = run.evaluation.as_ref().map(|e| e.value);
+    let output = &document.output;
+    let frames = count(&context, &output.frames, "frames")?;
+    let periodic = matches!(document.boundary.value, Or::Bare(BoundaryName::Periodic));
+    let fourier = periodic && asked != Some(EvaluationName::Direct);
+    let law_bytes = memory::bytes(&grid, horizons, fourier);
+    let points = grid.points();
+    afford(
+        "points",
+        &format!("this law on {points} points"),
+        law_bytes,
+        "write fewer points, or a shorter horizon",
+    )
+    .map_err(explained)?;
+    let shown = output.pictures.unwrap_or(true) || output.report.unwrap_or(true);
+    let frame_bytes = bytes_of_frames(points as f64, frames as f64, shown);
+    afford(
+        "output.frames",
+        &format!("this law on {points} points with {frames} frames, kept until the end,"),
+        law_bytes + frame_bytes,
+        "write fewer frames",
+    )
+    .map_err(explained)?;
+    let place = places(&grid);
+    only_names(&context, &document.initial, place, "u at t = 0")?;
     let initial = context.expression(&document.initial, dimension)?;
     let u = grid.sample(|x| initial.eval(x, 0.0));
     if let Some(n) = u.iter().position(|u| !u.is_finite()) {
@@ -46,46 +101,31 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         ));
     }
     let [low, high] = measure::extremes(&u);
-    let both = &document.horizon;
     let advection = document.advection.as_ref().map(|a| {
         let flux = flux(&context, &a.value.flux, [low, high])?;
         flux.evaluable(low, high, "advection.flux")
             .map_err(explained)?;
-        let horizon = horizon(
-            &context,
-            a.value.horizon.as_ref().or(both.as_ref()),
-            &a.span,
-        )?;
         let kernel = kernel(
             &context,
             &a.value.kernel,
             Parity::Odd,
-            horizon,
+            horizons[0].unwrap_or_default(),
             "advection.kernel",
         )?;
-        Ok((flux, direction(&context, &a.value)?, kernel))
+        Ok((flux, direction(&context, &a.value, place)?, kernel))
     });
     let advection = advection.transpose()?;
     let diffusion = document.diffusion.as_ref().map(|d| {
-        let horizon = horizon(
-            &context,
-            d.value.horizon.as_ref().or(both.as_ref()),
-            &d.span,
-        )?;
         let kernel = kernel(
             &context,
             &d.value.kernel,
             Parity::Even,
-            horizon,
+            horizons[1].unwrap_or_default(),
             "diffusion.kernel",
         )?;
         Ok((context.finite(&d.value.viscosity, VISCOSITY)?, kernel))
     });
     let diffusion = diffusion.transpose()?;
-    let horizons = [
-        advection.as_ref().map(|a| a.2.horizon()),
-        diffusion.as_ref().map(|d| d.1.horizon()),
-    ];
     let law = Law::new(
         grid,
         boundary(&context, document, &grid, dimension, horizons)?,
@@ -95,8 +135,7 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         diffusion.as_ref().map(|(e, k)| (*e, k)),
     )
     .map_err(explained)?;
-    let run = &document.run.value;
-    let evaluation = match run.evaluation.as_ref().map(|e| e.value) {
+    let evaluation = match asked {
         Some(EvaluationName::Direct) => Evaluation::Direct,
         Some(EvaluationName::Fourier) => Evaluation::Fourier,
         Some(EvaluationName::Auto) | None => Evaluation::choose(&law),
@@ -111,23 +150,11 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         Some(MethodName::Imex) => Method::Imex,
     };
     let duration = context.positive(&run.duration, Dim::TIME, "the duration")?;
-    let size = step_size(&context, run)?;
-    let u_bytes = 8.0 * u.len() as f64;
+    let size = step_size(&context, run, duration)?;
     let evolution = Evolution::new(operator, u, method, size);
     if let (Err(e), Some(at)) = (evolution.next_step(duration), &run.time_step) {
         return Err(context.error_with(&at.span, e.to_string(), "or add force_unstable = true"));
     }
-    let output = &document.output;
-    let frames = count(&context, &output.frames, "frames")?;
-    // kept until the end, and copied once for the file
-    let bytes = 2.0 * (frames + 2) as f64 * u_bytes;
-    afford(
-        "output.frames",
-        "frames of this run",
-        bytes,
-        "write fewer frames",
-    )
-    .map_err(explained)?;
     Ok(LawDeck {
         title: String::new(),
         units,
@@ -143,6 +170,12 @@ pub(super) fn lower(source: &Source, document: &LawDocument) -> Result<LawDeck> 
         warnings: lower::unitless(&context),
         source: source.clone(),
     })
+}
+
+/// Frames are kept until the end and packed for their file; pictures and the report look at them once more.
+fn bytes_of_frames(points: f64, frames: f64, shown: bool) -> f64 {
+    let copies = if shown { 3.0 } else { 2.0 };
+    8.0 * points * (frames + 2.0) * copies + if shown { SHOWN * points } else { 0.0 }
 }
 
 fn count(context: &Context, written: &Option<At<u64>>, what: &str) -> Result<u64> {
@@ -208,7 +241,8 @@ fn boundary(
             format!("write {write}, or boundary = \"periodic\""),
         )
     };
-    let given = |number: &Number| -> Result<Expression> {
+    let given = |number: &Number, names: &[&str]| -> Result<Expression> {
+        only_names(context, number, names, "u in this collar")?;
         let expression = context.expression(number, dimension)?;
         match expression.eval(&grid.place(0), 0.0).is_finite() {
             true => Ok(expression),
@@ -229,7 +263,7 @@ fn boundary(
             .right
             .as_ref()
             .ok_or_else(|| empty("right collar", "right = \"0\""))?;
-        let (left, right) = (given(left)?, given(right)?);
+        let (left, right) = (given(left, &["x", "t"])?, given(right, &["x", "t"])?);
         let low = grid.low[0];
         Arc::new(move |x, t| {
             if x[0] < low {
@@ -245,22 +279,23 @@ fn boundary(
             .around
             .as_ref()
             .ok_or_else(|| empty("collar", "around = \"0\""))?;
-        let around = given(around)?;
+        let around = given(around, &["x", "y", "t"])?;
         Arc::new(move |x, t| around.eval(x, t))
     };
     Ok(Boundary::Collars(values))
 }
 
-fn direction(context: &Context, transport: &Transport) -> Result<Direction> {
+fn direction(context: &Context, transport: &Transport, place: &[&str]) -> Result<Direction> {
     let Some(written) = &transport.direction else {
         return Ok(Direction::Constant([1.0, 0.0]));
     };
     let [x, y, _] = context.expressions(written, Dim::NUMBER)?;
-    if [&x, &y].iter().any(|e| e.depends_on_time()) {
-        return Err(context.error(
-            &written.span,
-            "the direction does not change in time: use x and y only",
-        ));
+    for number in &written.value.0 {
+        let number = At {
+            value: number.value.clone(),
+            span: written.span.clone(),
+        };
+        only_names(context, &number, place, "the direction")?;
     }
     if let (Some(x), Some(y)) = (x.as_constant(), y.as_constant()) {
         return Ok(Direction::Constant([x, y]));
@@ -308,40 +343,6 @@ fn flux(context: &Context, at: &At<Or<FluxName, FluxForm>>, [low, high]: [f64; 2
     let formula = Formula::new(&text, &context.plain_constants())
         .map_err(|e| context.error(&written.span, e.message))?;
     Ok(Flux::of_formula(formula, low, high))
-}
-
-/// An expression of one variable, which stands in the place of the coordinate `slot`: both have one letter, so that places in the text stay. With the text as it is then.
-fn of_one_variable(
-    context: &Context,
-    written: &At<String>,
-    variable: &str,
-    slot: char,
-    more: &[(&str, f64)],
-) -> Result<(Expression, String)> {
-    let letter = |c: char| c.is_alphanumeric() || c == '_';
-    let mut text = String::new();
-    let mut rest = written.value.as_str();
-    while let Some(start) = rest.find(letter) {
-        let (before, word) = rest.split_at(start);
-        let end = word.find(|c| !letter(c)).unwrap_or(word.len());
-        let (word, after) = word.split_at(end);
-        if ["x", "y", "z", "t"].contains(&word) && word != variable {
-            return Err(context.error_with(
-                &written.span,
-                format!("this is a function of {variable} alone, and names {word}"),
-                format!("write it with {variable} and constants"),
-            ));
-        }
-        text += before;
-        match word == variable {
-            true => text.push(slot),
-            false => text += word,
-        }
-        rest = after;
-    }
-    text += rest;
-    let expression = context.plain_expression(&text, &written.span, more)?;
-    Ok((expression, text))
 }
 
 fn bump(context: &Context, name: BumpName, power: &Option<At<u32>>) -> Result<Bump> {
@@ -416,13 +417,48 @@ fn kernel(
     made.map_err(|e| explain(context.source, &e))
 }
 
-fn step_size(context: &Context, run: &LawRun) -> std::result::Result<StepSize, DeckError> {
+fn step_size(
+    context: &Context,
+    run: &LawRun,
+    duration: f64,
+) -> std::result::Result<StepSize, DeckError> {
+    let within = |part: f64| {
+        let tolerance = match &run.tolerance {
+            None => TOLERANCE,
+            Some(written) => {
+                let tolerance = context.number(written, Dim::NUMBER)?;
+                if !(tolerance >= LEAST_TOLERANCE) {
+                    return Err(context.error_with(
+                        &written.span,
+                        format!("the tolerance is {}: sums are no better than {LEAST_TOLERANCE:e} of u", rounded(tolerance, 3)),
+                        "write what steps may add to u over its largest |u|, such as 1e-6, or inf for steps that are as long as they are stable",
+                    ));
+                }
+                tolerance
+            }
+        };
+        Ok(match tolerance.is_finite() {
+            true => StepSize::Within {
+                part,
+                tolerance,
+                duration,
+            },
+            false => StepSize::Part(part),
+        })
+    };
     let Some(at) = &run.time_step else {
-        return Ok(StepSize::Part(SAFETY));
+        return within(SAFETY);
     };
     match &at.value {
-        Or::Bare(Written::Text(text)) if text == "auto" => Ok(StepSize::Part(SAFETY)),
+        Or::Bare(Written::Text(text)) if text == "auto" => within(SAFETY),
         Or::Bare(number) => {
+            if let Some(written) = &run.tolerance {
+                return Err(context.error_with(
+                    &written.span,
+                    "a step that is given is not chosen by a tolerance",
+                    "leave one of time_step and tolerance out: what steps of a given length add to u is estimated too",
+                ));
+            }
             let number = At {
                 value: number.clone(),
                 span: at.span.clone(),
@@ -435,11 +471,11 @@ fn step_size(context: &Context, run: &LawRun) -> std::result::Result<StepSize, D
         Or::Table(LawSafety { safety }) => {
             let part = context.positive(safety, Dim::NUMBER, "the safety factor")?;
             match part <= 1.0 || run.force_unstable {
-                true => Ok(StepSize::Part(part)),
+                true => within(part),
                 false => Err(context.error_with(
                     &safety.span,
                     format!("the step would be unstable: a safety factor of {part} is above the stability limit"),
-                    "use 0.5, or add force_unstable = true",
+                    "use 0.8, or add force_unstable = true",
                 )),
             }
         }

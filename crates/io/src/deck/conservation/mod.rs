@@ -2,6 +2,7 @@
 
 mod document;
 mod lower;
+mod variables;
 
 pub(super) use document::LawDocument;
 
