@@ -10,6 +10,7 @@ use peridyne_io::continuum::run::{FieldsPlan, foresee};
 const PATIENCE: u64 = 200_000;
 
 /// The fields of a table `[[fields]]`.
+#[derive(Clone)]
 pub(super) struct Found {
     pub asked: FieldsSpec,
     pub frames: u64,
@@ -20,6 +21,7 @@ pub(super) struct Found {
 }
 
 /// What a frame of the start showed.
+#[derive(Clone)]
 pub(super) enum Seen {
     Made {
         /// Distance of the points of a grid along its axes (length).
