@@ -99,7 +99,12 @@ fn mesh() -> String {
     text += "$EndNodes\n$Elements\n210\n";
     for j in 0..10 {
         for i in 0..20 {
-            let corners = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+            let corners = [
+                node(i, j),
+                node(i + 1, j),
+                node(i + 1, j + 1),
+                node(i, j + 1),
+            ];
             let [a, b, c, d] = corners;
             text += &format!("{} 3 1 1 {a} {b} {c} {d}\n", 1 + i + 20 * j);
         }
@@ -131,12 +136,24 @@ measure = "reaction"
 "#;
     let (json, text) = checked(deck, &[("plate.msh", &mesh())]);
     let load = &json["loads"][0];
-    assert!((load["force"][0].as_f64().unwrap() - 100.0).abs() < 1e-9, "{load}");
-    assert!((load["area"].as_f64().unwrap() - 1e-4).abs() < 1e-15, "{load}");
+    assert!(
+        (load["force"][0].as_f64().unwrap() - 100.0).abs() < 1e-9,
+        "{load}"
+    );
+    assert!(
+        (load["area"].as_f64().unwrap() - 1e-4).abs() < 1e-15,
+        "{load}"
+    );
     // the thickness makes volumes of areas, however the file is called
     assert!((json["volume"].as_f64().unwrap() - 2e-6).abs() < 1e-15);
-    let (loud, _) = checked(&deck.replace("plate.msh", "PLATE.MSH"), &[("PLATE.MSH", &mesh())]);
-    assert_eq!((&loud["volume"], &loud["loads"]), (&json["volume"], &json["loads"]));
+    let (loud, _) = checked(
+        &deck.replace("plate.msh", "PLATE.MSH"),
+        &[("PLATE.MSH", &mesh())],
+    );
+    assert_eq!(
+        (&loud["volume"], &loud["loads"]),
+        (&json["volume"], &json["loads"])
+    );
     assert!(
         text.contains("`right`: force up to 100 N along x, area 0.0001 m^2"),
         "{text}"
@@ -168,7 +185,8 @@ fn a_body_is_as_large_as_its_region() {
         );
         (json["volume"].as_f64().unwrap(), json["extent"].clone())
     };
-    let near = |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
+    let near =
+        |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
     for (lattice, d, wanted) in [
         ("chain", 1, 20e-3),
         ("square", 2, 200e-6),
@@ -186,7 +204,10 @@ fn a_body_is_as_large_as_its_region() {
     let body = format!("lattice = \"square\"\nspacing = \"1 mm\"\n{}", block(2));
     near(volume(&deck("periodic = [\"x\"]", &body)).0, 200e-6);
     // also where the first plane of points lies just below its end
-    let late = format!("lattice = \"square\"\nspacing = \"1 mm\"\norigin = [\"0.95 mm\", \"0.5 mm\"]\n{}", block(2));
+    let late = format!(
+        "lattice = \"square\"\nspacing = \"1 mm\"\norigin = [\"0.95 mm\", \"0.5 mm\"]\n{}",
+        block(2)
+    );
     near(volume(&deck("periodic = [\"x\"]", &late)).0, 200e-6);
     // whole cells from an origin that is given
     let body = "lattice = \"square\"\nspacing = \"1 mm\"\norigin = [\"3 mm\", 0]\ncells = [20, 10]";
@@ -194,7 +215,10 @@ fn a_body_is_as_large_as_its_region() {
     near(json["volume"].as_f64().unwrap(), 200e-6);
     near(json["low"][0].as_f64().unwrap(), 3e-3);
     // faces through points: said
-    let body = format!("lattice = \"square\"\nspacing = \"1 mm\"\norigin = [0, 0]\n{}", block(2));
+    let body = format!(
+        "lattice = \"square\"\nspacing = \"1 mm\"\norigin = [0, 0]\n{}",
+        block(2)
+    );
     let (json, text) = checked(&deck("", &body), &[]);
     near(json["volume"].as_f64().unwrap(), 21.0 * 11e-6);
     assert!(text.contains("15.5 % more than its region"), "{text}");
@@ -214,5 +238,8 @@ indenter = [{ radius = "3 mm", center = ["3 mm", "3 mm", "8 mm"] }]
     let output = peridyne(&["check", path.to_str().unwrap()]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     // ten times 2 GPa over 1 mm³
-    assert!(said.contains("stiffness of indenters that give none: 2e19"), "{said}");
+    assert!(
+        said.contains("stiffness of indenters that give none: 2e19"),
+        "{said}"
+    );
 }

@@ -429,6 +429,10 @@ fn check_says_what_it_knows_and_hears_signals() {
         let begin = Instant::now();
         let (found, errors) = code(child);
         assert_eq!(found, Some(expected), "{errors}");
-        assert!(begin.elapsed() < Duration::from_secs(1), "{:?}", begin.elapsed());
+        assert!(
+            begin.elapsed() < Duration::from_secs(1),
+            "{:?}",
+            begin.elapsed()
+        );
     }
 }

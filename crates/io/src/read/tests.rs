@@ -411,7 +411,8 @@ fn lammps_atoms_become_points_in_order_of_their_ids() {
 /// Areas of the sets of a mesh that stand for faces.
 fn faces(points: &Points) -> Vec<(&str, Vec<f64>)> {
     let each = points.cloud.faces.iter();
-    each.map(|(name, areas)| (&**name, areas.to_vec())).collect()
+    each.map(|(name, areas)| (&**name, areas.to_vec()))
+        .collect()
 }
 
 #[test]
