@@ -9,14 +9,14 @@ mod report;
 
 use crate::Input;
 use crate::deck;
-use crate::failure::{Failure, note, say};
+use crate::failure::{Failure, note, printed, say};
 use crate::law;
 use crate::run::{enough_disk, pictures, with_threads};
 use crate::script;
 use peridyne::law::micromodulus::Moments;
-use peridyne::run::{Families, Simulation};
+use peridyne::run::{Families, Info, Simulation};
 use peridyne::space::Point;
-use peridyne::spec::{Criterion, Moduli, Spec};
+use peridyne::spec::{BodySpec, Criterion, Moduli, Spec};
 use peridyne_io::continuum::run::FieldsPlan;
 use peridyne_io::deck::UnitSystem;
 use peridyne_io::drive::default_dir;
@@ -28,6 +28,10 @@ use std::time::{Duration, Instant};
 
 /// Time spent on trial steps.
 const TRIAL: Duration = Duration::from_millis(500);
+/// Time after which a trial step that has not ended is left alone, and what is known is told.
+const LONGEST_TRIAL: Duration = Duration::from_secs(4);
+/// The same of the patch test.
+const LONGEST_PATCH: Duration = Duration::from_secs(20);
 /// Visits of bonds by the patch test above which it takes minutes.
 const PATIENCE: u64 = 50_000_000_000;
 
@@ -47,6 +51,7 @@ pub struct CheckArguments {
 }
 
 /// Everything that `check` finds, in the units of the run.
+#[derive(Clone)]
 struct Findings<'a> {
     spec: &'a Spec,
     units: UnitSystem,
@@ -54,13 +59,17 @@ struct Findings<'a> {
     script: bool,
     /// Of the deck.
     warnings: &'a [String],
-    sim: &'a dyn Simulation,
+    info: Info,
     families: Families,
     /// Smallest and largest coordinate of the points.
     low: [f64; 3],
     high: [f64; 3],
+    /// How far the cell of a point reaches beyond it along each axis.
+    half: [f64; 3],
     /// `None`: the body is too large for one.
     patch: Option<PatchTest>,
+    /// What there was no time for.
+    untried: Option<String>,
     materials: Vec<Material>,
     /// Of motion, or increments of statics alone.
     steps: u64,
@@ -73,6 +82,18 @@ struct Findings<'a> {
 }
 
 impl Findings<'_> {
+    /// Along which axes is the body thinner than the horizon?
+    fn thin(&self) -> [bool; 3] {
+        std::array::from_fn(|a| {
+            self.spec.periodic[a].is_none() && self.long(a) < self.info.horizon * (1.0 - 1e-9)
+        })
+    }
+
+    /// Length of the body with its cells.
+    fn long(&self, a: usize) -> f64 {
+        self.high[a] - self.low[a] + 2.0 * self.half[a]
+    }
+
     /// Seconds of statics before motion.
     fn load(&self) -> f64 {
         { self.trial.seconds_per_increment }.map_or(0.0, |s| s * self.increments as f64)
@@ -80,6 +101,7 @@ impl Findings<'_> {
 }
 
 /// One material beside what the deck asked for.
+#[derive(Clone)]
 struct Material {
     name: String,
     density: f64,
@@ -92,6 +114,7 @@ struct Material {
 }
 
 /// Steps taken to see how long one takes.
+#[derive(Clone, Default)]
 struct Trial {
     steps: u64,
     seconds_per_step: Option<f64>,
@@ -108,7 +131,6 @@ struct Subject {
     script: bool,
     /// Of the deck, said already.
     warnings: Vec<String>,
-    sim: Box<dyn Simulation>,
     steps: u64,
     increments: u64,
     fields: Option<FieldsPlan>,
@@ -118,18 +140,17 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let input = &arguments.input;
     if !deck::is_deck(input) {
         return with_threads(arguments.threads, |threads| {
-            let (prepared, setup) = script::prepare(input)?;
+            let (mut prepared, setup) = script::prepare(input)?;
             let subject = Subject {
                 spec: prepared.spec,
                 units: setup.units.system(),
                 script: true,
                 warnings: vec![],
-                sim: prepared.simulation,
                 steps: setup.steps,
                 increments: 0,
                 fields: None,
             };
-            report(arguments, subject, threads)
+            report(arguments, &subject, prepared.simulation.as_mut(), threads)
         });
     }
     if let Some(deck) = law::read(input)? {
@@ -160,30 +181,98 @@ pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             spec: deck.spec,
             script: false,
             warnings,
-            sim,
         };
-        report(arguments, subject, threads)
+        report(arguments, &subject, sim.as_mut(), threads)
     })
 }
 
-fn report(arguments: &CheckArguments, mut subject: Subject, threads: usize) -> Result<(), Failure> {
-    let sim = subject.sim.as_mut();
-    let fields = match &subject.fields {
-        Some(plan) => continuum::find(sim, plan, subject.steps)?,
-        None => vec![],
+fn report(
+    arguments: &CheckArguments,
+    subject: &Subject,
+    sim: &mut dyn Simulation,
+    threads: usize,
+) -> Result<(), Failure> {
+    let reference = sim.vectors("reference");
+    let mut found = find(
+        &subject,
+        sim.info().clone(),
+        sim.families(),
+        &reference,
+        threads,
+    );
+    if !arguments.json {
+        say(&report::first(&found));
+    }
+    if let Some(plan) = &subject.fields {
+        found.fields = continuum::find(sim, plan, subject.steps)?;
+    }
+    let ends = |found: &Findings, why: String| {
+        let told = Findings {
+            untried: Some(why),
+            ..found.clone()
+        };
+        say(&rest(arguments, &told));
+        // nothing is held that anybody waits for
+        std::process::exit(match printed() {
+            Ok(()) => 0,
+            Err(_) => 1,
+        })
     };
-    let patch = patience(sim).then(|| patch_test(sim));
-    let families = sim.families();
-    let trial = trial(sim, subject.steps, subject.increments);
-    let reference = subject.sim.vectors("reference");
-    let mut found = find(&subject, &reference, patch, families, trial, threads);
-    found.fields = fields;
-    say(&if arguments.json {
-        json::write(&found)
-    } else {
-        report::write(&found)
-    });
+    let late = |limit: Duration, what: &str| {
+        format!(
+            "{what} was not done in {} s, and is left out",
+            limit.as_secs()
+        )
+    };
+    if patience(sim) {
+        let late = late(
+            LONGEST_PATCH,
+            "the patch test (stiffness by place), and so a trial step,",
+        );
+        found.patch = Some(within(
+            LONGEST_PATCH,
+            || ends(&found, late),
+            || patch_test(sim),
+        ));
+        found.materials = materials(
+            &subject.spec,
+            &found.info,
+            found.patch.as_ref(),
+            found.thin(),
+        );
+    }
+    let what = match (subject.increments > 0, subject.spec.schedule.statics()) {
+        (false, None) => "a trial step",
+        _ => "a trial increment of load",
+    };
+    let late = late(LONGEST_TRIAL, what);
+    let work = || trial(sim, subject.steps, subject.increments);
+    found.trial = within(LONGEST_TRIAL, || ends(&found, late), work);
+    say(&rest(arguments, &found));
     Ok(())
+}
+
+/// What is still to be said.
+fn rest(arguments: &CheckArguments, found: &Findings) -> String {
+    match arguments.json {
+        true => json::write(found),
+        false => report::rest(found),
+    }
+}
+
+/// Does `work`, beside a watch that is told when it takes longer than it may.
+fn within<T>(limit: Duration, late: impl FnOnce() + Send, work: impl FnOnce() -> T) -> T {
+    let (done, wait) = std::sync::mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            if wait.recv_timeout(limit) == Err(std::sync::mpsc::RecvTimeoutError::Timeout) {
+                late();
+            }
+        });
+        let out = work();
+        drop(done);
+        out
+    })
 }
 
 fn patience(sim: &dyn Simulation) -> bool {
@@ -193,40 +282,58 @@ fn patience(sim: &dyn Simulation) -> bool {
 
 fn find<'a>(
     subject: &'a Subject,
-    reference: &[Point],
-    patch: Option<PatchTest>,
+    info: Info,
     families: Families,
-    trial: Trial,
+    reference: &[Point],
     threads: usize,
 ) -> Findings<'a> {
-    let sim = subject.sim.as_ref();
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|a| reference.iter().map(|x| x[a]).fold(start, pick))
     };
-    let low = bound(f64::min, f64::INFINITY);
-    let high = bound(f64::max, f64::NEG_INFINITY);
-    let info = sim.info();
-    // points stand for cells: the body reaches half a spacing beyond them
-    let thin = std::array::from_fn(|a| {
-        let thickness = high[a] - low[a] + info.spacing;
-        subject.spec.periodic[a].is_none() && thickness < info.horizon * (1.0 - 1e-9)
-    });
-    Findings {
-        low,
-        high,
-        materials: materials(&subject.spec, sim, patch.as_ref(), thin),
+    let mut found = Findings {
+        low: bound(f64::min, f64::INFINITY),
+        high: bound(f64::max, f64::NEG_INFINITY),
+        half: half(&subject.spec, info.spacing),
+        materials: vec![],
         steps: subject.steps,
         increments: subject.increments,
         spec: &subject.spec,
         units: subject.units,
         script: subject.script,
         warnings: &subject.warnings,
-        sim,
+        info,
         families,
-        patch,
-        trial,
+        patch: None,
+        untried: None,
+        trial: Trial::default(),
         threads,
         fields: vec![],
+    };
+    found.materials = materials(&subject.spec, &found.info, None, found.thin());
+    found
+}
+
+/// How far cells reach beyond their points along each axis: half the distance of the planes of a lattice; atoms have no cells, and a body
+/// whose surface is exact ends at its points.
+fn half(spec: &Spec, spacing: f64) -> [f64; 3] {
+    let exact = spec
+        .surface
+        .as_ref()
+        .is_some_and(|f| f.part.iter().any(|p| *p != 1.0));
+    if spec.potential().is_some() || exact {
+        return [0.0; 3];
+    }
+    match &spec.body {
+        BodySpec::Lattice {
+            kind,
+            spacing,
+            perturb: None,
+            ..
+        }
+        | BodySpec::Sites { kind, spacing, .. } => {
+            std::array::from_fn(|a| 0.5 * spacing * kind.edges()[a] / f64::from(kind.planes(a)))
+        }
+        BodySpec::Lattice { .. } | BodySpec::Cloud(_) | BodySpec::Several(_) => [0.5 * spacing; 3],
     }
 }
 
@@ -259,11 +366,10 @@ fn waves(stiffness: &Stiffness, thin: [bool; 3]) -> (f64, f64) {
 
 fn materials(
     spec: &Spec,
-    sim: &dyn Simulation,
+    info: &Info,
     patch: Option<&PatchTest>,
     thin: [bool; 3],
 ) -> Vec<Material> {
-    let info = sim.info();
     let d = info.dimension;
     let each = spec.materials.iter().enumerate().map(|(n, m)| {
         let of_all = (info.horizon, spec.influence);

@@ -1,5 +1,6 @@
 //! `peridyne converge`: one deck, several finer bodies, the order with which the error falls.
 
+mod around;
 mod files;
 mod level;
 
@@ -88,6 +89,9 @@ fn words(verdict: Verdict) -> &'static str {
             "errors stop falling: another error remains (the model's distance from the exact solution, the time step, round-off)"
         }
         Verdict::Diverges => "errors do not fall",
+        Verdict::Undecided => {
+            "one pair of levels has an order and no verdict: more levels tell whether it is settled"
+        }
     }
 }
 
@@ -171,10 +175,11 @@ fn all(arguments: &ConvergeArguments, deck: &Deck, exact: &[Expression]) -> Resu
     for finer in &decks {
         let level = Level::run(finer, &arguments.input, &step, 1)?;
         say(&format!(
-            "  spacing {}, horizon {}: {} points, {} steps in {:.2} s",
+            "  spacing {}, horizon {}: {} points, volume {}, {} steps in {:.2} s",
             deck.units.show(level.spacing, Dim::LENGTH),
             deck.units.show(level.horizon, Dim::LENGTH),
             level.points,
+            deck.units.show(level.volume, Dim::VOLUME),
             level.steps,
             level.seconds
         ));
@@ -255,6 +260,14 @@ fn finish(
         notes.push(format!(
             "The levels draw together with order {:.2}, towards another solution than the exact one: at fixed δ the nonlocal one, at fixed m that of the lattice's own stiffness (`peridyne waves` tells it).",
             d.fitted
+        ));
+    }
+    let volumes = levels.iter().map(|l| l.volume);
+    let (least, most) = volumes.fold((f64::INFINITY, 0.0f64), |(l, m), v| (l.min(v), m.max(v)));
+    if most > least * (1.0 + 1e-9) {
+        notes.push(format!(
+            "The bodies of the levels differ in volume by {} %: cells fill the region each in its own way, and that is part of the differences.",
+            rounded(100.0 * (most / least - 1.0), 2)
         ));
     }
     let pairs: Vec<[f64; 2]> = levels.iter().map(|l| [l.horizon, l.spacing]).collect();

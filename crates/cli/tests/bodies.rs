@@ -68,3 +68,178 @@ fn frames_and_the_report_know_the_bodies() {
     // every loose point, the stone and the plate
     assert_eq!(report["fragments"], 20 + 1 + 1);
 }
+
+/// What `check` finds of a deck in a folder with these files.
+fn checked(deck: &str, files: &[(&str, &str)]) -> (Value, String) {
+    let dir = TempDir::new().unwrap();
+    for (name, text) in files.iter().chain(&[("deck.toml", deck)]) {
+        std::fs::write(dir.path().join(name), text).unwrap();
+    }
+    let path = dir.path().join("deck.toml");
+    let path = path.to_str().unwrap();
+    let json = peridyne(&["check", path, "--json"]);
+    let text = peridyne(&["check", path]);
+    (
+        serde_json::from_slice(&json.stdout).unwrap(),
+        String::from_utf8_lossy(&text.stdout).into_owned(),
+    )
+}
+
+/// A plate of 20 × 10 quadrilaterals of 1 mm, whose right side has a name.
+fn mesh() -> String {
+    let mut text = String::from(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 2 \"right\"\n2 1 \"plate\"\n$EndPhysicalNames\n$Nodes\n231\n",
+    );
+    let node = |i: usize, j: usize| 1 + i + 21 * j;
+    for j in 0..11 {
+        for i in 0..21 {
+            text += &format!("{} {i} {j} 0\n", node(i, j));
+        }
+    }
+    text += "$EndNodes\n$Elements\n210\n";
+    for j in 0..10 {
+        for i in 0..20 {
+            let corners = [
+                node(i, j),
+                node(i + 1, j),
+                node(i + 1, j + 1),
+                node(i, j + 1),
+            ];
+            let [a, b, c, d] = corners;
+            text += &format!("{} 3 1 1 {a} {b} {c} {d}\n", 1 + i + 20 * j);
+        }
+        text += &format!("{} 1 1 2 {} {}\n", 201 + j, node(20, j), node(20, j + 1));
+    }
+    text + "$EndElements\n"
+}
+
+#[test]
+fn check_prints_the_force_of_each_load() {
+    // 1 MPa on 10 mm × 10 mm of a mesh, on a curve that it names
+    let deck = r#"horizon = "3.1 mm"
+thickness = "10 mm"
+body = { file = "plate.msh", file_unit = "1 mm" }
+material = { density = "1000 kg/m^3", law = { pmb = { young = "1 GPa" } } }
+sets.left.where = "x < 1 mm"
+[[condition]]
+set = "left"
+displacement = { x = 0, y = 0 }
+[[condition]]
+set = "right"
+traction = { x = "1 MPa*t" }
+[statics]
+method = "linear"
+[[probe]]
+name = "R"
+set = "left"
+measure = "reaction"
+"#;
+    let (json, text) = checked(deck, &[("plate.msh", &mesh())]);
+    let load = &json["loads"][0];
+    assert!(
+        (load["force"][0].as_f64().unwrap() - 100.0).abs() < 1e-9,
+        "{load}"
+    );
+    assert!(
+        (load["area"].as_f64().unwrap() - 1e-4).abs() < 1e-15,
+        "{load}"
+    );
+    // the thickness makes volumes of areas, however the file is called
+    assert!((json["volume"].as_f64().unwrap() - 2e-6).abs() < 1e-15);
+    let (loud, _) = checked(
+        &deck.replace("plate.msh", "PLATE.MSH"),
+        &[("PLATE.MSH", &mesh())],
+    );
+    assert_eq!(
+        (&loud["volume"], &loud["loads"]),
+        (&json["volume"], &json["loads"])
+    );
+    assert!(
+        text.contains("`right`: force up to 100 N along x, area 0.0001 m^2"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_body_is_as_large_as_its_region() {
+    let deck = |more: &str, body: &str| {
+        format!(
+            "horizon = {{ m_ratio = 2 }}\n{more}\nmaterial = {{ density = \"1000 kg/m^3\", law = {{ pmb = {{ young = \"1 GPa\" }} }} }}\n\
+             run = {{ steps = 1 }}\n[body]\n{body}\n"
+        )
+    };
+    let block = |d: usize| {
+        let (low, high) = (["0", "0", "0"], ["\"20 mm\"", "\"10 mm\"", "\"6 mm\""]);
+        format!(
+            "region = {{ block = {{ low = [{}], high = [{}] }} }}",
+            low[..d].join(", "),
+            high[..d].join(", ")
+        )
+    };
+    let volume = |text: &str| {
+        let (json, _) = checked(text, &[]);
+        assert!(
+            !json["warnings"].to_string().contains("its region of"),
+            "{}",
+            json["warnings"]
+        );
+        (json["volume"].as_f64().unwrap(), json["extent"].clone())
+    };
+    let near =
+        |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
+    for (lattice, d, wanted) in [
+        ("chain", 1, 20e-3),
+        ("square", 2, 200e-6),
+        ("cubic", 3, 1200e-9),
+        ("bcc", 3, 1200e-9),
+        ("fcc", 3, 1200e-9),
+    ] {
+        let body = format!("lattice = \"{lattice}\"\nspacing = \"1 mm\"\n{}", block(d));
+        let (found, extent) = volume(&deck("", &body));
+        near(found, wanted);
+        assert_eq!(extent[0][0].as_f64().unwrap().abs(), 0.0);
+        near(extent[0][1].as_f64().unwrap(), 20e-3);
+    }
+    // a period has no ends, and the same length
+    let body = format!("lattice = \"square\"\nspacing = \"1 mm\"\n{}", block(2));
+    near(volume(&deck("periodic = [\"x\"]", &body)).0, 200e-6);
+    // also where the first plane of points lies just below its end
+    let late = format!(
+        "lattice = \"square\"\nspacing = \"1 mm\"\norigin = [\"0.95 mm\", \"0.5 mm\"]\n{}",
+        block(2)
+    );
+    near(volume(&deck("periodic = [\"x\"]", &late)).0, 200e-6);
+    // whole cells from an origin that is given
+    let body = "lattice = \"square\"\nspacing = \"1 mm\"\norigin = [\"3 mm\", 0]\ncells = [20, 10]";
+    let (json, _) = checked(&deck("", body), &[]);
+    near(json["volume"].as_f64().unwrap(), 200e-6);
+    near(json["low"][0].as_f64().unwrap(), 3e-3);
+    // faces through points: said
+    let body = format!(
+        "lattice = \"square\"\nspacing = \"1 mm\"\norigin = [0, 0]\n{}",
+        block(2)
+    );
+    let (json, text) = checked(&deck("", &body), &[]);
+    near(json["volume"].as_f64().unwrap(), 21.0 * 11e-6);
+    assert!(text.contains("15.5 % more than its region"), "{text}");
+}
+
+#[test]
+fn an_indenter_without_stiffness_has_that_of_the_material() {
+    let deck = r#"horizon = { m_ratio = 2 }
+material = { density = "1000 kg/m^3", law = { lps = { bulk = "2 GPa", shear = "1 GPa" } } }
+run = { steps = 1 }
+body = { lattice = "cubic", spacing = "1 mm", cells = [6, 6, 6] }
+indenter = [{ radius = "3 mm", center = ["3 mm", "3 mm", "8 mm"] }]
+"#;
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("deck.toml");
+    std::fs::write(&path, deck).unwrap();
+    let output = peridyne(&["check", path.to_str().unwrap()]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    // ten times 2 GPa over 1 mm³
+    assert!(
+        said.contains("stiffness of indenters that give none: 2e19"),
+        "{said}"
+    );
+}

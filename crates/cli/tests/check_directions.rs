@@ -25,7 +25,7 @@ horizon = {{ m_ratio = 3 }}
 [body]
 lattice = "cubic"
 spacing = "1 mm"
-region = {{ block = {{ low = [0, 0, 0], high = ["28 mm", "12 mm", "{} mm"] }} }}
+cells = [29, 13, {layers}]
 [sets.left]
 region = {{ block = {{ low = [0, 0, 0], high = ["0.5 mm", "12 mm", "9 mm"] }} }}
 [material]
@@ -35,8 +35,7 @@ law = {{ lps = {{ young = "70 GPa", poisson = 0.35 }} }}
 set = "left"
 displacement = {{ x = 0, y = 0, z = 0 }}
 {schedule}
-"#,
-        layers - 1
+"#
     )
 }
 

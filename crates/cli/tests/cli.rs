@@ -60,7 +60,7 @@ contact = false
 [body]
 lattice = "cubic"
 spacing = "1 mm"
-region = { block = { low = [0, 0, 0], high = ["9 mm", "9 mm", "9 mm"] } }
+cells = [10, 10, 10]
 [material]
 density = "2200 kg/m^3"
 law = { pmb = { bulk = "14.9 GPa" } }
@@ -294,7 +294,7 @@ fn check_reads_well() {
     let output = good(peridyne(&["check", path.to_str().unwrap()]));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     for part in [
-        "20,301",
+        "20,000",
         "3.0000 spacings of 1 mm",
         "pre-cracks cut",
         "asked           191.00",
@@ -410,7 +410,7 @@ fn what_is_no_deck_and_what_looks_wrong_is_said() {
             assert!(text.contains(message), "{text}");
         }
     }
-    let text = "horizon = { m_ratio = 2 }\n[body]\nlattice = \"chain\"\nspacing = \"1 mm\"\nregion = { block = { low = 0, high = \"9 mm\" } }\n\
+    let text = "horizon = { m_ratio = 2 }\n[body]\nlattice = \"chain\"\nspacing = \"1 mm\"\ncells = [10]\n\
         [material]\ndensity = \"1 g/cm^3\"\nlaw = { pmb = { young = \"1 GPa\" } }\n[[precrack]]\npoint = \"4.5 mm\"\n[run]\nduration = \"300\"\nthreads = 1000\n";
     let file = dir.path().join("slow.toml");
     std::fs::write(&file, text).unwrap();

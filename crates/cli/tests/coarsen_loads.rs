@@ -14,7 +14,7 @@ units = "none"
 [body]
 lattice = "square"
 spacing = 1.0
-region = {{ block = {{ low = [0, 0], high = [18, 9] }} }}
+cells = [19, 10]
 [sets.left]
 region = {{ block = {{ low = [0, 0], high = [1.5, 9] }} }}
 [sets.right]

@@ -20,7 +20,7 @@ const BLOCK: &str = r#"horizon = { m_ratio = 3 }
 [body]
 lattice = "cubic"
 spacing = "1 mm"
-region = { block = { low = [0, 0, 0], high = ["9 mm", "9 mm", "9 mm"] } }
+cells = [10, 10, 10]
 [material]
 density = "2200 kg/m^3"
 law = { pmb = { bulk = "14.9 GPa" } }
@@ -428,5 +428,59 @@ every = 1
         assert_eq!(output.status.code(), Some(2), "{errors}");
         assert!(errors.contains("images of the cell"), "{errors}");
         assert!(begun.elapsed() < Duration::from_secs(10));
+    }
+}
+
+/// A bar whose increments of load take minutes.
+const SLOW: &str = r#"units = "none"
+horizon = 3.1
+influence = "constant"
+volume_scaling = false
+calibration = "continuum"
+body = { lattice = "cubic", spacing = 1, cells = [14, 40, 9] }
+[sets]
+low.where = "y < 3"
+high.where = "y > 36"
+[material]
+density = 8.0
+law = { hypoelastic = { bulk = 1.5e12, shear = 6.9e11, increment = "end" } }
+[[condition]]
+set = "low"
+displacement = { x = 0, y = 0, z = 0 }
+[[condition]]
+set = "high"
+displacement = { x = 0, y = "0.01*t", z = 0 }
+[statics]
+method = "newton"
+increments = 4
+"#;
+
+#[test]
+fn check_says_what_it_knows_and_hears_signals() {
+    use std::io::BufRead;
+    let dir = TempDir::new().unwrap();
+    let file = dir.path().join("slow.toml");
+    std::fs::write(&file, SLOW).unwrap();
+    for (name, expected) in [("INT", 130), ("TERM", 143)] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_peridyne"))
+            .arg("check")
+            .arg(&file)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let out = std::io::BufReader::new(child.stdout.take().unwrap());
+        // the first lines are there before the trial
+        let mut lines = out.lines().map_while(Result::ok);
+        assert!(lines.any(|l| l.contains("family size")));
+        signal(&child, name);
+        let begin = Instant::now();
+        let (found, errors) = code(child);
+        assert_eq!(found, Some(expected), "{errors}");
+        assert!(
+            begin.elapsed() < Duration::from_secs(1),
+            "{:?}",
+            begin.elapsed()
+        );
     }
 }

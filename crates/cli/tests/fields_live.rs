@@ -178,7 +178,7 @@ fn fields_of_a_body_are_written_as_those_of_atoms() {
     let dir = TempDir::new().unwrap();
     let at = dir.path();
     let deck = "horizon = { m_ratio = 3 }\nplane = \"strain\"\nthickness = \"2 mm\"\n\
-         body = { lattice = \"square\", spacing = \"1 mm\", region = { block = { low = [0, 0], high = [\"20 mm\", \"16 mm\"] } } }\n\
+         body = { lattice = \"square\", spacing = \"1 mm\", cells = [21, 17] }\n\
          material = { density = \"2500 kg/m^3\", law = { lps = { young = \"70 GPa\", poisson = 0.22 } } }\n\
          initial = [{ velocity = [0, \"10 m/s * (y - 8e-3) / (8 mm)\"] }]\n\
          run = { steps = 8 }\noutput = { vtu = false }\n\

@@ -8,6 +8,7 @@ const BLOCK: &str = r#"horizon = HORIZON
 [body]
 lattice = "cubic"
 spacing = "SPACING"
+origin = [0, 0, 0]
 region = { block = { low = [0, 0, 0], high = ["20 mm", "20 mm", "20 mm"] } }
 MORE
 [material]

@@ -167,7 +167,7 @@ fn completions_and_the_manual() {
 fn plate(dir: &Path, output: &str) {
     let deck = format!(
         r#"horizon = {{ m_ratio = 3 }}
-body = {{ lattice = "square", spacing = 1, region = {{ block = {{ low = [0, 0], high = [20, 10] }} }} }}
+body = {{ lattice = "square", spacing = 1, cells = [21, 11] }}
 units = "none"
 material = {{ density = 1, law = {{ lps = {{ young = 1, poisson = 0.3 }} }} }}
 condition = [
@@ -232,7 +232,7 @@ fn a_load_that_is_over_is_drawn_as_a_load() {
         let deck = format!(
             r#"horizon = {{ m_ratio = 3 }}
 units = "none"
-body = {{ lattice = "square", spacing = 1, region = {{ block = {{ low = [0, 0], high = [20, 10] }} }} }}
+body = {{ lattice = "square", spacing = 1, cells = [21, 11] }}
 material = {{ density = 1, law = {{ lps = {{ young = 1, poisson = 0.3 }} }} }}
 condition = [{{ region = {{ block = {{ low = [18, 0], high = [20, 10] }} }}, velocity = {{ x = "{velocity}" }} }}]
 run = {{ steps = 10, time_step = 0.1 }}

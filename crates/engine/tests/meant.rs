@@ -2,7 +2,7 @@
 
 use peridyne::expression::Expression;
 use peridyne::run::{Options, build};
-use peridyne::space::lattice::LatticeKind;
+use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
 use peridyne::spec::*;
 
@@ -75,11 +75,11 @@ fn a_crack_through_points() {
     silent(&spec);
 }
 
-fn pulled(layers: f64, area: Option<f64>) -> Spec {
+fn pulled(low: f64, area: Option<f64>) -> Spec {
     let mut spec = whole();
     spec.sets.push(SetSpec {
         name: "top".into(),
-        members: Members::Region(block([0.0, 10.0 - layers], [20.0, 10.0])),
+        members: Members::Region(block([0.0, low], [20.0, 10.0])),
     });
     spec.conditions.push(ConditionSpec {
         set: "top".into(),
@@ -91,36 +91,269 @@ fn pulled(layers: f64, area: Option<f64>) -> Spec {
     spec
 }
 
+/// Area that the only load acts on, and its force.
+fn load(spec: &Spec) -> (f64, [f64; 3]) {
+    let mut sim = build(spec, Options::default()).unwrap();
+    let told = sim.info().loads[0].clone();
+    // the sum of what acts on points is what is told
+    sim.start(true);
+    let force = sim.vectors("force_density");
+    let volume = sim.scalars("volume");
+    let sum: [f64; 3] =
+        std::array::from_fn(|a| force.iter().zip(&volume).map(|(f, v)| f[a] * v).sum());
+    let told_force = told.force.unwrap();
+    let size = told_force.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+    for a in 0..3 {
+        assert!(
+            (sum[a] - told_force[a]).abs() < 1e-9 * size,
+            "{sum:?} {told_force:?}"
+        );
+    }
+    (told.area.unwrap(), told_force)
+}
+
+fn refused(spec: &Spec, words: &str) {
+    let told = match build(spec, Options::default()) {
+        Ok(_) => panic!("expected: {words}"),
+        Err(e) => {
+            let help = e.help.map_or(String::new(), |h| h.to_string());
+            format!("{} {help}", e.message)
+        }
+    };
+    assert!(told.contains(words), "{told}");
+}
+
 #[test]
-fn a_traction_on_several_layers() {
-    silent(&pulled(1.0, None));
-    silent(&pulled(3.0, Some(20.0)));
-    // 18 of 20 points of each deeper layer are inside
-    warns(
-        &pulled(2.0, None),
-        "each of its 40 points, of which 18 are inside",
+fn a_traction_acts_on_the_face_whatever_the_depth_of_its_set() {
+    for low in [9.0, 8.0, 7.0, 5.0] {
+        silent(&pulled(low, None));
+        let (area, force) = load(&pulled(low, None));
+        assert!(
+            (area - 20.0).abs() < 1e-12 && (force[1] - 0.02).abs() < 1e-15,
+            "{area} {force:?}"
+        );
+    }
+    let (area, _) = load(&pulled(7.0, Some(13.0)));
+    assert!((area - 13.0).abs() < 1e-12);
+    // all of the body, its rim, a corner
+    let mut spec = pulled(0.0, None);
+    refused(&spec, "on no side, or on opposite ones");
+    spec.sets[0].members = Members::Region(block([17.0, 7.0], [20.0, 10.0]));
+    refused(&spec, "may stand for either face");
+    spec.sets[0].members = Members::Where(Expression::parse("y > x", &[]).unwrap());
+    refused(&spec, "write `area`");
+    // both ends at once, pulled apart
+    let mut spec = pulled(9.0, None);
+    spec.sets[0].members = Members::Where(Expression::parse("abs(y - 5) > 4", &[]).unwrap());
+    let (area, _) = load(&spec);
+    assert!((area - 40.0).abs() < 1e-12, "{area}");
+    // and of different depths
+    spec.sets[0].members = Members::Where(Expression::parse("y < 1 || y > 7", &[]).unwrap());
+    spec.conditions[0].kind = ConditionKind::Traction {
+        value: [
+            None,
+            Some(Expression::parse("if(y > 5, 1, 0)", &[]).unwrap()),
+            None,
+        ],
+        area: None,
+    };
+    let (area, force) = load(&spec);
+    assert!(
+        (area - 40.0).abs() < 1e-12 && (force[1] - 20.0).abs() < 1e-12,
+        "{force:?}"
     );
-    warns(
-        &pulled(3.0, None),
-        "each of its 60 points, of which 36 are inside",
-    );
+}
+
+/// A block of a lattice, filled, with the top under a traction of 1 along z.
+fn topped(kind: LatticeKind, depth: f64) -> Spec {
+    let high = [6.0, 5.0, 4.0];
+    let (low, d) = ([0.0; 3], kind.dimension());
+    let origin = Lattice::filling(kind, 1.0, [low, high], Ends::Cells);
+    let body = BodySpec::Lattice {
+        kind,
+        spacing: 1.0,
+        origin,
+        region: Region::Block { low, high },
+        perturb: None,
+    };
+    let mut spec = Spec::new(d, body, 1.0, LawSpec::Pmb(PmbStiffness::Young(1.0)));
+    spec.horizon = Horizon::Ratio(2);
+    let axis = ["x", "y", "z"][d - 1];
+    let on = format!("{axis} > {}", high[d - 1] - depth);
+    spec.sets.push(SetSpec {
+        name: "top".into(),
+        members: Members::Where(Expression::parse(&on, &[]).unwrap()),
+    });
+    let one = || Some(Expression::parse("1", &[]).unwrap());
+    spec.conditions.push(ConditionSpec {
+        set: "top".into(),
+        kind: ConditionKind::Traction {
+            value: std::array::from_fn(|a| if a + 1 == d { one() } else { None }),
+            area: None,
+        },
+    });
+    spec
+}
+
+#[test]
+fn faces_of_every_lattice_carry_the_whole_traction() {
+    for (kind, area, depths) in [
+        (LatticeKind::Chain, 1.0, &[1.0, 2.0][..]),
+        (LatticeKind::Square, 6.0, &[1.0, 3.0]),
+        (LatticeKind::Triangular, 6.0, &[0.6, 2.0]),
+        (LatticeKind::Cubic, 30.0, &[1.0, 2.0]),
+        (LatticeKind::Bcc, 30.0, &[0.4, 0.9, 2.0]),
+        (LatticeKind::Fcc, 30.0, &[0.4, 0.9, 2.0]),
+        (LatticeKind::Diamond, 30.0, &[0.2, 0.4, 1.0]),
+    ] {
+        for depth in depths {
+            let mut spec = topped(kind, *depth);
+            let near = |spec: &Spec| {
+                let (found, force) = load(spec);
+                let along = force[kind.dimension() - 1];
+                let off = [found / area - 1.0, along / area - 1.0];
+                assert!(
+                    off.iter().all(|o| o.abs() < 1e-9),
+                    "{kind:?} {depth}: {found} {along}"
+                );
+            };
+            near(&spec);
+            // as a list, and moved off its sites
+            spec.family = FamilyChoice::List;
+            near(&spec);
+            let BodySpec::Lattice { perturb, .. } = &mut spec.body else {
+                unreachable!("it is one")
+            };
+            *perturb = Some(Perturbation {
+                amplitude: 0.05,
+                seed: 4,
+            });
+            near(&spec);
+        }
+    }
+}
+
+#[test]
+fn points_of_a_file_know_no_faces_unless_they_lie_on_a_lattice() {
+    let cloud = |stretch: f64, volume: f64| {
+        let mut spec = pulled(9.0, None);
+        let position: Vec<[f64; 3]> = (0..200)
+            .map(|n| {
+                [
+                    0.5 + f64::from(n % 20),
+                    0.5 + stretch * f64::from(n / 20),
+                    0.0,
+                ]
+            })
+            .collect();
+        spec.body = BodySpec::Cloud(Cloud {
+            volume: vec![volume; position.len()],
+            position,
+            ..Cloud::default()
+        });
+        spec.horizon = Horizon::Length(3.1);
+        spec
+    };
+    assert!((load(&cloud(1.0, 1.0)).0 - 20.0).abs() < 1e-12);
+    // flat cells, and as a cloud of another density of points
+    let mut flat = cloud(0.5, 0.5);
+    flat.sets[0].members = Members::Where(Expression::parse("y > 4.6", &[]).unwrap());
+    refused(&flat, "their faces are not known");
+    refused(&cloud(1.0, 0.9), "their faces are not known");
 }
 
 #[test]
 fn a_region_that_cells_do_not_fill() {
     silent(&whole());
-    // faces through points, on one side or both
-    silent(&plate(block([0.5, 0.0], [19.5, 10.0])));
-    silent(&plate(block([0.5, 0.0], [20.0, 10.0])));
+    // a percent more or less is a matter of the spacing
+    silent(&plate(block([0.0; 2], [20.1, 10.0])));
     warns(
         &plate(block([0.0; 2], [20.3, 10.0])),
-        "along x the region is 20.3 long, and its body 20: 20 cells of 1, from 0 to 20",
+        "the body holds 200, 1.5 % less than its region of 203: along x its cells reach from 0 to 20, the region from 0 to 20.3",
     );
-    // a disk has no cells to fill
+    // faces through points: half a spacing more on each side
+    warns(
+        &plate(block([0.5, 0.5], [19.5, 9.5])),
+        "17 % more than its region of 171: along y its cells reach from 0 to 10, the region from 0.5 to 9.5",
+    );
+    // a disk of 121 cells is 3 % smaller than its circle, one of many is not
+    warns(
+        &plate(Region::Sphere {
+            center: [10.5, 10.5, 0.0],
+            radius: 6.3,
+        }),
+        "less than its region",
+    );
     silent(&plate(Region::Sphere {
-        center: [10.0, 10.0, 0.0],
-        radius: 6.3,
+        center: [40.0, 40.0, 0.0],
+        radius: 40.0,
     }));
+}
+
+/// A strip of points 20 long, of cells 1, with a period.
+fn strip(period: f64) -> Spec {
+    let mut spec = whole();
+    let position: Vec<[f64; 3]> = (0..200)
+        .map(|n| [0.5 + f64::from(n % 20), 0.5 + f64::from(n / 20), 0.0])
+        .collect();
+    spec.body = BodySpec::Cloud(Cloud {
+        volume: vec![1.0; position.len()],
+        position,
+        ..Cloud::default()
+    });
+    spec.horizon = Horizon::Length(3.1);
+    spec.periodic[0] = Some(period);
+    spec
+}
+
+#[test]
+fn periods_are_as_long_as_the_body() {
+    silent(&strip(20.0));
+    silent(&strip(21.5));
+    for period in [15.0, 19.0] {
+        refused(&strip(period), "the body lies in its own image");
+    }
+    warns(&strip(19.1), "its last cells lie in those of its image");
+    warns(
+        &strip(23.5),
+        "there is a gap of 3.5 spacings before its image",
+    );
+}
+
+#[test]
+fn a_condition_that_every_point_meets() {
+    let mut spec = whole();
+    spec.sets.push(SetSpec {
+        name: "top".into(),
+        members: Members::Where(Expression::parse("y > 0.009", &[]).unwrap()),
+    });
+    warns(
+        &spec,
+        "`y > 0.009` holds at every point: the set `top` is all of the body",
+    );
+    spec.sets[0].members = Members::Where(Expression::parse("y > 9", &[]).unwrap());
+    silent(&spec);
+    spec.sets[0].members = Members::Where(Expression::parse("y > 9000", &[]).unwrap());
+    refused(&spec, "set `top` has no points");
+}
+
+#[test]
+fn a_crack_that_cuts_everything() {
+    let mut spec = plate(block([0.0; 2], [1.0, 2.0]));
+    spec.precracks.push(PrecrackSpec {
+        shape: CrackShape::Segment {
+            from: [-5.0, 1.0, 0.0],
+            to: [5.0, 1.0, 0.0],
+        },
+        kind: CrackKind::Absent,
+    });
+    for kind in [CrackKind::Absent, CrackKind::Broken] {
+        spec.precracks[0].kind = kind;
+        refused(
+            &spec,
+            "the pre-crack cuts all bonds: none of the 1 between 2 points is left",
+        );
+    }
 }
 
 fn without(part: Region) -> Spec {
@@ -150,4 +383,22 @@ fn a_slot_that_bonds_bridge() {
         center: [10.0, 5.0, 0.0],
         radius: 3.4,
     }));
+}
+
+#[test]
+fn a_corner_that_a_traction_tears_off() {
+    let mut spec = pulled(9.0, None);
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.01)));
+    silent(&spec);
+    let pull = |spec: &mut Spec, traction: &str| {
+        spec.conditions[0].kind = ConditionKind::Traction {
+            value: [None, Some(Expression::parse(traction, &[]).unwrap()), None],
+            area: None,
+        };
+    };
+    // a tenth of the modulus, and a tenth of that
+    pull(&mut spec, "0.1");
+    warns(&spec, "a traction tears off");
+    pull(&mut spec, "0.0001");
+    silent(&spec);
 }

@@ -199,7 +199,7 @@ fn numbers_of_warnings_and_errors_have_units() {
 fn numbers_that_no_solid_has_are_doubted() {
     let doubts = |density: &str, law: &str, fracture: &str, run: &str| {
         let text = format!(
-            "horizon = {{ m_ratio = 3 }}\nrun = {run}\nbody = {{ lattice = \"cubic\", spacing = \"1 mm\", region = {{ block = {{ low = [0, 0, 0], high = [\"5 mm\", \"5 mm\", \"5 mm\"] }} }} }}\n[material]\ndensity = \"{density}\"\nlaw = {{ {law} }}\n{fracture}\n"
+            "horizon = {{ m_ratio = 3 }}\nrun = {run}\nbody = {{ lattice = \"cubic\", spacing = \"1 mm\", cells = [6, 6, 6] }}\n[material]\ndensity = \"{density}\"\nlaw = {{ {law} }}\n{fracture}\n"
         );
         let deck = Deck::parse(&text, "deck.toml", &[]).unwrap_or_else(|e| panic!("{e}: {text}"));
         let sim = build(&deck.spec, Options::default()).unwrap();

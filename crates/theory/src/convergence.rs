@@ -53,6 +53,8 @@ pub enum Verdict {
     Stalls,
     /// Errors do not fall.
     Diverges,
+    /// There is one pair of levels: it has an order, and nothing says whether that is settled.
+    Undecided,
 }
 
 /// Fitted order of `error ≈ C h^order`.
@@ -102,7 +104,9 @@ pub fn order(series: &[(f64, f64)]) -> Option<Order> {
 fn verdict(pairwise: &[f64], fitted: f64) -> Verdict {
     let last = pairwise.last().copied().unwrap_or(fitted);
     let fastest = pairwise.iter().copied().fold(f64::MIN, f64::max);
-    if fitted < 0.1 {
+    if pairwise.len() < 2 {
+        Verdict::Undecided
+    } else if fitted < 0.1 {
         Verdict::Diverges
     } else if last < 0.25 * fastest {
         Verdict::Stalls
@@ -140,6 +144,8 @@ mod tests {
             Verdict::Preasymptotic
         );
         assert_eq!(errors(|h| 1.0 / h).verdict, Verdict::Diverges);
+        let pair = order(&[(1.0, 1.0), (0.5, 0.25)]).unwrap();
+        assert_eq!((pair.pairwise[0], pair.verdict), (2.0, Verdict::Undecided));
         assert_eq!(order(&[(1.0, 1.0)]), None);
         assert_eq!(order(&[(1.0, 1.0), (1.0, 2.0)]), None);
         assert_eq!(order(&[(1.0, 1.0), (0.5, 0.0)]), None);

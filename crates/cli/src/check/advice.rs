@@ -19,7 +19,7 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
             fix: (!found.script && !fix.is_empty()).then(|| fix.to_string()),
         });
     };
-    let (spec, info) = (found.spec, found.sim.info());
+    let (spec, info) = (found.spec, &found.info);
     for warning in &info.warnings {
         say(found.units.tell(warning), "");
     }
@@ -78,6 +78,12 @@ pub fn advice(found: &Findings) -> Vec<Advice> {
 }
 
 fn trial(found: &Findings, say: &mut dyn FnMut(String, &str)) {
+    if let Some(why) = &found.untried {
+        say(
+            why.clone(),
+            "`peridyne run` takes as long as it takes, and says how far it is",
+        );
+    }
     if let Some(why) = &found.trial.failed {
         say(
             format!("trial steps failed: {why}"),
@@ -87,7 +93,7 @@ fn trial(found: &Findings, say: &mut dyn FnMut(String, &str)) {
 }
 
 fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
-    let (spec, info) = (found.spec, found.sim.info());
+    let (spec, info) = (found.spec, &found.info);
     let d = info.dimension;
     let small = match spec.horizon {
         Horizon::Ratio(m) => m < 3,
@@ -115,8 +121,7 @@ fn geometry(found: &Findings, say: &mut dyn FnMut(String, &str)) {
         );
     }
     for a in 0..d {
-        // points stand for cells: the body reaches half a spacing beyond them
-        let thickness = found.high[a] - found.low[a] + info.spacing;
+        let thickness = found.long(a);
         if spec.periodic[a].is_none() && thickness < info.horizon * (1.0 - 1e-9) {
             say(
                 format!(

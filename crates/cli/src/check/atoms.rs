@@ -11,7 +11,7 @@ const COARSE: f64 = 0.2;
 const WASTED: f64 = 0.05;
 
 pub fn advice(found: &Findings, say: &mut dyn FnMut(String, &str)) {
-    let (spec, info) = (found.spec, found.sim.info());
+    let (spec, info) = (found.spec, &found.info);
     let d = info.dimension;
     let few = [2.0, 6.0, 12.0][d - 1];
     if info.family.1 < 0.5 * few {

@@ -12,6 +12,7 @@ const PATIENCE: u64 = 200_000;
 const LONG: f64 = 20.0;
 
 /// The fields of a table `[[fields]]`.
+#[derive(Clone)]
 pub(super) struct Found {
     pub asked: FieldsSpec,
     pub frames: u64,
@@ -22,6 +23,7 @@ pub(super) struct Found {
 }
 
 /// What a frame of the start showed.
+#[derive(Clone)]
 pub(super) enum Seen {
     Made {
         /// Distance of the points of a grid along its axes (length).

@@ -11,7 +11,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// the plane.
 pub fn nominal_along(found: &Findings, m: &Material) -> Option<f64> {
     let nominal = m.nominal?;
-    let slice = found.sim.info().dimension == 2 && found.spec.plane == Plane::Strain;
+    let slice = found.info.dimension == 2 && found.spec.plane == Plane::Strain;
     Some(match slice {
         true => nominal.young / (1.0 - nominal.poisson * nominal.poisson),
         false => nominal.young,
@@ -26,7 +26,7 @@ pub fn lines(
     m: &Material,
     number: &dyn Fn(f64) -> String,
 ) -> Vec<String> {
-    let d = found.sim.info().dimension;
+    let d = found.info.dimension;
     if d == 1 {
         return vec![];
     }

@@ -9,7 +9,7 @@ use peridyne_theory::voigt::{Stiffness, components};
 use serde_json::{Value, json};
 
 pub fn write(found: &Findings) -> String {
-    let info = found.sim.info();
+    let info = &found.info;
     let materials = found.materials.iter().enumerate().map(|(n, m)| {
         let classes = found.patch.iter().flat_map(|p| &p.classes);
         json!({
@@ -39,6 +39,11 @@ pub fn write(found: &Findings) -> String {
         "horizon": info.horizon,
         "low": found.low[..info.dimension],
         "high": found.high[..info.dimension],
+        "extent": (0..info.dimension).map(|a| [found.low[a] - found.half[a], found.high[a] + found.half[a]]).collect::<Vec<_>>(),
+        "loads": info.loads.iter().map(|l| json!({
+            "what": l.what, "set": l.set, "area": l.area, "force": l.force.map(|f| f[..info.dimension].to_vec()), "power": l.power,
+        })).collect::<Vec<_>>(),
+        "not_tried": found.untried,
         "mass": info.mass,
         "volume": info.volume,
         "directed_bonds": info.directed_bonds,

@@ -1,6 +1,7 @@
 //! The findings as a table for people.
 
 mod continuum;
+mod loads;
 mod look;
 mod points;
 mod spread;
@@ -10,6 +11,7 @@ mod waves;
 use super::Findings;
 use super::advice::advice;
 use crate::numbers::{digits, duration, memory};
+use loads::loads;
 use look::look;
 use peridyne_io::deck::describe;
 use points::{families, points};
@@ -23,7 +25,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Width of the names of rows.
 const NAME: usize = 18;
 
-pub fn write(found: &Findings) -> String {
+/// What is known at once: what would run, its points and loads.
+pub fn first(found: &Findings) -> String {
     let mut out = String::new();
     for line in describe(found.spec, found.units).lines() {
         // conditions of a script come and go with its fixes
@@ -35,8 +38,19 @@ pub fn write(found: &Findings) -> String {
         });
         out.push('\n');
     }
+    out.push('\n');
+    out.push_str(&points(found));
+    if !found.info.loads.is_empty() && !found.script {
+        out.push('\n');
+        out.push_str(&loads(found));
+    }
+    out
+}
+
+/// What takes work: a patch test, trial steps.
+pub fn rest(found: &Findings) -> String {
+    let mut out = String::new();
     for section in [
-        points(found),
         families(found),
         stiffness(found),
         waves(found),
@@ -49,7 +63,9 @@ pub fn write(found: &Findings) -> String {
         look(found),
     ] {
         if !section.is_empty() {
-            out.push('\n');
+            if !out.is_empty() {
+                out.push('\n');
+            }
             out.push_str(&section);
         }
     }
@@ -62,7 +78,7 @@ fn row(out: &mut String, name: &str, value: impl std::fmt::Display) {
 }
 
 fn cost(found: &Findings) -> String {
-    let info = found.sim.info();
+    let info = &found.info;
     let mut out = String::from("Cost\n");
     let bytes = info.bytes as f64;
     row(
@@ -88,6 +104,9 @@ fn cost(found: &Findings) -> String {
         if seconds > 0.0 && found.trial.seconds_per_step.is_none() {
             row(&mut out, "speed", "motion was not reached in the trial");
         }
+    }
+    if let Some(why) = &found.untried {
+        row(&mut out, "not tried", why);
     }
     let Some(seconds) = found.trial.seconds_per_step else {
         return out;

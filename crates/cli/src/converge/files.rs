@@ -33,6 +33,7 @@ pub fn write(dir: &Path, f: &Finished, units: UnitSystem) -> Result<(), WriteErr
         .column("horizon", length, column(&|l| l.horizon))
         .column("m", "", column(&|l| l.horizon / l.spacing))
         .column("points", "", column(&|l| l.points as f64))
+        .column("volume", "", column(&|l| l.volume))
         .column("steps", "", column(&|l| l.steps as f64))
         .column("time step", time, column(&|l| f.time / l.steps as f64))
         .column(
@@ -125,6 +126,7 @@ fn json(f: &Finished) -> Value {
             "spacing": l.spacing,
             "horizon": l.horizon,
             "points": l.points,
+            "volume": l.volume,
             "steps": l.steps,
             "seconds": l.seconds,
             "error_rms": l.error.map(|e| e[0]),

@@ -1,5 +1,6 @@
 //! One level of a study: its run, and its displacements at given places.
 
+use super::around::Around;
 use crate::Input;
 use crate::deck;
 use crate::failure::Failure;
@@ -7,6 +8,7 @@ use peridyne::error::RunError;
 use peridyne::expression::Expression;
 use peridyne_io::deck::{Deck, Dim};
 use peridyne_theory::convergence::Kind;
+use rayon::prelude::*;
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -24,6 +26,8 @@ pub struct Level {
     pub spacing: f64,
     pub horizon: f64,
     pub points: u64,
+    /// Of the body (length^D times the section).
+    pub volume: f64,
     pub steps: u64,
     pub seconds: f64,
     pub reference: Vec<[f64; 3]>,
@@ -103,6 +107,7 @@ impl Level {
             spacing: info.spacing,
             horizon: info.horizon,
             points: info.points,
+            volume: info.volume,
             steps,
             seconds: began.elapsed().as_secs_f64(),
             reference: sim.vectors("reference"),
@@ -120,25 +125,23 @@ impl Level {
         }
     }
 
-    /// Displacements at points of a coarser level.
+    /// Displacements at points of a coarser level: those of the point there, or of a polynomial through the points around.
     pub fn at(&self, places: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, String> {
-        let key = |x: &[f64; 3]| x.map(|c| (c / (0.1 * self.spacing)).round() as i64);
-        let own: HashMap<[i64; 3], usize> = self
-            .reference
-            .iter()
-            .enumerate()
-            .map(|(i, x)| (key(x), i))
+        let near = |c: f64| (c / (0.1 * self.spacing)).round() as i64;
+        let own: HashMap<[i64; 3], usize> = { self.reference.iter().enumerate() }
+            .map(|(i, x)| (x.map(near), i))
             .collect();
-        places
-            .iter()
-            .map(|x| match own.get(&key(x)) {
-                Some(&i) => Ok(self.displacement[i]),
-                None => Err(format!(
-                    "the point {x:?} of the coarsest level is no point of the level with spacing {}: put origin and region on multiples of the spacing",
+        let around = Around::new(&self.reference, self.spacing);
+        let each = places.par_iter().map(|x| match own.get(&x.map(near)) {
+            Some(&i) => Ok(self.displacement[i]),
+            None => around.fitted(x, &self.displacement).ok_or_else(|| {
+                format!(
+                    "around the point {x:?} of the coarsest level too few points of the level with spacing {} lie to tell its displacement: the body is too thin there",
                     self.spacing
-                )),
-            })
-            .collect()
+                )
+            }),
+        });
+        each.collect()
     }
 }
 

@@ -38,6 +38,8 @@ pub struct Load<const D: usize> {
     points: Vec<Point>,
     /// Of a condensed body: where this load acts.
     condensed: Option<Condensed<D>>,
+    /// Which of the conditions it is, and the area that it acts on, if on one.
+    pub of: Option<(usize, Option<f64>)>,
     /// Force density added last time, for the work of the next step.
     last: Vec<[f64; D]>,
     /// Sum of the force densities on the points before this load acted, without those that a list leaves alone.
@@ -59,6 +61,7 @@ impl<const D: usize> Load<D> {
             slots,
             points,
             condensed: None,
+            of: None,
             last,
             before: [0.0; 3],
             work: 0.0,
@@ -71,6 +74,41 @@ impl<const D: usize> Load<D> {
             condensed: Some(condensed),
             ..Load::new(LoadKind::Body(density), slots, vec![])
         }
+    }
+
+    /// The whole force at a time, of one that adds force densities (force).
+    pub fn total(&mut self, body: &Body<D>, t: f64) -> Option<[f64; 3]> {
+        let LoadKind::Body(density) = &self.kind else {
+            return None;
+        };
+        if let Some(condensed) = &mut self.condensed {
+            condensed.evaluate(density, t);
+        }
+        let mut total = [0.0; 3];
+        for (k, &s) in self.slots.iter().enumerate() {
+            for (a, total) in total.iter_mut().enumerate().take(D) {
+                *total += match &self.condensed {
+                    Some(condensed) => condensed.reaching(k, a),
+                    None => body.volume.at(s as usize) * density.at(a, k, &self.points[k], t),
+                };
+            }
+        }
+        Some(total)
+    }
+
+    /// Force density on each slot at the one of some times up to `end` at which it is largest, of a load that adds them.
+    pub fn largest(&self, end: f64, times: u32) -> Vec<(usize, [f64; D])> {
+        let (LoadKind::Body(density), None) = (&self.kind, &self.condensed) else {
+            return vec![];
+        };
+        let size = |f: &[f64; D]| f.iter().map(|c| c * c).sum::<f64>();
+        let each = self.slots.iter().enumerate().filter_map(|(k, slot)| {
+            let at = |t: f64| std::array::from_fn(|a| density.at(a, k, &self.points[k], t));
+            let all = (0..=times).map(|n| at(end * f64::from(n) / f64::from(times)));
+            let most = all.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+            Some((*slot as usize, most))
+        });
+        each.collect()
     }
 
     /// Points have the slots that `keep` holds for only, from now on.

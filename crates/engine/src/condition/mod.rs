@@ -21,6 +21,8 @@ use crate::space::Point;
 pub struct Program<const D: usize> {
     component: [Component; D],
     scale: f64,
+    /// One more factor for each point; empty: 1.
+    weight: Vec<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -44,6 +46,7 @@ impl<const D: usize> Program<D> {
                 Some(e) => Component::Fixed(points.iter().map(|x| e.eval(x, 0.0)).collect()),
             }),
             scale: 1.0,
+            weight: vec![],
         }
     }
 
@@ -52,6 +55,7 @@ impl<const D: usize> Program<D> {
         Program {
             component: std::array::from_fn(|a| values[a].map_or(Component::Free, Component::Given)),
             scale: 1.0,
+            weight: vec![],
         }
     }
 
@@ -62,11 +66,15 @@ impl<const D: usize> Program<D> {
                 Component::Listed(values.iter().map(|v| v[a]).collect())
             }),
             scale: 1.0,
+            weight: vec![],
         }
     }
 
     /// The points of the list become those at these places of it.
     pub fn pick(&mut self, kept: &[usize]) {
+        if !self.weight.is_empty() {
+            self.weight = kept.iter().map(|k| self.weight[*k]).collect();
+        }
         for c in &mut self.component {
             match c {
                 Component::Fixed(v) => *v = kept.iter().map(|k| v[*k]).collect(),
@@ -91,6 +99,11 @@ impl<const D: usize> Program<D> {
         }
     }
 
+    /// The same program, the values of each point multiplied by its own weight.
+    pub fn weighted(self, weight: Vec<f64>) -> Self {
+        Program { weight, ..self }
+    }
+
     pub fn acts(&self, axis: usize) -> bool {
         !matches!(self.component[axis], Component::Free)
     }
@@ -113,12 +126,13 @@ impl<const D: usize> Program<D> {
 
     /// Value at point `k` of the list, whose reference position is `x`.
     pub fn at(&self, axis: usize, k: usize, x: &Point, t: f64) -> f64 {
+        let scale = self.weight.get(k).map_or(self.scale, |w| self.scale * w);
         match &self.component[axis] {
             Component::Free => 0.0,
-            Component::Fixed(v) => self.scale * v[k],
-            Component::Changing(e) => self.scale * e.eval(x, t),
-            Component::Given(v) => self.scale * v,
-            Component::Listed(v) => self.scale * v[k].unwrap_or(0.0),
+            Component::Fixed(v) => scale * v[k],
+            Component::Changing(e) => scale * e.eval(x, t),
+            Component::Given(v) => scale * v,
+            Component::Listed(v) => scale * v[k].unwrap_or(0.0),
         }
     }
 }

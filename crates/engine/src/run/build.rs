@@ -5,6 +5,7 @@ use super::bind::{bind, names};
 use super::clouds::{own_densities, own_velocities};
 use super::constitutive::{Shelf, criteria};
 use super::equilibrium::state::StaticState;
+use super::faces::Faces;
 use super::feasible::{consistent, enough_memory, possible};
 use super::implicit;
 use super::implicit::state::Implicit;
@@ -152,8 +153,9 @@ pub fn build_in<const D: usize>(
     if solid {
         warnings.extend(gaps::bridged(&body, interaction.as_ref()));
     }
-    warnings.extend(meant::regions(spec));
-    warnings.extend(meant::tractions(spec, &body, &sets));
+    warnings.extend(meant::regions(spec, &body));
+    warnings.extend(meant::periods(spec, &body)?);
+    warnings.extend(meant::sets(spec, &body, &sets));
     if { spec.contact.as_ref() }.is_some_and(|c| c.conductance.is_some())
         && spec.materials.iter().any(|m| m.fracture.is_some())
     {
@@ -170,6 +172,16 @@ pub fn build_in<const D: usize>(
     }
     let directed_bonds = interaction.directed_bonds();
     let bonded = parts.iter().any(|p| p.bonded);
+    if cut > 0 && directed_bonds <= cut && precracks::left(&body, interaction.as_ref()) == 0 {
+        let message = format!(
+            "the pre-crack cuts all bonds: none of the {} between {} points is left",
+            cut / 2,
+            body.points()
+        );
+        return Err(BuildError::empty("precracks[0]", message).help(
+            "make it shorter than the body, or the spacing smaller; parts that nothing holds together are bodies of their own",
+        ));
+    }
     if directed_bonds == 0 && body.points() > 1 && bonded && body.points() > body.pieces().len() {
         return Err(BuildError::empty(
             "horizon",
@@ -258,6 +270,7 @@ pub fn build_in<const D: usize>(
             bodies: names(spec, &body),
             gaps,
             transfers: vec![],
+            loads: vec![],
             cut,
             bytes: 0,
             simd: simd.name(),
@@ -296,6 +309,7 @@ pub fn build_in<const D: usize>(
         indenters: vec![],
         probes: vec![],
         sets,
+        faces: Faces::new(spec)?,
         carriers,
         carrier_sets,
         dt,
@@ -349,7 +363,12 @@ pub fn build_in<const D: usize>(
         0 => 1000,
         steps => steps,
     };
-    model.check_agreement(&spec.conditions, steps as f64 * dt)?;
+    let end = steps as f64 * dt;
+    model.check_agreement(&spec.conditions, end)?;
+    let told = Model::tell_loads(&model.body, &mut model.loads, &spec.conditions, end);
+    model.info.loads.extend(told);
+    let torn = model.torn(end);
+    model.info.warnings.extend(torn);
     match spec.schedule.stepper {
         Stepper::Verlet | Stepper::Still => {}
         Stepper::Newmark(newmark) => {

@@ -1,6 +1,8 @@
 //! Conditions of a spec as loads and constraints on the slots of a body.
 
+use super::LoadInfo;
 use super::model::Model;
+use crate::body::Body;
 use crate::condition::Program;
 use crate::condition::condensed::Condensed;
 use crate::condition::constraint::{Constraint, Prescribed};
@@ -12,6 +14,9 @@ use crate::quantity::{Dimension, place};
 use crate::spec::{Carriers, ConditionKind, ConditionSpec};
 use std::collections::HashMap;
 
+/// Times up to the end at which a load is looked at.
+const LOOKS: u32 = 16;
+
 /// The value of a load that adds force densities, and the area of a traction; `None`: another condition.
 fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Option<f64>>)> {
     match kind {
@@ -22,6 +27,25 @@ fn density(kind: &ConditionKind) -> Option<(&[Option<Expression>; 3], Option<Opt
         | ConditionKind::Own(_)
         | ConditionKind::Displacement(_)
         | ConditionKind::Velocity(_) => None,
+    }
+}
+
+/// A traction as a force density: what acts on an area, over the volume of each point.
+fn spread<const D: usize>(
+    traction: Program<D>,
+    areas: &[f64],
+    volume: impl Fn(usize) -> f64,
+) -> Program<D> {
+    let all: f64 = (0..areas.len()).map(&volume).sum();
+    let same = areas.iter().sum::<f64>() / all;
+    let each: Vec<f64> = areas
+        .iter()
+        .enumerate()
+        .map(|(k, a)| a / volume(k))
+        .collect();
+    match each.iter().all(|w| (w - same).abs() <= 1e-12 * same) {
+        true => traction.scaled(same),
+        false => traction.weighted(each),
     }
 }
 
@@ -62,14 +86,20 @@ impl<const D: usize> Model<D> {
         }
         let (condensed, ids) = Condensed::new(carriers, &members);
         let mut program = Program::new(value, condensed.points());
+        let mut whole = None;
         if let Some(area) = traction {
-            // the face of a point of the finer body
-            let face = carriers.volume[members[0] as usize] / carriers.spacing;
-            let area = area.unwrap_or(face * members.len() as f64);
-            program = program.scaled(area / condensed.volume());
+            let period = &self.body.period;
+            let areas = self
+                .faces
+                .condensed(carriers, period, set, &members, area)?;
+            whole = Some(areas.iter().sum());
+            let volume = |k: usize| carriers.volume[members[k] as usize];
+            program = spread(program, &areas, volume);
         }
         let slots = ids.iter().map(|id| self.body.slots[*id as usize]);
-        Ok(Load::condensed(program, slots.collect(), condensed))
+        let mut load = Load::condensed(program, slots.collect(), condensed);
+        load.of = Some((0, whole));
+        Ok(load)
     }
 
     /// Loads in the order in which they act, and constraints.
@@ -88,7 +118,9 @@ impl<const D: usize> Model<D> {
                 && let Some((value, area)) = density(&c.kind)
             {
                 let made = self.condensed(carriers, &c.set, value, area);
-                loads.push(made.map_err(|e| e.at(format!("conditions[{n}]")))?);
+                let mut made = made.map_err(|e| e.at(format!("conditions[{n}]")))?;
+                made.of = made.of.map(|(_, area)| (n, area));
+                loads.push(made);
                 continue;
             }
             // groups of scripts may be empty
@@ -103,7 +135,9 @@ impl<const D: usize> Model<D> {
             }
             match &c.kind {
                 ConditionKind::BodyForce(e) => {
-                    loads.push(load(LoadKind::Body(Program::new(e, &points))))
+                    let mut made = load(LoadKind::Body(Program::new(e, &points)));
+                    made.of = Some((n, None));
+                    loads.push(made);
                 }
                 ConditionKind::SetForce(e) => {
                     loads.push(load(LoadKind::Replace(Program::new(e, &points))))
@@ -117,17 +151,13 @@ impl<const D: usize> Model<D> {
                     loads.push(load(LoadKind::Own(self.shelf.force(name, &path)?)))
                 }
                 ConditionKind::Traction { value, area } => {
-                    let volume: f64 = slots.iter().map(|s| self.body.volume.at(*s as usize)).sum();
-                    let face = |slot: u32| self.body.face_at(slot as usize);
-                    let first = slots.first().map_or(0.0, |s| face(*s));
-                    let area =
-                        area.unwrap_or_else(|| match slots.iter().all(|s| face(*s) == first) {
-                            true => first * slots.len() as f64,
-                            false => slots.iter().map(|s| face(*s)).sum(),
-                        });
-                    loads.push(load(LoadKind::Body(
-                        Program::new(value, &points).scaled(area / volume),
-                    )));
+                    let areas = { self.faces.areas(&self.body, &c.set, &slots, *area) }
+                        .map_err(|e| e.at(format!("conditions[{n}]")))?;
+                    let volume = |k: usize| self.body.volume.at(slots[k] as usize);
+                    let program = spread(Program::new(value, &points), &areas, volume);
+                    let mut made = load(LoadKind::Body(program));
+                    made.of = Some((n, Some(areas.iter().sum())));
+                    loads.push(made);
                 }
                 ConditionKind::Displacement(e) => constraints.push(Constraint::new(
                     Prescribed::Displacement,
@@ -151,6 +181,41 @@ impl<const D: usize> Model<D> {
         });
         Ok((loads, constraints))
     }
+    /// What loads come to in all, each at the time up to `end` at which it is largest.
+    pub(super) fn tell_loads(
+        body: &Body<D>,
+        loads: &mut [Load<D>],
+        conditions: &[ConditionSpec],
+        end: f64,
+    ) -> Vec<LoadInfo> {
+        let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>();
+        let mut told: Vec<(usize, LoadInfo)> = { loads.iter_mut() }
+            .filter_map(|load| {
+                let (n, area) = load.of?;
+                let times = (0..=LOOKS).map(|k| end * f64::from(k) / f64::from(LOOKS));
+                let most = times.filter_map(|t| load.total(body, t));
+                let most = most.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+                let c = &conditions[n];
+                Some((
+                    n,
+                    LoadInfo {
+                        what: match area {
+                            Some(_) => "traction",
+                            None => "body force",
+                        },
+                        set: c.set.clone(),
+                        area,
+                        force: Some(most),
+                        power: None,
+                        varies: c.kind.depends_on_time(),
+                    },
+                ))
+            })
+            .collect();
+        told.sort_by_key(|(n, _)| *n);
+        told.into_iter().map(|(_, told)| told).collect()
+    }
+
     /// Refuses conditions that ask different motions of one point: the last would win without a word. Looked at are a few
     /// times up to `end`.
     pub(super) fn check_agreement(

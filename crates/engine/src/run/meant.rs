@@ -1,124 +1,195 @@
-//! Where a body is likely not what its spec means: cells that stick out of a region, tractions that act several times.
+//! Where a body is likely not what its spec means: not as large as its region, or not as long as its periods; sets that hold all.
 
 use crate::body::{Body, Layout};
+use crate::error::BuildError;
 use crate::message;
-use crate::quantity::{Dimension, Message};
+use crate::quantity::{Dimension, Message, rounded};
+use crate::space::AXES;
+use crate::space::measure::{ends, measure};
 use crate::space::region::Region;
-use crate::spec::{BodySpec, ConditionKind, Spec};
+use crate::spec::{BodySpec, Members, Spec};
 
+/// Part of the volume of a region by which its body may be larger or smaller without a word.
+const CLOSE: f64 = 0.01;
 /// Part of a spacing that counts as nothing.
 const TOLERANCE: f64 = 1e-6;
-/// Of the points under a traction more than this part inside the body: it is deeper than a layer, corners aside.
-const INSIDE: f64 = 0.4;
+/// Spacings between the ends of a body and its images beyond which there is a gap, and below which cells lie in each other.
+const GAP: f64 = 3.0;
+const OVERLAP: f64 = 0.25;
 
-/// The box that a region begins with.
-fn block(region: &Region) -> Option<[[f64; 3]; 2]> {
-    match region {
-        Region::Block { low, high } => Some([*low, *high]),
-        Region::Difference(from, _) => block(from),
-        Region::Everything
-        | Region::Cylinder { .. }
-        | Region::Sphere { .. }
-        | Region::HalfSpace { .. }
-        | Region::Union(_)
-        | Region::Intersection(_) => None,
+/// The bodies of a spec, with their names and the points of each.
+fn bodies<'a, const D: usize>(
+    spec: &'a Spec,
+    body: &'a Body<D>,
+) -> Vec<(Option<&'a str>, &'a BodySpec, &'a Body<D>)> {
+    match &spec.body {
+        BodySpec::Several(pieces) => { pieces.iter().zip(body.pieces()) }
+            .map(|(p, b)| (Some(p.name.as_str()), &p.body, &b.body))
+            .collect(),
+        one => vec![(None, one, body)],
     }
 }
 
-/// Points stand for cells. Cells of a box either fill it, or its faces go through points; in between, the body is longer or shorter
-/// than its region.
-pub(super) fn regions(spec: &Spec) -> Vec<Message> {
-    let bodies: Vec<(&str, &BodySpec)> = match &spec.body {
-        BodySpec::Several(pieces) => pieces.iter().map(|p| (p.name.as_str(), &p.body)).collect(),
-        one => vec![("", one)],
-    };
-    let told = bodies.into_iter().filter_map(|(name, body)| {
-        let BodySpec::Lattice {
-            kind,
-            spacing,
-            origin,
-            region,
-            perturb: None,
-        } = body
-        else {
-            return None;
-        };
-        // a face of others goes through some of the points of a cell
-        if kind.basis().len() > 1 {
-            return None;
-        }
-        let [low, high] = block(region)?;
-        (0..spec.dimension).find_map(|a| {
-            if spec.periodic[a].is_some() || !(low[a].is_finite() && high[a].is_finite()) {
+fn called(name: Option<&str>) -> String {
+    name.map_or("the body".into(), |name| format!("body `{name}`"))
+}
+
+/// Points stand for cells: are these as large as the region that they are to fill?
+pub(super) fn regions<const D: usize>(spec: &Spec, body: &Body<D>) -> Vec<Message> {
+    // atoms are points
+    if spec.potential().is_some() {
+        return vec![];
+    }
+    let told = bodies(spec, body)
+        .into_iter()
+        .filter_map(|(name, from, body)| {
+            let BodySpec::Lattice {
+                spacing, region, ..
+            } = from
+            else {
                 return None;
-            }
-            let sites = |x: f64| (x - origin[a]) / spacing;
-            // the first and the last point, in spacings from the origin
-            let first = (sites(low[a]) - TOLERANCE).ceil();
-            let last = (sites(high[a]) + TOLERANCE).floor();
-            let count = last - first + 1.0;
-            // filled, or with faces through points
-            let longer = count - (high[a] - low[a]) / spacing;
-            let whole = |x: f64| (longer - x).abs() < TOLERANCE;
-            if count < 1.0 || [0.0, 0.5, 1.0].into_iter().any(whole) {
-                return None;
-            }
-            let axis = ["x", "y", "z"][a];
-            let place = |n: f64| Dimension::LENGTH.of(origin[a] + n * spacing);
-            let of = match name {
-                "" => "the region".to_string(),
-                name => format!("the region of body `{name}`"),
             };
+            let wanted = measure(region, D, spec.periodic)?;
+            let volume = { body.slots.iter() }.map(|s| body.volume.at(*s as usize));
+            let found = volume.sum::<f64>() / spec.section;
+            let off = found / wanted - 1.0;
+            if off.abs() <= CLOSE {
+                return None;
+            }
+            let size = [Dimension::LENGTH, Dimension::AREA, Dimension::VOLUME][D - 1];
+            let more = if off > 0.0 { "more" } else { "less" };
+            let percent = rounded(100.0 * off.abs(), 2);
             Some(message![
-                format!("along {axis} {of} is "),
-                Dimension::LENGTH.of(high[a] - low[a]),
-                " long, and its body ",
-                Dimension::LENGTH.of(count * spacing),
-                format!(": {count} cells of "),
-                Dimension::LENGTH.of(*spacing),
-                ", from ",
-                place(first - 0.5),
-                " to ",
-                place(last + 0.5),
-                ". A region that is a whole number of spacings, with origin half a spacing inside it, is filled",
+                format!("{} holds ", called(name)),
+                size.of(found),
+                format!(", {percent} % {more} than its region of "),
+                size.of(wanted),
+                layers(spec, body, region, *spacing).unwrap_or("".into()),
+                ". Without an origin cells fill the region, if it is a whole number of spacings",
             ])
-        })
-    });
+        });
     told.collect()
 }
 
-/// A traction counts a face for each point of its set, where no area is given.
-pub(super) fn tractions<const D: usize>(
+/// Where the layers of cells of a box are, along the axis on which they fill it worst.
+fn layers<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    region: &Region,
+    spacing: f64,
+) -> Option<Message> {
+    let [low, high] = ends(region)?;
+    let Layout::Grid(grid) = &body.layout else {
+        return None;
+    };
+    let thick =
+        |a: usize| spacing * grid.lattice.kind.edges()[a] / f64::from(grid.lattice.kind.planes(a));
+    let along = (0..D).filter(|a| spec.periodic[*a].is_none()).map(|a| {
+        let all = body.slots.iter().map(|s| grid.position(*s as usize)[a]);
+        let (first, last) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+            (l.min(x), h.max(x))
+        });
+        let whole = last - first + thick(a);
+        ((whole / (high[a] - low[a]) - 1.0).abs(), a, first, last)
+    });
+    let (off, a, first, last) = along.max_by(|x, y| x.0.total_cmp(&y.0))?;
+    if off <= TOLERANCE {
+        return None;
+    }
+    let half = 0.5 * thick(a);
+    Some(message![
+        format!(": along {} its cells reach from ", AXES[a]),
+        Dimension::LENGTH.of(first - half),
+        " to ",
+        Dimension::LENGTH.of(last + half),
+        ", the region from ",
+        Dimension::LENGTH.of(low[a]),
+        " to ",
+        Dimension::LENGTH.of(high[a]),
+    ])
+}
+
+/// Is a body of given points as long as its periods? Lattices are cut to theirs.
+///
+/// # Errors
+/// A body is longer than a period: it lies in its own image.
+pub(super) fn periods<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+) -> Result<Vec<Message>, BuildError> {
+    let mut told = vec![];
+    if spec.potential().is_some() || spec.micromoduli().is_some() {
+        return Ok(told);
+    }
+    for (name, _, own) in bodies(spec, body) {
+        let Layout::Cloud(x) = &own.layout else {
+            continue;
+        };
+        for a in 0..D {
+            let Some(period) = own.period[a] else {
+                continue;
+            };
+            let points = { own.slots.iter() }.map(|s| x[a][*s as usize]);
+            let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            });
+            let between = (period - (high - low)) / own.spacing;
+            let said = |what: &str| {
+                message![
+                    format!("the period along {} is ", AXES[a]),
+                    Dimension::LENGTH.of(period),
+                    format!(", and the points of {} reach over ", called(name)),
+                    Dimension::LENGTH.of(high - low),
+                    format!(": {what}"),
+                ]
+            };
+            if between <= TOLERANCE {
+                return Err(BuildError::conflict(
+                    "periodic",
+                    said("the body lies in its own image"),
+                )
+                .help(message![
+                    "write the length of the body with the cells of its points, about ",
+                    Dimension::LENGTH.of(high - low + own.spacing),
+                    ", or the points of one period only",
+                ]));
+            }
+            if between < OVERLAP {
+                told.push(said("its last cells lie in those of its image"));
+            } else if between > GAP && name.is_none() {
+                let gap = rounded(between - 1.0, 2);
+                told.push(said(&format!(
+                    "there is a gap of {gap} spacings before its image"
+                )));
+            }
+        }
+    }
+    Ok(told)
+}
+
+/// A condition on places that every point meets is likely one in other units.
+pub(super) fn sets<const D: usize>(
     spec: &Spec,
     body: &Body<D>,
     sets: &[(String, Vec<u32>)],
 ) -> Vec<Message> {
-    let Layout::Grid(grid) = &body.layout else {
-        return vec![];
-    };
-    // neighbours along the axes of the cell are those of other lattices only in part
-    if grid.basis() > 1 {
-        return vec![];
-    }
-    let inside = |id: &&u32| {
-        let slot = body.slots[**id as usize] as usize;
-        (0..D).all(|a| {
-            [-1, 1].into_iter().all(|way| {
-                let step = std::array::from_fn(|b| if a == b { way } else { 0 });
-                grid.neighbour(slot, step, 0).is_some()
-            })
-        })
-    };
-    let told = spec.conditions.iter().filter_map(|condition| {
-        let ConditionKind::Traction { area: None, .. } = &condition.kind else {
+    let told = spec.sets.iter().filter_map(|set| {
+        let (members, count, of) = match &set.members {
+            Members::Within { body: name, members } => {
+                let of = bodies(spec, body).into_iter().find(|b| b.0 == Some(name))?;
+                (&**members, of.2.points(), called(of.0))
+            }
+            all => (all, body.points(), called(None)),
+        };
+        let Members::Where(e) = members else {
             return None;
         };
-        let (name, members) = sets.iter().find(|(name, _)| *name == condition.set)?;
-        let deep = members.iter().filter(inside).count();
-        (deep as f64 > INSIDE * members.len() as f64).then(|| {
+        let (_, ids) = sets.iter().find(|(name, _)| *name == set.name)?;
+        (count > 1 && ids.len() == count).then(|| {
             Message::from(format!(
-                "the traction on `{name}` counts a face for each of its {} points, of which {deep} are inside the body: a set of one layer at the surface, or `area`, makes it the traction of that surface",
-                members.len()
+                "`{}` holds at every point: the set `{}` is all of {of}; are the numbers in it those of the deck's lengths?",
+                e.source(),
+                set.name
             ))
         })
     });

@@ -14,6 +14,7 @@ mod constitutive;
 mod contact;
 mod equilibrium;
 mod examined;
+mod faces;
 mod feasible;
 mod free;
 mod gaps;
@@ -37,6 +38,7 @@ mod sets;
 mod steered;
 mod surface;
 mod time_step;
+mod torn;
 mod toughness;
 mod transfers;
 mod virial;
@@ -102,12 +104,30 @@ pub struct Info {
     pub gaps: Vec<Gap>,
     /// What spreads through the bonds.
     pub transfers: Vec<TransferInfo>,
+    /// What acts on sets: tractions, body forces, fluxes, exchanges; of statics before motion first.
+    pub loads: Vec<LoadInfo>,
     /// Bonds cut by pre-cracks, directed.
     pub cut: u64,
     /// Bytes held by the model.
     pub bytes: usize,
     pub simd: &'static str,
     pub warnings: Warnings,
+}
+
+/// A load as a whole.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadInfo {
+    /// `"traction"`, `"body force"`, `"heat flux"`, …
+    pub what: &'static str,
+    pub set: String,
+    /// Of the face that it acts on (length^(D−1) times the section).
+    pub area: Option<f64>,
+    /// At the time when it is largest (force).
+    pub force: Option<[f64; 3]>,
+    /// What a flux or a source brings at the start (quantity / time).
+    pub power: Option<f64>,
+    /// Does it change with time?
+    pub varies: bool,
 }
 
 /// The shortest distance between two bodies in the reference.

@@ -2,6 +2,7 @@
 
 use super::constitutive::{ConstitutiveModels, Shelf};
 use super::equilibrium::state::StaticState;
+use super::faces::Faces;
 use super::healing::state::Healing;
 use super::implicit::state::Implicit;
 use super::preload::state::Preload;
@@ -85,6 +86,8 @@ pub struct Model<const D: usize> {
     /// Of a condensed body: where its loads act, and the named sets there.
     pub(super) carriers: Option<Carriers<D>>,
     pub(super) carrier_sets: Vec<(String, Vec<u32>)>,
+    /// On what area loads act.
+    pub(super) faces: Faces,
     pub(super) dt: f64,
     pub(super) step: u64,
     /// Step and time from which time is counted in whole steps.

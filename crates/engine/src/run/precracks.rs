@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::error::BuildError;
 use crate::fracture::precrack::Crack;
-use crate::interaction::Interaction;
+use crate::interaction::{BondState, Interaction};
 use crate::message;
 use crate::quantity::{Message, Warnings, place};
 use crate::spec::{CrackKind, Spec};
@@ -38,6 +38,15 @@ pub(super) fn cut<const D: usize>(
         }
     }
     Ok(cut)
+}
+
+/// Directed bonds that are whole.
+pub(super) fn left<const D: usize>(body: &Body<D>, interaction: &dyn Interaction<D>) -> u64 {
+    let mut left = 0;
+    interaction.each_bond(body, &mut |_, _, _, state| {
+        left += u64::from(state == BondState::Whole);
+    });
+    left
 }
 
 /// Points on a crack have lost the bonds on one of its sides only.

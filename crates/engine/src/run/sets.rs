@@ -6,8 +6,10 @@ use super::parts::parts;
 use super::reference::SplitMix;
 use crate::body::{Body, Values};
 use crate::error::BuildError;
-use crate::space::Point;
+use crate::message;
+use crate::quantity::{Dimension, Message};
 use crate::space::lattice::Lattice;
+use crate::space::{AXES, Point};
 use crate::spec::{BodySpec, Carriers, Members, Spec};
 
 /// Does a point (index, reference position) belong?
@@ -58,12 +60,32 @@ pub(super) fn sets<const D: usize>(
                 format!("sets.{}", set.name),
                 format!("set `{}` has no points", set.name),
             )
-            .help("check it against the body's extent: `peridyne check` prints that"));
+            .help(extent(body)));
         }
         out.push((set.name.clone(), ids));
         carried.push((set.name.clone(), loaded));
     }
     Ok((out, carried))
+}
+
+/// Where the points of a body are, for somebody who missed them all.
+fn extent<const D: usize>(body: &Body<D>) -> Message {
+    let mut told = Message::from("points lie at ");
+    for a in 0..D {
+        let all = body.slots.iter().map(|s| body.position(*s as usize)[a]);
+        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+            (l.min(x), h.max(x))
+        });
+        let comma = if a == 0 { "" } else { ", " };
+        told = message![
+            told,
+            format!("{comma}{} from ", AXES[a]),
+            Dimension::LENGTH.of(low),
+            " to ",
+            Dimension::LENGTH.of(high),
+        ];
+    }
+    message![told, "; numbers without a unit are in those of the deck"]
 }
 
 /// The test of a set; `first` is the id of the first point that places count from, `spacing` that of the points.

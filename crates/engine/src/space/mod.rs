@@ -1,7 +1,9 @@
 //! Space: lattices, regions, rotations, rigid shapes and surfaces of triangles. Everything here is three numbers wide; unused axes are 0.
 
+pub mod face;
 pub mod fill;
 pub mod lattice;
+pub mod measure;
 pub mod membership;
 pub mod region;
 pub mod rigid;

@@ -116,6 +116,8 @@ pub struct Cloud {
     pub names: Vec<(i32, String)>,
     /// Named sets that marks cannot say: points by their place, rising.
     pub sets: Vec<(String, Arc<[u32]>)>,
+    /// Faces that sets of a mesh stand for, by name: the area of each of their points (length^(D−1) times the section).
+    pub faces: Vec<(String, Arc<[f64]>)>,
     /// Typical distance of nearest neighbours (length): volume scaling and contact use it. `None`: the cube root
     /// (D-th root) of the mean volume over the section.
     pub spacing: Option<f64>,

@@ -33,8 +33,8 @@ pub enum ConditionKind {
     Velocity([Option<Expression>; 3]),
     /// Body force density (force / volume).
     BodyForce([Option<Expression>; 3]),
-    /// Traction (force / area) on the set, spread over its points by volume; the area defaults to one lattice
-    /// face (`spacing^(D−1)` times the section) per point.
+    /// Traction (force / area) on the face that the set stands for, spread over its points by volume; `area` is that of the face. Left out
+    /// it is what a mesh says of the set, or that of a layer of a lattice ([`face`](crate::space::face)).
     Traction {
         value: [Option<Expression>; 3],
         area: Option<f64>,

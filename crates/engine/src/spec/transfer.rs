@@ -78,7 +78,7 @@ pub struct TransferCondition {
     pub kind: TransferKind,
 }
 
-/// Area (length²) of the surface of a set; `None`: one face, volume over spacing, for each of its points. What comes in through it
+/// Area (length²) of the surface of a set; `None`: that of the face that it stands for, as of a traction. What comes in through it
 /// is spread over the points of the set by volume.
 pub type Area = Option<f64>;
 

@@ -172,7 +172,8 @@ pub struct Body {
     /// Edge of the lattice cell; with a file, the typical distance of points.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub spacing: Option<Number>,
-    /// Position of one lattice site; 0 when left out.
+    /// Position of the first site of a cell. When left out cells fill the region, points in their middles (with surface = "exact" the outer
+    /// points lie on its faces); 0 of atoms and with cells.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub origin: Option<Vector>,
     /// Where there are points: sites of the lattice inside it.

@@ -110,6 +110,15 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
     };
     let body = inner(&mut table, "body").ok_or("the deck has no body")?;
     body.insert("spacing".into(), plain(spacing, Dim::LENGTH));
+    // coarse points are points of the fine body
+    if let BodySpec::Lattice { origin, .. } = &coarse.body
+        && !body.contains_key("origin")
+        && *origin != [0.0; 3]
+    {
+        let along = origin[..coarse.dimension].iter();
+        let along = along.map(|c| plain(*c, Dim::LENGTH));
+        body.insert("origin".into(), Value::Array(along.collect()));
+    }
     if let Some(Value::Array(cells)) = body.get_mut("cells") {
         for n in cells {
             let count = n.as_integer().unwrap_or(0);

@@ -3,7 +3,7 @@
 //!
 //! Format: Schoof and Yarberry, "EXODUS II: a finite element data model", SAND92-2137; names of variables as the library writes
 //! them. A block of SPHERE elements is points with volumes, the second attribute as Peridigm and Sierra have it. A side of an element
-//! is the element. Results that a file has besides are not read.
+//! is the element, and knows its area. Results that a file has besides are not read.
 
 use super::cell::{Cell, Kind};
 use super::lines::Lines;
@@ -39,6 +39,40 @@ fn shape(name: &str, nodes: u64) -> Option<Shape> {
         _ => return None,
     };
     (nodes >= kind.corners() as u64).then_some(Shape::Cell(kind))
+}
+
+/// Corners of a side by its number from 1 (Schoof and Yarberry, table of side numbering).
+fn side(kind: Kind, number: i64) -> Option<&'static [usize]> {
+    let sides: &[&[usize]] = match kind {
+        Kind::Vertex | Kind::Line | Kind::Sphere => &[],
+        Kind::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
+        Kind::Quad => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+        Kind::Tetra => &[&[0, 1, 3], &[1, 2, 3], &[0, 3, 2], &[0, 2, 1]],
+        Kind::Pyramid => &[
+            &[0, 1, 4],
+            &[1, 2, 4],
+            &[2, 3, 4],
+            &[3, 0, 4],
+            &[0, 3, 2, 1],
+        ],
+        Kind::Prism => &[
+            &[0, 1, 4, 3],
+            &[1, 2, 5, 4],
+            &[0, 3, 5, 2],
+            &[0, 2, 1],
+            &[3, 4, 5],
+        ],
+        Kind::Hexa => &[
+            &[0, 1, 5, 4],
+            &[1, 2, 6, 5],
+            &[2, 3, 7, 6],
+            &[0, 4, 7, 3],
+            &[0, 3, 2, 1],
+            &[4, 5, 6, 7],
+        ],
+    };
+    let number = usize::try_from(number).ok()?.checked_sub(1)?;
+    sides.get(number).copied()
 }
 
 const KNOWN: &str =
@@ -291,7 +325,19 @@ impl Exodus<'_> {
                         )
                     })?);
                 }
-                self.mesh.cell_sets.push((set.name, cells));
+                if prefix == "els" {
+                    self.mesh.cell_sets.push((set.name, cells));
+                    continue;
+                }
+                let numbers = self.reader.wholes(&format!("side_ss{}", set.number))?;
+                let numbers = numbers.unwrap_or_default();
+                let sides = cells.into_iter().enumerate().map(|(n, cell)| {
+                    let number = numbers.get(n).copied().unwrap_or(0);
+                    let corners = side(self.mesh.cells[cell].kind, number);
+                    (cell, corners.map(<[usize]>::to_vec))
+                });
+                let sides = sides.collect();
+                self.mesh.side_sets.push((set.name, sides));
             }
         }
         Ok(())

@@ -3,10 +3,14 @@
 //! A group of cells of the body holds their points. One of surfaces, lines or vertices holds the points of the cells that have
 //! one of them as a face, edge or corner. A set of nodes holds the cells with all their corners in it, and those with a whole
 //! outer side in it; if there are none, those with a whole side, else with two corners, else with one corner in it.
+//!
+//! Sets that stand for a face know its area at each of their points: groups of surfaces (in 2-D of lines), sets of sides, and sets of
+//! nodes that hold whole outer sides of all their cells.
 
 use super::cell::{Cell, Kind, Nodes, measure};
 use super::lines::Lines;
 use super::{ReadError, Sourced};
+use peridyne::space::{cross, length};
 use peridyne::spec::Cloud;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -29,6 +33,8 @@ pub(super) struct Mesh {
     pub node_sets: Vec<(String, Vec<u64>)>,
     /// Sets of cells by name: places in `cells`.
     pub cell_sets: Vec<(String, Vec<usize>)>,
+    /// Sets of sides of cells by name: places in `cells`, and the corners of the side, where it is known.
+    pub side_sets: Vec<(String, Vec<(usize, Option<Vec<usize>>)>)>,
     /// Every cell stands once: two with the same nodes are two.
     pub distinct: bool,
     /// A set of nodes holds every cell that has one of them.
@@ -134,28 +140,34 @@ impl Mesh {
             let group = &self.groups[g];
             let Some(name) = &group.name else { continue };
             let mut ids = BTreeSet::new();
+            let mut faces = Areas::default();
             if group.dimension == dimension {
                 let of = (0..body.len()).filter(|i| body[*i].groups.contains(&g));
                 ids.extend(of.map(|i| i as u32));
             } else {
                 for cell in self.cells.iter().filter(|c| c.groups.contains(&g)) {
-                    ids.extend(around.with_all(&cell.nodes));
+                    let owners = around.with_all(&cell.nodes);
+                    if group.dimension + 1 == dimension {
+                        faces.add(&self.nodes, &cell.nodes, &owners);
+                    }
+                    ids.extend(owners);
                 }
             }
-            add(cloud, name, ids, notes);
+            add(cloud, name, ids, faces, notes);
         }
         for (name, nodes) in &self.node_sets {
+            let mut faces = Areas::default();
             let cells = match self.touching {
                 true => nodes
                     .iter()
                     .flat_map(|n| around.with(*n))
                     .copied()
                     .collect(),
-                false => around.of_nodes(nodes),
+                false => around.of_nodes(nodes, &self.nodes, &mut faces),
             };
-            add(cloud, name, cells, notes);
+            add(cloud, name, cells, faces, notes);
         }
-        if self.cell_sets.is_empty() {
+        if self.cell_sets.is_empty() && self.side_sets.is_empty() {
             return;
         }
         let inside = self.cells.iter().map(|c| c.kind.dimension() == dimension);
@@ -174,7 +186,26 @@ impl Mesh {
                     None => ids.extend(around.with_all(&self.cells[*c].nodes)),
                 }
             }
-            add(cloud, name, ids, notes);
+            add(cloud, name, ids, Areas::default(), notes);
+        }
+        for (name, sides) in &self.side_sets {
+            let mut ids = BTreeSet::new();
+            let mut faces = Areas::default();
+            for (c, side) in sides {
+                let nodes = &self.cells[*c].nodes;
+                let (owners, corners): (Vec<u32>, Option<Vec<u64>>) = match place[*c] {
+                    Some(id) => {
+                        let corners = side.as_ref().map(|s| s.iter().map(|k| nodes[*k]).collect());
+                        (vec![id], corners)
+                    }
+                    None => (around.with_all(nodes), Some(nodes.clone())),
+                };
+                if let Some(corners) = corners {
+                    faces.add(&self.nodes, &corners, &owners);
+                }
+                ids.extend(owners);
+            }
+            add(cloud, name, ids, faces, notes);
         }
     }
 
@@ -215,7 +246,44 @@ impl Mesh {
     }
 }
 
-fn add(cloud: &mut Cloud, name: &str, ids: BTreeSet<u32>, notes: &mut Vec<String>) {
+/// Areas of a face, by the cells that have parts of it (lengths of edges in 2-D).
+#[derive(Default)]
+struct Areas(BTreeMap<u32, f64>);
+
+impl Areas {
+    /// A side with these corners, between the cells that have it.
+    fn add(&mut self, nodes: &Nodes, corners: &[u64], owners: &[u32]) {
+        let x: Option<Vec<[f64; 3]>> = corners.iter().map(|n| nodes.get(n).copied()).collect();
+        let Some(x) = x else { return };
+        let whole = size(&x);
+        for id in owners {
+            *self.0.entry(*id).or_default() += whole / owners.len() as f64;
+        }
+    }
+
+    /// Of all these cells; `None`: some have no part of the face.
+    fn of(&self, ids: &[u32]) -> Option<Vec<f64>> {
+        ids.iter()
+            .map(|id| self.0.get(id).copied().filter(|a| *a > 0.0))
+            .collect()
+    }
+}
+
+/// Length of an edge, area of a triangle or quadrilateral: half the length of the sum of cross products about a corner.
+fn size(x: &[[f64; 3]]) -> f64 {
+    let from = |k: usize| -> [f64; 3] { std::array::from_fn(|a| x[k][a] - x[0][a]) };
+    if x.len() == 2 {
+        return length(&from(1));
+    }
+    let mut sum = [0.0; 3];
+    for k in 2..x.len() {
+        let part = cross(&from(k - 1), &from(k));
+        (0..3).for_each(|a| sum[a] += 0.5 * part[a]);
+    }
+    length(&sum)
+}
+
+fn add(cloud: &mut Cloud, name: &str, ids: BTreeSet<u32>, faces: Areas, notes: &mut Vec<String>) {
     let ids: Vec<u32> = ids.into_iter().collect();
     match cloud.sets.iter().find(|(known, _)| known == name) {
         _ if ids.is_empty() => notes.push(format!(
@@ -227,7 +295,12 @@ fn add(cloud: &mut Cloud, name: &str, ids: BTreeSet<u32>, notes: &mut Vec<String
             known.len(),
             ids.len()
         )),
-        None => cloud.sets.push((name.to_string(), ids.into())),
+        None => {
+            if let Some(areas) = faces.of(&ids) {
+                cloud.faces.push((name.to_string(), areas.into()));
+            }
+            cloud.sets.push((name.to_string(), ids.into()));
+        }
     }
 }
 
@@ -265,7 +338,7 @@ impl<'a> Around<'a> {
         self.with(*first).iter().copied().filter(has).collect()
     }
 
-    fn of_nodes(&self, nodes: &[u64]) -> BTreeSet<u32> {
+    fn of_nodes(&self, nodes: &[u64], places: &Nodes, faces: &mut Areas) -> BTreeSet<u32> {
         let set: HashSet<u64> = nodes.iter().copied().collect();
         let near: BTreeSet<u32> = nodes.iter().flat_map(|n| self.with(*n)).copied().collect();
         let corners = |i: &u32| {
@@ -273,22 +346,29 @@ impl<'a> Around<'a> {
             own.iter().filter(|n| set.contains(n)).count()
         };
         // sides that are whole in the set, and how many cells have them
-        let mut owners: HashMap<Vec<u64>, Vec<u32>> = HashMap::new();
+        let mut owners: HashMap<Vec<u64>, (Vec<u64>, Vec<u32>)> = HashMap::new();
         for i in &near {
             let cell = self.body[*i as usize];
             for side in cell.kind.sides() {
                 let mut side: Vec<u64> = side.iter().map(|c| cell.nodes[*c]).collect();
                 if side.iter().all(|n| set.contains(n)) {
+                    let around = side.clone();
                     side.sort_unstable();
-                    owners.entry(side).or_default().push(*i);
+                    let found = owners.entry(side).or_insert((around, vec![]));
+                    found.1.push(*i);
                 }
             }
         }
         let whole = |i: &u32| corners(i) == self.body[*i as usize].kind.corners();
         let mut found: BTreeSet<u32> = near.iter().copied().filter(whole).collect();
-        found.extend(owners.values().filter(|o| o.len() == 1).flatten());
+        let mut outer: Vec<_> = owners.values().filter(|o| o.1.len() == 1).collect();
+        outer.sort();
+        for (corners, of) in outer {
+            faces.add(places, corners, of);
+            found.extend(of);
+        }
         if found.is_empty() {
-            found.extend(owners.values().flatten());
+            found.extend(owners.values().flat_map(|o| &o.1));
         }
         for least in [2, 1] {
             if found.is_empty() {

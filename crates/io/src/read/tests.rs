@@ -407,3 +407,35 @@ fn lammps_atoms_become_points_in_order_of_their_ids() {
         assert_eq!(cloud.mark, [1, 1, 2]);
     }
 }
+
+/// Areas of the sets of a mesh that stand for faces.
+fn faces(points: &Points) -> Vec<(&str, Vec<f64>)> {
+    let each = points.cloud.faces.iter();
+    each.map(|(name, areas)| (&**name, areas.to_vec()))
+        .collect()
+}
+
+#[test]
+fn named_curves_and_sets_of_nodes_know_their_lengths() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 2 \"right\"\n2 1 \"plate\"\n1 4 \"joint\"\n$EndPhysicalNames\n\
+        $Nodes\n6\n1 0 0 0\n2 3 0 0\n3 4 0 0\n4 0 2 0\n5 3 2 0\n6 4.5 2 0\n$EndNodes\n\
+        $Elements\n4\n1 3 1 1 1 2 5 4\n2 3 1 1 2 3 6 5\n3 1 1 2 3 6\n4 1 1 4 2 5\n$EndElements\n";
+    let points = read(text, "msh");
+    let slanted = (0.25f64 + 4.0).sqrt();
+    // an edge inside belongs to both of its cells, and is as long as it is
+    assert_eq!(
+        faces(&points),
+        [("right", vec![slanted]), ("joint", vec![1.0, 1.0])]
+    );
+    // nodes of the right side of a plate of two squares, cut in triangles; of the whole plate no face
+    let sides = format!("{PLATE}*NSET, NSET=SIDE\n5, 6\n");
+    assert_eq!(faces(&read(&sides, "inp")), [("SIDE", vec![2.0])]);
+}
+
+#[test]
+fn named_surfaces_of_a_solid_know_their_areas() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 2 \"top\"\n3 1 \"solid\"\n$EndPhysicalNames\n\
+        $Nodes\n8\n1 0 0 0\n2 3 0 0\n3 3 2 0\n4 0 2 0\n5 0 0 1\n6 3 0 1\n7 3 2 1\n8 0 2 1\n$EndNodes\n\
+        $Elements\n3\n1 5 1 1 1 2 3 4 5 6 7 8\n2 2 1 2 5 6 7\n3 2 1 2 5 7 8\n$EndElements\n";
+    assert_eq!(faces(&read(text, "msh")), [("top", vec![6.0])]);
+}

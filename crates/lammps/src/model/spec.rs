@@ -200,6 +200,7 @@ fn cloud(setup: &Setup, marked: bool) -> Result<BodySpec, HostError> {
         },
         names: vec![],
         sets: vec![],
+        faces: vec![],
         spacing: Some(setup.lattice_constant),
     }))
 }

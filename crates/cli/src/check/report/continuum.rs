@@ -18,7 +18,7 @@ pub(super) fn fields(found: &Findings) -> String {
 }
 
 fn rows(out: &mut String, found: &Findings, one: &Found) {
-    let (asked, spacing) = (&one.asked, found.sim.info().spacing);
+    let (asked, spacing) = (&one.asked, found.info.spacing);
     let formula = format!("{}: {}", asked.shape.name(), asked.shape.formula());
     row(out, "function", formula);
     let mut width = format!(

@@ -47,7 +47,7 @@ fn stiffness(found: &Findings) -> Option<String> {
 
 /// Is the run as long as what happens in it?
 fn time(found: &Findings) -> Option<String> {
-    let (info, spec) = (found.sim.info(), found.spec);
+    let (info, spec) = (&found.info, found.spec);
     if let Some(statics) = spec.schedule.statics() {
         return Some(format!(
             "equilibrium: {} {}, each to a residual of {}",
@@ -58,7 +58,7 @@ fn time(found: &Findings) -> Option<String> {
     }
     let lasts = found.steps as f64 * info.time_step;
     let shown = found.units.show(lasts, Dim::TIME);
-    let long = (0..info.dimension).map(|a| found.high[a] - found.low[a] + info.spacing);
+    let long = (0..info.dimension).map(|a| found.long(a));
     let long = long.fold(0.0, f64::max);
     let still = found.spec.schedule.stepper == Stepper::Still;
     let speeds = found.materials.iter().map(|m| m.pressure_wave);
@@ -79,9 +79,7 @@ fn fracture(found: &Findings) -> Option<String> {
     Some(format!(
         "fracture: bonds break at a stretch of {} %, and a crack is two horizons wide, {}",
         rounded(100.0 * stretch, 3),
-        found
-            .units
-            .show(2.0 * found.sim.info().horizon, Dim::LENGTH)
+        found.units.show(2.0 * found.info.horizon, Dim::LENGTH)
     ))
 }
 

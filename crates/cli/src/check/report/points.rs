@@ -8,7 +8,7 @@ use peridyne_theory::patch_test::{Class, Place};
 use std::fmt::Write;
 
 pub(super) fn points(found: &Findings) -> String {
-    let (info, units) = (found.sim.info(), found.units);
+    let (info, units) = (&found.info, found.units);
     let d = info.dimension;
     let mut out = String::from("Points and bonds\n");
     row(&mut out, "points", whole(info.points));
@@ -16,8 +16,8 @@ pub(super) fn points(found: &Findings) -> String {
         format!(
             "{} {} to {}",
             AXES[a],
-            units.show(found.low[a], Dim::LENGTH),
-            units.show(found.high[a], Dim::LENGTH)
+            units.show(found.low[a] - found.half[a], Dim::LENGTH),
+            units.show(found.high[a] + found.half[a], Dim::LENGTH)
         )
     };
     let spans: Vec<String> = (0..d).map(span).collect();
@@ -100,8 +100,8 @@ pub(super) fn families(found: &Findings) -> String {
     let Some(patch) = &found.patch else {
         return String::new();
     };
-    let d = found.sim.info().dimension;
-    let total = found.sim.info().points.max(1) as f64;
+    let d = found.info.dimension;
+    let total = found.info.points.max(1) as f64;
     let mut out = String::from(
         "Families (a place is told by the part of a full family that a point has)\n  place             points   share  mean size  of a full one\n",
     );

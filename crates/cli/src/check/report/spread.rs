@@ -7,7 +7,7 @@ use peridyne::spec::TransferMethod;
 use peridyne_io::deck::Dim;
 
 pub(super) fn spread(found: &Findings) -> String {
-    let (info, units) = (found.sim.info(), found.units);
+    let (info, units) = (&found.info, found.units);
     let mut out = String::new();
     for t in &info.transfers {
         if out.is_empty() {

@@ -28,7 +28,7 @@ pub(super) fn stiffness(found: &Findings) -> String {
 }
 
 fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: &Material) {
-    let d = found.sim.info().dimension;
+    let d = found.info.dimension;
     let units = found.units;
     let scale = Scale::of(found);
     if found.materials.len() > 1 {
@@ -101,13 +101,7 @@ fn material(out: &mut String, found: &Findings, patch: &PatchTest, n: usize, m: 
             out,
             "  asked: what the micromodulus {} means in a full {}",
             units.show(
-                found
-                    .sim
-                    .info()
-                    .micromodulus
-                    .get(n)
-                    .copied()
-                    .unwrap_or(f64::NAN),
+                found.info.micromodulus.get(n).copied().unwrap_or(f64::NAN),
                 Dim::MICROMODULUS
             ),
             ["segment", "disk", "ball"][d - 1]

@@ -8,7 +8,7 @@ use peridyne_io::deck::{Dim, rounded};
 
 /// How long a run is.
 fn lasts(found: &Findings) -> String {
-    let time = found.steps as f64 * found.sim.info().time_step;
+    let time = found.steps as f64 * found.info.time_step;
     format!(
         "{} steps = {}",
         whole(found.steps),
@@ -42,7 +42,7 @@ fn equilibrium(out: &mut String, name: &str, statics: &Statics, increments: u64)
 }
 
 pub(super) fn waves(found: &Findings) -> String {
-    let (info, units) = (found.sim.info(), found.units);
+    let (info, units) = (&found.info, found.units);
     let mut out = String::from("Waves and step\n");
     if found.spec.schedule.stepper == Stepper::Still {
         out = String::from("Step\n");
@@ -204,7 +204,7 @@ pub(super) fn contact(found: &Findings) -> String {
     };
     let units = found.units;
     let mut out = String::new();
-    let stiffness = &found.sim.info().contact_stiffness;
+    let stiffness = &found.info.contact_stiffness;
     let alike = stiffness.windows(2).all(|two| two[0] == two[1]);
     for (m, k) in found.materials.iter().zip(stiffness) {
         let of = if alike {

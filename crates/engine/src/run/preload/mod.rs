@@ -132,6 +132,13 @@ impl<const D: usize> Model<D> {
         self.check_agreement(&preload.conditions, preload.end())
             .map_err(within)?;
         self.check_statics(statics).map_err(within)?;
+        let told = Self::tell_loads(
+            &self.body,
+            &mut self.loads,
+            &preload.conditions,
+            preload.end(),
+        );
+        self.info.loads.splice(0..0, told);
         self.statics = Some(StaticState::new(statics));
         self.loaded = Some(Solved::default());
         self.preload = Some(waits);

@@ -1,10 +1,10 @@
 //! From a spec to what spreads.
 
 use super::state::TransferInfo;
-use crate::body::Body;
 use crate::error::BuildError;
 use crate::message;
 use crate::quantity::Dimension;
+use crate::run::LoadInfo;
 use crate::run::model::Model;
 use crate::space::Point;
 use crate::spec::{
@@ -12,16 +12,6 @@ use crate::spec::{
     TransferSpec,
 };
 use crate::transfer::{Condition, Conduction, Rows, Transfer};
-
-/// Shares of the surface of a set that its points have: all of `area` by volume, or a face each.
-fn areas<const D: usize>(body: &Body<D>, slots: &[u32], area: Option<f64>) -> Vec<f64> {
-    let volume = |s: &u32| body.volume.at(*s as usize);
-    let Some(area) = area else {
-        return slots.iter().map(|s| body.face_at(*s as usize)).collect();
-    };
-    let all: f64 = slots.iter().map(volume).sum();
-    slots.iter().map(|s| area * volume(s) / all).collect()
-}
 
 impl<const D: usize> Model<D> {
     /// All that spreads, from a spec.
@@ -107,7 +97,7 @@ impl<const D: usize> Model<D> {
     }
 
     fn transfer(
-        &self,
+        &mut self,
         spec: &Spec,
         t: &TransferSpec,
         slots: &[u32],
@@ -161,8 +151,12 @@ impl<const D: usize> Model<D> {
                 ),
             ));
         }
-        let conditions = t.conditions.iter().map(|c| self.condition(c, name));
-        let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
+        let (mut conditions, mut loads) = (vec![], vec![]);
+        for c in &t.conditions {
+            let (made, told) = self.condition(c, t.quantity)?;
+            conditions.push(made);
+            loads.extend(told);
+        }
         let made = Transfer::new(
             t.quantity,
             (t.method, t.across_broken),
@@ -171,6 +165,7 @@ impl<const D: usize> Model<D> {
             conditions,
             value,
         );
+        self.info.loads.extend(loads);
         if let TransferMethod::Steady { .. } = t.method {
             steady(&made)?;
         }
@@ -185,36 +180,76 @@ impl<const D: usize> Model<D> {
         Ok((place.collect(), points))
     }
 
-    fn condition(&self, c: &TransferCondition, path: &str) -> Result<Condition, BuildError> {
+    /// A condition, and what it comes to.
+    fn condition(
+        &self,
+        c: &TransferCondition,
+        quantity: Quantity,
+    ) -> Result<(Condition, Option<LoadInfo>), BuildError> {
+        let path = quantity.name();
         let (places, points) = self.places(&c.set, path)?;
         let slots = self.slots_of(&c.set, &self.sets)?.0;
-        let area = |area: &Option<f64>| areas(&self.body, &slots, *area);
-        Ok(match &c.kind {
+        let area = |area: &Option<f64>| -> Result<Vec<f64>, BuildError> {
+            let areas = self.faces.areas(&self.body, &c.set, &slots, *area);
+            areas.map_err(|e| e.at(path))
+        };
+        let (what, sizes) = match (&c.kind, quantity) {
+            (TransferKind::Value(_), _) => ("", vec![]),
+            (TransferKind::Source(_), Quantity::Heat) => ("heat source", vec![]),
+            (TransferKind::Source(_), Quantity::Species) => ("species source", vec![]),
+            (TransferKind::Flux { area: a, .. }, Quantity::Heat) => ("heat flux", area(a)?),
+            (TransferKind::Flux { area: a, .. }, Quantity::Species) => ("species flux", area(a)?),
+            (TransferKind::Exchange { law, area: a }, quantity) => (
+                match (law, quantity) {
+                    (Exchange::Radiation { .. }, _) => "radiation",
+                    (Exchange::Convection { .. }, Quantity::Heat) => "convection",
+                    (Exchange::Convection { .. }, Quantity::Species) => "species exchange",
+                },
+                area(a)?,
+            ),
+        };
+        let volumes = || slots.iter().map(|s| self.body.volume.at(*s as usize));
+        let power = match &c.kind {
+            TransferKind::Flux { value, .. } => Some((value, sizes.clone())),
+            TransferKind::Source(value) => Some((value, volumes().collect())),
+            TransferKind::Value(_) | TransferKind::Exchange { .. } => None,
+        };
+        let told = (!what.is_empty()).then(|| LoadInfo {
+            what,
+            set: c.set.clone(),
+            area: (!sizes.is_empty()).then(|| sizes.iter().sum()),
+            force: None,
+            power: power.as_ref().map(|(value, sizes)| {
+                let each = points.iter().zip(sizes);
+                each.map(|(x, size)| size * value.eval(x, 0.0)).sum()
+            }),
+            varies: power.is_some_and(|(value, _)| value.depends_on_time()),
+        });
+        let made = match &c.kind {
             TransferKind::Value(e) => Condition::held(e, places, points),
-            TransferKind::Flux { value, area: a } => {
-                Condition::power(value, area(a), places, points)
-            }
+            TransferKind::Flux { value, .. } => Condition::power(value, sizes, places, points),
             TransferKind::Source(e) => {
                 let volume = slots.iter().map(|s| self.body.volume.at(*s as usize));
                 Condition::power(e, volume.collect(), places, points)
             }
-            TransferKind::Exchange { law, area: a } => match law {
+            TransferKind::Exchange { law, .. } => match law {
                 Exchange::Convection {
                     coefficient,
                     ambient,
                 } => {
                     let law = [coefficient, ambient];
-                    Condition::convection(law, area(a), places, points)
+                    Condition::convection(law, sizes, places, points)
                 }
                 Exchange::Radiation {
                     coefficient,
                     ambient,
                 } => {
                     let law = [coefficient, ambient];
-                    Condition::radiation(law, area(a), places, points)
+                    Condition::radiation(law, sizes, places, points)
                 }
             },
-        })
+        };
+        Ok((made, told))
     }
 
     fn told(&self, spec: &Spec, t: &TransferSpec, made: &Transfer) -> TransferInfo {

@@ -90,8 +90,9 @@ pub struct Condition {
     /// Force / area.
     #[schemars(extend("dimension" = Dim::PRESSURE.name()))]
     pub traction: Option<Components>,
-    /// Area of the surface of the set, for what comes through it (traction, fluxes, exchange) and is spread over its points by volume; one
-    /// lattice face per point when left out.
+    /// Area of the whole face that the set stands for, for what comes through it (traction, fluxes, exchange) and is spread over its points by
+    /// volume. When left out that of a curve, surface or side set of the mesh; of a lattice that of the flat face across an axis of which the
+    /// set is a layer, however deep; else it must be given.
     #[schemars(extend("dimension" = Dim::AREA.name()))]
     pub area: Option<Number>,
     /// Viscous force density / velocity.

@@ -14,9 +14,10 @@ pub struct Indenter {
     pub stage: Option<At<StageName>>,
     /// For probes and messages.
     pub name: Option<At<String>>,
-    /// Force density / length²: a point at a depth g below the surface is pushed out by stiffness g².
+    /// Force density / length²: a point at a depth g below the surface is pushed out by stiffness g². When left out ten times the bulk modulus
+    /// of the stiffest material (in 1-D Young's) over the cube of the smallest spacing: at a depth of a tenth of a spacing it is as stiff as the material.
     #[schemars(extend("dimension" = Dim::INDENTER_STIFFNESS.name()))]
-    pub stiffness: Number,
+    pub stiffness: Option<Number>,
     /// Radius of a sphere; instead of a shape.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub radius: Option<Number>,

@@ -4,7 +4,7 @@ use super::body;
 use super::context::{Context, Result};
 use super::pieces::within;
 use super::sets;
-use super::{Files, horizon, influence, section};
+use super::{Files, horizon, influence};
 use crate::deck::document::{Body, Document, FamilyName};
 use crate::deck::error::nearest;
 use crate::deck::value::At;
@@ -26,12 +26,11 @@ pub(super) fn bodies(
     document: &Document,
     files: &Files,
 ) -> Result<BodySpec> {
-    let dimension = document.dimension.as_ref();
     let mut pieces: Vec<PieceSpec> = Vec::new();
     for (n, at) in written(document).enumerate() {
         let written = &at.value;
         let before = context.dimension;
-        let mut spec = body::body(context, at, dimension, files)?;
+        let spec = body::body(context, document, at, files)?;
         if n > 0 && context.dimension != before {
             let message = format!(
                 "this body is {}-D, the first is {before}-D",
@@ -40,7 +39,6 @@ pub(super) fn bodies(
             return Err(context.error(&at.span, message));
         }
         if !several(document) {
-            with_section(context, document, at, &mut spec)?;
             return Ok(spec);
         }
         if context.atoms.is_some() || context.micromoduli.is_some() {
@@ -50,7 +48,6 @@ pub(super) fn bodies(
                 "atoms, and linear bodies with their micromoduli, cannot be one of several bodies",
             ));
         }
-        with_section(context, document, at, &mut spec)?;
         let name = match &written.name {
             Some(name) if name.value == "all" || name.value.is_empty() => {
                 let message = "a body needs another name: \"all\" is the set of all points";
@@ -73,22 +70,6 @@ pub(super) fn bodies(
         });
     }
     Ok(BodySpec::Several(pieces))
-}
-
-/// Cells of a 2-D mesh have areas so far: give them the thickness.
-fn with_section(
-    context: &Context,
-    document: &Document,
-    written: &At<Body>,
-    spec: &mut BodySpec,
-) -> Result<()> {
-    let section = section(context, document)?;
-    if let (2, BodySpec::Cloud(cloud), Some(file)) = (context.dimension, spec, &written.value.file)
-        && (file.value.ends_with(".inp") || file.value.ends_with(".msh"))
-    {
-        cloud.volume.iter_mut().for_each(|area| *area *= section);
-    }
-    Ok(())
 }
 
 /// A set for every body, of its name, and `BODY.NAME` for each named mark of its file.

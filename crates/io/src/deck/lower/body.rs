@@ -3,11 +3,13 @@
 use super::Files;
 use super::context::{Context, Result};
 use super::region::region;
-use crate::deck::document::{Body, LatticeName};
+use super::section;
+use crate::deck::document::{Body, Document, LatticeName, SurfaceName};
 use crate::deck::units::{Dim, UnitSystem};
-use crate::deck::value::At;
+use crate::deck::value::{At, Or};
 use crate::read::AtomsFile;
-use peridyne::space::lattice::LatticeKind;
+use peridyne::run::Shelf;
+use peridyne::space::lattice::{Ends, Lattice, LatticeKind};
 use peridyne::space::region::Region;
 use peridyne::spec::{BodySpec, Perturbation};
 
@@ -29,11 +31,11 @@ impl From<LatticeName> for LatticeKind {
     }
 }
 
-/// Reads the body and settles the dimension of `context`; cells of a 2-D mesh still have areas as volumes.
+/// Reads the body and settles the dimension of `context`.
 pub(super) fn body(
     context: &mut Context,
+    document: &Document,
     body: &At<Body>,
-    given_dimension: Option<&At<usize>>,
     files: &Files,
 ) -> Result<BodySpec> {
     let written = &body.value;
@@ -59,6 +61,7 @@ pub(super) fn body(
             (Some(points.cloud), points.dimension)
         }
     };
+    let given_dimension = document.dimension.as_ref();
     context.dimension = dimension(context, given_dimension, natural, written.lattice.is_some())?;
     if let (Some(_), Some(unit)) = (&written.lattice, &written.file_unit) {
         return Err(context.error(
@@ -70,7 +73,10 @@ pub(super) fn body(
         return Err(context.error(&step.span, "file_step belongs to a file with frames"));
     }
     match (&written.lattice, spec) {
-        (Some(kind), _) => lattice(context, body, LatticeKind::from(kind.value)),
+        (Some(kind), _) => {
+            let filling = Filling::of(document);
+            lattice(context, body, LatticeKind::from(kind.value), &filling)
+        }
         (None, Some(mut cloud)) => {
             if let Some(lost) = written
                 .origin
@@ -110,9 +116,20 @@ pub(super) fn body(
                 let power = if natural == Some(2) { 2 } else { 3 };
                 cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
                 cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
+                for (_, areas) in &mut cloud.faces {
+                    *areas = areas.iter().map(|a| a * unit.powi(power - 1)).collect();
+                }
                 if let Some(atoms) = &mut context.atoms {
                     atoms.corner = atoms.corner.map(|c| c * unit);
                     atoms.cell = atoms.cell.map(|c| c * unit);
+                }
+            }
+            // cells of a plane mesh have areas, and edges lengths: the thickness makes more of them
+            if natural == Some(2) && context.micromoduli.is_none() && context.atoms.is_none() {
+                let thickness = section(context, document)?;
+                cloud.volume.iter_mut().for_each(|v| *v *= thickness);
+                for (_, areas) in &mut cloud.faces {
+                    *areas = areas.iter().map(|a| a * thickness).collect();
                 }
             }
             let longest = (0..3).map(|a| {
@@ -208,7 +225,57 @@ fn dimension(
     }
 }
 
-fn lattice(context: &Context, body: &At<Body>, kind: LatticeKind) -> Result<BodySpec> {
+/// Where the points of a lattice without an origin lie.
+pub(super) struct Filling {
+    /// What ends where the region does; `None`: atoms, of which the first site is at 0, as in scripts.
+    ends: Option<Ends>,
+    periodic: [bool; 3],
+}
+
+impl Filling {
+    pub fn of(document: &Document) -> Filling {
+        let shelf = Shelf::standard();
+        let mut materials = document.material.values();
+        let atoms = materials.any(|m| shelf.is_potential(&m.value.law.value.name));
+        let exact = matches!(&document.surface, Some(s) if s.value == SurfaceName::Exact);
+        let periodic = document.periodic.as_ref().map(|p| match &p.value {
+            Or::Bare(axes) => {
+                std::array::from_fn(|a| axes.iter().any(|axis| axis.value as usize == a))
+            }
+            Or::Table(p) => [p.x.is_some(), p.y.is_some(), p.z.is_some()],
+        });
+        Filling {
+            ends: match (atoms, exact) {
+                (true, _) => None,
+                (false, true) => Some(Ends::Points),
+                (false, false) => Some(Ends::Cells),
+            },
+            periodic: periodic.unwrap_or_default(),
+        }
+    }
+
+    /// Of a region. A period begins at its lower end.
+    fn origin(&self, kind: LatticeKind, spacing: f64, region: &Region) -> [f64; 3] {
+        let Some(ends) = self.ends else {
+            return [0.0; 3];
+        };
+        let (low, mut high) = region.bounds();
+        for a in (0..3).filter(|a| self.periodic[*a]) {
+            high[a] = low[a] + spacing * kind.edges()[a];
+        }
+        let of = |ends| Lattice::filling(kind, spacing, [low, high], ends);
+        let (outer, whole) = (of(ends), of(Ends::Cells));
+        // a period has no ends
+        std::array::from_fn(|a| if self.periodic[a] { whole[a] } else { outer[a] })
+    }
+}
+
+fn lattice(
+    context: &Context,
+    body: &At<Body>,
+    kind: LatticeKind,
+    filling: &Filling,
+) -> Result<BodySpec> {
     let written = &body.value;
     let missing = |key: &str, example: &str| {
         context.error_with(
@@ -222,13 +289,20 @@ fn lattice(context: &Context, body: &At<Body>, kind: LatticeKind) -> Result<Body
         .as_ref()
         .ok_or_else(|| missing("spacing", "\"0.5 mm\""))?;
     let spacing = context.positive(spacing, Dim::LENGTH, "the spacing")?;
-    let origin = written
-        .origin
-        .as_ref()
-        .map_or(Ok([0.0; 3]), |o| context.finite_vector(o, Dim::LENGTH))?;
-    let region = match (&written.region, &written.cells) {
-        (Some(shape), None) => region(context, shape)?,
-        (None, Some(cells)) => whole_cells(context, cells, kind, spacing, origin)?,
+    let given = { written.origin.as_ref() }
+        .map(|o| context.finite_vector(o, Dim::LENGTH))
+        .transpose()?;
+    let (region, origin) = match (&written.region, &written.cells) {
+        (Some(shape), None) => {
+            let region = region(context, shape)?;
+            let origin = given.unwrap_or_else(|| filling.origin(kind, spacing, &region));
+            (region, origin)
+        }
+        (None, Some(cells)) => {
+            let origin = given.unwrap_or_default();
+            let region = whole_cells(context, cells, kind, spacing, origin)?;
+            (region, origin)
+        }
         (None, None) => return Err(missing("region", "{ block = { low = .., high = .. } }")),
         (Some(_), Some(cells)) => {
             return Err(context.error(&cells.span, "give one of region and cells"));

@@ -3,15 +3,88 @@
 use super::Files;
 use super::contact::{cohesion, friction};
 use super::context::{Context, Result};
-use crate::deck::document::{Indenter, Rigid, Rotation};
+use crate::deck::document::{Document, Indenter, Rigid, Rotation};
 use crate::deck::units::Dim;
 use crate::deck::value::{At, Number, Vector};
 use peridyne::expression::Expression;
+use peridyne::law::micromodulus::Moments;
 use peridyne::space::Point;
 use peridyne::space::rigid::RigidShape;
 use peridyne::space::triangles::Solid;
-use peridyne::spec::{FreeSpec, IndenterMotion, IndenterSpec, TurnSpec};
+use peridyne::spec::{BodySpec, FreeSpec, IndenterMotion, IndenterSpec, Spec, TurnSpec};
+use peridyne_theory::nominal::nominal_moduli;
 use std::sync::Arc;
+
+/// What an indenter has until its stiffness is that of the material.
+const OF_MATERIAL: f64 = f64::NAN;
+/// A point is pushed out as stiffly as the material where it is this part of a spacing deep.
+const DEPTH: f64 = 0.1;
+
+/// Gives indenters without a stiffness one of the materials, and says it.
+///
+/// The pressure on a layer of cells of thickness Δx is `K g² Δx`, and what the same layer says when it is shortened by g `B g/Δx`: they
+/// agree at a depth `g = Δx/10` for `K = 10 B/Δx³`. Points go less deep than that as long as the pressure is below B/10, and the slope
+/// `2 K g` of the force density is below that of the bonds (some `B/Δx²`), so that it does not shorten the stable step.
+pub(super) fn of_material(
+    context: &mut Context,
+    document: &Document,
+    spec: &mut Spec,
+) -> Result<()> {
+    let before = spec.preload.iter_mut().flat_map(|p| &mut p.indenters);
+    let all: Vec<&mut IndenterSpec> = before
+        .chain(&mut spec.indenters)
+        .filter(|i| i.stiffness.is_nan())
+        .collect();
+    if all.is_empty() {
+        return Ok(());
+    }
+    let spacing = match &spec.body {
+        BodySpec::Several(pieces) => { pieces.iter() }
+            .filter_map(|p| p.body.spacing())
+            .reduce(f64::min),
+        one => one
+            .spacing()
+            .or_else(|| mean_spacing(one, spec.dimension, spec.section)),
+    };
+    let horizon = spacing.map(|s| spec.horizon.length(s));
+    let bulk = horizon.and_then(|horizon| {
+        let d = spec.dimension;
+        let moments = Moments::continuum(d, horizon, spec.section, spec.influence);
+        { spec.materials.iter() }
+            .filter_map(|m| nominal_moduli(&m.law, d, spec.plane, moments))
+            .map(|m| if d == 1 { m.young } else { m.bulk() })
+            .reduce(f64::max)
+    });
+    let (Some(spacing), Some(bulk)) = (spacing, bulk) else {
+        let span = { document.indenter.iter() }
+            .find(|i| i.value.stiffness.is_none())
+            .map_or(0..0, |i| i.span.clone());
+        return Err(context.error_with(
+            &span,
+            "the indenter needs a `stiffness`: these materials have no bulk modulus to take it from, or the points no spacing",
+            "write stiffness = …, about ten times the stiffness of the material over the cube of the spacing",
+        ));
+    };
+    let stiffness = bulk / (DEPTH * spacing.powi(3));
+    all.into_iter().for_each(|i| i.stiffness = stiffness);
+    let units = context.units;
+    context.notes.push(format!(
+        "stiffness of indenters that give none: {}, ten times the bulk modulus {} over the cube of the spacing {}",
+        units.show(stiffness, Dim::INDENTER_STIFFNESS),
+        units.show(bulk, Dim::PRESSURE),
+        units.show(spacing, Dim::LENGTH),
+    ));
+    Ok(())
+}
+
+/// Of points that do not say their spacing.
+fn mean_spacing(body: &BodySpec, dimension: usize, section: f64) -> Option<f64> {
+    let BodySpec::Cloud(cloud) = body else {
+        return None;
+    };
+    let mean = cloud.volume.iter().sum::<f64>() / cloud.volume.len() as f64 / section;
+    Some(mean.powf(1.0 / dimension as f64)).filter(|s| s.is_finite())
+}
 
 pub(super) fn indenter(
     context: &Context,
@@ -45,7 +118,10 @@ pub(super) fn indenter(
     };
     Ok(IndenterSpec {
         name: i.name.as_ref().map_or(String::new(), |n| n.value.clone()),
-        stiffness: context.positive(&i.stiffness, Dim::INDENTER_STIFFNESS, "the stiffness")?,
+        stiffness: match &i.stiffness {
+            Some(given) => context.positive(given, Dim::INDENTER_STIFFNESS, "the stiffness")?,
+            None => OF_MATERIAL,
+        },
         shape,
         turn: i.rotation.as_ref().map(|r| turn(context, r)).transpose()?,
         motion,

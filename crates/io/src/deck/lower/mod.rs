@@ -246,6 +246,7 @@ pub(super) fn lower(
     if let Some(surface) = &document.surface {
         spec.surface = surface_factors(&context, surface, &spec)?;
     }
+    indenter::of_material(&mut context, document, &mut spec)?;
     let species = potentials.into_values().map(|p| p.element);
     let output = schedule::output(&context, &document.output, spec.potential().is_some())?;
     Ok(Lowered {

@@ -8,6 +8,9 @@ use peridyne::space::region::Region;
 use peridyne::spec::BodySpec;
 use std::ops::Range;
 
+/// Part of a cell by which a period ends before the next begins.
+const BELOW: f64 = 1e-5;
+
 const INF: f64 = f64::INFINITY;
 
 /// Lower corner of the periods: of the whole cells, of the region, or of the file's box.
@@ -109,7 +112,7 @@ pub(super) fn periods(
                     continue;
                 }
                 let (mut from, mut to) = ([-INF; 3], [INF; 3]);
-                (from[a], to[a]) = (low[a], low[a] + length - edge / 8.0);
+                (from[a], to[a]) = (low[a], low[a] + length - edge * BELOW);
                 let whole = std::mem::replace(region, Region::Everything);
                 *region = Region::Intersection(vec![
                     whole,

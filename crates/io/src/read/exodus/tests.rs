@@ -133,6 +133,13 @@ fn blocks_are_marks_and_everything_named_is_a_set() {
             ("both", &[0, 1]),
         ];
         assert_eq!(sets, wanted);
+        // the wedge's second side is the slanted one; one side of the first cube has all its nodes in a set
+        let faces: Vec<(&str, &[f64])> = { points.cloud.faces.iter() }
+            .map(|(n, a)| (&**n, &**a))
+            .collect();
+        assert_eq!(faces.len(), 2, "{faces:?}");
+        assert_eq!(faces[0], ("left", &[1.0][..]));
+        assert!(faces[1].0 == "surface_4" && (faces[1].1[0] - 2f64.sqrt()).abs() < 1e-15);
     }
 }
 

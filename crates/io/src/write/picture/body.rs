@@ -4,6 +4,7 @@ use peridyne::observe::Snapshot;
 use peridyne::space::AXES;
 
 use super::arrows::Arrows;
+use super::extent::{REACH, bounds, longest, moved, strays};
 use super::image::{Align, Font, GREY, INK, Image};
 use super::marks;
 use super::shown::Shown;
@@ -11,8 +12,6 @@ use super::sizes;
 use super::view::{Camera, Frame, cross, draw as draw_view};
 use super::{FOOT, HEAD, MARGIN, PictureOptions, head, label};
 
-/// Debris farther from the reference body than this part of its longest extent is not drawn.
-const REACH: f64 = 0.3;
 /// Elevation of the viewer of the section (degrees): low enough to see the cut, high enough to see the top.
 const ELEVATION: f64 = 30.0;
 /// Cubes of magnified bodies are larger by this.
@@ -88,10 +87,15 @@ pub fn draw(
             .collect(),
         _ => vec![],
     };
+    let strays = strays(s);
     let panels: Vec<Panel> = cameras(s, &bounds)
         .into_iter()
         .filter_map(|(camera, caption, cut)| {
-            let points = shown(cut).map(|p| p.0);
+            let all = moved(s, scale).zip(&s.reference).zip(&strays);
+            let points = all.filter(|((x, reference), stray)| {
+                !**stray && near(x) && cut.is_none_or(|cut| cut.keeps(reference))
+            });
+            let points = points.map(|((x, _), _)| x);
             let frame = Frame::around(&camera, points.chain(beside.iter().copied()), spacing)?;
             Some(Panel {
                 camera,
@@ -152,28 +156,6 @@ pub fn draw(
         arrows.key(&mut image, at, options.units);
     }
     image
-}
-
-/// Bounds of the reference positions per axis, `[0, 0]` without points.
-pub fn bounds(s: &Snapshot) -> [[f64; 2]; 3] {
-    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-    for x in s
-        .reference
-        .iter()
-        .filter(|x| x.iter().all(|c| c.is_finite()))
-    {
-        for (b, c) in bounds.iter_mut().zip(x) {
-            *b = [b[0].min(*c), b[1].max(*c)];
-        }
-    }
-    bounds.map(|b| if b[0] <= b[1] { b } else { [0.0; 2] })
-}
-
-pub fn longest(bounds: &[[f64; 2]; 3]) -> f64 {
-    bounds
-        .iter()
-        .map(|[low, high]| high - low)
-        .fold(0.0, f64::max)
 }
 
 /// The cameras of a body with captions and cuts: a plate as it lies; a solid from above, along its thinnest
@@ -364,10 +346,4 @@ fn foot(
             GREY,
         );
     }
-}
-
-/// Positions with displacements so many times as large.
-fn moved(s: &Snapshot, scale: f64) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
-    let both = s.reference.iter().zip(s.displacement());
-    both.map(move |(x, u)| std::array::from_fn(|a| x[a] + scale * u[a]))
 }

@@ -7,6 +7,7 @@ pub mod arrows;
 mod body;
 mod chain;
 pub mod colormap;
+mod extent;
 pub mod film;
 pub mod image;
 pub(super) mod label;
@@ -119,7 +120,7 @@ impl PictureOptions {
 
     /// By how much displacements are seen well.
     fn magnification(&self, s: &Snapshot) -> f64 {
-        let long = body::longest(&body::bounds(s));
+        let long = extent::longest(&extent::bounds(s));
         let finite = |x: &&[f64; 3]| x.iter().all(|c| c.is_finite());
         let all = s.displacement().iter().filter(finite).flatten();
         let most = all.fold(0.0, |m: f64, c| m.max(c.abs()));

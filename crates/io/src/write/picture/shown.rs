@@ -7,6 +7,7 @@ use peridyne::observe::{Column, Snapshot, Values};
 
 use super::super::fields::invalid;
 use super::colormap::Map;
+use super::extent::strays;
 
 /// What a run was about, where nobody says what to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,10 +70,24 @@ impl Shown {
             None => field.replace('_', " "),
             Some(part) => format!("{} {part}", field.replace('_', " ")),
         };
-        let finite = || values.iter().copied().filter(|v| v.is_finite());
-        let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let ends = |all: &mut dyn Iterator<Item = f64>| {
+            let finite = all.filter(|v| v.is_finite());
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            })
+        };
+        // points that have flown away do not set the colours of the others
+        let strays = strays(s);
+        let (mut low, mut high) = ends(
+            &mut values
+                .iter()
+                .zip(&strays)
+                .filter(|(_, stray)| !**stray)
+                .map(|(v, _)| *v),
+        );
+        if low > high {
+            (low, high) = ends(&mut values.iter().copied());
+        }
         let range = range(field, low, high);
         Ok(Shown {
             name,

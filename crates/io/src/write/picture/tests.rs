@@ -257,3 +257,31 @@ fn a_place_shows_the_cell_that_it_lies_in() {
     // either half of the plate; a tenth of a cell overlaps at its rim
     assert!((torn / whole - 1.0).abs() < 0.05, "{torn} {whole}");
 }
+
+#[test]
+fn a_point_that_flew_away_sets_neither_colours_nor_limits() {
+    use super::extent::strays;
+    use super::shown::Shown;
+    let moved = |far: &dyn Fn(usize) -> f64| {
+        let s = block([10, 10, 1], 2);
+        let n = s.reference.len();
+        let u = (0..n).map(|i| [far(i) + 0.01, 0.0, 0.0]).collect();
+        let damage = (0..n).map(|i| f64::from(u8::from(far(i) != 0.0))).collect();
+        with(
+            with(s, "displacement", Values::Vectors(u)),
+            "damage",
+            Values::Scalars(damage),
+        )
+    };
+    let count = |s: &Snapshot| strays(s).iter().filter(|x| **x).count();
+    let end = |s: &Snapshot| Shown::of(s, "displacement", None).unwrap().range[1];
+    // within a few spacings, and without bonds: of the body
+    let near = moved(&|i| if i == 3 { 2.0 } else { 0.0 });
+    assert_eq!((count(&near), end(&near)), (0, 2.01));
+    let gone = moved(&|i| if i == 3 { 4.5 } else { 0.0 });
+    assert_eq!(count(&gone), 1);
+    assert!((end(&gone) - 0.01).abs() < 1e-12, "{}", end(&gone));
+    // a body in pieces is what there is to see
+    let crushed = moved(&|i| if i % 2 == 0 { 3.5 } else { 0.0 });
+    assert_eq!((count(&crushed), end(&crushed)), (0, 3.51));
+}

@@ -1,0 +1,279 @@
+//! The one place that knows on what area tractions, fluxes and exchanges act.
+
+use crate::body::Body;
+use crate::error::BuildError;
+use crate::space::Point;
+use crate::space::face::{NoFace, Site, Sites};
+use crate::space::lattice::{Lattice, LatticeKind};
+use crate::spec::{BodySpec, Carriers, Members, Spec};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Part of a spacing by which points may be off the sites of a lattice.
+const TOLERANCE: f64 = 1e-6;
+
+/// Where the points of one of the bodies are.
+#[derive(Debug, Clone)]
+enum Origin {
+    On(Lattice),
+    /// Sites of its points in order, of which they were moved away.
+    Moved(Lattice, Arc<[Site]>),
+    /// On a lattice perhaps, which is looked for.
+    Given,
+}
+
+/// What faces follow from.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Faces {
+    origins: Vec<Origin>,
+    /// Sets whose faces a mesh knows: the area that each of their points has.
+    named: Vec<(String, Arc<[f64]>)>,
+    /// Bodies end at their outer points.
+    ends_at_points: bool,
+    section: f64,
+}
+
+impl Faces {
+    pub fn new(spec: &Spec) -> Result<Faces, BuildError> {
+        let origin = |body: &BodySpec| -> Result<Origin, BuildError> {
+            Ok(match body {
+                BodySpec::Lattice {
+                    kind,
+                    spacing,
+                    origin,
+                    region,
+                    perturb,
+                } => {
+                    let lattice = Lattice {
+                        kind: *kind,
+                        spacing: *spacing,
+                        origin: *origin,
+                    };
+                    match perturb {
+                        None => Origin::On(lattice),
+                        Some(_) => {
+                            let sites = crate::space::fill::fill(&lattice, region)?;
+                            Origin::Moved(lattice, sites.quarters.into())
+                        }
+                    }
+                }
+                BodySpec::Sites {
+                    kind,
+                    spacing,
+                    origin,
+                    ..
+                } => Origin::On(Lattice {
+                    kind: *kind,
+                    spacing: *spacing,
+                    origin: *origin,
+                }),
+                BodySpec::Cloud(_) | BodySpec::Several(_) => Origin::Given,
+            })
+        };
+        let origins = match &spec.body {
+            BodySpec::Several(pieces) => pieces
+                .iter()
+                .map(|p| origin(&p.body))
+                .collect::<Result<_, _>>()?,
+            one => vec![origin(one)?],
+        };
+        let named = { spec.sets.iter() }
+            .filter_map(|set| Some((set.name.clone(), of_mesh(&spec.body, &set.members)?)))
+            .collect();
+        let whole = |f: &crate::spec::SurfaceFactors| f.part.iter().all(|p| *p == 1.0);
+        Ok(Faces {
+            origins,
+            named,
+            ends_at_points: spec.surface.as_ref().is_some_and(|f| !whole(f)),
+            section: spec.section,
+        })
+    }
+
+    /// The share of the loaded face that each point of a set has (area), `slots` in the order of its ids.
+    ///
+    /// All of `given` by volume; else what the mesh says of the set; else the face of the layer that these sites of the lattice are.
+    ///
+    /// # Errors
+    /// None of them: the area must be given.
+    pub fn areas<const D: usize>(
+        &self,
+        body: &Body<D>,
+        set: &str,
+        slots: &[u32],
+        given: Option<f64>,
+    ) -> Result<Vec<f64>, BuildError> {
+        let volume = |s: &u32| body.volume.at(*s as usize);
+        if let Some(area) = given {
+            let all: f64 = slots.iter().map(volume).sum();
+            return Ok(slots.iter().map(|s| area * volume(s) / all).collect());
+        }
+        if let Some((_, areas)) = self.named.iter().find(|(name, _)| name == set)
+            && areas.len() == slots.len()
+        {
+            return Ok(areas.to_vec());
+        }
+        let mut areas = vec![0.0; slots.len()];
+        let ids = match body.pieces() {
+            [] => std::iter::once(0..body.points()).collect(),
+            _ => body.ids(),
+        };
+        for (n, (ids, origin)) in ids.into_iter().zip(&self.origins).enumerate() {
+            let own: Vec<usize> = (0..slots.len())
+                .filter(|k| body.piece_of(slots[*k] as usize) == n)
+                .collect();
+            if own.is_empty() {
+                continue;
+            }
+            let first = body.pieces().get(n);
+            let spacing = first.map_or(body.spacing, |p| p.body.spacing);
+            let all: Vec<usize> = body.slots[ids].iter().map(|s| *s as usize).collect();
+            let points: Vec<(Point, f64)> = { all.iter() }
+                .map(|s| (body.position(*s), body.volume.at(*s)))
+                .collect();
+            let mut place = vec![0u32; body.len];
+            for (k, slot) in all.iter().enumerate() {
+                place[*slot] = k as u32;
+            }
+            let members = own.iter().map(|k| place[slots[*k] as usize] as usize);
+            let members: Vec<usize> = members.collect();
+            let shares = self
+                .shares(origin, spacing, &body.period, &points, &members)
+                .map_err(|why| unknown(set, why))?;
+            for (k, share) in own.into_iter().zip(shares) {
+                areas[k] = share;
+            }
+        }
+        Ok(areas)
+    }
+
+    /// The same of points of the finer body from which this one was condensed.
+    pub fn condensed<const D: usize>(
+        &self,
+        carriers: &Carriers<D>,
+        period: &[Option<f64>; D],
+        set: &str,
+        members: &[u32],
+        given: Option<f64>,
+    ) -> Result<Vec<f64>, BuildError> {
+        let volume = |p: &u32| carriers.volume[*p as usize];
+        if let Some(area) = given {
+            let all: f64 = members.iter().map(volume).sum();
+            return Ok(members.iter().map(|p| area * volume(p) / all).collect());
+        }
+        let points: Vec<(Point, f64)> = { carriers.position.iter().zip(&carriers.volume) }
+            .map(|(x, v)| (crate::space::full(x), *v))
+            .collect();
+        let members: Vec<usize> = members.iter().map(|p| *p as usize).collect();
+        self.shares::<D>(&Origin::Given, carriers.spacing, period, &points, &members)
+            .map_err(|why| unknown(set, why))
+    }
+
+    /// Shares of some of the points of one body; what is wrong with them.
+    fn shares<const D: usize>(
+        &self,
+        origin: &Origin,
+        spacing: f64,
+        period: &[Option<f64>; D],
+        points: &[(Point, f64)],
+        members: &[usize],
+    ) -> Result<Vec<f64>, &'static str> {
+        let (lattice, sites): (Lattice, Vec<Site>) = match origin {
+            Origin::On(lattice) => {
+                let sites = points.iter().map(|(x, _)| lattice.quarter(x));
+                (*lattice, sites.collect())
+            }
+            Origin::Moved(lattice, sites) => (*lattice, sites.to_vec()),
+            Origin::Given => regular::<D>(spacing, self.section, points)
+                .ok_or("its points come with volumes, and their faces are not known")?,
+        };
+        let edges = lattice.kind.edges();
+        let quarters = |a: usize| {
+            let p = (*period.get(a)?)?;
+            Some((4.0 * p / (edges[a] * lattice.spacing)).round() as i32)
+        };
+        let period: [Option<i32>; 3] = std::array::from_fn(quarters);
+        let set: Vec<Site> = members.iter().map(|n| sites[*n]).collect();
+        // what is further away than a cell does not matter
+        let bounds: [(i32, i32); D] = std::array::from_fn(|a| {
+            let ends = set.iter().map(|s| s[a]);
+            ends.fold((i32::MAX, i32::MIN), |(l, h), x| (l.min(x), h.max(x)))
+        });
+        let near = |q: &Site| {
+            (0..D).all(|a| {
+                let (low, high) = bounds[a];
+                period[a].is_some() || (low - 4 <= q[a] && q[a] <= high + 4)
+            })
+        };
+        let wrapped = |q: Site| -> Site {
+            std::array::from_fn(|a| period[a].map_or(q[a], |p| q[a].rem_euclid(p)))
+        };
+        let body: HashMap<Site, f64> = { sites.iter().zip(points) }
+            .filter(|(q, _)| near(q))
+            .map(|(q, (_, v))| (wrapped(*q), *v))
+            .collect();
+        let sites = Sites {
+            kind: lattice.kind,
+            spacing: lattice.spacing,
+            body: &body,
+            period,
+            ends_at_points: self.ends_at_points,
+        };
+        sites.shares(&set).map_err(NoFace::reason)
+    }
+}
+
+/// A chain, square or cubic lattice on whose sites all these points lie, none with more than its cell.
+fn regular<const D: usize>(
+    spacing: f64,
+    section: f64,
+    points: &[(Point, f64)],
+) -> Option<(Lattice, Vec<Site>)> {
+    let kind = [LatticeKind::Chain, LatticeKind::Square, LatticeKind::Cubic][D - 1];
+    let lattice = Lattice {
+        kind,
+        spacing,
+        origin: points.first()?.0,
+    };
+    let cell = section * spacing.powi(D as i32);
+    let mut largest = 0.0f64;
+    let mut sites = Vec::with_capacity(points.len());
+    for (x, volume) in points {
+        largest = largest.max(*volume);
+        let mut site = [0; 3];
+        for a in 0..D {
+            let cells = (x[a] - lattice.origin[a]) / spacing;
+            if (cells - cells.round()).abs() > TOLERANCE * (1.0 + cells.abs()) || cells.abs() > 1e8
+            {
+                return None;
+            }
+            site[a] = 4 * cells.round() as i32;
+        }
+        sites.push(site);
+    }
+    // some point has a whole cell, else the cells are others
+    ((largest / cell - 1.0).abs() < TOLERANCE).then_some((lattice, sites))
+}
+
+/// Areas that a mesh gives the points of a set of its own.
+fn of_mesh(body: &BodySpec, members: &Members) -> Option<Arc<[f64]>> {
+    match (body, members) {
+        (BodySpec::Cloud(cloud), Members::Points(ids)) => {
+            let (name, _) = cloud.sets.iter().find(|(_, set)| Arc::ptr_eq(set, ids))?;
+            let faces = cloud.faces.iter().find(|(of, _)| of == name);
+            faces.map(|(_, areas)| areas.clone())
+        }
+        (BodySpec::Several(pieces), Members::Within { body, members }) => {
+            let piece = pieces.iter().find(|p| p.name == *body)?;
+            of_mesh(&piece.body, members)
+        }
+        _ => None,
+    }
+}
+
+fn unknown(set: &str, why: &str) -> BuildError {
+    BuildError::missing(
+        "",
+        format!("the area of the face that `{set}` stands for does not follow from its points: {why}"),
+    )
+    .help("write `area` = the whole area of that face beside the load; a curve, surface or side set that a mesh names has its own")
+}
