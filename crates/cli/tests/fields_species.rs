@@ -546,3 +546,48 @@ fn an_element_may_stand_twice() {
     let carbon = at("carbon.xyz", CARBON);
     assert_eq!(stress(&carbon, "C"), stress(&carbon, "C,C"));
 }
+
+/// A bond that nobody else weakens is one of two atoms, whatever other elements of the file reach: parts of its energy are for these two,
+/// and fields are the same with and without the other elements.
+#[test]
+fn parts_are_of_those_that_a_bond_depends_on() {
+    let dir = TempDir::new().unwrap();
+    let at = |name: &str, text: &str| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let frames = at("carbon.xyz", CARBON);
+    // at each atom, φ of which reaches no other
+    let points = at("points.txt", "0 0 0\n1.5 0 0\n4 0 0\n");
+    let carbide = folder().join("fans/SiC.tersoff").display().to_string();
+    let out = dir.path().join("out");
+    let energies = |element: &str, partition: &str| {
+        let all = format!(
+            "--frames {frames} --potential tersoff --file {carbide} --element {element} --units metal --kernel polynomial --width 1.2 \
+             --points {points} --residuals 0 --partition {partition} --out {}",
+            out.display()
+        );
+        let (code, error) = fields(&words(&all));
+        assert_eq!(code, Some(0), "{error}");
+        let text = std::fs::read_to_string(out.join("points.csv")).unwrap();
+        let mut rows = text.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let head = rows.next().unwrap();
+        let column = head.iter().position(|h| *h == "e_pot").unwrap();
+        rows.map(|row| row[column].parse().unwrap())
+            .collect::<Vec<f64>>()
+    };
+    for partition in ["site", "equal", "centre:0.25"] {
+        let alone = energies("C", partition);
+        assert!(
+            alone[0] < -0.1 && (alone[0] - alone[1]).abs() < 1e-12,
+            "{alone:?}"
+        );
+        assert_eq!(alone[2], 0.0, "{partition}");
+        let with = energies("Si,C", partition);
+        assert!(
+            with.iter().zip(&alone).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{partition}: {with:?} {alone:?}"
+        );
+    }
+}

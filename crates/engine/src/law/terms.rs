@@ -136,6 +136,10 @@ fn terms<'a, P: Potential>(
         term.pulls.push((0, end, pair.slope));
         visit(&term);
         if P::EMBEDDED {
+            // pairs may reach farther than densities
+            if f.value == 0.0 && f.slope == 0.0 {
+                continue;
+            }
             density += f.value;
             embedding.particles.push(end);
             embedding.pulls.push((0, end, 2.0 * f.slope));

@@ -114,11 +114,16 @@ impl<F: Fan> Sites for FanSites<F> {
                 }
                 continue;
             }
-            let shares: Vec<_> = others()
+            let mut shares: Vec<_> = others()
                 .map(|(_, k)| (k.number, self.share(kind, j, k)))
                 .collect();
             let zeta = shares.iter().map(|(_, z)| z.value).sum();
             let h = self.bond(kind, j, zeta);
+            // the bond depends on those alone that weaken it: the cut-off of its triples may be shorter than that of others
+            let counts = |x: &f64| *x != 0.0;
+            shares.retain(|(_, z)| {
+                counts(&h.slope[1]) && (counts(&z.value) || z.slope.iter().any(counts))
+            });
             term.begin(0);
             term.energy = h.value;
             term.particles.push(j.number);
@@ -354,6 +359,25 @@ mod tests {
         for f in forces(&sites, &near)[0] {
             assert!(f.abs() < 1e-12);
         }
+    }
+
+    /// A bond that nobody weakens is one of two atoms, however far the longest cut-off reaches.
+    #[test]
+    fn terms_are_of_those_that_they_depend_on() {
+        let of = |sites: &FanSites<Tersoff>, near: &[[f64; 3]]| {
+            let near: Vec<Near> = near.iter().map(|y| Near { kind: 0, y: *y }).collect();
+            let mut all = vec![];
+            sites.terms(0, &near, &mut |t| all.push(t.particles.clone()));
+            all
+        };
+        let mut sites = tersoff();
+        assert_eq!(
+            of(&sites, &[[2.0, 0.0, 0.0], [0.0, 3.0, 0.0]]),
+            [[0, 1, 2], [0, 2, 1]]
+        );
+        // as if another kind of atom reached farther
+        sites.0 = sites.0.reaching(5.0);
+        assert_eq!(of(&sites, &[[2.0, 0.0, 0.0], [0.0, 4.0, 0.0]]), [[0, 1]]);
     }
 
     /// The cut-off is smooth: beyond it nothing, just before it next to nothing.

@@ -125,6 +125,14 @@ fn cut<N: Number>(length: N, middle: N, over_half: N) -> N {
     x.below(-1.0, one, x.below(1.0, inside, zero))
 }
 
+#[cfg(test)]
+impl Tersoff {
+    /// The same in a list of neighbours that reaches so far.
+    pub(super) fn reaching(self, cutoff: f64) -> Tersoff {
+        Tersoff { cutoff, ..self }
+    }
+}
+
 impl Fan for Tersoff {
     const TRIPLES: Option<f64> = None;
 
