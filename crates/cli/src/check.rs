@@ -379,6 +379,7 @@ fn materials(
             dimension: d,
             plane: spec.plane,
             horizon,
+            influence,
             moments,
         };
         let nominal = nominal_moduli(&m.law, d, spec.plane, moments);

@@ -15,11 +15,12 @@ const BULK: f64 = LAMBDA + 2.0 * MU / 3.0;
 const DENSITY: f64 = 2.0;
 
 type Matrix<const D: usize> = [[f64; D]; D];
-type Past<const D: usize> = ([Matrix<D>; 2], [f64; 10]);
+type Past<const D: usize> = ([Matrix<D>; 2], [f64; 11]);
 /// A deformation that F sees all of.
 const SEEN: Unseen<f64> = Unseen {
     stiffness: 0.0,
     square: 0.0,
+    across: 0.0,
 };
 const WORK: usize = 0;
 const MEAN: usize = 1;
@@ -69,7 +70,7 @@ fn along<const D: usize>(
     path: impl Fn(f64) -> Matrix<D>,
 ) -> Vec<Past<D>> {
     let constants = Classical::<D>::constants(law, 0, dt);
-    let mut past = ([[[0.0; D]; D]; 2], [0.0; 10]);
+    let mut past = ([[[0.0; D]; D]; 2], [0.0; 11]);
     let mut all = vec![];
     for n in 1..=steps {
         past = law
@@ -203,7 +204,7 @@ fn the_yield_surface_holds() {
                 }
                 let law = made(3, parameters).unwrap();
                 let steps = 400;
-                let mut before: Past<3> = ([[[0.0; 3]; 3]; 2], [0.0; 10]);
+                let mut before: Past<3> = ([[[0.0; 3]; 3]; 2], [0.0; 11]);
                 let (mut flowed, mut worst, mut rises): (usize, f64, f64) = (0, 0.0, 0.0);
                 for past in along(&law, steps, dt, path) {
                     let more = past.1[STRAIN] - before.1[STRAIN];

@@ -2,7 +2,7 @@
 
 use peridyne::law::fracture_energy;
 use peridyne::law::micromodulus::{Moments, micromodulus};
-use peridyne::spec::{LawSpec, Plane, PmbStiffness};
+use peridyne::spec::{Influence, LawSpec, Plane, PmbStiffness};
 
 /// What of a body the conversion depends on.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +11,7 @@ pub struct Body {
     pub plane: Plane,
     /// Length.
     pub horizon: f64,
+    pub influence: Influence,
     /// Sums over a full family.
     pub moments: Moments,
 }
@@ -22,6 +23,7 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
         dimension: d,
         plane,
         horizon,
+        influence,
         moments,
     } = body;
     match law {
@@ -30,7 +32,10 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
             let c = micromodulus(d, plane, PmbStiffness::Young(m.young), moments);
             Some(fracture_energy::bond_based(d, c, moments))
         }
-        LawSpec::Lps(m) => Some(fracture_energy::state_based(d, plane, m, horizon)),
+        LawSpec::Lps(m) => {
+            let of_unit_stretch = fracture_energy::state_based(d, plane, m, horizon, influence);
+            Some(of_unit_stretch)
+        }
         LawSpec::LpsAsTyped { .. }
         | LawSpec::EamLike { .. }
         | LawSpec::Springs(_)
@@ -43,7 +48,7 @@ pub fn energy_per_stretch_squared(law: &LawSpec, c: Option<f64>, body: Body) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peridyne::spec::{Influence, Moduli};
+    use peridyne::spec::Moduli;
     use std::f64::consts::PI;
 
     fn body(dimension: usize) -> Body {
@@ -51,6 +56,7 @@ mod tests {
             dimension,
             plane: Plane::Stress,
             horizon: 0.003,
+            influence: Influence::Inverse,
             moments: Moments::continuum(dimension, 0.003, 1.0, Influence::Constant),
         }
     }
