@@ -278,6 +278,10 @@ pub trait Interaction<const D: usize>: Send + Sync {
         false
     }
 
+    /// The next step lasts so long (time): forces, energies and tangents are those at its end, and the memory goes there in the next
+    /// [`Sweep::Evolve`], after which time stands still again; 0: it does.
+    fn last(&mut self, _step: f64) {}
+
     /// Bonds wear as long as it takes until some are worn out, at most so many cycles: of a load under which the displacements are `u`, images
     /// of which are fresh, and whose least is a part of it. Those that are worn out break in the next sweep. How many cycles; `None`: none
     /// of them wears.

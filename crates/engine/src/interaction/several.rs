@@ -174,6 +174,12 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         total
     }
 
+    fn last(&mut self, step: f64) {
+        for bonds in self.own.iter_mut().filter_map(|own| own.bonds.as_mut()) {
+            bonds.last(step);
+        }
+    }
+
     fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
         self.check(body, &[u]);
         let mut least = 1.0f64;

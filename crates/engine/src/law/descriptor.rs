@@ -31,8 +31,10 @@ pub enum Memory {
     Nothing,
     /// The path of deformation, however fast it was gone.
     Path,
-    /// And how fast: equilibrium in increments of load means nothing to it.
+    /// And how fast: equilibrium in increments of load means nothing to it, where they take no time.
     Time,
+    /// And how fast, without a shear that rest could hold.
+    Shock,
 }
 
 /// A constant of a law.

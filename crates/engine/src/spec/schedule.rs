@@ -89,6 +89,8 @@ pub struct Statics {
     pub tolerance: f64,
     /// Of conjugate gradients or relaxation, per solution.
     pub most_iterations: usize,
+    /// t is a time, of which every increment takes its part; false: it is the factor of the load.
+    pub timed: bool,
     /// Increments are cycles of load; `None`: they are increments of load.
     pub cycles: Option<Cycles>,
 }
@@ -114,6 +116,7 @@ impl Default for Statics {
             solver: Solver::Auto,
             tolerance: 1e-10,
             most_iterations: 100_000,
+            timed: false,
             cycles: None,
         }
     }

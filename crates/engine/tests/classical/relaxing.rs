@@ -61,7 +61,8 @@ fn shear_relaxes_by_its_modulus() {
 #[test]
 fn a_bar_relaxes_as_the_classical_one() {
     let (part, time, ramp) = (0.6, 500.0f64, 100.0f64);
-    let pull = |law: LawSpec| -> Vec<f64> {
+    // a step, and how it is made: an increment of statics, a large implicit step, or a small explicit one
+    let pull_by = |law: LawSpec, stepper: Stepper, step: f64| -> Vec<f64> {
         let mut spec = block(LatticeKind::Cubic, [16, 4, 4], 2, law);
         let end = |sign: f64| {
             Members::Region(Region::HalfSpace {
@@ -79,26 +80,48 @@ fn a_bar_relaxes_as_the_classical_one() {
             set: set.into(),
             kind: ConditionKind::Displacement([Some(e(u)), None, None]),
         };
+        let statics = matches!(stepper, Stepper::Statics(_));
         spec.conditions = vec![
             held("low", "0"),
             held("high", &format!("1e-4*min(t/{ramp}, 1)")),
-            ConditionSpec {
+        ];
+        if statics {
+            // two sides slide, which hinders no contraction
+            for (name, axis) in [("front", 1), ("bottom", 2)] {
+                let mut point = [0.0; 3];
+                point[axis] = -1.0;
+                let normal = std::array::from_fn(|a| if a == axis { 1.0 } else { 0.0 });
+                spec.sets.push(SetSpec {
+                    name: name.into(),
+                    members: Members::Region(Region::HalfSpace { point, normal }),
+                });
+                spec.conditions.push(ConditionSpec {
+                    set: name.into(),
+                    kind: ConditionKind::Displacement(std::array::from_fn(|a| {
+                        (a == axis).then(|| e("0"))
+                    })),
+                });
+            }
+        } else {
+            spec.conditions.push(ConditionSpec {
                 set: "all".into(),
                 kind: ConditionKind::Damping(e("0.1")),
-            },
-        ];
+            });
+        }
         spec.probes = vec![ProbeSpec {
             name: "pull".into(),
             set: "high".into(),
             measure: Measure::Reaction,
         }];
-        spec.schedule.time_step = TimeStep::Fixed(0.25);
+        spec.schedule.stepper = stepper;
+        spec.schedule.time_step = TimeStep::Fixed(step);
+        let every = (150.0 / step) as usize;
         let mut sim = build(&spec, Options::default()).unwrap();
         sim.start(true);
         let mut all = vec![];
-        for n in 1..=6000 {
+        for n in 1..=10 * every {
             sim.step().unwrap();
-            if n % 600 == 0 && n > 1200 {
+            if n % every == 0 && n > 2 * every {
                 all.push(sim.measure()[0]);
             }
         }
@@ -110,15 +133,63 @@ fn a_bar_relaxes_as_the_classical_one() {
     let at_last = 9.0 * k * g * a / (3.0 * k * b + g * a);
     let of_bar = (3.0 * k + g) / (3.0 * k * b + g * a);
     let spread = of_bar / ramp * (ramp / of_bar).exp_m1();
-    let found = pull(viscoelastic(&[[part, time]]));
-    for ((n, relaxed), solid) in found.iter().enumerate().zip(pull(lps())) {
-        let t = 150.0 * (n + 3) as f64;
-        let classical = (at_last + (at_once - at_last) * spread * (-t / of_bar).exp()) / at_once;
-        let ratio = relaxed / solid;
-        println!("t = {t}: {ratio:.4}, classical {classical:.4}");
+    let timed = Statics {
+        method: Method::Newton,
+        timed: true,
+        ..Statics::default()
+    };
+    for (stepper, step) in [
+        (Stepper::Verlet, 0.25),
+        (Stepper::Newmark(Newmark::default()), 10.0),
+        (Stepper::Statics(timed), 50.0),
+    ] {
+        let found = pull_by(viscoelastic(&[[part, time]]), stepper, step);
+        let solids = pull_by(lps(), stepper, step);
+        for ((n, relaxed), solid) in found.iter().enumerate().zip(solids) {
+            let t = 150.0 * (n + 3) as f64;
+            let classical =
+                (at_last + (at_once - at_last) * spread * (-t / of_bar).exp()) / at_once;
+            let ratio = relaxed / solid;
+            println!("t = {t}: {ratio:.4}, classical {classical:.4}");
+            assert!(
+                (ratio - classical).abs() < 0.02,
+                "{t}: {ratio} is not {classical} by {stepper:?}"
+            );
+        }
+    }
+}
+
+/// `σ_xy = σ_y/√3 (1 + C ln(γ̇/(√3 ε̇₀)))` of steady shear without hardening.
+#[test]
+fn an_implicit_step_tells_a_law_of_rates_its_length() {
+    let law = LawSpec::named(
+        "hypoelastic_plastic",
+        Parameters::numbers(&[
+            ("young", 1.0),
+            ("poisson", 0.3),
+            ("yield_stress", 1e-3),
+            ("rate_sensitivity", 0.1),
+            ("reference_rate", 1e-6),
+        ])
+        .with("rate_law", Parameter::Word("johnson_cook".into())),
+    );
+    let exact = 1e-3 / 3f64.sqrt() * 0.1f64.mul_add((1e3 / 3f64.sqrt()).ln(), 1.0);
+    for stepper in [
+        Stepper::Verlet,
+        Stepper::Newmark(Newmark::default()),
+        Stepper::Newmark(Newmark::hht(-0.1)),
+    ] {
+        let mut spec = block(LatticeKind::Cubic, [7; 3], 2, law.clone());
+        spec.influence = Influence::Constant;
+        spec.schedule.stepper = stepper;
+        let mut sim = led(&mut spec, ["1e-3*y*t", "0", "0"]);
+        for _ in 0..10 {
+            sim.step().unwrap();
+        }
+        let found = stress(sim.as_mut(), "xy");
         assert!(
-            (ratio - classical).abs() < 0.02,
-            "{t}: {ratio} is not {classical}"
+            (found / exact - 1.0).abs() < 2e-3,
+            "{found} is not {exact} by {stepper:?}"
         );
     }
 }

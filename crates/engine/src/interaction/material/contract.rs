@@ -32,7 +32,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         seen: Option<&mut PointEnergies>,
     ) -> Tally {
         let motion = sweep.motion();
-        let dt = motion.map_or(self.step, |m| m.steps[0]);
+        let dt = match motion {
+            Some(m) if self.step == 0.0 => m.steps[0],
+            _ => self.step,
+        };
         let room = self.take_room(u, dt);
         let breaks = motion.filter(|_| !self.critical.is_empty());
         // of a watched step: the bonds before any breaks
@@ -63,6 +66,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         }
         if motion.is_some() {
             total += self.remember(body, u, &room);
+            self.step = 0.0;
         }
         if motion.is_some() || self.before.is_none() {
             self.keep(u, &room);
@@ -293,6 +297,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         self.check(body, &[u]);
         assert_eq!(trace.len(), body.len, "a number for each slot");
         self.held.is_empty() || self.add_across(body, u, trace)
+    }
+
+    fn last(&mut self, step: f64) {
+        self.step = step;
     }
 
     fn wear(&mut self, body: &Body<D>, u: &Field<D>, cycles: &Cycles, left: f64) -> Option<f64> {

@@ -412,7 +412,12 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         (view.form, view.alive) = (form.seen(), alive.seen());
         let kernel = Tear {
             view,
-            still: &room.still,
+            // a step of equilibrium is at its end already, with its relaxed forces
+            still: if self.step > 0.0 {
+                &room.constants
+            } else {
+                &room.still
+            },
             body,
             torn: &self.torn,
             breaks,

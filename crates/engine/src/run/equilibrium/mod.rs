@@ -79,7 +79,7 @@ impl<const D: usize> Model<D> {
 
     /// Can this be brought into equilibrium at all?
     pub(super) fn check_statics(&self, options: Statics) -> Result<(), BuildError> {
-        self.knows_no_time("statics")?;
+        self.knows_its_time("statics", options.timed)?;
         let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
         for (memory, name) in named.map(|n| n.memory()) {
             if memory != Memory::Nothing && options.method == Method::Linear {
@@ -188,16 +188,26 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
-    /// No law answers to the time that an increment or an implicit step takes.
-    pub(super) fn knows_no_time(&self, path: &str) -> Result<(), BuildError> {
+    /// Is what laws ask of the time of an increment or an implicit step there?
+    pub(super) fn knows_its_time(&self, path: &str, timed: bool) -> Result<(), BuildError> {
         let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
         for (memory, name) in named.map(|n| n.memory()) {
-            if memory == Memory::Time {
-                return Err(BuildError::unsupported(
-                    path,
-                    format!("the law {name} answers to how fast it is deformed: it moves in time, by explicit steps"),
-                )
-                .help("write [run] with a duration, without integrator"));
+            match memory {
+                Memory::Time if !timed => {
+                    return Err(BuildError::unsupported(
+                        path,
+                        format!("the law {name} answers to how fast it is deformed, and t of these increments is the factor of the load, no time"),
+                    )
+                    .help("write duration, the time in which the load is applied; its increments are steps in time then"));
+                }
+                Memory::Shock => {
+                    return Err(BuildError::unsupported(
+                        path,
+                        format!("the law {name} answers to how fast it is deformed and bears no shear at rest: it moves in time, by explicit steps"),
+                    )
+                    .help("write [run] with a duration, without integrator"));
+                }
+                Memory::Nothing | Memory::Path | Memory::Time => {}
             }
         }
         Ok(())
@@ -296,10 +306,14 @@ impl<const D: usize> Model<D> {
             return self.break_next(state, u, f);
         }
         let origin = self.origin;
+        if state.options.timed {
+            self.interaction.last(self.dt);
+        }
         let result = match Self::follows_a_path(state.options) {
             true => self.settle_path(&mut state, [&u, &f, &external]),
             false => self.settle_increment(&mut state, [&u, &f, &external]),
         };
+        self.interaction.last(0.0);
         if let Err(error) = result {
             self.step -= 1;
             self.origin = origin;

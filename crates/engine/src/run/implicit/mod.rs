@@ -82,7 +82,7 @@ impl<const D: usize> Model<D> {
             .help("leave both out: 0.25 and 0.5 are of second order and lose no energy"));
         }
         let explicit = "integrator = \"verlet\" knows it; or leave it out";
-        self.knows_no_time("schedule.integrator")?;
+        self.knows_its_time("schedule.integrator", true)?;
         if breaks(spec) && spec.release == Release::AfterForce {
             return Err(BuildError::unsupported(
                 "materials[0].fracture",
@@ -170,6 +170,7 @@ impl<const D: usize> Model<D> {
             .collect();
         let pushed: Vec<_> = self.indenters.iter().map(|i| i.pushed().to_vec()).collect();
         self.touch_departs(Pressed::Now);
+        self.interaction.last(dt);
         let moved = self.move_implicitly(&mut state);
         let error = match (moved, self.fault) {
             (Err(error), _) => Some(self.not_solved(error)),
@@ -177,6 +178,7 @@ impl<const D: usize> Model<D> {
             (Ok(()), None) => None,
         };
         if let Some(error) = error {
+            self.interaction.last(0.0);
             (self.u, self.v) = (u, v);
             (state.acceleration, state.bodies) = (accelerations, bodies);
             state.equations.forget();

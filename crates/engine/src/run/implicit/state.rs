@@ -26,6 +26,7 @@ impl<const D: usize> Implicit<D> {
             control: Control::Load,
             solver: options.solver,
             tolerance: options.tolerance,
+            timed: true,
             cycles: None,
             most_iterations: options.most_iterations,
         });

@@ -14,7 +14,7 @@ use crate::error::{BuildError, RunError};
 use crate::fracture::precrack::Crack;
 use crate::message;
 use crate::quantity::{Dimension, place};
-use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Stepper};
+use crate::spec::{Control, CrackKind, Method, PreloadSpec, Spec, Statics, Stepper};
 use crate::statics::Solved;
 
 /// Distances (spacings) that are round-off.
@@ -75,7 +75,10 @@ impl<const D: usize> Model<D> {
         preload: &PreloadSpec,
         sets: &[(String, Vec<u32>)],
     ) -> Result<(), BuildError> {
-        let statics = preload.statics;
+        let statics = Statics {
+            timed: preload.duration.is_some(),
+            ..preload.statics
+        };
         if statics.control != Control::Load {
             return Err(BuildError::unsupported(
                 "preload.statics.control",

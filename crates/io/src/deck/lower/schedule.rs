@@ -118,6 +118,7 @@ fn statics(context: &Context, written: &At<Statics>, usual: Method) -> Result<Ru
                 solver: solver(written.solver),
                 tolerance,
                 most_iterations: written.iterations.as_ref().map_or(100_000, |n| n.value),
+                timed: written.duration.is_some(),
                 cycles: { written.cycles.as_ref() }
                     .map(|c| cycles(context, &c.value))
                     .transpose()?,

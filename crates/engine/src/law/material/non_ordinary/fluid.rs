@@ -201,7 +201,7 @@ impl Shelved for Fluid {
             source: "Meyers 1994; von Neumann & Richtmyer 1950; Landshoff 1955; Silling et al. 2007".into(),
             example: "{ bulk = \"138.6 GPa\", hugoniot_slope = 1.489, gruneisen = 1.96 }".into(),
             influence: Influence::Constant,
-            memory: Memory::Time,
+            memory: Memory::Shock,
             keys,
         }
     }

@@ -12,12 +12,12 @@ use crate::interaction::material::{
 };
 use crate::interaction::weight::BondWeight;
 use crate::interaction::{Interaction, Repulsion, Toughness};
-use crate::law::descriptor::{Given, Memory, Shelved};
+use crate::law::descriptor::{Given, Key, Memory, Shelved, Value};
 use crate::law::material::{Material, Numbers, Partner};
 use crate::law::micromodulus::{Moments, micromodulus};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
-use crate::quantity;
+use crate::quantity::{self, Dimension};
 use crate::spec::{
     Calibration, LawSpec, NamedLaw, Parameter, Parameters, Plane, PmbStiffness, Spec,
 };
@@ -223,10 +223,25 @@ pub(in crate::run::constitutive) fn chosen<const D: usize>(
 }
 
 impl Chosen {
-    /// What the law remembers, and its name.
+    /// What the law remembers, and its name. One whose materials were given a rate of reference answers to rates.
     pub fn memory(&self) -> (Memory, &str) {
         let of = &self.entry.descriptor;
-        (of.memory, &of.name)
+        let is_rate =
+            |k: &&Key| matches!(k.value, Value::Number(d, _) if d == Dimension::FREQUENCY);
+        let given = |k: &Key| {
+            let mut each = self.materials.iter();
+            each.any(|m| m.parameters.number(k.name).is_some())
+        };
+        match of.memory {
+            Memory::Path if of.keys.iter().filter(is_rate).any(given) => (Memory::Time, &of.name),
+            memory => (memory, &of.name),
+        }
+    }
+
+    /// Do its materials soften by a temperature?
+    pub fn melts(&self) -> bool {
+        let melting = |m: &Made| m.parameters.number("melting_temperature").is_some();
+        self.materials.iter().any(melting)
     }
 
     /// Are constants of any of its materials those of a place?
