@@ -89,6 +89,13 @@ impl Findings<'_> {
         })
     }
 
+    /// Ends of the body with its cells, no round-off where one is at 0.
+    fn extent(&self, a: usize) -> [f64; 2] {
+        let whole = 1e-9 * self.long(a);
+        [self.low[a] - self.half[a], self.high[a] + self.half[a]]
+            .map(|x| if x.abs() < whole { 0.0 } else { x })
+    }
+
     /// Length of the body with its cells.
     fn long(&self, a: usize) -> f64 {
         self.high[a] - self.low[a] + 2.0 * self.half[a]
@@ -194,7 +201,7 @@ fn report(
 ) -> Result<(), Failure> {
     let reference = sim.vectors("reference");
     let mut found = find(
-        &subject,
+        subject,
         sim.info().clone(),
         sim.families(),
         &reference,

@@ -204,7 +204,7 @@ fn faces_of_every_lattice_carry_the_whole_traction() {
         (LatticeKind::Cubic, 30.0, &[1.0, 2.0]),
         (LatticeKind::Bcc, 30.0, &[0.4, 0.9, 2.0]),
         (LatticeKind::Fcc, 30.0, &[0.4, 0.9, 2.0]),
-        (LatticeKind::Diamond, 30.0, &[0.2, 0.4, 1.0]),
+        (LatticeKind::Diamond, 30.0, &[0.2, 0.45, 1.0]),
     ] {
         for depth in depths {
             let mut spec = topped(kind, *depth);
@@ -309,7 +309,8 @@ fn strip(period: f64) -> Spec {
 #[test]
 fn periods_are_as_long_as_the_body() {
     silent(&strip(20.0));
-    silent(&strip(21.5));
+    // bonds reach across what is shorter than the horizon, which is said of any gap
+    warns(&strip(21.5), "bonds reach across a gap");
     for period in [15.0, 19.0] {
         refused(&strip(period), "the body lies in its own image");
     }
@@ -381,7 +382,7 @@ fn a_slot_that_bonds_bridge() {
     silent(&without(block([8.0, 5.0], [21.0, 11.0])));
     silent(&without(Region::Sphere {
         center: [10.0, 5.0, 0.0],
-        radius: 3.4,
+        radius: 3.2,
     }));
 }
 

@@ -39,7 +39,7 @@ pub fn write(found: &Findings) -> String {
         "horizon": info.horizon,
         "low": found.low[..info.dimension],
         "high": found.high[..info.dimension],
-        "extent": (0..info.dimension).map(|a| [found.low[a] - found.half[a], found.high[a] + found.half[a]]).collect::<Vec<_>>(),
+        "extent": (0..info.dimension).map(|a| found.extent(a)).collect::<Vec<_>>(),
         "loads": info.loads.iter().map(|l| json!({
             "what": l.what, "set": l.set, "area": l.area, "force": l.force.map(|f| f[..info.dimension].to_vec()), "power": l.power,
         })).collect::<Vec<_>>(),

@@ -173,7 +173,7 @@ pub struct Body {
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub spacing: Option<Number>,
     /// Position of the first site of a cell. When left out cells fill the region, points in their middles (with surface = "exact" the outer
-    /// points lie on its faces); 0 of atoms and with cells.
+    /// points lie on its faces); 0 of atoms, with cells, and of lattices with several sites in a cell where the region is no whole number of layers.
     #[schemars(extend("dimension" = Dim::LENGTH.name()))]
     pub origin: Option<Vector>,
     /// Where there are points: sites of the lattice inside it.

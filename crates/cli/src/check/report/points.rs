@@ -13,12 +13,8 @@ pub(super) fn points(found: &Findings) -> String {
     let mut out = String::from("Points and bonds\n");
     row(&mut out, "points", whole(info.points));
     let span = |a: usize| {
-        format!(
-            "{} {} to {}",
-            AXES[a],
-            units.show(found.low[a] - found.half[a], Dim::LENGTH),
-            units.show(found.high[a] + found.half[a], Dim::LENGTH)
-        )
+        let [low, high] = found.extent(a).map(|x| units.show(x, Dim::LENGTH));
+        format!("{} {low} to {high}", AXES[a])
     };
     let spans: Vec<String> = (0..d).map(span).collect();
     row(&mut out, "extent", spans.join(", "));

@@ -265,8 +265,18 @@ impl Filling {
         }
         let of = |ends| Lattice::filling(kind, spacing, [low, high], ends);
         let (outer, whole) = (of(ends), of(Ends::Cells));
+        // sites of a cell that no layers fill stand where they stood: at 0, as those of atoms
+        let filled = |a: usize| {
+            let layer = spacing * kind.edges()[a] / f64::from(kind.planes(a));
+            let layers = (high[a] - low[a]) / layer;
+            kind.basis().len() == 1 || (layers - layers.round()).abs() < 1e-6
+        };
         // a period has no ends
-        std::array::from_fn(|a| if self.periodic[a] { whole[a] } else { outer[a] })
+        std::array::from_fn(|a| match self.periodic[a] {
+            true => whole[a],
+            false if filled(a) => outer[a],
+            false => 0.0,
+        })
     }
 }
 
