@@ -384,7 +384,7 @@ fn the_ledger_of_statics_closes_through_breaks() {
 
 /// The same where bonds break by the work done on them: what they pull up to the break is work, too.
 #[test]
-fn the_ledger_of_statics_closes_through_breaks_of_every_criterion() {
+fn the_ledger_of_statics_closes_through_breaks_by_stretch_and_by_work() {
     let of = |criterion, increments: u64| {
         let law = LawSpec::Lps(Moduli {
             young: 2.0,

@@ -106,7 +106,7 @@ fn linear_bodies_are_derivatives_of_forces() {
 }
 
 /// The operator of conjugate gradients and of energies of linear statics is a sweep at 1e-60 spacings ([`peridyne::statics::Swept`]): of any
-/// law, torn askew and on a cloud that is no lattice, it is the tangent at rest to the last digits, or a linear solution would be another one.
+/// law, torn askew, as a stencil and as a list, it is the tangent at rest to the last digits, or a linear solution would be another one.
 #[test]
 fn sweeps_at_tiny_displacements_are_the_tangent_at_rest_of_torn_bodies() {
     fn swept<const D: usize>(name: &str, spec: &Spec) {

@@ -193,3 +193,74 @@ fn an_implicit_step_tells_a_law_of_rates_its_length() {
         );
     }
 }
+
+/// Creep of a bar under a pull that grows for a time t₁ and stays, of the bulk modulus K and one branch of the shear modulus: strains follow
+/// `J(t) = 1/9K + (1 − λ e^(−(1 − λ)t/τ))/(3G(1 − λ))` (the elastic solution in Laplace space). Off by the square of the increment.
+#[test]
+fn a_bar_creeps_in_equilibrium() {
+    let (part, time, ramp, pull) = (0.6, 3.0f64, 2.0f64, 1e-7);
+    let (k, g) = (1.0 / 1.2, 1.0 / 2.6);
+    let rate = (1.0 - part) / time;
+    let lasting = 1.0 / (9.0 * k) + 1.0 / (3.0 * g * (1.0 - part));
+    let exact = |t: f64| {
+        let gone = ((-rate * (t - ramp)).exp() - (-rate * t).exp()) / (rate * ramp);
+        pull * (lasting - part / (3.0 * g * (1.0 - part)) * gone)
+    };
+    let off = |parts: u32| {
+        let law = viscoelastic(&[[part, time]]);
+        let mut spec = block(LatticeKind::Chain, [61, 1, 1], 2, law);
+        let of = |name: &str, members: &str| SetSpec {
+            name: name.into(),
+            members: Members::Where(e(members)),
+        };
+        spec.sets = vec![
+            of("low", "x < -28.5"),
+            of("high", "x > 28.5"),
+            of("middle", "abs(x) < 0.5"),
+        ];
+        // two points at either end
+        let pulled = |set: &str, sign: f64| ConditionSpec {
+            set: set.into(),
+            kind: ConditionKind::BodyForce([
+                Some(e(&format!("{:e}*min(t/{ramp}, 1)", 0.5 * sign * pull))),
+                None,
+                None,
+            ]),
+        };
+        spec.conditions = vec![
+            pulled("low", -1.0),
+            pulled("high", 1.0),
+            ConditionSpec {
+                set: "middle".into(),
+                kind: ConditionKind::Displacement([Some(e("0")), None, None]),
+            },
+        ];
+        let step = 1.0 / f64::from(parts);
+        spec.schedule.time_step = TimeStep::Fixed(step);
+        spec.schedule.stepper = Stepper::Statics(Statics {
+            method: Method::Newton,
+            timed: true,
+            tolerance: 1e-12,
+            ..Statics::default()
+        });
+        let mut sim = build(&spec, Options::default()).unwrap();
+        sim.start(true);
+        let mut worst = 0.0f64;
+        for n in 1..=12 * parts {
+            sim.step().unwrap();
+            let t = f64::from(n) * step;
+            if t <= ramp {
+                continue;
+            }
+            let snapshot = sim.snapshot(&[], false);
+            let u = snapshot.displacement();
+            let found = (u[33][0] - u[27][0]) / 6.0;
+            worst = worst.max((found / exact(t) - 1.0).abs());
+        }
+        worst
+    };
+    let errors = [1, 2, 4].map(off);
+    assert!(errors[2] < 2e-3, "{errors:?}");
+    let falls = [errors[0] / errors[1], errors[1] / errors[2]];
+    assert!(falls.iter().all(|f| (3.0..6.0).contains(f)), "{errors:?}");
+}
