@@ -226,7 +226,13 @@ fn bodies_a_spacing_apart_are_not_bonded() {
     let gap = sim.info().gaps[0];
     assert_eq!((gap.bodies, gap.distance), ([0, 1], 2.0));
     assert!((gap.contact - 1.35).abs() < 1e-12);
-    assert!(sim.info().warnings.is_empty(), "{:?}", sim.info().warnings);
+    // faces of both regions go through points, which is said of each and is all that is said
+    let told = |w: &peridyne::quantity::Message| w.to_string().contains("than its region");
+    assert!(
+        sim.info().warnings.iter().all(told),
+        "{:?}",
+        sim.info().warnings
+    );
     // lift the upper one: nothing pulls
     let mut sim = build(&several(2.0), Options::default()).unwrap();
     let lift: Vec<_> = sim
@@ -241,7 +247,7 @@ fn bodies_a_spacing_apart_are_not_bonded() {
     ] {
         let sim = build(&several(gap), Options::default()).unwrap();
         assert!(
-            sim.info().warnings[0].contains(what),
+            sim.info().warnings.iter().any(|w| w.contains(what)),
             "{:?}",
             sim.info().warnings
         );

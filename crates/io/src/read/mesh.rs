@@ -5,7 +5,7 @@
 //! outer side in it; if there are none, those with a whole side, else with two corners, else with one corner in it.
 //!
 //! Sets that stand for a face know its area at each of their points: groups of surfaces (in 2-D of lines), sets of sides, and sets of
-//! nodes that hold whole outer sides of all their cells.
+//! nodes that hold whole outer sides of all their cells, and no whole cell.
 
 use super::cell::{Cell, Kind, Nodes, measure};
 use super::lines::Lines;
@@ -178,16 +178,6 @@ impl Mesh {
                 yes.then(|| count - 1)
             })
             .collect();
-        for (name, cells) in &self.cell_sets {
-            let mut ids = BTreeSet::new();
-            for c in cells {
-                match place[*c] {
-                    Some(id) => ids.extend([id]),
-                    None => ids.extend(around.with_all(&self.cells[*c].nodes)),
-                }
-            }
-            add(cloud, name, ids, Areas::default(), notes);
-        }
         for (name, sides) in &self.side_sets {
             let mut ids = BTreeSet::new();
             let mut faces = Areas::default();
@@ -206,6 +196,16 @@ impl Mesh {
                 ids.extend(owners);
             }
             add(cloud, name, ids, faces, notes);
+        }
+        for (name, cells) in &self.cell_sets {
+            let mut ids = BTreeSet::new();
+            for c in cells {
+                match place[*c] {
+                    Some(id) => ids.extend([id]),
+                    None => ids.extend(around.with_all(&self.cells[*c].nodes)),
+                }
+            }
+            add(cloud, name, ids, Areas::default(), notes);
         }
     }
 
@@ -363,8 +363,12 @@ impl<'a> Around<'a> {
         let mut found: BTreeSet<u32> = near.iter().copied().filter(whole).collect();
         let mut outer: Vec<_> = owners.values().filter(|o| o.1.len() == 1).collect();
         outer.sort();
+        // whole cells are a part of the body, not a face of it
+        let part = !found.is_empty();
         for (corners, of) in outer {
-            faces.add(places, corners, of);
+            if !part {
+                faces.add(places, corners, of);
+            }
             found.extend(of);
         }
         if found.is_empty() {

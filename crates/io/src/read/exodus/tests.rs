@@ -133,13 +133,24 @@ fn blocks_are_marks_and_everything_named_is_a_set() {
             ("both", &[0, 1]),
         ];
         assert_eq!(sets, wanted);
-        // the wedge's second side is the slanted one; one side of the first cube has all its nodes in a set
+        // the wedge's second side lies across x; one side of the first cube has all its nodes in a set
         let faces: Vec<(&str, &[f64])> = { points.cloud.faces.iter() }
             .map(|(n, a)| (&**n, &**a))
             .collect();
         assert_eq!(faces.len(), 2, "{faces:?}");
         assert_eq!(faces[0], ("left", &[1.0][..]));
-        assert!(faces[1].0 == "surface_4" && (faces[1].1[0] - 2f64.sqrt()).abs() < 1e-15);
+        assert_eq!(faces[1], ("surface_4", &[1.0][..]));
+    }
+    // its third is the slanted one, and its ends are triangles
+    for (side, wanted) in [(3, 2f64.sqrt()), (4, 0.5), (5, 0.5)] {
+        let mut variables = cubes();
+        *at(&mut variables, "side_ss1") = Given::Ints(vec![side]);
+        let points = parse_exodus(&bytes(&variables), "f").unwrap();
+        let (name, areas) = &points.cloud.faces[1];
+        assert!(
+            name == "surface_4" && (areas[0] - wanted).abs() < 1e-15,
+            "{areas:?}"
+        );
     }
 }
 
