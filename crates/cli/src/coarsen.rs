@@ -11,7 +11,7 @@ use crate::run::with_threads;
 use levels::levels;
 use peridyne::run::{Options, Simulation, build};
 use peridyne::space::Point;
-use peridyne::spec::{AnyLinearBody, ConditionKind, LinearBody, Stepper, TimeStep};
+use peridyne::spec::{AnyLinearBody, ConditionKind, ConditionSpec, LinearBody, Stepper, TimeStep};
 use peridyne_io::deck::upscaled::Rewritten;
 use peridyne_io::deck::{Deck, rounded};
 use peridyne_theory::coarsen::Report;
@@ -101,6 +101,13 @@ fn all(arguments: &CoarsenArguments, deck: &Deck) -> Result<(), Failure> {
         })?),
     };
     let way = Way::of(arguments)?;
+    let traction = |c: &&ConditionSpec| matches!(c.kind, ConditionKind::Traction { .. });
+    if let (false, Some(c)) = (way.condensed, deck.spec.conditions.iter().find(traction)) {
+        return Err(Failure::input(format!(
+            "--loads silling: a body force density acts on retained points, and the traction on `{}` acts on a face, whose points are removed: write body_force in its place, or leave --loads out",
+            c.set
+        )));
+    }
     let ids = |act: fn(&ConditionKind) -> bool| -> Result<Vec<bool>, Failure> {
         let mut marked = vec![false; sim.info().points as usize];
         for c in deck.spec.conditions.iter().filter(|c| act(&c.kind)) {

@@ -116,10 +116,18 @@ fn balls_come_near_and_the_conventions_differ() {
     let (code, told) = case.coarsen(&["--every", "2", "--run"]);
     assert_eq!(code, Some(0), "{told}");
     assert!(errors(&told)[0] < 0.02, "{told}");
-    // in the paper nothing acts on removed points: a quarter of the points, a quarter of the forces
-    let (code, told) = case.coarsen(&[
+    // in the paper nothing acts on removed points: a quarter of the points, a quarter of the forces, and no face to pull at
+    let silling = [
         "--every", "2", "--scheme", "schur", "--loads", "silling", "--run",
-    ]);
+    ];
+    let (code, told) = case.coarsen(&silling);
+    assert_eq!(code, Some(2), "{told}");
+    assert!(told.contains("write body_force in its place"), "{told}");
+    let pulled = "traction = { y = -1e-3 }";
+    let text = plate(LPS, "[statics]");
+    assert!(text.contains(pulled));
+    let case = Case::new(&text.replace(pulled, "body_force = { y = -5e-4 }"));
+    let (code, told) = case.coarsen(&silling);
     assert_eq!(code, Some(0), "{told}");
     assert!(errors(&told)[0] > 0.3, "{told}");
     assert!(told.contains("loads as in the paper"), "{told}");
