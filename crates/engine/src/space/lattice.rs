@@ -190,7 +190,7 @@ mod tests {
 
     /// Volume of the cells of a filled block over that of the block.
     fn filled(kind: LatticeKind, spacing: f64, high: [f64; 3]) -> f64 {
-        let low = [0.3, -0.2, 0.1];
+        let low = [0.3, -0.2, -0.1];
         let region = Region::Block { low, high };
         let origin = Lattice::filling(kind, spacing, [low, high], Ends::Cells);
         let lattice = Lattice {
@@ -208,7 +208,7 @@ mod tests {
     fn whole_cells_fill_a_block() {
         for kind in LatticeKind::ALL {
             let e = kind.edges().map(|e| 0.1 * e);
-            let high = [0.3 + 7.0 * e[0], -0.2 + 5.0 * e[1], 0.1 + 4.0 * e[2]];
+            let high = [0.3 + 7.0 * e[0], -0.2 + 5.0 * e[1], -0.1 + 4.0 * e[2]];
             let part = filled(kind, 0.1, high);
             assert!((part - 1.0).abs() < 1e-12, "{kind:?}: {part}");
         }

@@ -9,6 +9,10 @@ const SCRIPT: &str = include_str!("in.boxes");
 const PRINTED: &str = include_str!("lammps.txt");
 /// Columns of pressures: at rest one of them is far below the others, which are its measure.
 const PRESSURES: std::ops::Range<usize> = 4..7;
+/// The row at the start of a run with `pre no` after atoms were displaced: LAMMPS prints the virial of before, here it is that of now.
+const DISPLACED: usize = 4;
+/// Columns that are made of the virial's trace.
+const OF_VIRIAL: [usize; 4] = [4, 5, 6, 8];
 
 fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<Vec<f64>> {
     lines
@@ -43,12 +47,15 @@ fn shrink_wrapped_boxes_are_those_of_the_last_rebuild() {
         }
         let ours = rows(paper.0.iter().map(String::as_str));
         assert_eq!(ours.len(), theirs.len(), "{units}: {:?}", paper.0);
-        for (ours, theirs) in ours.iter().zip(&theirs) {
+        for (row, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
             assert_eq!(ours.len(), theirs.len());
             let pressure = theirs
                 .get(PRESSURES)
                 .map_or(0.0, |p| p.iter().fold(0.0f64, |m, x| m.max(x.abs())));
             for (k, (a, b)) in ours.iter().zip(theirs).enumerate() {
+                if row == DISPLACED && OF_VIRIAL.contains(&k) {
+                    continue;
+                }
                 let scale = match PRESSURES.contains(&k) {
                     true => pressure,
                     false => b.abs(),

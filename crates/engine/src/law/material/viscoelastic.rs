@@ -9,7 +9,8 @@
 //! `W = ½κθ² + (α/2) Σ ω ((1 − Σλ) e² + Σ_b λ_b (e − q_b)²)`, `α = β/m`, `θ = (n/m) Σ ω |ξ| e`.
 //!
 //! The deviator that relaxes is that of the three-dimensional solid: in one and two dimensions W has what is across, too, as
-//! [`section`] has it, where a point remembers a back strain `ż_b = (d − z_b)/τ_b` of each branch, exact for a d that is linear over the step.
+//! [`section`] has it, where a point remembers a back strain `ż_b = (d − z_b)/τ_b` of each branch, exact for a d that is linear over the step. It
+//! begins at the d of the bonds that are whole now: what breaks changes d at once.
 
 use super::section::{self, Section};
 use super::{Along, Bond, Columns, End, Kin, Material, Site};
@@ -43,11 +44,12 @@ pub struct Viscoelastic<const B: usize = BRANCHES> {
 const BULK: usize = 0;
 const BETA: usize = 1;
 
-/// Numbers of a point: `nκθ/m` with what is across, β/m, θ/n; and of each branch the part along |ξ| of what its back extension would grow by.
+/// Numbers of a point: `nκθ/m` with what is across, β/m, θ/n and that at the end of the last step; and of each branch the part along |ξ| of what its back extension would grow by.
 const P: usize = 0;
 const ALPHA: usize = 1;
 const DILATED: usize = 2;
-type Point<N, const B: usize> = ([N; 3], [N; B]);
+const BEFORE: usize = 3;
+type Point<N, const B: usize> = ([N; 4], [N; B]);
 
 /// A branch: part λ; what a back extension approaches over the step, `1 − e^(−Δt/τ)`; and its growth per growth of e,
 /// `1 − (1 − e^(−Δt/τ)) τ/Δt`.
@@ -55,7 +57,7 @@ type Branch<N> = [N; 3];
 type Constants<N, const B: usize> = (([N; 2], Section<N>), [Branch<N>; B]);
 /// e at the end of the last step, back extensions.
 type Memory<N, const B: usize> = (N, [N; B]);
-/// d at the end of the last step, back strains z.
+/// Strain of the section at the end of the last step, back strains z.
 type Past<N, const B: usize> = (N, [N; B]);
 type SiteOf<'a, N, const B: usize> = Site<'a, N, Constants<N, B>, N, Past<N, B>>;
 type EndOf<'a, N, const B: usize> = End<'a, Constants<N, B>, Point<N, B>, Memory<N, B>>;
@@ -105,18 +107,25 @@ impl<const B: usize> Viscoelastic<B> {
 /// What is across a body at the end of a step.
 struct Across<N, const B: usize> {
     dilatation: N,
-    /// d and z_b.
-    now: Past<N, B>,
+    /// d at both ends of the step, and z_b.
+    ends: [N; 2],
+    back: [N; B],
     /// `Σ λ_b z_b`, `Σ λ_b z_b²`.
     gone: (N, N),
 }
 
 impl<N: Number, const B: usize> Across<N, B> {
     #[inline(always)]
-    fn new<const D: usize>(site: &SiteOf<N, B>, dilatation: N) -> Self {
+    fn new<const D: usize>(site: &SiteOf<N, B>, point: &[N; 4]) -> Self {
         let ((_, section), branches) = site.constants;
-        let (before, back) = *site.past;
+        let (thin, back) = *site.past;
+        let n = N::constant(D as f64);
+        let [dilatation, past] = [n * point[DILATED], n * point[BEFORE]];
         let zero = N::constant(0.0);
+        let mut before = section::deviator::<N, D>(section, past, thin);
+        for b in 0..B {
+            before = (section::gives(section) * branches[b][0]).fma(back[b], before);
+        }
         // of a d that ends at 0; and how Z grows with it
         let (mut rest, mut grows) = (zero, zero);
         let mut now = back;
@@ -138,7 +147,8 @@ impl<N: Number, const B: usize> Across<N, B> {
         }
         Across {
             dilatation,
-            now: (d, now),
+            ends: [before, d],
+            back: now,
             gone: (gone, squares),
         }
     }
@@ -146,7 +156,8 @@ impl<N: Number, const B: usize> Across<N, B> {
     #[inline(always)]
     fn dissipated<const D: usize>(&self, site: &SiteOf<N, B>) -> N {
         let ((_, section), branches) = site.constants;
-        let ((before, old), (now, new)) = (*site.past, self.now);
+        let (old, new) = (site.past.1, self.back);
+        let [before, now] = self.ends;
         let mut sum = N::constant(0.0);
         for b in 0..B {
             let both = (before - old[b]) + (now - new[b]);
@@ -170,8 +181,8 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     type Constants<N: Number> = Constants<N, B>;
     /// 1/m
     type Form<N: Number> = N;
-    /// `Σ ω|ξ|e`, `Σ ω|ξ|²`; `Σ ω|ξ|` of what back extensions would grow by.
-    type Sum<N: Number> = ([N; 2], [N; B]);
+    /// `Σ ω|ξ|e`, `Σ ω|ξ|²`, and the first with the e of the last step; `Σ ω|ξ|` of what back extensions would grow by.
+    type Sum<N: Number> = ([N; 3], [N; B]);
     type Point<N: Number> = Point<N, B>;
     type Past<N: Number> = Past<N, B>;
     type Memory<N: Number> = Memory<N, B>;
@@ -202,8 +213,8 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
                 ..Declaration::of_points("", Shape::Scalar, Dimension::NUMBER, doc)
             };
             past.push(scalar(
-                "deviator_across".into(),
-                "Deviatoric strain d across a line or a plane at the end of the last step.",
+                "strain_across".into(),
+                "Elastic strain across a plane at the end of the last step, the reverse of what temperature or swelling would give it.",
             ));
             past.extend((1..=B).map(|b| {
                 scalar(
@@ -238,13 +249,18 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     }
 
     #[inline(always)]
-    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &EndOf<N, B>) -> ([N; 2], [N; B]) {
+    fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, end: &EndOf<N, B>) -> ([N; 3], [N; B]) {
         let weight = bond.omega * bond.length;
         let mut growth = Self::growth(bond, end);
         for b in 0..B {
             growth[b] = weight * growth[b];
         }
-        ([weight * bond.extension(), weight * bond.length], growth)
+        let sums = [
+            weight * bond.extension(),
+            weight * bond.length,
+            weight * end.memory.0,
+        ];
+        (sums, growth)
     }
 
     #[inline(always)]
@@ -252,7 +268,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         &self,
         _: usize,
         site: &SiteOf<N, B>,
-        ([dilated, whole], growth): ([N; 2], [N; B]),
+        ([dilated, whole, before], growth): ([N; 3], [N; B]),
         (point, along): &mut Point<N, B>,
     ) {
         let ((c, section), per_m) = (&site.constants.0, *site.form);
@@ -260,7 +276,8 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         point[P] = c[BULK] * per_m * point[DILATED];
         if D < 3 {
             let n = N::constant(D as f64);
-            let across = Across::new::<D>(site, n * point[DILATED]);
+            point[BEFORE] = per_m * before;
+            let across = Across::new::<D>(site, point);
             let pressure = section::pressure::<N, D>(section, across.gone.0, site.around.section);
             point[P] = (n * per_m).fma(pressure, point[P]);
         }
@@ -303,7 +320,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
     fn point_energy<N: Number>(
         &self,
         site: &SiteOf<N, B>,
-        _: ([N; 2], [N; B]),
+        _: ([N; 3], [N; B]),
         (point, _): &Point<N, B>,
     ) -> N {
         let (c, section) = &site.constants.0;
@@ -311,7 +328,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         if D == 3 {
             return volume;
         }
-        let across = Across::new::<D>(site, N::constant(D as f64) * point[DILATED]);
+        let across = Across::new::<D>(site, point);
         let strain = site.around.section;
         let stored = section::energy::<N, D>(section, across.dilatation, across.gone, strain);
         volume + stored + across.dissipated::<D>(site)
@@ -319,7 +336,7 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
 
     #[inline(always)]
     fn across<N: Number>(&self, site: &SiteOf<N, B>, (point, _): &Point<N, B>) -> N {
-        let across = Across::new::<D>(site, N::constant(D as f64) * point[DILATED]);
+        let across = Across::new::<D>(site, point);
         let (_, section) = &site.constants.0;
         section::stress(
             section,
@@ -351,8 +368,8 @@ impl<const D: usize, const B: usize> Material<D> for Viscoelastic<B> {
         if D == 3 {
             return N::constant(0.0);
         }
-        let across = Across::new::<D>(site, N::constant(D as f64) * point[DILATED]);
-        *past = across.now;
+        let across = Across::new::<D>(site, point);
+        *past = (site.around.section, across.back);
         across.dissipated::<D>(site)
     }
 }

@@ -117,7 +117,8 @@ pub struct Step<N, const D: usize> {
     /// Δε with the mean of both ends.
     pub mean: Matrix<N, D>,
     pub across: Across<N>,
-    /// J at both ends.
+    /// J − 1 and J at both ends.
+    pub dilations: [N; 2],
     pub volumes: [N; 2],
 }
 
@@ -144,16 +145,21 @@ impl<N: Number, const D: usize> Step<N, D> {
             Increment::End => increment(&change, &stretch),
         };
         let one = N::constant(1.0);
+        let mut dilations = [tensor::dilation(before), tensor::dilation(&stretch)];
+        if D == 2 {
+            dilations = [
+                thin.fma(dilations[0], dilations[0]) + thin,
+                thick.fma(dilations[1], dilations[1]) + thick,
+            ];
+        }
         Step {
             turn,
             stretch,
             strain,
             mean,
             across: Across::new(rule, thin, thick),
-            volumes: [
-                (one + tensor::dilation(before)) * (one + thin),
-                (one + tensor::dilation(&stretch)) * (one + thick),
-            ],
+            dilations,
+            volumes: [one + dilations[0], one + dilations[1]],
         }
     }
 

@@ -200,16 +200,12 @@ impl HypoelasticPlastic {
     fn pressed<N: Number, const D: usize>(
         &self,
         c: &equation_of_state::Constants<N>,
-        ([before, s0], memory): &Past<N, D>,
+        ([_, s0], memory): &Past<N, D>,
         step: &Step<N, D>,
         deviator: &Matrix<N, D>,
     ) -> (N, N) {
         let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
-        let volumes = step.volumes;
-        let ends = match D {
-            2 => [volumes[0] - one, volumes[1] - one],
-            _ => [tensor::dilation(before), tensor::dilation(&step.stretch)],
-        };
+        let (ends, volumes) = (step.dilations, step.volumes);
         let q = self.state.viscosity(c, ends, memory[WORK], memory[SHOCK]);
         let state = self.state.at(c, ends[1]);
         // E′ = E + the work of all but the new mean stress m, and ½ J′ m tr Δε of that: linear in m = −a − q − b E′
