@@ -311,7 +311,13 @@ fn shelf() -> Vec<(LawSpec, f64)> {
             1e-9,
         ),
         (ply.clone(), 1e-9),
-        (law("fluid", &[("bulk", 1.0)]), 1e-9),
+        (
+            law(
+                "fluid",
+                &[("bulk", 1.0), ("hugoniot_slope", 1.5), ("gruneisen", 2.0)],
+            ),
+            1e-9,
+        ),
     ]
 }
 
@@ -371,8 +377,10 @@ fn a_slice_cools_as_the_solid_does() {
     heat.initial = vec![("all".into(), text("300"))];
     let u = ["1e-5*x*min(t, 1)", "1e-5*y*min(t, 1)"];
     for (law, apart) in shelf() {
-        let isotropic = !format!("{law:?}").contains("anisotropic");
-        if !isotropic {
+        // the stress across neither follows from that in the plane: they are refused
+        let told = format!("{law:?}");
+        let flows = told.contains("hypoelastic_plastic") && told.contains("bond");
+        if told.contains("anisotropic") || flows {
             continue;
         }
         let of = |d: usize| strained(d, law.clone(), u, heat.clone())[4] - 300.0;

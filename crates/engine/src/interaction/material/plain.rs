@@ -150,6 +150,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
             return known;
         }
+        // bonds that remember tell their point at the end of a step, and these displacements are those of no end
+        if M::GATHERS {
+            return false;
+        }
         let room = self.take_room(u, self.step);
         self.settle(body, u, &room);
         let view = self.view(u, &room);

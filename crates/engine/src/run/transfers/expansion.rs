@@ -145,7 +145,7 @@ impl<const D: usize> Model<D> {
         if D == 2 && self.expands() && !self.interaction.add_stress_across(body, u, &mut trace) {
             return Err(BuildError::unsupported(
                 transfers[n].quantity.name(),
-                "deformation heats by the change of the whole mean stress, and the stress across plane strain does not follow from that in the plane: this law is anisotropic",
+                "deformation heats by the change of the whole mean stress, and the stress across plane strain does not follow from that in the plane: this law is anisotropic, or flows bond by bond",
             )
             .help("leave deformation out, or take three dimensions"));
         }
