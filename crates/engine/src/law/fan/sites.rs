@@ -372,7 +372,7 @@ mod tests {
         };
         let mut sites = tersoff();
         assert_eq!(
-            of(&sites, &[[2.0, 0.0, 0.0], [0.0, 2.9, 0.0]]),
+            of(&sites, &[[2.4, 0.0, 0.0], [0.0, 2.5, 0.0]]),
             [[0, 1, 2], [0, 2, 1]]
         );
         // as if another kind of atom reached farther
