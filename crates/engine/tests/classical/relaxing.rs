@@ -61,7 +61,7 @@ fn shear_relaxes_by_its_modulus() {
 #[test]
 fn a_bar_relaxes_as_the_classical_one() {
     let (part, time, ramp) = (0.6, 500.0f64, 100.0f64);
-    // a step, and how it is made: a large implicit one, or a small explicit one
+    // a step, and how it is made: an increment of statics, a large implicit step, or a small explicit one
     let pull_by = |law: LawSpec, stepper: Stepper, step: f64| -> Vec<f64> {
         let mut spec = block(LatticeKind::Cubic, [16, 4, 4], 2, law);
         let end = |sign: f64| {
@@ -80,14 +80,34 @@ fn a_bar_relaxes_as_the_classical_one() {
             set: set.into(),
             kind: ConditionKind::Displacement([Some(e(u)), None, None]),
         };
+        let statics = matches!(stepper, Stepper::Statics(_));
         spec.conditions = vec![
             held("low", "0"),
             held("high", &format!("1e-4*min(t/{ramp}, 1)")),
         ];
-        spec.conditions.push(ConditionSpec {
-            set: "all".into(),
-            kind: ConditionKind::Damping(e("0.1")),
-        });
+        if statics {
+            // two sides slide, which hinders no contraction
+            for (name, axis) in [("front", 1), ("bottom", 2)] {
+                let mut point = [0.0; 3];
+                point[axis] = -1.0;
+                let normal = std::array::from_fn(|a| if a == axis { 1.0 } else { 0.0 });
+                spec.sets.push(SetSpec {
+                    name: name.into(),
+                    members: Members::Region(Region::HalfSpace { point, normal }),
+                });
+                spec.conditions.push(ConditionSpec {
+                    set: name.into(),
+                    kind: ConditionKind::Displacement(std::array::from_fn(|a| {
+                        (a == axis).then(|| e("0"))
+                    })),
+                });
+            }
+        } else {
+            spec.conditions.push(ConditionSpec {
+                set: "all".into(),
+                kind: ConditionKind::Damping(e("0.1")),
+            });
+        }
         spec.probes = vec![ProbeSpec {
             name: "pull".into(),
             set: "high".into(),
@@ -113,9 +133,16 @@ fn a_bar_relaxes_as_the_classical_one() {
     let at_last = 9.0 * k * g * a / (3.0 * k * b + g * a);
     let of_bar = (3.0 * k + g) / (3.0 * k * b + g * a);
     let spread = of_bar / ramp * (ramp / of_bar).exp_m1();
+    let timed = Statics {
+        method: Method::Newton,
+        timed: true,
+        ..Statics::default()
+    };
+    let mut explicit = vec![];
     for (stepper, step) in [
         (Stepper::Verlet, 0.25),
         (Stepper::Newmark(Newmark::default()), 10.0),
+        (Stepper::Statics(timed), 50.0),
     ] {
         let found = pull_by(viscoelastic(&[[part, time]]), stepper, step);
         let solids = pull_by(lps(), stepper, step);
@@ -125,15 +152,24 @@ fn a_bar_relaxes_as_the_classical_one() {
                 (at_last + (at_once - at_last) * spread * (-t / of_bar).exp()) / at_once;
             let ratio = relaxed / solid;
             println!("t = {t}: {ratio:.4}, classical {classical:.4}");
+            // what a bar of four points misses is its surface, and the same by all
+            if stepper == Stepper::Verlet {
+                assert!(
+                    (ratio - classical).abs() < 0.02,
+                    "{t}: {ratio} is not {classical}"
+                );
+                explicit.push(ratio);
+            }
             assert!(
-                (ratio - classical).abs() < 0.02,
-                "{t}: {ratio} is not {classical} by {stepper:?}"
+                (ratio - explicit[n]).abs() < 0.01,
+                "{t}: {ratio} is not {} by {stepper:?}",
+                explicit[n]
             );
         }
     }
 }
 
-/// Steps of an implicit method flow at the rate of explicit ones, whatever their length was told to be.
+/// `σ_xy = σ_y/√3 (1 + C ln(γ̇/(√3 ε̇₀)))` of steady shear without hardening, by explicit and by implicit steps.
 #[test]
 fn an_implicit_step_tells_a_law_of_rates_its_length() {
     let law = LawSpec::named(
@@ -147,23 +183,21 @@ fn an_implicit_step_tells_a_law_of_rates_its_length() {
         ])
         .with("rate_law", Parameter::Word("johnson_cook".into())),
     );
-    let mut explicit = None;
+    let exact = 1e-5 / 3f64.sqrt() * 0.1f64.mul_add((1e3 / 3f64.sqrt()).ln(), 1.0);
     for stepper in [
         Stepper::Verlet,
         Stepper::Newmark(Newmark::default()),
         Stepper::Newmark(Newmark::hht(-0.1)),
     ] {
-        let mut spec = block(LatticeKind::Cubic, [7; 3], 2, law.clone());
+        // the point in the middle and all its partners have full families
+        let mut spec = block(LatticeKind::Cubic, [9; 3], 2, law.clone());
         spec.influence = Influence::Constant;
         spec.schedule.stepper = stepper;
         let mut sim = led(&mut spec, ["1e-5*y*t", "0", "0"]);
-        for _ in 0..10 {
+        for _ in 0..20 {
             sim.step().unwrap();
         }
         let found = stress(sim.as_mut(), "xy");
-        // more than the yield stress at no rate
-        assert!(found > 1.2e-5 / 3f64.sqrt(), "{found} by {stepper:?}");
-        let exact = *explicit.get_or_insert(found);
         assert!(
             (found / exact - 1.0).abs() < 2e-3,
             "{found} is not {exact} by {stepper:?}"
