@@ -206,12 +206,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
         let out = Shared(self.damage.as_mut_ptr());
         if let Measure::VonMises(limit) = &self.criteria.measure {
-            let of = |held: &Option<[f64; 2]>| {
-                let [poisson, twice_shear] = held.unwrap_or_default();
-                let grown = if M::SECTION { 1.0 + poisson } else { 1.0 };
-                [poisson, grown * twice_shear]
-            };
-            let across: Vec<[f64; 2]> = self.held.iter().map(of).collect();
+            let materials = 0..self.held.len();
+            let across: Vec<[f64; 2]> = materials.map(|m| self.elastic_across(m)).collect();
             let kernel = VonMises {
                 view: self.view(u, room),
                 body,

@@ -144,9 +144,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             let known = self.held.iter().all(Option::is_some);
             for &s in &body.slots {
                 let i = s as usize;
-                let [poisson, twice_shear] = self.held[self.material_at(i)].unwrap_or_default();
-                let grown = self.swelling(i) * twice_shear;
-                trace[i] += poisson * trace[i] - grown;
+                let [poisson, stiff] = self.elastic_across(self.material_at(i));
+                let strain = self.expansion.get(i).copied().unwrap_or(0.0);
+                trace[i] += poisson * trace[i] - stiff * strain;
             }
             return known;
         }
@@ -179,13 +179,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         true
     }
 
-    /// Strain across a body in plane strain that temperature or swelling would give a point, times 1 + ν.
-    fn swelling(&self, slot: usize) -> f64 {
-        let strain = self.expansion.get(slot).copied().unwrap_or(0.0);
-        match (M::SECTION, self.held[self.material_at(slot)]) {
-            (true, Some([poisson, _])) => (1.0 + poisson) * strain,
-            (true, None) | (false, _) => strain,
-        }
+    /// Of a material in plane strain: ν, and `E` per strain by temperature or swelling, which of laws without a section is (1 + ν) times as large.
+    pub(super) fn elastic_across(&self, material: usize) -> [f64; 2] {
+        let [poisson, twice_shear] = self.held[material].unwrap_or_default();
+        let grown = if M::SECTION { 1.0 + poisson } else { 1.0 };
+        [poisson, grown * twice_shear]
     }
 
     /// Forces bond by bond, in order of slots.
