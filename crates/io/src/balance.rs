@@ -17,6 +17,9 @@ const BEGINS: f64 = 2.0;
 /// Energy out of nothing, as a part of the energy, that no run goes on with.
 const LOST: f64 = 0.5;
 
+/// Energy that breaking made, as a part of the energy, that is said.
+const MADE: f64 = 0.01;
+
 /// What the last row of the history had.
 #[derive(Debug, Default)]
 pub struct BalanceWatch {
@@ -32,6 +35,8 @@ pub struct BalanceWatch {
     /// Is there too much out of nothing in the last row, and in that before?
     lost: bool,
     gone: bool,
+    /// Was it said that breaking makes energy?
+    told: bool,
 }
 
 impl BalanceWatch {
@@ -59,11 +64,20 @@ impl BalanceWatch {
         self.most = self.most.max(given);
         let lost = !begins && residual > LOST * self.most;
         self.gone = std::mem::replace(&mut self.lost, lost) && lost;
-        let held =
-            ledger.kinetic + ledger.strain + ledger.contact + ledger.released + ledger.numerical;
+        let held = ledger.held() - ledger.dissipated;
         self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
         if !std::mem::replace(&mut self.begun, true) {
             return None;
+        }
+        if ledger.made > MADE * self.scale && !std::mem::replace(&mut self.told, true) {
+            return Some(message![
+                format!("step {step}: breaking has made "),
+                Dimension::ENERGY.of(ledger.made),
+                format!(
+                    " of energy so far ({} % of the energy): points hold more without the bonds that broke than with them; the history says how it grows",
+                    rounded(100.0 * ledger.made / self.scale, 3)
+                ),
+            ]);
         }
         let before = self.last.replace((step, residual, ledger.contact));
         let (then, was, contact) = before?;

@@ -207,8 +207,11 @@ pub trait Interaction<const D: usize>: Send + Sync {
         out.fill(0.0);
     }
 
-    /// The least length of a whole bond over that in the reference, at most 1, of laws whose bonds are the stiffer the shorter they are; 1 of all
-    /// others. Images of `u` must be fresh.
+    /// A stable step is found for the body as it is now.
+    fn begin_steps(&mut self, _body: &Body<D>) {}
+
+    /// What the stable step is of that of the body as [`begin_steps`](Interaction::begin_steps) saw it, at most 1: the least length of a whole bond over that in the reference, of laws
+    /// whose bonds are the stiffer the shorter they are, and the root of the stiffness of torn points; 1 of all others. Images of `u` must be fresh.
     ///
     /// # Panics
     /// As for [`forces`](Interaction::forces).

@@ -34,7 +34,7 @@ use point_energies::EnergyFields;
 pub use point_energies::PointEnergies;
 pub use repulsion::{PairTable, Repulsion};
 pub(crate) use sweep::Motion;
-pub use sweep::{Fault, Sweep, Tally};
+pub use sweep::{Fault, Released, Sweep, Tally};
 pub use tangent::{BondTangent, Channel};
 
 /// Critical stretch of one material: `s0 = s00 − α s_min`; infinite `s00` never breaks.

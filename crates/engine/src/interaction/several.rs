@@ -180,6 +180,15 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn begin_steps(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                bonds.begin_steps(&p.body);
+            }
+        }
+    }
+
     fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
         self.check(body, &[u]);
         let mut least = 1.0f64;

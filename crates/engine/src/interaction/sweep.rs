@@ -58,13 +58,39 @@ impl<'a, const D: usize> Sweep<'a, D> {
     }
 }
 
+/// What breaking did to the energy of points (energy).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Released {
+    /// That of points that have less without their bonds.
+    pub lost: f64,
+    /// What others have more: not below 0.
+    pub made: f64,
+}
+
+impl Released {
+    /// Books what somebody lost.
+    pub fn book(&mut self, energy: f64) {
+        match energy < 0.0 {
+            true => self.made -= energy,
+            false => self.lost += energy,
+        }
+    }
+}
+
+impl AddAssign for Released {
+    fn add_assign(&mut self, o: Released) {
+        self.lost += o.lost;
+        self.made += o.made;
+    }
+}
+
 /// What a sweep reports besides its forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tally {
     /// Directed bonds that broke.
     pub broken: u64,
-    /// Energy that they held (energy).
-    pub released: f64,
+    /// Energy that points lost with them.
+    pub released: Released,
     /// What laws with memory dissipated (energy).
     pub dissipated: f64,
     /// The lowest critical `e` of any point from now on, where that is counted.
@@ -102,7 +128,7 @@ impl Default for Tally {
     fn default() -> Tally {
         Tally {
             broken: 0,
-            released: 0.0,
+            released: Released::default(),
             dissipated: 0.0,
             least_critical: f64::INFINITY,
             fault: None,

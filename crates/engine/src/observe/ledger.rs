@@ -1,7 +1,7 @@
 //! Energies over time.
 
 /// Energies (energy; volume-weighted sums) whose balance
-/// `kinetic + strain + contact + released + dissipated + numerical − work = const` closes up to the error of the time step.
+/// `kinetic + strain + contact + released − made + dissipated + numerical − work = const` closes up to the error of the time step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Ledger {
     pub kinetic: f64,
@@ -9,6 +9,9 @@ pub struct Ledger {
     pub contact: f64,
     /// Energy stored in bonds at the moment they broke, summed since the start.
     pub released: f64,
+    /// Energy that points hold more without the bonds that broke than with them, at that moment, summed since the start: breaking by a limit of
+    /// stretch makes it where a law asks for sums of a family, as its dilatation.
+    pub made: f64,
     /// Work done by damping on its surroundings.
     pub dissipated: f64,
     /// Taken by an implicit method: the work of all forces by the trapezoidal rule less the kinetic energy that points gained. 0 of Newmark's
@@ -23,11 +26,18 @@ pub struct Ledger {
 }
 
 impl Ledger {
+    /// All that the body has and has given away, whatever it came from.
+    pub fn held(&self) -> f64 {
+        self.kinetic + self.strain + self.contact + self.released + self.dissipated + self.numerical
+    }
+
+    /// What of the balance must stay as it is.
+    pub fn base(&self) -> f64 {
+        self.held() - self.made - self.work_conditions - self.work_indenter
+    }
+
     /// What the balance misses: 0 in exact time.
     pub fn residual(&self) -> f64 {
-        self.kinetic + self.strain + self.contact + self.released + self.dissipated + self.numerical
-            - self.work_conditions
-            - self.work_indenter
-            - self.initial
+        self.base() - self.initial
     }
 }

@@ -23,7 +23,8 @@ impl<const D: usize> Model<D> {
         let mut ledger = Ledger {
             strain,
             contact,
-            released: self.released,
+            released: self.released.lost,
+            made: self.released.made,
             dissipated: self.past_work[0],
             numerical: self.numerical,
             work_conditions: self.past_work[1],
@@ -74,12 +75,7 @@ impl<const D: usize> Model<D> {
         }
         let before =
             ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
-        let after = ledger.kinetic - self.last_kick()
-            + ledger.strain
-            + ledger.contact
-            + ledger.released
-            + ledger.dissipated
-            + ledger.numerical;
+        let after = ledger.held() - self.last_kick();
         if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
             return Err(RunError::Unstable {
                 step: self.step,
@@ -214,11 +210,4 @@ impl<const D: usize> Model<D> {
             });
         crossed.map(|(i, j)| (self.id(i), self.id(j)))
     }
-}
-
-/// The part of the balance that must stay as it is from now on.
-pub(super) fn ledger_base(l: &Ledger) -> f64 {
-    l.kinetic + l.strain + l.contact + l.released + l.dissipated + l.numerical
-        - l.work_conditions
-        - l.work_indenter
 }

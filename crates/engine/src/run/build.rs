@@ -223,6 +223,7 @@ pub fn build_in<const D: usize>(
             repulsion.as_ref(),
         )?,
     };
+    interaction.begin_steps(&body);
     if spec.healing.is_some() {
         precracks::cut(spec, &body, interaction.as_mut(), &mut Warnings::default())?;
     }
@@ -324,7 +325,7 @@ pub fn build_in<const D: usize>(
         stale: false,
         broken: 0,
         cycles: 0.0,
-        released: 0.0,
+        released: crate::interaction::Released::default(),
         past_work: [0.0; 3],
         numerical: 0.0,
         initial_energy: None,

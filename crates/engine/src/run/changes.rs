@@ -102,6 +102,6 @@ impl<const D: usize> Model<D> {
         self.look_again();
         // what they carried is no longer asked for
         let now = self.energy_now();
-        self.initial_energy = Some(super::accounts::ledger_base(&now));
+        self.initial_energy = Some(now.base());
     }
 }

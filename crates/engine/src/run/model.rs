@@ -23,7 +23,7 @@ use crate::error::{BuildError, RunError};
 use crate::fracture::fragments::Fragments;
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::Friction;
-use crate::interaction::{Fault, Interaction, PointEnergies};
+use crate::interaction::{Fault, Interaction, PointEnergies, Released};
 use crate::observe::{Column, Ledger, Observed, ProbeColumn, Snapshot};
 use crate::space::Point;
 use crate::spec::{Carriers, Quantity, Release};
@@ -107,7 +107,7 @@ pub struct Model<const D: usize> {
     pub(super) broken: u64,
     /// Cycles of load so far, where increments are these.
     pub(super) cycles: f64,
-    pub(super) released: f64,
+    pub(super) released: Released,
     /// Work of conditions that were replaced since.
     pub(super) past_work: [f64; 3],
     /// Taken by the implicit method (energy).

@@ -1,7 +1,6 @@
 //! Motion: forces of everything that acts, steps, and the way back from a step that failed.
 
 use super::Simulation;
-use super::accounts::ledger_base;
 use super::constitutive::{ConstitutiveModel, Laws};
 use super::model::{Model, StepPart};
 use crate::condition::driven::Driven;
@@ -163,7 +162,7 @@ impl<const D: usize> Model<D> {
         self.stale = false;
         // energy that came in from outside counts as initial
         let now = self.energy_now();
-        self.initial_energy = Some(ledger_base(&now));
+        self.initial_energy = Some(now.base());
     }
 
     /// Forces of what columns say that were written since: the next step begins with them.

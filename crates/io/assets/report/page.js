@@ -135,7 +135,7 @@ function energy() {
   const e = run.energy;
   if (!e) return;
   const names = [
-    ["initial", "at the start", 1], ["work_conditions", "work of loads and supports", 1], ["work_indenter", "work of indenters", 1],
+    ["initial", "at the start", 1], ["work_conditions", "work of loads and supports", 1], ["work_indenter", "work of indenters", 1], ["made", "made by breaking bonds", 1],
     ["kinetic", "kinetic", -1], ["strain", "strain, or potential", -1], ["contact", "contact", -1], ["released", "released by breaking bonds", -1], ["dissipated", "dissipated", -1], ["numerical", "taken by the method", -1],
   ].filter(([key]) => e[key]);
   if (!names.length) return;

@@ -122,6 +122,7 @@ pub fn ledger_columns(unit: &str) -> Vec<Column> {
         "strain energy",
         "contact energy",
         "released energy",
+        "energy made by breaking",
         "dissipated energy",
         "work of conditions",
         "work of indenters",
@@ -131,12 +132,13 @@ pub fn ledger_columns(unit: &str) -> Vec<Column> {
 }
 
 /// The ledger as a row: its entries without the constant `initial`, and what the balance misses.
-pub fn ledger_values(l: &Ledger) -> [f64; 8] {
+pub fn ledger_values(l: &Ledger) -> [f64; 9] {
     [
         l.kinetic,
         l.strain,
         l.contact,
         l.released,
+        l.made,
         l.dissipated,
         l.work_conditions,
         l.work_indenter,

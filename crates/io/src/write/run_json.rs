@@ -184,6 +184,9 @@ pub struct EnergyReport {
     pub strain: f64,
     pub contact: f64,
     pub released: f64,
+    /// What points hold more without the bonds that broke.
+    #[serde(default)]
+    pub made: f64,
     pub dissipated: f64,
     /// Taken by an implicit method.
     #[serde(default)]
@@ -201,6 +204,7 @@ impl From<&Ledger> for EnergyReport {
             strain: l.strain,
             contact: l.contact,
             released: l.released,
+            made: l.made,
             dissipated: l.dissipated,
             numerical: l.numerical,
             work_conditions: l.work_conditions,

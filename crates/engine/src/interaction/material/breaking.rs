@@ -260,6 +260,10 @@ impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
 
 /// Break them. What points lose is the energy of their bonds before less that of those that they keep, the mean of here and a step
 /// away (see [`Tear::drift`]): so the balance of energy is of second order in the step.
+///
+/// A family whose law asks for sums of it (a deformation gradient, a dilatation) may be strained more without a bond than with it, and store
+/// more: `W′ > W`. Breaking can only dissipate (Silling & Lehoucq 2010, the free energy at a fixed deformation falls with damage), so that
+/// of such a point is `W/W′` of what it would be from then on, and so are its force states: its integrity, 1 at first.
 pub struct Tear<'a, const D: usize, F, M> {
     /// With the constants of the step.
     pub view: View<'a, D, F, M>,
@@ -270,9 +274,11 @@ pub struct Tear<'a, const D: usize, F, M> {
     pub torn: &'a [u8],
     /// Bits of bonds that break; then of those that are left.
     pub breaks: Shared<u8>,
-    /// Bits of whole bonds and forms of families, to be written.
+    /// Bits of whole bonds, forms of families and integrities, to be written.
     pub alive: Shared<u8>,
     pub form: OwnRows,
+    /// `None`: of bonds that are on their own, which have nothing to lose but their energy.
+    pub integrity: Option<Shared>,
     pub v: &'a Field<D>,
     /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
     /// it), or will be (it pulls once more).
@@ -316,11 +322,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
                     v: self.v,
                     time: self.drift,
                 };
-                let mut lost = L::splat(0.0);
+                let mut energies = [L::splat(0.0); 2];
                 for (view, drift) in [(v, None), (&still, Some(away))] {
                     at.constants = view.constants_at::<L>(at.rows);
-                    let mut part = L::splat(0.5);
-                    for (bits, form) in [(before, &old), (after, &new)] {
+                    for (n, (bits, form)) in [(before, &old), (after, &new)].into_iter().enumerate()
+                    {
                         let energy = L::apart(EnergyOf::<L, D, F, M> {
                             view,
                             at: &at,
@@ -328,17 +334,25 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
                             drift,
                             form,
                         });
-                        lost = part.fma(energy, lost);
-                        part = L::splat(-0.5);
+                        energies[n] = L::splat(0.5).fma(energy, energies[n]);
                     }
                 }
-                let lost = lost.to_array();
+                let energies = energies.map(|e| e.to_array());
                 for l in 0..TILE {
                     let of = before.iter().zip(after);
                     let broken = of.filter(|(b, a)| (*b ^ *a) >> l & 1 == 1).count();
                     if broken > 0 {
+                        let slot = at.rows.slot(l);
+                        let [before, mut after] = energies.map(|e| e[l]);
+                        if let Some(integrity) = &self.integrity {
+                            let left = kept(before, after);
+                            *integrity.at(slot) *= left;
+                            after *= left;
+                        }
                         tally.broken += broken as u64;
-                        tally.released += lost[l] * self.body.volume.at(at.rows.slot(l));
+                        tally
+                            .released
+                            .book((before - after) * self.body.volume.at(slot));
                     }
                 }
                 for (k, bits) in after.iter().enumerate() {
@@ -350,6 +364,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
             }
         }
         tally
+    }
+}
+
+/// The part of the energy `after` that a point keeps which had `before`; where that was none, all or nothing, whichever is less.
+fn kept(before: f64, after: f64) -> f64 {
+    match after > before {
+        true if before > 0.0 => before / after,
+        true if after > 0.0 => 0.0,
+        _ => 1.0,
     }
 }
 
@@ -376,7 +399,20 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
 
     /// Of one point.
     pub fn form_of(&self, group: usize, bits: &[u8], l: usize, body: &Body<D>) -> M::Form<f64> {
-        let at = self.family.rows(group).from(l);
+        let slot = self.family.rows(group).from(l).slot(0);
+        self.of_family(group, bits, l, |kin| {
+            self.law.form(body.material_of(slot), kin)
+        })
+    }
+
+    /// Something of the family of one point.
+    pub fn of_family<T>(
+        &self,
+        group: usize,
+        bits: &[u8],
+        l: usize,
+        what: impl FnOnce(Kin<D>) -> T,
+    ) -> T {
         let each = |visit: &mut dyn FnMut(&Partner<D>)| {
             for (k, bits) in bits.iter().enumerate() {
                 if bits >> l & 1 == 0 {
@@ -390,6 +426,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                 });
             }
         };
-        self.law.form(body.material_of(at.slot(0)), Kin::new(&each))
+        what(Kin::new(&each))
     }
 }

@@ -12,6 +12,8 @@ use crate::law::material::{Columns, Material, Numbers};
 /// Columns of criteria.
 const WORK: &str = "bond_work";
 const LIFE: &str = "remaining_life";
+/// What breaking has left of points.
+const INTEGRITY: &str = "integrity";
 /// Energy / volume².
 const OF_BONDS: Dimension = Dimension([-4, 1, -2, 0]);
 
@@ -50,6 +52,14 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 LIFE,
                 Dimension::NUMBER,
                 "What cycles of load have left of the life of a bond, 1 at first (Silling & Askari 2014).",
+            ));
+        }
+        if !self.integrity.is_empty() {
+            breaks.push(Declaration::of_points(
+                INTEGRITY,
+                Shape::Scalar,
+                Dimension::NUMBER,
+                "What is left of the energy and the force states of a point, 1 at first: what its family would store more without the bonds that broke is taken away.",
             ));
         }
         [breaks, memory, past, point, places].concat()
@@ -114,6 +124,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         if let Some(values) = self.beside(name) {
             let places = self.places_of(0, 1, 1);
             out.extend(places.into_iter().map(|at| values[at]));
+            return true;
+        }
+        if name == INTEGRITY && !self.integrity.is_empty() {
+            out.extend_from_slice(&self.integrity);
             return true;
         }
         let Some((declaration, place)) = self.place(name) else {
@@ -184,6 +198,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             for (at, x) in places.into_iter().zip(values) {
                 into[at] = *x;
             }
+            return true;
+        }
+        if name == INTEGRITY && !self.integrity.is_empty() {
+            if values.len() != self.integrity.len() {
+                return false;
+            }
+            self.integrity.copy_from_slice(values);
+            self.look_integrity(body);
+            self.look_stiffness(body, |_, _| true);
             return true;
         }
         let Some((declaration, place)) = self.place(name) else {

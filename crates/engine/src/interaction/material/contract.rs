@@ -39,9 +39,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         let room = self.take_room(u, dt);
         let breaks = motion.filter(|_| !self.critical.is_empty());
         // of a watched step: the bonds before any breaks
-        let mut whole = seen
-            .as_ref()
-            .map(|_| (self.alive.clone(), self.form.clone()));
+        let mut whole = seen.as_ref().map(|_| {
+            (
+                self.alive.clone(),
+                self.form.clone(),
+                self.integrity.clone(),
+            )
+        });
         let mut total = Tally::default();
         if motion.is_some() {
             self.work_before(body, u, &room);
@@ -85,10 +89,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         total
     }
 
+    /// How stiff its points are then.
+    fn begin_steps(&mut self, body: &Body<D>) {
+        self.check(body, &[]);
+        self.begin_stiffness(body);
+    }
+
     fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
         self.check(body, &[u]);
+        // of the largest frequency, which goes with the root of the stiffness
+        let torn = self.stiffened.sqrt().recip();
         if !M::STIFFENS {
-            return 1.0;
+            return torn;
         }
         let room = self.take_room(u, self.step);
         let kernel = Shortest {
@@ -102,7 +114,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         let most = |total: &mut [f64; 2], of: [f64; 2]| total[0] = total[0].max(of[0]);
         let [shorter, _] = self.sums.fold(self.simd, &kernel, most);
         self.room = room;
-        (1.0 - shorter).max(0.0).sqrt()
+        torn * (1.0 - shorter).max(0.0).sqrt()
     }
 
     unsafe fn energy_unchecked(&mut self, body: &Body<D>, u: &Field<D>) -> [f64; 2] {

@@ -12,7 +12,7 @@ use crate::execute::simd::Kernel;
 use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::criterion::{Measure, SPENT, Wearing, cycles};
 use crate::interaction::history;
-use crate::law::material::{ForceState, Material, Site};
+use crate::law::material::{ForceState, Material};
 use crate::spec::Cycles;
 
 /// The end of the step before, from which the work of a step is counted.
@@ -114,22 +114,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for VonMises<'_, D, F,
                 };
                 if D == 2 && !self.across.is_empty() {
                     let across = if M::ACROSS {
-                        let form = at.rows.load::<L, M::Form<L>>(v.form);
-                        let past = at.rows.load::<L, M::Past<L>>(v.past);
-                        let site = Site {
-                            constants: &at.constants,
-                            form: &form,
-                            past: &past,
-                            around: v.around::<L>(at.rows),
-                        };
-                        v.law.across(&site, &point)
+                        v.across::<L>(&at, &point)
                     } else {
                         let poisson = per(&|m: usize| self.across[m][0]);
                         let mut across = L::load(poisson.as_ptr()) * trace;
                         if !v.expansion.is_empty() {
                             let stiff = per(&|m: usize| self.across[m][1]);
                             let grown = at.rows.one::<L>(v.expansion.as_ptr());
-                            across = across - L::load(stiff.as_ptr()) * grown;
+                            let left = v.integrity::<L>(at.rows);
+                            across = across - left * L::load(stiff.as_ptr()) * grown;
                         }
                         across
                     };

@@ -25,7 +25,7 @@ use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::law::material::fibres::Fibres;
-use crate::law::material::{Material, Numbers};
+use crate::law::material::{Kin, Material, Numbers};
 use breaking::{Tear, Test};
 use family::{Family, Moved, Slots};
 use measured::Before;
@@ -76,6 +76,13 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     life: Vec<f64>,
     /// Strain by temperature or swelling per slot; empty: none.
     expansion: Column,
+    /// What is left of each slot's energy and force states; empty: of bonds that are on their own, or that do not break.
+    integrity: Column,
+    /// Is any of them below 1?
+    degraded: bool,
+    /// How stiff torn points are beside the body as it was prepared: per slot, then and now, and the most; empty: they are no stiffer.
+    stiffness: [Vec<f64>; 2],
+    stiffened: f64,
     /// In plane strain, per material: ν and 2G of the linear isotropic solid of its moduli, if it is isotropic; else empty.
     held: Vec<Option<[f64; 2]>>,
     /// Bits of bonds that break in a sweep, and marks of their groups.
@@ -220,6 +227,10 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }),
             life: bonds(wears, 1.0),
             expansion: Column::default(),
+            integrity: column(breaks && M::PASSES > 0, 1.0),
+            degraded: false,
+            stiffness: [const { vec![] }; 2],
+            stiffened: 1.0,
             held,
             breaks: vec![0; if breaks { family.bytes_of_bits() } else { 0 }],
             torn: vec![0; if breaks { family.groups() } else { 0 }],
@@ -297,7 +308,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             memory: Seen(self.memory.as_ptr()),
             expansion: &self.expansion,
             held: !self.held.is_empty(),
+            integrity: if self.degraded { &self.integrity } else { &[] },
         }
+    }
+
+    /// What is left of a slot's energy and force states.
+    fn integrity_at(&self, slot: usize) -> f64 {
+        self.integrity.get(slot).copied().unwrap_or(1.0)
     }
 
     /// Displacements as gathers want them.
@@ -408,6 +425,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         }
         let form = self.form.shared();
         let alive = Shared(self.alive.as_mut_ptr());
+        let integrity = Shared(self.integrity.as_mut_ptr());
         let mut view = self.view(u, room);
         (view.form, view.alive) = (form.seen(), alive.seen());
         let kernel = Tear {
@@ -423,10 +441,58 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             breaks,
             alive,
             form,
+            integrity: (!self.integrity.is_empty()).then_some(integrity),
             v,
             drift,
         };
-        self.tallies.fold(self.simd, &kernel, Tally::add_assign)
+        let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);
+        self.look_integrity(body);
+        self.look_stiffness(body, |torn, group| torn[group] != 0);
+        tally
+    }
+
+    /// After integrities have changed.
+    fn look_integrity(&mut self, body: &Body<D>) {
+        body.fill_images(&mut self.integrity);
+        self.degraded = self.integrity.iter().any(|x| *x < 1.0);
+    }
+
+    /// How stiff the points of some groups are now, and the most of all.
+    fn look_stiffness(&mut self, body: &Body<D>, of: impl Fn(&[u8], usize) -> bool) {
+        let [whole, mut now] = std::mem::take(&mut self.stiffness);
+        if now.is_empty() {
+            return;
+        }
+        for group in (0..self.family.groups()).filter(|g| of(&self.torn, *g)) {
+            for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
+                let slot = self.family.rows(group).slot(l);
+                now[slot] = self.integrity_at(slot) * self.stiffness_of(body, group, l);
+            }
+        }
+        let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
+        self.stiffened = whole.iter().zip(&now).map(stiffened).fold(1.0, f64::max);
+        self.stiffness = [whole, now];
+    }
+
+    /// [`Material::stiffness`] of a point with its whole bonds.
+    fn stiffness_of(&self, body: &Body<D>, group: usize, l: usize) -> f64 {
+        let (u, room) = (crate::body::zeros(0), Room::default());
+        let first = self.family.byte(group, 0);
+        let bits = &self.alive[first..first + self.family.bonds(group)];
+        let material = body.material_of(self.family.rows(group).slot(l));
+        let of = |kin: Kin<D>| self.law.stiffness(material, kin);
+        self.view(&u, &room).of_family(group, bits, l, of)
+    }
+
+    /// What [`MaterialInteraction::look_stiffness`] compares with.
+    fn begin_stiffness(&mut self, body: &Body<D>) {
+        if !M::STIFFENS_TORN || self.critical.is_empty() {
+            return;
+        }
+        self.stiffness = [vec![0.0; body.len], vec![0.0; body.len]];
+        self.look_stiffness(body, |_, _| true);
+        self.stiffness[0] = self.stiffness[1].clone();
+        self.stiffened = 1.0;
     }
 
     /// Damage as the points remember it.
@@ -473,13 +539,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         tally
     }
 
-    fn swap_bonds(&mut self, (alive, form): &mut (Vec<u8>, Store)) {
+    fn swap_bonds(&mut self, (alive, form, integrity): &mut (Vec<u8>, Store, Column)) {
         std::mem::swap(&mut self.alive, alive);
         std::mem::swap(&mut self.form, form);
+        std::mem::swap(&mut self.integrity, integrity);
     }
 
-    /// What points know of their families, from the bonds in `bits`.
+    /// What points know of their families, from the bonds that are whole now.
     fn look(&mut self, body: &Body<D>) {
+        self.look_stiffness(body, |_, _| true);
         let count = <M::Form<f64> as Numbers<f64>>::COUNT;
         if count == 0 {
             return;

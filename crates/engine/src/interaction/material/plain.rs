@@ -130,7 +130,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     share += part * bond.stretch;
                     whole += part;
                 }
-                out.strain[slot] = energy;
+                out.strain[slot] = self.integrity_at(slot) * energy;
                 out.whole[slot] = whole;
                 out.dilatation[slot] = share;
             }
@@ -146,7 +146,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 let i = s as usize;
                 let [poisson, stiff] = self.elastic_across(self.material_at(i));
                 let strain = self.expansion.get(i).copied().unwrap_or(0.0);
-                trace[i] += poisson * trace[i] - stiff * strain;
+                trace[i] += poisson * trace[i] - self.integrity_at(i) * stiff * strain;
             }
             return known;
         }
@@ -164,15 +164,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             // SAFETY: a point of the family
             trace[s as usize] += unsafe {
                 let at = view.group::<f64>(group, l);
-                let form = at.rows.load::<f64, M::Form<f64>>(view.form);
-                let past = at.rows.load::<f64, M::Past<f64>>(view.past);
-                let site = Site {
-                    constants: &at.constants,
-                    form: &form,
-                    past: &past,
-                    around: view.around::<f64>(at.rows),
-                };
-                self.law.across(&site, &view.point::<f64>(at.rows))
+                view.across::<f64>(&at, &view.point::<f64>(at.rows))
             };
         }
         self.room = room;

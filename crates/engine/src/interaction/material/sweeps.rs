@@ -122,15 +122,13 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
         let dead = L::dead_in_part(*v.alive.at(v.family.byte(at.number, k)), part);
         let (bond, weight) = v.bond::<L>(at, k, ends, dead);
         let memory = v.memory::<L>(at.number, k, part);
-        let own = v.law.answer(
-            &bond,
-            &End {
-                constants: &at.constants,
-                point,
-                memory: &memory,
-            },
-        );
-        let other = if M::ALIKE && v.alike {
+        let end = End {
+            constants: &at.constants,
+            point,
+            memory: &memory,
+        };
+        let mut own = v.law.answer(&bond, &end);
+        let mut other = if M::ALIKE && v.alike {
             own.mirrored()
         } else {
             let back = if M::ALIKE {
@@ -153,6 +151,10 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 },
             )
         };
+        if M::PASSES > 0 && !v.integrity.is_empty() {
+            own = own.times(v.integrity::<L>(at.rows));
+            other = other.times(v.integrity::<L>(ends));
+        }
         (own.pull(other, &bond), bond, weight)
     }
 }
@@ -171,13 +173,13 @@ pub unsafe fn answers<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
     bond: &Bond<L, D>,
 ) -> M::State<L> {
     // SAFETY: the caller's promise
-    let memory = unsafe { v.memory::<L>(at.number, k, part) };
+    let (memory, left) = unsafe { (v.memory::<L>(at.number, k, part), v.integrity::<L>(at.rows)) };
     let end = End {
         constants: &at.constants,
         point,
         memory: &memory,
     };
-    v.law.answer(bond, &end)
+    v.law.answer(bond, &end).times(left)
 }
 
 /// What of it is the point's own force state; `pull` has the rest.
@@ -271,6 +273,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                     around: v.around::<L>(at.rows),
                 };
                 lost = lost + v.law.remember(&site, &point, &mut past);
+                lost = v.integrity::<L>(at.rows) * lost;
                 save(self.past, at.rows, &past);
                 for (l, x) in lost.to_array().iter().enumerate() {
                     if v.family.is_point(group, l) {
@@ -359,7 +362,7 @@ impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece for EnergyOf<'
                     v.law.settle(pass, &site, sum, &mut point);
                 }
             }
-            energy
+            v.integrity::<L>(at.rows) * energy
         }
     }
 }

@@ -55,6 +55,8 @@ fn bent<const D: usize>(
 struct Node<const D: usize, M: Material<D>> {
     constants: M::Constants<f64>,
     point: M::Point<f64>,
+    /// What is left of its force state.
+    integrity: f64,
     /// `[point numbers][channels]`
     gain: Vec<Vec<f64>>,
     bonds: Vec<Half<D, M>>,
@@ -115,6 +117,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         let bonds = self.bonds_of(group, l).into_iter().map(half);
         let mut node = Node {
             constants,
+            integrity: self.integrity_at(slot),
             point: <M::Point<f64> as Numbers<f64>>::constant(0.0),
             gain: vec![vec![]; <M::Point<f64> as Numbers<f64>>::COUNT],
             bonds: bonds.collect(),
@@ -240,7 +243,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 state.alone(&mirrored(&bond)).map(|x| still(0.0) - x)
             }
         };
-        let weight = b.weight * b.per_length;
+        let weight = node.integrity * b.weight * b.per_length;
         let mut stiffness = [[0.0; D]; D];
         for c in 0..D {
             let slopes = pull(Some(c), None);

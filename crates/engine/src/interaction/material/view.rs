@@ -36,6 +36,8 @@ pub struct View<'a, const D: usize, F, M> {
     pub expansion: &'a [f64],
     /// Is the section held, as in plane strain?
     pub held: bool,
+    /// What is left of each slot's energy and force states ([`Tear`](super::breaking::Tear)); empty: all of them.
+    pub integrity: &'a [f64],
 }
 
 /// The points of a group.
@@ -225,6 +227,39 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
         // SAFETY: the caller's promise
         let [_, per_length] = unsafe { grown(self.expansion, at.rows, ends) };
         per_length
+    }
+
+    /// What is left of points' energy and force states.
+    ///
+    /// # Safety
+    /// Slots of the family.
+    #[inline(always)]
+    pub unsafe fn integrity<L: Lane>(&self, slots: F::Slots) -> L {
+        match M::PASSES == 0 || self.integrity.is_empty() {
+            true => L::splat(1.0),
+            // SAFETY: a number per slot
+            false => unsafe { slots.one::<L>(self.integrity.as_ptr()) },
+        }
+    }
+
+    /// Stress across a body in plane strain, of points that have settled.
+    ///
+    /// # Safety
+    /// A group of the family.
+    #[inline(always)]
+    pub unsafe fn across<L: Lane>(&self, at: &GroupOf<L, D, F, M>, point: &M::Point<L>) -> L {
+        // SAFETY: rows of the family
+        unsafe {
+            let form = at.rows.load::<L, M::Form<L>>(self.form);
+            let past = at.rows.load::<L, M::Past<L>>(self.past);
+            let site = Site {
+                constants: &at.constants,
+                form: &form,
+                past: &past,
+                around: self.around::<L>(at.rows),
+            };
+            self.integrity::<L>(at.rows) * self.law.across(&site, point)
+        }
     }
 
     /// Lanes without a whole bond.

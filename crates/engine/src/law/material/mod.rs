@@ -169,6 +169,8 @@ pub trait ForceState<N, const D: usize>: Copy {
     fn alone(self, bond: &Bond<N, D>) -> [N; D];
     /// What the other end answers that is in the same state.
     fn mirrored(self) -> Self;
+    /// So many times as much.
+    fn times(self, factor: N) -> Self;
 }
 
 /// `T⟨ξ⟩ = t (ξ+η)`: along the bond, `t` over the current length.
@@ -193,6 +195,10 @@ impl<N: Number, const D: usize> ForceState<N, D> for Along<N> {
     fn mirrored(self) -> Self {
         self
     }
+    #[inline(always)]
+    fn times(self, factor: N) -> Self {
+        Along(factor * self.0)
+    }
 }
 
 /// `T⟨ξ⟩` in any direction.
@@ -216,6 +222,13 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
     fn mirrored(mut self) -> Self {
         for a in 0..D {
             self.0[a] = N::constant(0.0) - self.0[a];
+        }
+        self
+    }
+    #[inline(always)]
+    fn times(mut self, factor: N) -> Self {
+        for a in 0..D {
+            self.0[a] = factor * self.0[a];
         }
         self
     }
@@ -327,6 +340,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     const FORM_OF_WHOLE: bool = false;
     /// Are bonds stiffer the shorter they are? Then steps that are stable in the reference need not be later.
     const STIFFENS: bool = false;
+    /// Are points stiffer the fewer bonds they have ([`Material::stiffness`])? Likewise.
+    const STIFFENS_TORN: bool = false;
     /// Does a point remember the sum of what its bonds do ([`Material::gathered`])?
     const GATHERS: bool = false;
     /// May its constants differ from place to place ([`Material::varies`])?
@@ -371,6 +386,12 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// From its reference family.
     fn form(&self, _material: usize, _kin: Kin<D>) -> Self::Form<f64> {
         <Self::Form<f64> as Numbers<f64>>::constant(0.0)
+    }
+
+    /// What the stiffness of a point against its bonds goes with, of any measure: the least c of `W ≤ c Σ ω ν V_j |η|²`, or what is above it by a
+    /// factor that is the same for whole and torn families.
+    fn stiffness(&self, _material: usize, _kin: Kin<D>) -> f64 {
+        1.0
     }
 
     /// What a bond gives to its point.

@@ -168,6 +168,7 @@ impl<const D: usize> Material<D> for PositionAware {
     type State<N: Number> = Along<N>;
     const PASSES: usize = 1;
     const FORM_OF_WHOLE: bool = true;
+    const STIFFENS_TORN: bool = true;
 
     fn constants(&self, material: usize, _: f64) -> [f64; 2] {
         let m = &self.materials[material];
@@ -176,6 +177,25 @@ impl<const D: usize> Material<D> for PositionAware {
 
     fn form(&self, material: usize, kin: Kin<D>) -> Form<f64> {
         multipliers(&kin, self.materials[material].trial)
+    }
+
+    /// `θ² ≤ A Σ ω₀ ν V e²` with `A = Σ ν V (ω|ξ|)²/ω₀` of the influence function ω₀, and `Σ σ ε² ≤ 2 Σ |σ| (e² + θ²|ξ|²/D²)`.
+    fn stiffness(&self, material: usize, kin: Kin<D>) -> f64 {
+        let m = &self.materials[material];
+        let (own, _) = multipliers(&kin, m.trial);
+        let (mut spread, mut most, mut square) = (0.0, 0.0f64, 0.0);
+        kin.each(|p| {
+            if p.omega > 0.0 {
+                let bond = Bond::new(p.xi, [0.0; D], p.omega);
+                let [omega, sigma] = influences(&bond, &own);
+                let length = bond.length * bond.length;
+                spread += p.volume * omega * omega * length / p.omega;
+                most = most.max(sigma.abs() / p.omega);
+                square += p.volume * sigma.abs() * length;
+            }
+        });
+        let part = 1.0 / D as f64;
+        spread * (0.5 * m.bulk + 2.0 * m.shear * part * part * square) + 2.0 * m.shear * most
     }
 
     #[inline(always)]

@@ -305,6 +305,12 @@ pub fn inverse_within<const D: usize>(a: Matrix<f64, D>, part: f64) -> (Matrix<f
     (out, values.iter().all(|x| counts(*x)))
 }
 
+/// The largest eigenvalue of [`inverse`], 0 where that is.
+pub fn greatest_of_inverse<const D: usize>(a: Matrix<f64, D>) -> f64 {
+    let (values, _) = eigen(inverse(a).0);
+    values.into_iter().fold(0.0, f64::max)
+}
+
 /// Eigenvalues of a symmetric matrix and its eigenvectors in columns, by Jacobi's rotations.
 pub fn eigen<const D: usize>(mut a: Matrix<f64, D>) -> ([f64; D], Matrix<f64, D>) {
     let mut v = [[0.0; D]; D];

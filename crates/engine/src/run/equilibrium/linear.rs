@@ -99,7 +99,9 @@ impl<const D: usize> Model<D> {
         let held: f64 = self.quadratic_energy().iter().sum();
         self.forces(true, 0.0);
         if self.broken > broken {
-            self.released = released + held - self.quadratic_energy().iter().sum::<f64>();
+            let kept: f64 = self.quadratic_energy().iter().sum();
+            self.released = released;
+            self.released.book(held - kept);
         }
         self.linear_forces();
         self.other_forces(0.0);

@@ -12,7 +12,6 @@ mod system;
 pub(super) mod tried;
 
 use self::state::StaticState;
-use super::accounts::ledger_base;
 use super::model::Model;
 use crate::body::{Field, zeros};
 use crate::condition::constraint::Constraint;
@@ -240,7 +239,7 @@ impl<const D: usize> Model<D> {
         self.learn_strength();
         // energy that came in from outside counts as initial
         let now = self.energy_now();
-        self.initial_energy = Some(ledger_base(&now));
+        self.initial_energy = Some(now.base());
     }
 
     /// Forces from which the next increment sets out; before the first one nothing acts but bonds.

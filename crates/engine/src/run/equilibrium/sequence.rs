@@ -187,7 +187,7 @@ impl<const D: usize> Model<D> {
         };
         self.broken += self.interaction.cut(&self.body, CrackKind::Broken, &is);
         let kept: f64 = self.quadratic_energy().iter().sum();
-        self.released += held - kept;
+        self.released.book(held - kept);
     }
 
     fn next_equilibrium(

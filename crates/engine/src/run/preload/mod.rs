@@ -249,7 +249,7 @@ impl<const D: usize> Model<D> {
                         });
             }
             let kept: f64 = self.interaction.energy(&self.body, &self.u).iter().sum();
-            self.released += held - kept;
+            self.released.book(held - kept);
         }
         let (t, dt) = (self.time(), self.dt);
         for c in &mut self.constraints {

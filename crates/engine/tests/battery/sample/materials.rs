@@ -222,7 +222,7 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            lives: |d, _| d > 1,
             potential: false,
             ..one(
                 "hypoelastic",
@@ -231,7 +231,7 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            lives: |d, _| d > 1,
             ..two(
                 "mooney-rivlin mixed",
                 correspondence(3.0, "mooney_rivlin"),
@@ -240,7 +240,7 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            lives: |d, _| d > 1,
             ..two(
                 "of written energies",
                 of_energy("0.6*(I1*J^(-2/3) - 3) + 0.2*(I1*J^(-2/3) - 3)^2 + 1.2*(J - 1)^2"),
@@ -249,7 +249,7 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            lives: |d, _| d > 1,
             potential: false,
             ..two(
                 "metal and soil",
@@ -259,7 +259,7 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            lives: |d, _| d > 1,
             potential: false,
             ..one(
                 "metal under impact",
@@ -277,7 +277,7 @@ pub fn materials() -> Vec<Material> {
             )
         },
         Material {
-            lives: |d, plane| d == 3 || (d == 2 && plane == Plane::Strain),
+            lives: |d, _| d > 1,
             potential: false,
             ..one(
                 "bonds of metal",

@@ -136,8 +136,8 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     let q = v.pressure_factor(rows, i.field[1]) * kappa;
                     let own = [i.field[0] * kappa, i.field[1]];
                     let energy = history::released::<L, W>(q, own, lost, growth) * i.volume;
-                    for x in &energy.to_array() {
-                        tally.released += x;
+                    for x in energy.to_array() {
+                        tally.released.book(x);
                     }
                 }
             }

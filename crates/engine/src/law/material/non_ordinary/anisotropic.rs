@@ -140,6 +140,7 @@ impl<const D: usize> Classical<D> for Anisotropic {
         }
         Stressed {
             stress: tensor::product(&f, &stress),
+            across: N::constant(0.0),
             energy: half * energy,
             past: *past,
         }

@@ -14,7 +14,7 @@
 //! answer nothing.
 
 use super::family::CONTROL;
-use super::{Asked, Classical, GRADIENT, Stressed, Unseen, on_a_family, takes_bonds};
+use super::{Asked, Classical, GRADIENT, Stressed, Unseen, answered, on_a_family, takes_bonds};
 use crate::columns::{Declaration, Halo, On};
 use crate::law::descriptor::{Descriptor, Given, Shelved};
 use crate::law::material::tensor::{self, Matrix};
@@ -83,7 +83,8 @@ impl<L> BondAssociated<L> {
             stress,
             energy,
             past,
-        } = N::apart(Asked {
+            ..
+        } = answered(Asked {
             law: &self.law,
             constants: end.constants,
             past: end.memory,
@@ -161,6 +162,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
+    const STIFFENS_TORN: bool = true;
     const FORM_OF_WHOLE: bool = true;
     const GATHERS: bool = true;
     const PLACED: bool = L::PLACED;
@@ -203,6 +205,21 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
     fn form(&self, _: usize, kin: Kin<D>) -> Form<f64, D> {
         let (inverse, whole) = tensor::inverse(kin.shape());
         (inverse, if whole { 1.0 } else { 0.0 })
+    }
+
+    /// `|δF_b|² ≤ 4 |δF|² + 2 |η|²/|ξ|²`, whose mean is at most `Σ ω ν V |η|²` times `4 |K⁻¹| + 2/(|ξ|² Σ ω ν V)` of the shortest bond; points
+    /// without F answer nothing.
+    fn stiffness(&self, _: usize, kin: Kin<D>) -> f64 {
+        let shape = kin.shape();
+        if !tensor::inverse(shape).1 {
+            return 0.0;
+        }
+        let (mut all, mut shortest) = (0.0, f64::INFINITY);
+        kin.each(|p| {
+            all += p.omega * p.volume;
+            shortest = p.xi.iter().map(|x| x * x).sum::<f64>().min(shortest);
+        });
+        4.0 * tensor::greatest_of_inverse(shape) + 2.0 / (all * shortest)
     }
 
     /// `ω η⊗ξ` and ω; then `ω A_b (1 − n⊗n)` and ω tr τ_b

@@ -63,6 +63,11 @@ impl<const D: usize> Classical<D> for Correspondence {
         self.materials[material].shear
     }
 
+    /// Where the thickness has no closed form or search of its own.
+    fn is_sheet(&self) -> bool {
+        self.plane_stress && self.stress == Stress::MooneyRivlin
+    }
+
     #[inline(always)]
     fn stress<N: Number>(
         &self,
@@ -90,6 +95,7 @@ impl<const D: usize> Classical<D> for Correspondence {
         if held {
             strain = strain + across;
         }
+        let mut wide = N::constant(0.0);
         let (stress, energy) = match self.stress {
             Stress::Linear => {
                 let lame = if self.plane_stress {
@@ -147,24 +153,29 @@ impl<const D: usize> Classical<D> for Correspondence {
                 let energy = half * c[SHEAR] * shear + half * pull * volume;
                 (p, energy)
             }
-            Stress::MooneyRivlin => mooney_rivlin(c, h, &twice, unseen),
+            Stress::MooneyRivlin => {
+                let (p, own, energy) = mooney_rivlin(c, h, &twice, unseen);
+                wide = own;
+                (p, energy)
+            }
         };
         Stressed {
             stress,
+            across: wide,
             energy,
             past: *past,
         }
     }
 }
 
-/// P and ψ of Mooney and Rivlin, from H and A = C − 1: `F − ⅓ I₁ F⁻ᵀ = F⁻ᵀ dev A`, and so on, so that nothing large is taken away.
+/// P, what it is across a plane, and ψ of Mooney and Rivlin, from H and A = C − 1: `F − ⅓ I₁ F⁻ᵀ = F⁻ᵀ dev A`, and so on, so that nothing large is taken away.
 #[inline(always)]
 fn mooney_rivlin<N: Number, const D: usize>(
     c: &[N; 3],
     h: &Matrix<N, D>,
     a: &Matrix<N, D>,
     unseen: &Unseen<N>,
-) -> (Matrix<N, D>, N) {
+) -> (Matrix<N, D>, N, N) {
     let (half, third, two) = (N::constant(0.5), N::constant(1.0 / 3.0), N::constant(2.0));
     let (one, three) = (N::constant(1.0), N::constant(3.0));
     let (mut trace, mut double) = (tensor::trace(a), tensor::contraction(a, a));
@@ -193,15 +204,20 @@ fn mooney_rivlin<N: Number, const D: usize>(
     // F⁻ᵀ times this, beside the volume
     let product = tensor::product(a, a);
     let (first, other) = (two * first * shrink, two * other * both);
+    let level = third * (first * trace + other * (trace + two * second));
     let mut state = *a;
     for r in 0..D {
         for k in 0..D {
             let more = trace.fma(a[r][k], a[r][k] - product[r][k]);
             state[r][k] = first.fma(a[r][k], other * more);
         }
-        let level = first * trace + other * (trace + two * second);
-        state[r][r] = state[r][r] - third * level;
+        state[r][r] = state[r][r] - level;
     }
+    // A of the stretch 1 + z across, F⁻ᵀ = 1/(1 + z)
+    let z = unseen.across;
+    let wide = z * (two + z);
+    let of_wide = first.fma(wide, other * trace.fma(wide, wide - wide * wide)) - level;
+    let own = bulk * beyond * (tensor::dilation(h) + one) + of_wide.div(z + one);
     let mut cofactor = cofactors;
     for r in 0..D {
         cofactor[r][r] = cofactors[r][r] + one;
@@ -214,7 +230,7 @@ fn mooney_rivlin<N: Number, const D: usize>(
             p[r][k] = inverse.fma(shear[r][k], bulk * beyond * cofactor[r][k]);
         }
     }
-    (p, energy)
+    (p, own, energy)
 }
 
 /// x = ln λ₃² with no stress across: `μ (e^x − 1) + λ (ln J₂ + x/2) = 0`.
@@ -311,12 +327,6 @@ impl Shelved for Correspondence {
                         "`second_invariant` is {:.3} of the shear modulus, expected at most half of it: C₁₀ would be negative",
                         second / moduli.shear()
                     ),
-                ));
-            }
-            if plane_stress && stress == Stress::MooneyRivlin {
-                return Err((
-                    n,
-                    "mooney_rivlin keeps its thickness in the plane, which is plane strain: write plane = \"strain\", or take neo_hookean".into(),
                 ));
             }
             made.push(CorrespondenceConstants {

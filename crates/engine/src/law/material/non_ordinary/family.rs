@@ -7,7 +7,7 @@
 //! secant modulus of its flow does: else what F does not see would stay elastic, and hold many times the yield stress.
 //! K is that of the whole bonds. Points whose bonds span no space have no P, but keep the control.
 
-use super::{Asked, Classical, GRADIENT, Unseen, on_a_family};
+use super::{Asked, Classical, GRADIENT, Unseen, answered, on_a_family};
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Descriptor, Given, Key, Need, Shelved};
 use crate::law::material::tensor::{self, Matrix};
@@ -129,6 +129,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     const STRETCHES: bool = false;
     const POTENTIAL: bool = L::POTENTIAL;
     const STIFFENS: bool = true;
+    const STIFFENS_TORN: bool = true;
     const FORM_OF_WHOLE: bool = true;
     const PLACED: bool = L::PLACED;
     const READS: bool = false;
@@ -177,6 +178,11 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         (inverse, [inverse_weight(&shape), sound])
     }
 
+    /// `|δF|² ≤ |K⁻¹| Σ ω ν V |η|²`; of points without F the control alone, which goes with 1/m.
+    fn stiffness(&self, _: usize, kin: Kin<D>) -> f64 {
+        tensor::greatest_of_inverse(kin.shape())
+    }
+
     /// `ω η⊗ξ`, and `ω η²`
     #[inline(always)]
     fn share<N: Number>(&self, _: usize, bond: &Bond<N, D>, _: &EndOf<N, L, D>) -> Sum<N, D> {
@@ -204,7 +210,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
     ) {
         let (form, (control, constants)) = (site.form, site.constants);
         let h = gradient(form, &sum);
-        let now = N::apart(Asked {
+        let now = answered(Asked {
             law: &self.law,
             constants,
             past: site.past,
@@ -255,7 +261,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         point: &Self::Point<N>,
     ) -> N {
         let h = gradient(site.form, &sum);
-        let strained = N::apart(Asked {
+        let strained = answered(Asked {
             law: &self.law,
             constants: &site.constants.1,
             past: site.past,

@@ -102,6 +102,7 @@ impl<const D: usize> Classical<D> for Fluid {
         }
         Stressed {
             stress: p,
+            across: zero,
             energy: gained,
             past: [beyond, pressure, q, gained],
         }

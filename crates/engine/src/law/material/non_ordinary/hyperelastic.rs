@@ -3,7 +3,7 @@
 //! `P = 2ψ₁ F + 2ψ₂ (I₁ F − F C) + ψ_J cof F` (Holzapfel 2000, (6.32) with J beside I₁ and I₂). With slopes g at the reference, where
 //! `2g₁ + 4g₂ + g_J = 0` as it is without stress, and h beyond them,
 //! `P = (2g₁ + 4g₂) (F − cof F) + 2g₂ B + 2h₁ F + 2h₂ (2F + B) + h_J cof F`, `B = tr A F − F A`, `A = C − 1`: nothing large is taken away.
-//! In the plane nothing is stretched across but by temperature or swelling.
+//! In plane strain nothing is stretched across but by temperature or swelling; in plane stress the [thickness](super::thickness) gives way.
 
 use super::energy::{Energy, INVARIANTS};
 use super::{Classical, Stressed, Unseen};
@@ -18,6 +18,8 @@ use crate::spec::{Influence, LawSpec, Moduli, Parameters, Plane};
 pub struct Hyperelastic {
     /// Per material: its energy and its shear modulus.
     materials: Vec<(Energy, f64)>,
+    /// In the plane: are its faces free?
+    sheet: bool,
 }
 
 /// How much of the slopes may be stress of the reference: what rounding leaves, and constants of a few digits do not.
@@ -33,6 +35,7 @@ impl Hyperelastic {
             .map_err(|why| format!("`energy` = \"{}\": {why}", formula.source()))?;
         Ok(Hyperelastic {
             materials: vec![(energy, 0.0)],
+            sheet: false,
         })
     }
 
@@ -59,7 +62,7 @@ impl Hyperelastic {
             square: zero,
             across: zero,
         };
-        let p = law.at(0, &h, &seen).0;
+        let (p, _, _) = law.at(0, &h, &seen);
         let (along, across) = (p[0][0].slope, p[1][1].slope);
         let shear = 0.5 * (along - across);
         let bulk = across + 2.0 / 3.0 * shear;
@@ -79,14 +82,14 @@ impl Hyperelastic {
         }
     }
 
-    /// P and ψ of a material.
+    /// P, what it is across a plane, and ψ of a material.
     #[inline(always)]
     fn at<N: Number, const D: usize>(
         &self,
         material: usize,
         h: &Matrix<N, D>,
         unseen: &Unseen<N>,
-    ) -> (Matrix<N, D>, N) {
+    ) -> (Matrix<N, D>, N, N) {
         let (half, two) = (N::constant(0.5), N::constant(2.0));
         let energy = &self.materials[material].0;
         let mut f = *h;
@@ -134,11 +137,17 @@ impl Hyperelastic {
                 p[r][c] = even.fma(h[r][c] - cofactors[r][c], rest);
             }
         }
+        // the same of the stretch across, whose cofactor is J of the plane
+        let (z, plane) = (unseen.across, tensor::dilation(h));
+        let wide = z + N::constant(1.0);
+        let b = wide * (trace - z * (two + z));
+        let rest = odd.fma(b, along.fma(wide, hj * (plane + N::constant(1.0))));
+        let across = even.fma(z - plane, rest);
         // ΔI₁ − 2ΔJ and ΔI₂ − 4ΔJ, in which all that is linear in H is gone
         let first = inner - two * volume;
         let other = two * first + second;
         let psi = first.times(w1) + other.times(w2) + beyond.rest;
-        (p, psi)
+        (p, across, psi)
     }
 }
 
@@ -155,6 +164,10 @@ impl<const D: usize> Classical<D> for Hyperelastic {
         self.materials[material].1
     }
 
+    fn is_sheet(&self) -> bool {
+        self.sheet
+    }
+
     /// Lanes of several materials are asked one material after the other.
     #[inline(always)]
     fn stress<N: Number>(
@@ -165,15 +178,16 @@ impl<const D: usize> Classical<D> for Hyperelastic {
         unseen: &Unseen<N>,
     ) -> Stressed<N, [N; 0], D> {
         let mut stress = *h;
-        let mut energy = N::constant(0.0);
+        let (mut across, mut energy) = (N::constant(0.0), N::constant(0.0));
         for n in 0..self.materials.len() {
             let away = c[0] - N::constant(n as f64);
             let far = away * away;
             if !far.any_below(0.25) {
                 continue;
             }
-            let (p, psi) = self.at(n, h, unseen);
+            let (p, own, psi) = self.at(n, h, unseen);
             energy = far.below(0.25, psi, energy);
+            across = far.below(0.25, own, across);
             for r in 0..D {
                 for k in 0..D {
                     stress[r][k] = far.below(0.25, p[r][k], stress[r][k]);
@@ -182,6 +196,7 @@ impl<const D: usize> Classical<D> for Hyperelastic {
         }
         Stressed {
             stress,
+            across,
             energy,
             past: *past,
         }
@@ -199,7 +214,7 @@ impl Shelved for Hyperelastic {
     fn descriptor() -> Descriptor {
         Descriptor {
             name: "hyperelastic".into(),
-            doc: "Non-ordinary, of any stored energy ψ(I1, I2, J): P = 2ψ₁ F + 2ψ₂ (I₁F − FC) + ψ_J cof F. Moduli of small strains are those of the energy; in the plane plane strain.".into(),
+            doc: "Non-ordinary, of any stored energy ψ(I1, I2, J): P = 2ψ₁ F + 2ψ₂ (I₁F − FC) + ψ_J cof F. Moduli of small strains are those of the energy; in plane stress the thickness gives way.".into(),
             source: "Holzapfel 2000; Silling, Epton, Weckner, Xu & Askari 2007; Silling 2017".into(),
             example: "{ energy = \"0.5 MPa*(I1 - 3 - 2*ln(J)) + 5 MPa*(J - 1)^2\" }".into(),
             influence: Influence::Constant,
@@ -215,19 +230,16 @@ impl Shelved for Hyperelastic {
     fn make(d: usize, plane: Plane, materials: &[Given]) -> Result<Self, (usize, String)> {
         let mut all = vec![];
         for (n, m) in materials.iter().enumerate() {
-            if d == 2 && plane == Plane::Stress {
-                return Err((
-                    n,
-                    "hyperelastic keeps its thickness in the plane, which is plane strain: write plane = \"strain\", or take correspondence with stress = \"neo_hookean\"".into(),
-                ));
-            }
             let shear = Hyperelastic::moduli(m.parameters)
                 .map_err(|why| (n, why))?
                 .shear();
             let law = Hyperelastic::of(m.parameters).map_err(|why| (n, why))?;
             all.extend(law.materials.into_iter().map(|(energy, _)| (energy, shear)));
         }
-        Ok(Hyperelastic { materials: all })
+        Ok(Hyperelastic {
+            materials: all,
+            sheet: d == 2 && plane == Plane::Stress,
+        })
     }
 }
 

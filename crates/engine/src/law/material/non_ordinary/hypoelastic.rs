@@ -27,6 +27,8 @@ pub struct HypoelasticConstants {
 #[derive(Debug, Clone)]
 pub struct Hypoelastic {
     pub increment: Increment,
+    /// In the plane: are its faces free?
+    pub sheet: bool,
     /// Per material.
     pub materials: Vec<HypoelasticConstants>,
 }
@@ -68,7 +70,16 @@ impl<const D: usize> Classical<D> for Hypoelastic {
 
     #[inline(always)]
     fn across<N: Number>(&self, ([stretch, _], own): &Past<N, D>) -> N {
-        own[2] * (N::constant(1.0) + tensor::dilation(stretch))
+        tensor::dilation(stretch).fma(own[2], own[2])
+    }
+
+    fn is_sheet(&self) -> bool {
+        self.sheet
+    }
+
+    #[inline(always)]
+    fn thickness<N: Number>(&self, (_, own): &Past<N, D>, _: N) -> N {
+        own[1]
     }
 
     #[inline(always)]
@@ -98,6 +109,7 @@ impl<const D: usize> Classical<D> for Hypoelastic {
         let work = *work + step.work((s0, *across), (&s, now));
         Stressed {
             stress: step.nominal(&s),
+            across: step.nominal_across(now),
             energy: work,
             past: ([step.stretch, s], [work, unseen.across, now]),
         }
@@ -110,7 +122,7 @@ impl Shelved for Hypoelastic {
         keys.push(INCREMENT);
         Descriptor {
             name: "hypoelastic".into(),
-            doc: "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            doc: "Non-ordinary, in rate form: the unrotated Cauchy stress grows by λ tr(d) 1 + 2μ d (Green-Naghdi rate). Two of young, poisson, bulk, shear; in plane stress the thickness gives way.".into(),
             source: "Green & Naghdi 1965; Flanagan & Taylor 1987; Silling et al. 2007".into(),
             example: "{ young = \"200 GPa\", poisson = 0.3 }".into(),
             influence: Influence::Constant,
@@ -131,11 +143,6 @@ impl Shelved for Hypoelastic {
         let mut made = vec![];
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: &str| Err((n, message.to_string()));
-            if d == 2 && plane == Plane::Stress {
-                return refused(
-                    "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\"",
-                );
-            }
             if word(m) != Some(increment) {
                 return refused("all materials of a body have the same kind of increment");
             }
@@ -147,6 +154,7 @@ impl Shelved for Hypoelastic {
         }
         Ok(Hypoelastic {
             increment,
+            sheet: d == 2 && plane == Plane::Stress,
             materials: made,
         })
     }
@@ -173,6 +181,7 @@ mod tests {
     ) -> (Matrix<f64, D>, Past<f64, D>) {
         let law = Hypoelastic {
             increment,
+            sheet: false,
             materials: vec![],
         };
         let mut past = ([[[0.0; D]; D]; 2], [0.0; 3]);

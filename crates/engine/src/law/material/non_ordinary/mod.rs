@@ -16,6 +16,7 @@ pub mod hypoelastic_plastic;
 pub mod rate;
 mod rest;
 pub mod stiffness;
+mod thickness;
 
 pub use bond::BondAssociated;
 pub use family::NonOrdinary;
@@ -96,6 +97,18 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         N::constant(0.0)
     }
 
+    /// In the plane: is the strain across whatever leaves no stress there ([`Stressed::across`]), as in a sheet whose faces are free?
+    fn is_sheet(&self) -> bool {
+        false
+    }
+
+    /// Where the search for that strain begins, `J − 1` of the plane given.
+    #[inline(always)]
+    fn thickness<N: Number>(&self, _past: &Self::Past<N>, dilation: N) -> N {
+        // half of what would keep the volume
+        N::constant(-0.5) * dilation.div(N::constant(1.0) + dilation)
+    }
+
     /// What is left of its control, 1 at first.
     #[inline(always)]
     fn control<N: Number>(&self, _past: &Self::Past<N>) -> N {
@@ -119,7 +132,7 @@ pub struct Unseen<N> {
     pub stiffness: N,
     /// `Σ ω ν V z²` (length² volume).
     pub square: N,
-    /// [`Around::section`](super::Around::section)
+    /// Elastic strain across a plane: [`Around::section`](super::Around::section), or that of a sheet.
     pub across: N,
 }
 
@@ -147,6 +160,8 @@ impl<N: Number> Unseen<N> {
 pub struct Stressed<N, P, const D: usize> {
     /// First Piola–Kirchhoff stress P.
     pub stress: Matrix<N, D>,
+    /// That across a plane (force / area of the reference), of laws that may be a sheet; else 0.
+    pub across: N,
     /// What is stored and what the step dissipated, or the work done where nothing is stored (energy / volume).
     pub energy: N,
     /// What is remembered then.
@@ -169,6 +184,17 @@ impl<L: Classical<D>, N: Number, const D: usize> Piece for Asked<'_, L, N, D> {
     fn run(self) -> Self::Out {
         self.law
             .stress(self.constants, self.past, self.h, &self.unseen)
+    }
+}
+
+/// What a law answers, which finds the thickness of a sheet itself.
+#[inline(always)]
+fn answered<N: Number, L: Classical<D>, const D: usize>(
+    asked: Asked<'_, L, N, D>,
+) -> Stressed<N, L::Past<N>, D> {
+    match D == 2 && asked.law.is_sheet() {
+        true => thickness::relaxed(&asked),
+        false => N::apart(asked),
     }
 }
 

@@ -188,6 +188,12 @@ impl<N: Number, const D: usize> Step<N, D> {
         N::constant(0.5) * (ends[0] + ends[1])
     }
 
+    /// `P_zz = σ_zz J/λ_z` at its end.
+    #[inline(always)]
+    pub fn nominal_across(&self, s: N) -> N {
+        tensor::dilation(&self.stretch).fma(s, s)
+    }
+
     /// `P = R σ_u cof(U)` at its end.
     #[inline(always)]
     pub fn nominal(&self, s: &Matrix<N, D>) -> Matrix<N, D> {

@@ -3,7 +3,7 @@
 //!
 //! With `q = √(3/2 s:s)` of the deviator s and the mean stress p (tension positive), it yields where `q + a p = σ_y` (von Mises for a = 0,
 //! Drucker & Prager 1952) and flows by `Δε^p = Δε̄ (3/2 s/q + ⅓ b 1)`. A step tries the elastic stress first and returns along the
-//! flow (Wilkins 1964; Simo & Hughes 1998, 3.3): `q′ + a p′ − (3μ + aKb) Δε̄ = σ_y(ε̄ + Δε̄, Δε̄/Δt, T)`, in plane strain with the deviator
+//! flow (Wilkins 1964; Simo & Hughes 1998, 3.3): `q′ + a p′ − (3μ + aKb) Δε̄ = σ_y(ε̄ + Δε̄, Δε̄/Δt, T)`, in the plane with the deviator
 //! across. Where that leaves no deviator the stress is the apex, `p = σ_y(ε̄ + q′/3μ)/a`.
 //!
 //! With an [equation of state](super::equation_of_state) the mean stress is `−p(J, E) − q` of the volume and of the internal energy E, which is all work that
@@ -44,6 +44,8 @@ pub struct HypoelasticPlasticConstants {
 pub struct HypoelasticPlastic {
     pub increment: Increment,
     pub kind: Kind,
+    /// In the plane: are its faces free?
+    pub sheet: bool,
     /// Do they have damage?
     pub damages: bool,
     pub state: equation_of_state::Kind,
@@ -343,6 +345,15 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         across * (N::constant(1.0) + tensor::dilation(stretch))
     }
 
+    fn is_sheet(&self) -> bool {
+        self.sheet
+    }
+
+    #[inline(always)]
+    fn thickness<N: Number>(&self, (_, memory): &Past<N, D>, _: N) -> N {
+        memory[ACROSS]
+    }
+
     #[inline(always)]
     fn stress<N: Number>(
         &self,
@@ -417,6 +428,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         now[SHOCK] = shock;
         Stressed {
             stress: step.nominal(&s),
+            across: step.nominal_across(with_across(&s, flow.mean).1),
             energy: now[WORK] - memory[PLASTIC_WORK] + lost,
             past: ([step.stretch, s], now),
         }

@@ -61,7 +61,7 @@ impl Shelved for HypoelasticPlastic {
         keys.extend(VISCOSITY);
         Descriptor {
             name: "hypoelastic_plastic".into(),
-            doc: "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman; under impact with an equation of state. Two of young, poisson, bulk, shear; in the plane plane strain.".into(),
+            doc: "Non-ordinary, in rate form, with flow: q + a p = σ_y = g(ε̄) r(ε̄̇) (1 − T*ᵐ), von Mises, Drucker-Prager, Johnson-Cook, Needleman; under impact with an equation of state. Two of young, poisson, bulk, shear; in plane stress the thickness gives way.".into(),
             source: "Simo & Hughes 1998; Johnson & Cook 1983, 1985; Drucker & Prager 1952; Silling et al. 2007".into(),
             example: "{ young = \"117 GPa\", poisson = 0.35, yield_stress = \"400 MPa\", hardening = \"100 MPa\" }".into(),
             influence: Influence::Constant,
@@ -96,11 +96,6 @@ impl Shelved for HypoelasticPlastic {
         let mut made = vec![];
         for (n, m) in materials.iter().enumerate() {
             let refused = |message: String| (n, message);
-            if d == 2 && plane == Plane::Stress {
-                return Err(refused(
-                    "in the plane a hypoelastic solid keeps its thickness, which is plane strain: write plane = \"strain\"".into(),
-                ));
-            }
             if words(m).map_err(refused)? != all {
                 return Err(refused(
                     "all materials of a body have the same increment, hardening_law, rate_law and equation_of_state, and all melt or none, are damaged or none".into(),
@@ -155,6 +150,7 @@ impl Shelved for HypoelasticPlastic {
             });
         }
         Ok(HypoelasticPlastic {
+            sheet: d == 2 && plane == Plane::Stress,
             increment,
             kind,
             damages,
