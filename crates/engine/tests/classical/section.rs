@@ -256,9 +256,21 @@ fn a_bar_and_a_sheet_yield_at_the_yield_stress() {
         2.0 / (2.0 * (1.0 - POISSON) / YOUNG + 1.0 / LIMIT[1]),
     ];
     let moduli = [YOUNG, YOUNG / (1.0 - POISSON)];
-    for d in 1..=2 {
+    let metal = |gradient: &str| {
+        let parameters = elastic()
+            .with("yield_stress", Parameter::Number(LIMIT[0]))
+            .with("hardening", Parameter::Number(LIMIT[1]))
+            .with("gradient", Parameter::Word(gradient.into()));
+        LawSpec::named("hypoelastic_plastic", parameters)
+    };
+    for (d, law) in [
+        (1, flows().0),
+        (2, flows().0),
+        (2, metal("family")),
+        (2, metal("bond")),
+    ] {
         let kind = [LatticeKind::Chain, LatticeKind::Square][d - 1];
-        let mut spec = block(kind, [9, if d == 2 { 9 } else { 1 }, 1], 2, flows().0);
+        let mut spec = block(kind, [9, if d == 2 { 9 } else { 1 }, 1], 2, law);
         spec.plane = Plane::Stress;
         let y = if d == 2 { "1e-7*y*t" } else { "0" };
         let mut sim = led(&mut spec, ["1e-7*x*t", y, "0"]);
@@ -275,6 +287,56 @@ fn a_bar_and_a_sheet_yield_at_the_yield_stress() {
                 (found / exact - 1.0).abs() < 2e-6,
                 "{d} {n}: {found} {exact}"
             );
+        }
+    }
+}
+
+/// The same energy written by a user, whose thickness is searched for, and with a thickness of its own, to large strains: and where nothing changes
+/// the volume the sheet of Treloar (1944), `σ = μ (λ² − λ⁻⁴)` of the current area.
+#[test]
+fn a_sheet_of_rubber_gets_thinner() {
+    use peridyne::expression::Expression;
+    let written = |text: &str, gradient: &str| {
+        let of = [("mu", SHEAR), ("l", BULK - 2.0 / 3.0 * SHEAR)];
+        let energy = Expression::of(&["I1", "I2", "J"], text, &of).unwrap();
+        let parameters = Parameters::default()
+            .with("energy", Parameter::Formula(energy))
+            .with("gradient", Parameter::Word(gradient.into()));
+        LawSpec::named("hyperelastic", parameters)
+    };
+    let named = |gradient: &str| {
+        let parameters = elastic()
+            .with("stress", Parameter::Word("neo_hookean".into()))
+            .with("gradient", Parameter::Word(gradient.into()));
+        LawSpec::named("correspondence", parameters)
+    };
+    let pulled = |law: LawSpec, ways: [&str; 2]| {
+        let mut spec = block(LatticeKind::Square, [9, 9, 1], 2, law);
+        spec.plane = Plane::Stress;
+        led(&mut spec, [ways[0], ways[1], "0"])
+    };
+    for gradient in ["family", "bond"] {
+        let ways = ["0.04*x*t + 0.02*y*t", "0.03*x*t - 0.02*y*t"];
+        let neo_hooke = "mu/2*(I1 - 3) - mu*ln(J) + l/2*ln(J)^2";
+        let mut sheets = [written(neo_hooke, gradient), named(gradient)].map(|l| pulled(l, ways));
+        for n in 1..=10 {
+            let [one, other] = sheets.each_mut().map(|sim| {
+                sim.step().unwrap();
+                ["xx", "yy", "xy"].map(|c| stress(sim.as_mut(), c))
+            });
+            for (a, b) in one.iter().zip(other) {
+                assert!((a - b).abs() < 1e-10 * one[0].abs(), "{gradient} {n}: {one:?} {other:?}");
+            }
+        }
+        let stiff = "mu/2*(I1*J^(-2/3) - 3) + 5e5*mu*(J - 1)^2";
+        let mut sim = pulled(written(stiff, gradient), ["0.05*x*t", "0.05*y*t"]);
+        for n in 1..=10 {
+            sim.step().unwrap();
+            let stretch = 1.0 + 0.05 * f64::from(n);
+            let exact = SHEAR * (stretch.powi(2) - stretch.powi(-4));
+            let found = stress(sim.as_mut(), "xx");
+            // a bulk modulus of a million μ is hardly pressed
+            assert!((found / exact - 1.0).abs() < 1e-5, "{gradient} {n}: {found} {exact}");
         }
     }
 }

@@ -226,7 +226,7 @@ impl Shelved for Fluid {
             let refused = |message: String| (n, message);
             if d == 2 && plane == Plane::Stress {
                 return Err(refused(
-                    "in the plane a fluid keeps its thickness: write plane = \"strain\"".into(),
+                    "a pressure is the same in all directions, and a sheet of fluid whose faces are free bears none: write plane = \"strain\"".into(),
                 ));
             }
             if m.breaks {
