@@ -81,6 +81,13 @@ impl<const D: usize> Model<D> {
             + ledger.dissipated
             + ledger.numerical;
         if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
+            if self.statics.is_some() {
+                return Err(RunError::Unbalanced {
+                    step: self.step,
+                    before,
+                    after,
+                });
+            }
             return Err(RunError::Unstable {
                 step: self.step,
                 before,
