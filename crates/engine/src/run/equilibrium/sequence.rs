@@ -195,10 +195,10 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         last: Option<&Sequence<D>>,
     ) -> Result<Solved, SolveError> {
-        let support = self.support();
         let before = self.u.clone();
         // under the load 1
         self.origin = (self.step, 1.0);
+        let support = self.support_now(state.options)?;
         for c in &self.constraints {
             c.place(&mut self.u, 1.0);
         }
