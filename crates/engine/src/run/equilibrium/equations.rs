@@ -65,8 +65,9 @@ impl<const D: usize> Model<D> {
             (Some(body), None) => Some(support.resisted(body)),
             _ => None,
         };
+        let any = resisted.as_ref().is_none_or(|s| s.unknowns() > 0);
         let factors = match &body {
-            Some(body) if factored => {
+            Some(body) if factored && any => {
                 let support = resisted.as_ref().unwrap_or(support);
                 let made = match inertia {
                     Some(_) => Direct::against(body, support, &added),

@@ -7,6 +7,13 @@ use crate::run::model::Model;
 use crate::spec::{Method, Statics};
 use crate::statics::Support;
 
+/// What is free where bonds have broken.
+pub(super) struct Held<const D: usize> {
+    pub support: Support<D>,
+    /// Points (by id) of parts that rest where they are.
+    pub resting: Vec<usize>,
+}
+
 impl<const D: usize> Model<D> {
     /// Which components the conditions leave free.
     pub(in crate::run) fn support(&self) -> Support<D> {
@@ -37,11 +44,12 @@ impl<const D: usize> Model<D> {
     ///
     /// # Errors
     /// A load acts on it: there is no equilibrium.
-    pub(super) fn support_now(&mut self, options: Statics) -> Result<Support<D>, SolveError> {
+    pub(super) fn support_now(&mut self, options: Statics) -> Result<Held<D>, SolveError> {
         let support = self.support();
+        let resting = vec![];
         // what touches may hold, too
         if self.broken == 0 || self.contact.is_some() || !self.indenters.is_empty() {
-            return Ok(support);
+            return Ok(Held { support, resting });
         }
         let (places, period) = (self.reference_places(), self.body.period);
         let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
@@ -49,7 +57,7 @@ impl<const D: usize> Model<D> {
         // one of each part
         loose.dedup_by_key(|l| l.point);
         if loose.is_empty() {
-            return Ok(support);
+            return Ok(Held { support, resting });
         }
         let external = self.external();
         let loads = self.per_point(&external);
@@ -57,7 +65,10 @@ impl<const D: usize> Model<D> {
         for (i, part) in parts.iter().enumerate() {
             members[*part as usize].push(i);
         }
-        let mut now = support.clone();
+        let mut now = Held {
+            support: support.clone(),
+            resting,
+        };
         for part in loose {
             let own = &members[parts[part.point] as usize];
             let pulled = |i: &usize| (0..D).any(|a| support.free[*i][a] && loads[*i][a] != 0.0);
@@ -77,8 +88,9 @@ impl<const D: usize> Model<D> {
             };
             let enough = given.completed(&places, &vec![0; own.len()], &period);
             for (i, free) in own.iter().zip(enough.free) {
-                now.free[*i] = free;
+                now.support.free[*i] = free;
             }
+            now.resting.extend(own);
         }
         Ok(now)
     }

@@ -399,7 +399,7 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
-        let mut support = self.support_now(state.options)?;
+        let mut support = self.support_now(state.options)?.support;
         let method = state.options.method;
         let linear = method == Method::Linear && self.at_peace();
         // a start that is no equilibrium goes to one, whatever acts
@@ -445,7 +445,7 @@ impl<const D: usize> Model<D> {
             self.hold(linear);
             from = [self.u.clone(), self.f.clone(), self.external()];
             released = true;
-            support = self.support_now(state.options)?;
+            support = self.support_now(state.options)?.support;
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
     }

@@ -126,7 +126,7 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
-        let support = self.support_now(state.options)?;
+        let support = self.support_now(state.options)?.support;
         if support.unknowns() == 0 {
             return Err(SolveError::NothingFree);
         }

@@ -152,18 +152,25 @@ impl<const D: usize> Model<D> {
         b: &[[f64; D]],
         x: &mut [[f64; D]],
     ) -> Result<Solved, SolveError> {
+        // all that is left rests
+        if support.unknowns() == 0 {
+            return Ok(Solved::default());
+        }
         if self.factored(state.options, support) {
             let (body, factors) = match state.factors.take() {
-                Some(kept) => kept,
-                None => {
-                    let body = self.reference_body();
-                    let factors = Direct::new(&body, &support.resisted(&body), 0.0)?;
-                    (body, factors)
-                }
+                Some((body, factors)) => (body, Some(factors)),
+                None => (self.reference_body(), None),
             };
             let resisted = &support.resisted(&body);
             support.rests(resisted, b)?;
+            if resisted.unknowns() == 0 {
+                return Ok(Solved::default());
+            }
             let support = resisted;
+            let factors = match factors {
+                Some(kept) => kept,
+                None => Direct::new(&body, support, 0.0)?,
+            };
             let solved = factors.solve_held(&mut Assembled(&body), support, b, x);
             // LU of a singular matrix says nothing; what is not a number is no solution
             if !(solved.residual <= SOLVED) {
