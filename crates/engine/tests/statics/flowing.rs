@@ -92,3 +92,55 @@ fn a_stiffness_without_symmetry_is_named_by_its_cause() {
     rest.start(true);
     assert!(rest.modes(2).unwrap()[0].square > 0.0);
 }
+
+/// A band that is pulled apart by flow: points that have lost all their bonds are no singular equations, and nothing ends in what is not a number.
+#[test]
+fn a_band_that_flows_and_breaks_stays_in_numbers() {
+    let mut spec = block([13.0, 10.0, 0.0], 2, law("hypoelastic_plastic"));
+    spec.plane = Plane::Strain;
+    spec.horizon = Horizon::Ratio(3);
+    spec.materials[0].fracture = Some(FractureSpec::new(Criterion::PlasticStrain(0.002)));
+    let rows = |name: &str, sign: f64, y: f64| SetSpec {
+        name: name.into(),
+        members: Members::Region(Region::HalfSpace {
+            point: [0.0, y, 0.0],
+            normal: [0.0, sign, 0.0],
+        }),
+    };
+    spec.sets = vec![rows("low", 1.0, 2.5), rows("high", -1.0, 7.5)];
+    hold(&mut spec, "low", [number(0.0), number(0.0), None]);
+    hold(&mut spec, "high", [number(0.0), text("0.06*t"), None]);
+    spec.schedule.steps = 16;
+    spec.schedule.time_step = TimeStep::Fixed(1.0 / 16.0);
+    let spec = with(&spec, Method::Newton, Solver::Auto, 1e-8);
+    let mut sim = build(&spec, Options::default()).unwrap();
+    sim.start(true);
+    let mut done = 0;
+    while done < 16 {
+        match sim.step() {
+            Ok(()) => done += 1,
+            Err(e) => {
+                let said = e.to_string();
+                assert!(
+                    !said.contains("NaN") && !said.contains("unstable"),
+                    "{said}"
+                );
+                println!("ends in increment {}: {said}", done + 1);
+                break;
+            }
+        }
+        let l = sim.ledger().unwrap();
+        assert!(
+            [l.strain, l.released, l.dissipated, l.work_conditions]
+                .iter()
+                .all(|x| x.is_finite()),
+            "{done}: {l:?}"
+        );
+        assert!(
+            sim.displacements().iter().flatten().all(|u| u.is_finite()),
+            "{done}"
+        );
+    }
+    // two points lose all their bonds in increment 14
+    assert!(sim.broken() > 0 && done >= 13, "{done}");
+}
