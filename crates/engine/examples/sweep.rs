@@ -141,9 +141,14 @@ impl Case {
             origin: [0.0; 3],
         };
         let stencil = Stencil::new(LatticeKind::Cubic, H, Horizon::Ratio(3));
-        let body =
-            Body::<3>::on_lattice(lattice, &self.sites(), stencil.reach, [false; 3], H * H * H)
-                .unwrap();
+        let body = Body::<3>::on_lattice(
+            lattice,
+            &self.sites(),
+            stencil.reach(),
+            [false; 3],
+            H * H * H,
+        )
+        .unwrap();
         let it = StencilInteraction::new(StencilParts {
             body: &body,
             stencil: &stencil,

@@ -20,7 +20,7 @@ impl FamilyMoments {
         let stencil = Stencil::new(kind, 1.0, Horizon::Ratio(m_ratio));
         FamilyMoments {
             kind,
-            bonds: stencil.offsets[0]
+            bonds: stencil.offsets()[0]
                 .iter()
                 .map(|o| (o.quarter, o.squared))
                 .collect(),

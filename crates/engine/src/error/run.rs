@@ -69,6 +69,12 @@ pub enum RunError {
         i: u64,
         j: u64,
     },
+    /// Of an equilibrium, which knows no time step.
+    Unbalanced {
+        step: u64,
+        before: f64,
+        after: f64,
+    },
     Unstable {
         step: u64,
         before: f64,
@@ -177,6 +183,17 @@ impl RunError {
                 "step {step}: points {i} and {j} crossed: their bond turned over within one step"
             )
             .into(),
+            RunError::Unbalanced {
+                step,
+                before,
+                after,
+            } => message![
+                format!("increment {step}: forces balance, energy does not: "),
+                Dimension::ENERGY.of(*before),
+                " came in, and ",
+                Dimension::ENERGY.of(*after),
+                " are there; flow or breaking within this increment went further than the law follows: take more increments, or let it break in motion ([run])",
+            ],
             RunError::Unstable {
                 step,
                 before,
@@ -214,6 +231,7 @@ fn shorter(error: &SolveError) -> &'static str {
         }
         SolveError::NothingFree
         | SolveError::Loose(_)
+        | SolveError::Unheld { .. }
         | SolveError::Singular
         | SolveError::TooLarge
         | SolveError::TooManyModes { .. }

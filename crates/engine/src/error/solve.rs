@@ -19,12 +19,19 @@ pub enum SolveError {
     NothingFree,
     #[error("nothing holds the body: {} of the part of {} points around point {} is free", .0.motion, .0.points, .0.point)]
     Loose(Loose),
+    #[error(
+        "nothing holds {}, and a load acts on it: the bonds that held it are gone; take it out of the load, prescribe its displacement, or let it fly in motion ([run])",
+        part(*.points, *.point)
+    )]
+    Unheld { points: usize, point: usize },
     /// A motion around this point that gives energy back.
     #[error(
         "the operator is not positive definite: some motion around point {point} meets no resistance"
     )]
     Indefinite { point: usize },
-    #[error("the equations are singular")]
+    #[error(
+        "the equations are singular: some part of the body moves without resistance, as where bonds that are left span no space; hold it, or let it move in time ([run])"
+    )]
     Singular,
     #[error(
         "the matrix or its factors do not fit into memory: write solver = \"cg\", take fewer points, or a shorter horizon"
@@ -33,11 +40,11 @@ pub enum SolveError {
     #[error("{count} modes would take about {}, {} are left: ask for fewer", size(*.bytes), size(*.left))]
     TooManyModes { count: usize, bytes: f64, left: f64 },
     #[error(
-        "action is not reaction in this body (asymmetry {asymmetry:.1e}): conjugate gradients and modes of vibration need a symmetric one; write solver = \"direct\", and leave modes out"
+        "the stiffness is not symmetric (asymmetry {asymmetry:.1e}): forces are slopes of no energy, as under laws in rate form that bear stress, with friction, and where action is not reaction; conjugate gradients and modes of vibration need a symmetric one: write solver = \"direct\", and leave modes out or take them of the body at rest"
     )]
     NotSymmetric { asymmetry: f64 },
     #[error(
-        "after {iterations} iterations the residual is {residual:.1e} of that of the start, not {tolerance:.1e}"
+        "after {iterations} iterations the residual is {residual:.1e} of the forces that act, not {tolerance:.1e}"
     )]
     NotConverged {
         iterations: usize,
@@ -60,4 +67,11 @@ pub enum SolveError {
     NotFinite,
     #[error("it was asked to end before it was found")]
     Stopped,
+}
+
+fn part(points: usize, point: usize) -> String {
+    match points {
+        1 => format!("point {point}"),
+        _ => format!("the part of {points} points around point {point}"),
+    }
 }

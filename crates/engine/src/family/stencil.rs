@@ -20,21 +20,46 @@ pub struct Offset {
     pub squared: i64,
 }
 
-/// Bonds per sublattice, nearest rows first in memory order (z, y, x).
+/// Bonds per sublattice, nearest rows first in memory order (z, y, x). Kernels go where these lead, so that nobody changes them:
+///
+/// ```compile_fail,E0616
+/// use peridyne::family::stencil::Stencil;
+/// use peridyne::space::lattice::LatticeKind;
+/// use peridyne::spec::Horizon;
+/// let mut stencil = Stencil::new(LatticeKind::Square, 1.0, Horizon::Ratio(2));
+/// stencil.offsets[0][3].to = 1 << 20;
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stencil {
-    pub kind: LatticeKind,
-    pub offsets: Vec<Vec<Offset>>,
-    /// Cells that the longest bond spans.
-    pub reach: usize,
-    /// Number of (directed, per cell) bonds whose length is within round-off (1e-9) of a horizon given as a length.
-    pub near_horizon: usize,
+    pub(crate) kind: LatticeKind,
+    pub(crate) offsets: Vec<Vec<Offset>>,
+    pub(crate) reach: usize,
+    pub(crate) near_horizon: usize,
 }
 
 /// Most bonds of a point; kernels have room for so many.
 pub const MOST: usize = 32_768;
 
 impl Stencil {
+    pub fn kind(&self) -> LatticeKind {
+        self.kind
+    }
+
+    /// Per sublattice.
+    pub fn offsets(&self) -> &[Vec<Offset>] {
+        &self.offsets
+    }
+
+    /// Cells that the longest bond spans.
+    pub fn reach(&self) -> usize {
+        self.reach
+    }
+
+    /// Number of (directed, per cell) bonds whose length is within round-off (1e-9) of a horizon given as a length.
+    pub fn near_horizon(&self) -> usize {
+        self.near_horizon
+    }
+
     /// Would [`Stencil::new`] find at most [`MOST`] bonds, by the volume of the ball? To be asked before: a horizon in the
     /// wrong unit makes more bonds than any memory holds.
     ///

@@ -239,8 +239,9 @@ pub trait Interaction<const D: usize>: Send + Sync {
     ) -> Result<(), BuildError> {
         Err(BuildError::unsupported(
             "bonds",
-            "factors of bonds need a solid (pmb, lps) or springs on a lattice",
-        ))
+            "factors of bonds multiply what pmb, lps and springs pull on a lattice, where a bond is known by its cell, and the bonds of this body are others",
+        )
+        .help("take pmb or lps on a lattice, or leave the factors out"))
     }
 
     /// Volume with which the bond along ξ acts on slot i, and its factors, where there are any.

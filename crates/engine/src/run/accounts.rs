@@ -77,6 +77,13 @@ impl<const D: usize> Model<D> {
             ledger.initial.abs() + ledger.work_conditions.abs() + ledger.work_indenter.abs();
         let after = ledger.held() - self.last_kick();
         if !(after <= 10.0 * before + f64::MIN_POSITIVE) && self.step > self.origin.0 {
+            if self.statics.is_some() {
+                return Err(RunError::Unbalanced {
+                    step: self.step,
+                    before,
+                    after,
+                });
+            }
             return Err(RunError::Unstable {
                 step: self.step,
                 before,

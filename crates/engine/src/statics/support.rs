@@ -1,6 +1,7 @@
 //! Where a body is held, and whether that holds it.
 
-use crate::error::Loose;
+use crate::error::{Loose, SolveError};
+use crate::spec::LinearBody;
 use peridyne_algebra::symmetric_eigen;
 
 /// Which components of which points are free to move.
@@ -24,7 +25,17 @@ impl<const D: usize> Support<D> {
 
     /// As few components held as hold every part, so that reactions to forces that balance are 0.
     pub fn just_enough(position: &[[f64; D]], part: &[u32], period: &[Option<f64>; D]) -> Self {
-        let mut support = Support::none(position.len());
+        Support::none(position.len()).completed(position, part, period)
+    }
+
+    /// These components, and as few others as hold every part with them.
+    pub fn completed(
+        &self,
+        position: &[[f64; D]],
+        part: &[u32],
+        period: &[Option<f64>; D],
+    ) -> Self {
+        let mut support = self.clone();
         for members in members(part).iter().filter(|m| !m.is_empty()) {
             let rigid = Rigid::of(position, members, period);
             let count = rigid.motions.len();
@@ -32,41 +43,39 @@ impl<const D: usize> Support<D> {
             let mut left: Vec<Vec<f64>> = (0..count)
                 .map(|k| (0..count).map(|m| f64::from(m == k)).collect())
                 .collect();
-            while !left.is_empty() {
-                let felt = |i: usize, a: usize, motion: &[f64]| -> f64 {
-                    let at = rigid.motions.iter().zip(motion);
-                    at.map(|(m, w)| w * rigid.value(m.1, &position[i], a)).sum()
-                };
-                // the component that moves most is held; of equal ones the first
-                let mut most = (0.0, (members[0], 0));
-                for &i in members {
-                    for a in (0..D).filter(|a| support.free[i][*a]) {
-                        let moves: f64 = left.iter().map(|m| felt(i, a, m).powi(2)).sum();
-                        if moves > most.0 * (1.0 + 1e-9) {
-                            most = (moves, (i, a));
-                        }
-                    }
-                }
-                let (moves, (i, a)) = most;
-                if moves < 1e-18 {
-                    break;
-                }
-                support.free[i][a] = false;
-                let felt: Vec<f64> = left.iter().map(|m| felt(i, a, m)).collect();
-                let held = (0..felt.len())
-                    .max_by(|p, q| felt[*p].abs().total_cmp(&felt[*q].abs()))
-                    .unwrap_or(0);
-                let gone = left.swap_remove(held);
-                let mut others = felt.clone();
-                others.swap_remove(held);
-                for (m, f) in left.iter_mut().zip(others) {
-                    for (m, g) in m.iter_mut().zip(&gone) {
-                        *m -= f / felt[held] * g;
-                    }
+            // what is held takes its part of them first
+            for free in [false, true] {
+                while let Some((i, a)) = self.most_moved(&rigid, position, members, &left, free) {
+                    support.free[i][a] = false;
+                    let felt = left.iter().map(|m| rigid.felt(m, &position[i], a));
+                    let felt = felt.collect();
+                    hold(&mut left, felt);
                 }
             }
         }
         support
+    }
+
+    /// The component (free or held here) that these motions move most; of equal ones the first, and none that they do not move.
+    fn most_moved(
+        &self,
+        rigid: &Rigid<D>,
+        position: &[[f64; D]],
+        members: &[usize],
+        left: &[Vec<f64>],
+        free: bool,
+    ) -> Option<(usize, usize)> {
+        let mut most = (0.0, None);
+        for &i in members {
+            for a in (0..D).filter(|a| self.free[i][*a] == free) {
+                let felt = left.iter().map(|m| rigid.felt(m, &position[i], a).powi(2));
+                let moves: f64 = felt.sum();
+                if moves > most.0 * (1.0 + 1e-9) {
+                    most = (moves, Some((i, a)));
+                }
+            }
+        }
+        most.1.filter(|_| most.0 >= 1e-18)
     }
 
     /// Number of free components.
@@ -83,6 +92,35 @@ impl<const D: usize> Support<D> {
                 }
             }
         }
+    }
+
+    /// Points that nothing resists at all (whose bonds have broken, or span no space) held besides: they rest where they are.
+    pub fn resisted(&self, body: &LinearBody<D>) -> Support<D> {
+        let mut support = self.clone();
+        for (i, free) in support.free.iter_mut().enumerate() {
+            let mut numbers = body.row(i).1.iter().flatten().flatten();
+            if numbers.all(|c| *c == 0.0) {
+                *free = [false; D];
+            }
+        }
+        support
+    }
+
+    /// Does no force (per point) act where only `resisted` holds a point?
+    ///
+    /// # Errors
+    /// One does, and nothing holds that point.
+    pub fn rests(&self, resisted: &Support<D>, force: &[[f64; D]]) -> Result<(), SolveError> {
+        for (i, force) in force.iter().enumerate() {
+            let loose = |a: usize| self.free[i][a] && !resisted.free[i][a] && force[a] != 0.0;
+            if (0..D).any(loose) {
+                return Err(SolveError::Unheld {
+                    points: 1,
+                    point: i,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Rigid motions that the held components leave to connected parts; `part` labels each point's.
@@ -141,6 +179,21 @@ impl<const D: usize> Support<D> {
     }
 }
 
+/// What is left of the motions where a component that feels so much of each is held.
+fn hold(left: &mut Vec<Vec<f64>>, felt: Vec<f64>) {
+    let held = (0..felt.len())
+        .max_by(|p, q| felt[*p].abs().total_cmp(&felt[*q].abs()))
+        .unwrap_or(0);
+    let gone = left.swap_remove(held);
+    let mut others = felt.clone();
+    others.swap_remove(held);
+    for (m, f) in left.iter_mut().zip(others) {
+        for (m, g) in m.iter_mut().zip(&gone) {
+            *m -= f / felt[held] * g;
+        }
+    }
+}
+
 /// Points of each part.
 fn members(part: &[u32]) -> Vec<Vec<usize>> {
     let parts = part.iter().max().map_or(0, |m| *m as usize + 1);
@@ -192,6 +245,12 @@ impl<const D: usize> Rigid<D> {
             size,
             motions,
         }
+    }
+
+    /// Component `a` at `x` of a sum of motions.
+    fn felt(&self, motion: &[f64], x: &[f64; D], a: usize) -> f64 {
+        let at = self.motions.iter().zip(motion);
+        at.map(|(m, w)| w * self.value(m.1, x, a)).sum()
     }
 
     /// Component `a` of a motion at `x`.
@@ -257,6 +316,65 @@ mod tests {
         let found = support.loose(&position, &[0, 0, 1, 1], &[None]);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].point, found[0].points), (2, 2));
+    }
+
+    #[test]
+    fn what_is_held_is_completed() {
+        let position: Vec<[f64; 2]> = (0..4)
+            .map(|i| [f64::from(i % 2), f64::from(i / 2)])
+            .collect();
+        let part = [0; 4];
+        // a roller, a pin, and two rollers across each other's way
+        for (held, more) in [
+            (&[(0, 1)][..], 2),
+            (&[(3, 0), (3, 1)][..], 1),
+            (&[(0, 0), (2, 0)][..], 1),
+            (&[(0, 0), (0, 1), (1, 1)][..], 0),
+        ] {
+            let mut given = Support::<2>::none(4);
+            for (i, a) in held {
+                given.free[*i][*a] = false;
+            }
+            let all = given.completed(&position, &part, &[None; 2]);
+            assert!(
+                all.loose(&position, &part, &[None; 2]).is_empty(),
+                "{held:?}"
+            );
+            assert_eq!(given.unknowns() - all.unknowns(), more, "{held:?}");
+            assert!(held.iter().all(|(i, a)| !all.free[*i][*a]), "{held:?}");
+        }
+        // a point by itself
+        let mut roller = Support::<2>::none(1);
+        roller.free[0][0] = false;
+        let all = roller.completed(&[[3.0, 4.0]], &[0], &[None; 2]);
+        assert_eq!(all.unknowns(), 0);
+    }
+
+    #[test]
+    fn points_that_nothing_resists_rest() {
+        // a spring from 0 to 1, and a point that has lost its own
+        let body = LinearBody::<1> {
+            position: vec![[0.0], [1.0], [2.0]],
+            volume: vec![1.0; 3],
+            density: vec![1.0; 3],
+            period: [None],
+            start: vec![0, 1, 3, 4],
+            partner: vec![1, 0, 2, 1],
+            block: [2.0, 2.0, 0.0, 0.0].map(|c| [[c]]).to_vec(),
+            carriers: None,
+        };
+        let mut support = Support::none(3);
+        support.free[0][0] = false;
+        let resisted = support.resisted(&body);
+        assert_eq!(resisted.free, [[false], [true], [false]]);
+        assert!(support.rests(&resisted, &[[5.0], [3.0], [0.0]]).is_ok());
+        let said = support
+            .rests(&resisted, &[[0.0], [0.0], [1e-9]])
+            .unwrap_err();
+        assert!(
+            said.to_string()
+                .contains("nothing holds point 2, and a load acts on it")
+        );
     }
 
     #[test]

@@ -187,7 +187,7 @@ fn a_cut_of_one_image_cuts_both_directions() {
         origin: [0.0; 3],
     };
     let quarters: Vec<[i32; 3]> = (0..n).map(|i| [4 * i, 0, 0]).collect();
-    let body = Body::<1>::on_lattice(lattice, &quarters, stencil.reach, [true], 1.0).unwrap();
+    let body = Body::<1>::on_lattice(lattice, &quarters, stencil.reach(), [true], 1.0).unwrap();
     for (face, kind) in [
         (-0.5, CrackKind::Broken),
         (n as f64 - 0.5, CrackKind::Absent),

@@ -98,7 +98,7 @@ impl<const D: usize> Case<D> {
             spacing: H,
             origin: [0.1 * H, -0.3 * H, 0.0],
         };
-        let reach = self.stencil().reach;
+        let reach = self.stencil().reach();
         let volume = self.kind.site_volume() * H.powi(D as i32);
         let mut body =
             Body::<D>::on_lattice(lattice, &quarters, reach, self.periodic, volume).unwrap();

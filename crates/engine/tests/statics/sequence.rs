@@ -32,6 +32,7 @@ fn a_chain_bears_the_critical_stretch_of_all_its_springs() {
     let before = sim.displacements();
     let error = sim.step().unwrap_err().to_string();
     assert!(error.contains("increment 2"), "{error}");
+    assert!(error.contains("nothing is left to break"), "{error}");
     assert_eq!((sim.step_number(), sim.broken()), (1, 0));
     assert_eq!(sim.displacements(), before);
     assert!((sim.time() - 0.2 / 3.0).abs() < 1e-13);

@@ -161,7 +161,7 @@ fn sites(setup: &Setup, periodic: [Option<f64>; 3], horizon: f64) -> Option<Body
     } else {
         LatticeKind::Cubic
     };
-    if Stencil::new(kind, lattice.spacing, Horizon::Length(horizon)).near_horizon > 0 {
+    if Stencil::new(kind, lattice.spacing, Horizon::Length(horizon)).near_horizon() > 0 {
         return None;
     }
     Some(BodySpec::Sites {

@@ -66,7 +66,7 @@ pub fn links<const D: usize>(
     };
     Ok(sources
         .iter()
-        .flat_map(|&b| stencil.offsets[b].iter().map(move |o| (b, o)))
+        .flat_map(|&b| stencil.offsets()[b].iter().map(move |o| (b, o)))
         .map(|(b, o)| Link {
             from: site(b),
             to: site(o.to),

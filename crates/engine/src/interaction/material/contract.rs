@@ -6,11 +6,13 @@ use super::family::{Family, Moved, Slots};
 use super::sweeps::Forces;
 use crate::body::{Body, Column, Field, Identity, field};
 use crate::columns::Declaration;
+use crate::error::BuildError;
 use crate::execute::blocks::{Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
 };
+use crate::law::BondFactors;
 use crate::law::material::Material;
 use crate::spec::{CrackKind, Cycles, Release};
 
@@ -252,6 +254,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             self.look(body);
         }
         cut.len() as u64
+    }
+
+    fn scale_bonds(
+        &mut self,
+        _: &Body<D>,
+        _: &dyn Fn(usize, usize, [i32; D]) -> BondFactors<f64>,
+    ) -> Result<(), BuildError> {
+        Err(BuildError::unsupported(
+            "bonds",
+            "factors multiply what a bond pulls by its own stretch and its ends' dilatation; the bonds of this body do more: they remember (work, stress or strain that they break by, plastic flow), expand, or answer to tensors",
+        )
+        .help("leave the factors out, or take pmb or lps without expansion that break by critical_stretch or energy"))
     }
 
     fn prepare(&mut self, body: &Body<D>) {

@@ -56,11 +56,19 @@ impl<const D: usize> Model<D> {
             return Ok(Equations { old: true, ..kept });
         }
         let mut unstable = false;
-        let swept = !factored && self.at_peace() && self.contact.is_none();
+        let reference = self.at_peace() && self.forgets();
+        let swept = !factored && reference && self.contact.is_none();
         let body = (!swept).then(|| self.tangent_now());
         let added = self.added(inertia);
+        // nothing but inertia resists what has lost all that held it
+        let resisted = match (&body, inertia) {
+            (Some(body), None) => Some(support.resisted(body)),
+            _ => None,
+        };
+        let any = resisted.as_ref().is_none_or(|s| s.unknowns() > 0);
         let factors = match &body {
-            Some(body) if factored => {
+            Some(body) if factored && any => {
+                let support = resisted.as_ref().unwrap_or(support);
                 let made = match inertia {
                     Some(_) => Direct::against(body, support, &added),
                     None => Direct::new(body, support, 0.0),
@@ -78,6 +86,7 @@ impl<const D: usize> Model<D> {
         Ok(Equations {
             body,
             factors,
+            resisted,
             added,
             border: border(self),
             acceleration,
@@ -96,6 +105,13 @@ impl<const D: usize> Model<D> {
         goal: Goal,
     ) -> Result<(Onward<D>, usize), SolveError> {
         let (mut x, mut iterations) = (vec![[0.0; D]; r.len()], 0);
+        let support = match &equations.resisted {
+            Some(resisted) => {
+                support.rests(resisted, r)?;
+                resisted
+            }
+            None => support,
+        };
         let mut solve = |b: &[[f64; D]], x: &mut [[f64; D]]| {
             // conjugate gradients need something to seek
             if norm(b) == 0.0 {
@@ -105,7 +121,13 @@ impl<const D: usize> Model<D> {
             let solved = match (&equations.body, &equations.factors) {
                 (Some(body), Some(factors)) => {
                     let operator = &mut Assembled(body);
-                    factors.solve_held(&mut Shifted { operator, added }, support, b, x)
+                    let solved =
+                        factors.solve_held(&mut Shifted { operator, added }, support, b, x);
+                    // LU of a singular matrix says nothing
+                    if !solved.residual.is_finite() {
+                        return Err(SolveError::Singular);
+                    }
+                    solved
                 }
                 (Some(body), None) => solve_assembled(body, added, support, b, x, goal)?,
                 (None, _) => {

@@ -3,12 +3,10 @@
 //! small rotations of a linear solution change volumes in second order.
 
 use crate::body::Field;
-use crate::error::SolveError;
 use crate::interaction::{PointEnergies, Sweep};
 use crate::run::model::Model;
 use crate::spec::Method;
 use crate::statics::operator::SMALL;
-use crate::statics::{Solved, Support};
 
 use super::state::StaticState;
 
@@ -83,18 +81,8 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    /// One linear solution, and which bonds it breaks: those that its displacements stretch too far. They release what the linear
-    /// body loses.
-    pub(super) fn settle_linear(
-        &mut self,
-        state: &mut StaticState<D>,
-        support: &Support<D>,
-    ) -> Result<Solved, SolveError> {
-        let solved = self.solve_linear(state, support)?;
-        if !self.at_peace() {
-            self.forces(true, 0.0);
-            return Ok(solved);
-        }
+    /// Breaks the bonds that a linear solution stretches too far: they release what the linear body loses. Forces are those of what is left.
+    pub(super) fn tear_linear(&mut self) {
         let (broken, released) = (self.broken, self.released);
         let held: f64 = self.quadratic_energy().iter().sum();
         self.forces(true, 0.0);
@@ -105,6 +93,5 @@ impl<const D: usize> Model<D> {
         }
         self.linear_forces();
         self.other_forces(0.0);
-        Ok(solved)
     }
 }

@@ -2,6 +2,7 @@
 
 mod bordered;
 mod equations;
+mod held;
 mod linear;
 mod path;
 mod relaxed;
@@ -14,12 +15,10 @@ pub(super) mod tried;
 use self::state::StaticState;
 use super::model::Model;
 use crate::body::{Field, zeros};
-use crate::condition::constraint::Constraint;
 use crate::condition::indenter::Indenter;
 use crate::condition::load::{Load, LoadKind};
 use crate::error::{BuildError, RunError, SolveError};
 use crate::execute::memory;
-use crate::fracture::fragments::Fragments;
 use crate::interaction::Sweep;
 use crate::interaction::friction::Pressed;
 use crate::law::descriptor::Memory;
@@ -35,6 +34,9 @@ use crate::statics::{self, Solved, Support};
 /// Rounds of breaking and new equilibrium within one increment.
 const ROUNDS: usize = 10_000;
 
+/// What linear increments leave out where bonds break.
+const ONE_LOOK: &str = "linear increments look once which bonds break: those that the solution stretches too far are gone from the next increment on, and what their loss breaks is found there; write method = \"newton\" for an equilibrium after every break, or control = \"breaking\" for one bond after the other";
+
 /// What an increment does.
 #[derive(Debug, Clone, Copy, Default)]
 struct Way {
@@ -47,24 +49,6 @@ struct Way {
 }
 
 impl<const D: usize> Model<D> {
-    /// Which components the conditions leave free.
-    pub(super) fn support(&self) -> Support<D> {
-        self.support_of(&self.constraints)
-    }
-
-    fn support_of(&self, constraints: &[Constraint<D>]) -> Support<D> {
-        let id = self.ids();
-        let mut support = Support::none(self.body.points());
-        for c in constraints {
-            for (slot, held) in c.holds() {
-                for a in (0..D).filter(|a| held[*a]) {
-                    support.free[id[slot] as usize][a] = false;
-                }
-            }
-        }
-        support
-    }
-
     /// The linear body about the displacements of now.
     pub(super) fn linear_now(&mut self) -> LinearBody<D> {
         self.refresh_images();
@@ -96,13 +80,9 @@ impl<const D: usize> Model<D> {
                 SolveError::NothingFree.to_string(),
             ));
         }
-        let position: Vec<[f64; D]> = self.by_id(|i| {
-            let x = self.body.position(i);
-            std::array::from_fn(|a| x[a])
-        });
-        let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
-        if let Some(loose) = support.loose(&position, &parts, &self.body.period).first() {
-            let x = position[loose.point];
+        if let Some(loose) = self.loose_parts(&support).first() {
+            let x = self.body.position(self.body.slots[loose.point] as usize);
+            let x = &x[..D];
             return Err(BuildError::ill_posed(
                 "conditions",
                 format!(
@@ -395,6 +375,7 @@ impl<const D: usize> Model<D> {
         let place = match error {
             SolveError::Indefinite { point } => Some(*point),
             SolveError::Loose(loose) => Some(loose.point),
+            SolveError::Unheld { point, .. } => Some(*point),
             _ => None,
         };
         place.map(|n| self.body.position(self.body.slots[n] as usize))
@@ -417,7 +398,9 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
-        let support = self.support();
+        let mut support = self.support_now(state.options)?.support;
+        let method = state.options.method;
+        let linear = method == Method::Linear && self.at_peace();
         // a start that is no equilibrium goes to one, whatever acts
         let mut released = self.is_unbalanced(&support, f, state.options.tolerance);
         let mut total = Solved::default();
@@ -431,42 +414,59 @@ impl<const D: usize> Model<D> {
             self.indenters.iter_mut().for_each(|i| i.place(t));
             self.look_again();
             let before = self.broken;
-            let solved = match state.options.method {
-                Method::Linear => self.settle_linear(state, &support)?,
+            let solved = match method {
+                Method::Linear => self.solve_linear(state, &support)?,
                 Method::Newton => self.solve_newton(state, &support)?,
                 Method::Relaxation => self.relax(state, &support)?,
             };
             total.iterations += solved.iterations;
             total.residual = solved.residual;
-            if state.options.method == Method::Linear {
-                self.follow(&support, &from, released, &mut way);
-                return Ok((total, way));
-            }
             // what bonds pull that are about to break, whatever they break by, counts up to here
-            self.hold();
+            self.hold(linear);
             self.follow(&support, &from, released, &mut way);
             if round == 0 {
                 way.relaxed = way.lost;
             }
-            self.forces(true, 0.0);
+            match linear {
+                true => self.tear_linear(),
+                false => self.forces(true, 0.0),
+            }
             if self.broken == before {
                 return Ok((total, way));
             }
+            // the next solution is that of another body
+            state.forget();
+            if method == Method::Linear {
+                self.warn_of_one_look();
+                return Ok((total, way));
+            }
             // without what let go, whatever it did in the evaluation that found it
-            self.hold();
+            self.hold(linear);
             from = [self.u.clone(), self.f.clone(), self.external()];
             released = true;
-            state.forget();
+            support = self.support_now(state.options)?.support;
         }
         Err(SolveError::StillBreaking { rounds: ROUNDS })
     }
 
-    /// Forces of now, of which no bond lets go.
-    fn hold(&mut self) {
+    /// Forces of now, of which no bond lets go; of the linear body or of the law.
+    fn hold(&mut self, linear: bool) {
         self.refresh_images();
-        self.interaction
-            .forces(&self.body, &self.u, &mut self.f, Sweep::Hold, None);
+        match linear {
+            true => self.linear_forces(),
+            false => {
+                self.interaction
+                    .forces(&self.body, &self.u, &mut self.f, Sweep::Hold, None);
+            }
+        }
         self.other_forces(0.0);
+    }
+
+    /// Linear increments solve once, and look once which bonds break.
+    fn warn_of_one_look(&mut self) {
+        if !self.info.warnings.iter().any(|w| w.contains(ONE_LOOK)) {
+            self.info.warnings.push(ONE_LOOK.to_string());
+        }
     }
 
     /// The start of the run was no equilibrium.

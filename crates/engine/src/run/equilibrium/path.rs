@@ -126,7 +126,7 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         [u, f, external]: [&Field<D>; 3],
     ) -> Result<(Solved, Way), SolveError> {
-        let support = self.support();
+        let support = self.support_now(state.options)?.support;
         if support.unknowns() == 0 {
             return Err(SolveError::NothingFree);
         }
@@ -151,7 +151,7 @@ impl<const D: usize> Model<D> {
             }
         };
         let mut way = Way::default();
-        self.hold();
+        self.hold(false);
         self.follow(
             &support,
             &[u.clone(), f.clone(), external.clone()],
@@ -296,6 +296,7 @@ impl<const D: usize> Model<D> {
         unit: &[[f64; D]],
     ) -> Result<Along<D>, SolveError> {
         let body = self.tangent_now();
+        let support = &support.resisted(&body);
         let (factors, stable) = match Direct::new(&body, support, 0.0) {
             Err(SolveError::Indefinite { .. }) => (Direct::of_any_sign(&body, support)?, false),
             made => (made?, true),

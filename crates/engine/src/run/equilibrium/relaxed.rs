@@ -36,6 +36,14 @@ impl<const D: usize> Model<D> {
         let top = largest_ratio(&self.body, self.interaction.as_mut(), &own);
         // a step of 1 is stable to 4; half of that leaves room for stiffening
         own.iter_mut().for_each(|m| *m *= 0.5 * top);
+        // what has flowed yields at the reference, softer than it is when it is unloaded: the stiffness of before it flowed stays
+        let path = !self.forgets();
+        if path {
+            for (own, before) in own.iter_mut().zip(&state.masses) {
+                *own = own.max(*before);
+            }
+            state.masses.clone_from(&own);
+        }
         let reference = self.residual_of_reference(support);
         let mut x = self.values(&self.u);
         let mut r = vec![[0.0; D]; x.len()];
@@ -45,7 +53,7 @@ impl<const D: usize> Model<D> {
         for _ in 0..PRESSINGS {
             self.press();
             let mut calls = 0;
-            let solved = relax(&mut x, own.clone(), support, goal, |x, f, mass| {
+            let solved = relax(&mut x, own.clone(), support, goal, path, |x, f, mass| {
                 let scale = self.imbalance(x, &mut r, support).hypot(reference);
                 if calls % LOOK == 0 {
                     if !repels && self.repels_inside() {

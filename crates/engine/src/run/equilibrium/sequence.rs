@@ -11,6 +11,7 @@
 //! two ends; then the body is elastic. So the trapezoidal rule over both parts is exact, and the energy that is released is that which the
 //! bond held.
 
+use super::held::Held;
 use super::state::{Critical, Sequence, StaticState};
 use crate::body::{Field, zeros};
 use crate::error::{BuildError, SolveError};
@@ -195,10 +196,10 @@ impl<const D: usize> Model<D> {
         state: &mut StaticState<D>,
         last: Option<&Sequence<D>>,
     ) -> Result<Solved, SolveError> {
-        let support = self.support();
         let before = self.u.clone();
         // under the load 1
         self.origin = (self.step, 1.0);
+        let Held { support, resting } = self.support_now(state.options)?;
         for c in &self.constraints {
             c.place(&mut self.u, 1.0);
         }
@@ -218,6 +219,12 @@ impl<const D: usize> Model<D> {
         for a in 0..D {
             for &s in &self.body.slots {
                 self.u[a][s as usize] *= factor;
+            }
+        }
+        // what nothing holds has no part in the load
+        for n in resting {
+            for a in 0..D {
+                self.u[a][self.body.slots[n] as usize] = x[n][a];
             }
         }
         self.refresh_images();

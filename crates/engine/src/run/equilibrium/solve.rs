@@ -7,6 +7,7 @@ use crate::body::{Field, zeros};
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::interaction::Sweep;
+use crate::law::descriptor::Memory;
 use crate::run::Simulation;
 use crate::run::constitutive::Laws;
 use crate::run::model::Model;
@@ -100,6 +101,12 @@ impl<const D: usize> Model<D> {
         !matches!(self.constitutive.first().laws, Laws::Atoms(_)) && !self.expands()
     }
 
+    /// Has no law forces at the reference, and another stiffness there than here, by what it remembers? What fades has none: it is let back to there.
+    pub(super) fn forgets(&self) -> bool {
+        let mut named = self.constitutive.all().filter_map(|m| m.named.as_ref());
+        named.all(|n| n.memory().0 == Memory::Nothing || n.fades())
+    }
+
     /// `A u = F` about the reference, with A's factors or by conjugate gradients.
     pub(super) fn solve_linear(
         &mut self,
@@ -145,14 +152,24 @@ impl<const D: usize> Model<D> {
         b: &[[f64; D]],
         x: &mut [[f64; D]],
     ) -> Result<Solved, SolveError> {
+        // all that is left rests
+        if support.unknowns() == 0 {
+            return Ok(Solved::default());
+        }
         if self.factored(state.options, support) {
             let (body, factors) = match state.factors.take() {
+                Some((body, factors)) => (body, Some(factors)),
+                None => (self.reference_body(), None),
+            };
+            let resisted = &support.resisted(&body);
+            support.rests(resisted, b)?;
+            if resisted.unknowns() == 0 {
+                return Ok(Solved::default());
+            }
+            let support = resisted;
+            let factors = match factors {
                 Some(kept) => kept,
-                None => {
-                    let body = self.reference_body();
-                    let factors = Direct::new(&body, support, 0.0)?;
-                    (body, factors)
-                }
+                None => Direct::new(&body, support, 0.0)?,
             };
             let solved = factors.solve_held(&mut Assembled(&body), support, b, x);
             // LU of a singular matrix says nothing; what is not a number is no solution

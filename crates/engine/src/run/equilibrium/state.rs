@@ -17,6 +17,8 @@ pub(in crate::run) struct StaticState<const D: usize> {
     pub(super) followed: Option<Followed<D>>,
     /// Of the operator about the reference, once looked at.
     pub(super) asymmetry: Option<f64>,
+    /// The largest masses of points that relaxation had, of laws that remember; else empty.
+    pub(super) masses: Vec<f64>,
     /// Of the last increment.
     pub solved: Solved,
 }
@@ -30,6 +32,7 @@ impl<const D: usize> StaticState<D> {
             sequence: None,
             followed: None,
             asymmetry: None,
+            masses: vec![],
             solved: Solved::default(),
         }
     }

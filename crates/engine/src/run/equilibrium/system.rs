@@ -3,7 +3,7 @@
 use crate::condition::rigid::Wrench;
 use crate::error::SolveError;
 use crate::spec::LinearBody;
-use crate::statics::{Block, Direct, dot};
+use crate::statics::{Block, Direct, Support, dot};
 use peridyne_algebra::Factors;
 
 /// Of the points, and what rigid bodies with mass add.
@@ -11,6 +11,8 @@ pub(super) struct Equations<const D: usize> {
     /// The tangent; `None`: sweeps about the reference.
     pub body: Option<LinearBody<D>>,
     pub factors: Option<Direct<D>>,
+    /// Of equilibrium: what is free and meets any resistance.
+    pub resisted: Option<Support<D>>,
     /// `[N]` what inertia and rigid bodies add at points; empty: nothing.
     pub added: Vec<Block<D>>,
     /// What rigid bodies with mass add.

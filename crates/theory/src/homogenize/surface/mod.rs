@@ -39,7 +39,7 @@ const ONE: f64 = 1e-15;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     #[error(
-        "a surface correction needs a solid (pmb, lps) or springs: bonds of atoms have no horizon to be missing in"
+        "a surface correction multiplies what single bonds pull, of pmb, lps and springs: atoms have no horizon to be missing in, and the bonds of laws with memory, tensors or several stiffnesses pull with what their whole family says"
     )]
     Law,
     #[error(
@@ -185,7 +185,7 @@ impl LatticeBody {
         let h = lattice.spacing;
         let horizon = spec.horizon.length(h);
         let stencil = Stencil::new(lattice.kind, h, spec.horizon);
-        let bonds = stencil.offsets[0]
+        let bonds = stencil.offsets()[0]
             .iter()
             .map(|o| {
                 let r = h * (o.squared as f64).sqrt() / 4.0;

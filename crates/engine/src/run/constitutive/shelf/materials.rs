@@ -238,6 +238,11 @@ impl Chosen {
         }
     }
 
+    /// Do its bonds soften to nothing, and pull along a line to where they began when they are let back?
+    pub fn fades(&self) -> bool {
+        matches!(&self.entry.runs, Runs::Material(material) if material.fades)
+    }
+
     /// Do its materials soften by a temperature?
     pub fn melts(&self) -> bool {
         let melting = |m: &Made| m.parameters.number("melting_temperature").is_some();

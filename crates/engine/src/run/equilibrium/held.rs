@@ -1,0 +1,105 @@
+//! What holds a body in equilibrium, and what nothing holds.
+
+use crate::condition::constraint::Constraint;
+use crate::error::{Loose, SolveError};
+use crate::fracture::fragments::Fragments;
+use crate::run::model::Model;
+use crate::spec::{Method, Statics};
+use crate::statics::Support;
+
+/// What is free where bonds have broken.
+pub(super) struct Held<const D: usize> {
+    pub support: Support<D>,
+    /// Points (by id) of parts that rest where they are.
+    pub resting: Vec<usize>,
+}
+
+impl<const D: usize> Model<D> {
+    /// Which components the conditions leave free.
+    pub(in crate::run) fn support(&self) -> Support<D> {
+        self.support_of(&self.constraints)
+    }
+
+    pub(super) fn support_of(&self, constraints: &[Constraint<D>]) -> Support<D> {
+        let id = self.ids();
+        let mut support = Support::none(self.body.points());
+        for c in constraints {
+            for (slot, held) in c.holds() {
+                for a in (0..D).filter(|a| held[*a]) {
+                    support.free[id[slot] as usize][a] = false;
+                }
+            }
+        }
+        support
+    }
+
+    /// Rigid motions of parts whose bonds hold together that meet no resistance.
+    pub(super) fn loose_parts(&self, support: &Support<D>) -> Vec<Loose> {
+        let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
+        support.loose(&self.reference_places(), &parts, &self.body.period)
+    }
+
+    /// Which components are free where bonds have broken: a part that nothing holds and nothing loads rests where it is, by as few components as hold
+    /// it, which bear nothing.
+    ///
+    /// # Errors
+    /// A load acts on it: there is no equilibrium.
+    pub(super) fn support_now(&mut self, options: Statics) -> Result<Held<D>, SolveError> {
+        let support = self.support();
+        let resting = vec![];
+        // what touches may hold, too
+        if self.broken == 0 || self.contact.is_some() || !self.indenters.is_empty() {
+            return Ok(Held { support, resting });
+        }
+        let (places, period) = (self.reference_places(), self.body.period);
+        let parts = Fragments::of(&self.body, self.interaction.as_ref()).label;
+        let mut loose = support.loose(&places, &parts, &period);
+        // one of each part
+        loose.dedup_by_key(|l| l.point);
+        if loose.is_empty() {
+            return Ok(Held { support, resting });
+        }
+        let external = self.external();
+        let loads = self.per_point(&external);
+        let mut members = vec![vec![]; parts.len()];
+        for (i, part) in parts.iter().enumerate() {
+            members[*part as usize].push(i);
+        }
+        let mut now = Held {
+            support: support.clone(),
+            resting,
+        };
+        for part in loose {
+            let own = &members[parts[part.point] as usize];
+            let pulled = |i: &usize| (0..D).any(|a| support.free[*i][a] && loads[*i][a] != 0.0);
+            if own.iter().any(pulled) {
+                return Err(SolveError::Unheld {
+                    points: part.points,
+                    point: part.point,
+                });
+            }
+            // relaxation has no equations: what nothing pulls does not move
+            if options.method == Method::Relaxation {
+                continue;
+            }
+            let places: Vec<[f64; D]> = own.iter().map(|i| places[*i]).collect();
+            let given = Support {
+                free: own.iter().map(|i| support.free[*i]).collect(),
+            };
+            let enough = given.completed(&places, &vec![0; own.len()], &period);
+            for (i, free) in own.iter().zip(enough.free) {
+                now.support.free[*i] = free;
+            }
+            now.resting.extend(own);
+        }
+        Ok(now)
+    }
+
+    /// Reference positions in order of ids.
+    fn reference_places(&self) -> Vec<[f64; D]> {
+        self.by_id(|i| {
+            let x = self.body.position(i);
+            std::array::from_fn(|a| x[a])
+        })
+    }
+}
