@@ -390,6 +390,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                 });
             }
         };
-        self.law.form(body.material_of(at.slot(0)), Kin::new(&each))
+        let slot = at.slot(0);
+        let kin = Kin::new(&each).within(self.family.reach(slot));
+        self.law.form(body.material_of(slot), kin)
     }
 }

@@ -225,12 +225,19 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
 #[derive(Clone, Copy)]
 pub struct Kin<'a, const D: usize> {
     each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>)),
+    /// Horizon of the point over that of the material, which has the longest one of the body (–).
+    pub reach: f64,
 }
 
 impl<'a, const D: usize> Kin<'a, D> {
     /// Of what visits every bond, always in the same order.
     pub fn new(each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>))) -> Self {
-        Kin { each }
+        Kin { each, reach: 1.0 }
+    }
+
+    /// The same of a point with a horizon of its own.
+    pub fn within(self, reach: f64) -> Self {
+        Kin { reach, ..self }
     }
 
     /// Visit every bond.

@@ -171,6 +171,7 @@ impl ConstitutiveModel {
                 stiffness: contact_stiffness(&contact_spec.stiffness, &contact)?,
                 bonded: contact_spec.bonded,
                 range: PairTable::uniform(contact_spec.free * spacing),
+                own: vec![],
             }),
             None => None,
         };

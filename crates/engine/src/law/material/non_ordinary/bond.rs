@@ -92,6 +92,7 @@ impl<L> BondAssociated<L> {
                 stiffness: zero,
                 square: zero,
                 across: end.point.1[1],
+                reach: one,
             },
         });
         let trace = tensor::contraction(&stress, &h) + tensor::trace(&stress);

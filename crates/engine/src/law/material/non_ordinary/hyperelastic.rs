@@ -58,6 +58,7 @@ impl Hyperelastic {
             stiffness: zero,
             square: zero,
             across: zero,
+            reach: Dual::constant(1.0),
         };
         let p = law.at(0, &h, &seen).0;
         let (along, across) = (p[0][0].slope, p[1][1].slope);
@@ -242,6 +243,7 @@ mod tests {
         stiffness: 0.0,
         square: 0.0,
         across: 0.0,
+        reach: 1.0,
     };
     const LAMBDA: f64 = 1.3;
     const MU: f64 = 0.7;
@@ -316,6 +318,7 @@ mod tests {
                         stiffness: zero,
                         square: zero,
                         across: zero,
+                        reach: Dual::constant(1.0),
                     };
                     let constant = c.map(Dual::constant);
                     let a = law.stress(&[zero], &[], &h, &seen).stress;

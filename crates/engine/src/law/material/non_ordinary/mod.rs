@@ -121,6 +121,8 @@ pub struct Unseen<N> {
     pub square: N,
     /// [`Around::section`](super::Around::section)
     pub across: N,
+    /// [`Kin::reach`](super::Kin::reach), 1 of a bond.
+    pub reach: N,
 }
 
 impl<N: Number> Unseen<N> {

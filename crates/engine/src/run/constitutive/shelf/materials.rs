@@ -358,7 +358,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
             let near_horizon = list.near_horizon;
             let made = MaterialInteraction::new(MaterialParts {
                 body,
-                family: CloudFamily::new(body, list, weight, remembers),
+                family: CloudFamily::new(body, chosen.horizon, list, weight, remembers),
                 law,
                 kind: "list",
                 near_horizon,
@@ -389,7 +389,7 @@ fn own_horizons<const D: usize, M: Material<D>>(
     let half = 0.5 * body.spacing;
     let own = |i: usize| body.horizon[i];
     let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
-    let list = HorizonList::within(body, horizon, reach)?;
+    let list = HorizonList::within(body, horizon + half, reach)?;
     Ok((list, weight.whole()))
 }
 

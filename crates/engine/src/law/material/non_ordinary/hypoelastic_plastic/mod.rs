@@ -201,12 +201,12 @@ impl HypoelasticPlastic {
         &self,
         c: &equation_of_state::Constants<N>,
         ([_, s0], memory): &Past<N, D>,
-        step: &Step<N, D>,
+        (step, reach): (&Step<N, D>, N),
         deviator: &Matrix<N, D>,
     ) -> (N, N) {
         let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
         let (ends, volumes) = (step.dilations, step.volumes);
-        let q = self.state.viscosity(c, ends, memory[WORK], memory[SHOCK]);
+        let q = (self.state).viscosity(c, ends, memory[WORK], reach, memory[SHOCK]);
         let state = self.state.at(c, ends[1]);
         // E′ = E + the work of all but the new mean stress m, and ½ J′ m tr Δε of that: linear in m = −a − q − b E′
         let known =
@@ -382,7 +382,8 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         }
         let mut shock = memory[SHOCK];
         if self.state != equation_of_state::Kind::Elastic {
-            (flow.mean, shock) = self.pressed(&constants.1.1, past, &step, &s);
+            let wide = (&step, unseen.reach);
+            (flow.mean, shock) = self.pressed(&constants.1.1, past, wide, &s);
         }
         let q = flow.rest * trial.q;
         // plastic work at both ends, Δε^p : s = 3/2 Δε̄ s′:s/q′
