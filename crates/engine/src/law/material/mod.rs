@@ -349,6 +349,12 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         None
     }
 
+    /// Which number of [`Material::Past`], and of the [`Material::Memory`] that is [gathered](Material::GATHERS) to it, is a temperature above that of
+    /// reference. It grows in a step by what the law heats itself, and a body that conducts heat sets it before.
+    fn temperature(&self) -> Option<usize> {
+        None
+    }
+
     /// Fibres of every material: bonds along them break at a stretch of their own, all others at that of the material; empty: there are none.
     fn fibres(&self) -> Vec<Fibres<D>> {
         vec![]

@@ -23,8 +23,8 @@ pub(super) use constants::Laws;
 use constants::{Constants, constants};
 pub(super) use general::general;
 pub(super) use pairs::contact_stiffness;
-pub(super) use shelf::AnyPotentials;
 pub use shelf::Shelf;
+pub(super) use shelf::{AnyPotentials, Softens};
 use std::sync::Arc;
 use toughness::toughness;
 
@@ -131,6 +131,14 @@ impl ConstitutiveModels {
         self.per_material(count, |r| match &r.criteria.measure {
             Measure::Work(limit) => limit.clone(),
             Measure::Stretch | Measure::VonMises(_) | Measure::PlasticStrain(_) => vec![],
+        })
+    }
+
+    /// What the laws of materials soften by.
+    pub fn softens(&self, count: usize) -> Vec<Softens> {
+        self.per_material(count, |r| match &r.named {
+            Some(law) => law.softens(),
+            None => vec![Softens::default(); r.contact.len()],
         })
     }
 

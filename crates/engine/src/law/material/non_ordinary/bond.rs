@@ -185,6 +185,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
         self.law.failure()
     }
 
+    fn temperature(&self) -> Option<usize> {
+        self.law.temperature()
+    }
+
     fn constants(&self, material: usize, dt: f64) -> L::Constants<f64> {
         self.law.constants(material, dt)
     }

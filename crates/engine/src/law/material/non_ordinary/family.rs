@@ -153,6 +153,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         self.law.failure()
     }
 
+    fn temperature(&self) -> Option<usize> {
+        self.law.temperature()
+    }
+
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64> {
         let control = self.resistance::<D>(material);
         (control, self.law.constants(material, dt))

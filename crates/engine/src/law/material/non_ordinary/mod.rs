@@ -52,6 +52,11 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         None
     }
 
+    /// [`Material::temperature`](super::Material::temperature)
+    fn temperature(&self) -> Option<usize> {
+        None
+    }
+
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
 
