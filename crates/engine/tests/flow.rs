@@ -21,6 +21,7 @@ const SEEN: Unseen<f64> = Unseen {
     stiffness: 0.0,
     square: 0.0,
     across: 0.0,
+    reach: 1.0,
 };
 const WORK: usize = 0;
 const MEAN: usize = 1;

@@ -190,7 +190,7 @@ impl<const D: usize> Contact<D> {
                 self.pairs.push(Pair {
                     base: base(body, u, [i, j]),
                     distance,
-                    stiffness: self.repulsion.of(materials),
+                    stiffness: self.repulsion.between(materials, [i, j]),
                 });
             }
         }
@@ -210,7 +210,7 @@ impl<const D: usize> Contact<D> {
         let materials @ [a, b] = self.materials(body, ends);
         let first = self.repulsion.bonded * r0 <= self.repulsion.range.at(a, b);
         let [vi, vj] = ends.map(|s| body.volume.at(s));
-        first.then(|| self.repulsion.of(materials) * vi * vj)
+        first.then(|| self.repulsion.between(materials, ends) * vi * vj)
     }
 
     /// The touch of two points of one family, ξ apart in the reference; `None`: they do not repel.
@@ -231,7 +231,7 @@ impl<const D: usize> Contact<D> {
             y,
             r,
             d,
-            stiffness: self.repulsion.of(materials),
+            stiffness: self.repulsion.between(materials, [i, j]),
         })
     }
 

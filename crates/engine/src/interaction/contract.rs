@@ -282,6 +282,20 @@ pub trait Interaction<const D: usize>: Send + Sync {
         false
     }
 
+    /// Points have these temperatures above those of reference now, of laws that know one; a number for each slot. False: no law does.
+    ///
+    /// # Panics
+    /// If the body is another one, or the number of temperatures is not that of its slots.
+    fn warm(&mut self, _body: &Body<D>, _above: &[f64]) -> bool {
+        false
+    }
+
+    /// What those temperatures are after a step that began with them, in place of the numbers of points whose law knows one.
+    ///
+    /// # Panics
+    /// As for [`warm`](Interaction::warm).
+    fn read_warmth(&self, _body: &Body<D>, _above: &mut [f64]) {}
+
     /// The next step lasts so long (time): forces, energies and tangents are those at its end, and the memory goes there in the next
     /// [`Sweep::Evolve`], after which time stands still again; 0: it does.
     fn last(&mut self, _step: f64) {}

@@ -32,7 +32,7 @@ pub use point_constants::PointConstants;
 use point_constants::laws_fields;
 use point_energies::EnergyFields;
 pub use point_energies::PointEnergies;
-pub use repulsion::{PairTable, Repulsion};
+pub use repulsion::{PairTable, Repulsion, in_series};
 pub(crate) use sweep::Motion;
 pub use sweep::{Fault, Released, Sweep, Tally};
 pub use tangent::{BondTangent, Channel};

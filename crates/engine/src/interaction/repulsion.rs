@@ -57,6 +57,14 @@ impl PairTable {
     }
 }
 
+/// Two stiffnesses in series, `2 K K′/(K + K′)`; alike ones exactly their own.
+pub fn in_series(a: f64, b: f64) -> f64 {
+    match a == b {
+        true => a,
+        false => 2.0 * a * b / (a + b),
+    }
+}
+
 /// How points repel, by their materials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repulsion {
@@ -66,6 +74,8 @@ pub struct Repulsion {
     pub bonded: f64,
     /// Range of pairs that are far apart in the reference (length).
     pub range: PairTable,
+    /// K of each slot, where points have horizons of their own and so bonds of another stiffness; empty: that of the materials.
+    pub own: Vec<f64>,
 }
 
 impl Repulsion {
@@ -75,6 +85,7 @@ impl Repulsion {
             stiffness: PairTable::uniform(stiffness),
             bonded,
             range: PairTable::uniform(range),
+            own: vec![],
         }
     }
 
@@ -88,6 +99,15 @@ impl Repulsion {
     pub fn of(&self, materials: [usize; 2]) -> f64 {
         let [a, b] = materials;
         self.stiffness.at(a, b)
+    }
+
+    /// K of two points: that of their materials, or of each in series.
+    pub fn between(&self, materials: [usize; 2], slots: [usize; 2]) -> f64 {
+        let own = |s: usize| self.own.get(s).copied().unwrap_or(0.0);
+        match self.own.is_empty() {
+            true => self.of(materials),
+            false => in_series(own(slots[0]), own(slots[1])),
+        }
     }
 
     /// Coefficient of the way `y` from one point to another, away from each other: `K V (r − d)/r` below the distance d, else 0;
@@ -127,6 +147,7 @@ impl Repulsion {
             stiffness: self.stiffness.only(material),
             bonded: self.bonded,
             range: self.range.only(material),
+            own: self.own.clone(),
         }
     }
 }
@@ -134,6 +155,15 @@ impl Repulsion {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_of_their_own_stiffness_are_in_series() {
+        let mut all = Repulsion::uniform(5.0, 0.9, 1.0);
+        assert_eq!(all.between([0, 0], [0, 1]), 5.0);
+        all.own = vec![2.0, 6.0, 6.0];
+        assert_eq!(all.between([0, 0], [0, 1]), 3.0);
+        assert_eq!(all.between([0, 0], [2, 1]), 6.0);
+    }
 
     #[test]
     fn a_table_is_symmetric_and_as_small_as_it_can_be() {

@@ -189,6 +189,24 @@ impl<const D: usize> Interaction<D> for SeveralInteraction<D> {
         }
     }
 
+    fn warm(&mut self, body: &Body<D>, above: &[f64]) -> bool {
+        self.check(body, &[]);
+        let mut any = false;
+        for (p, own) in pieces(body).iter().zip(&mut self.own) {
+            if let Some(bonds) = &mut own.bonds {
+                any |= bonds.warm(&p.body, &above[p.range()]);
+            }
+        }
+        any
+    }
+
+    fn read_warmth(&self, body: &Body<D>, above: &mut [f64]) {
+        self.check(body, &[]);
+        for (p, bonds) in self.each(body) {
+            bonds.read_warmth(&p.body, &mut above[p.range()]);
+        }
+    }
+
     fn shortest(&mut self, body: &Body<D>, u: &Field<D>) -> f64 {
         self.check(body, &[u]);
         let mut least = 1.0f64;

@@ -1,6 +1,7 @@
 //! Laws and bonds of all bodies of a spec.
 
 use super::constitutive::{ConstitutiveModels, Shelf};
+use super::contact::own_stiffness;
 use super::interfaces::interfaces;
 use super::parts::Part;
 use crate::body::{Body, Layout};
@@ -31,7 +32,10 @@ pub(super) fn bind<const D: usize>(
             return Err(BuildError::conflict("interface[0].bodies", message)
                 .help("write [[body]] for each of the two"));
         }
-        let model = parts[0].constitutive(body, shelf, simd, warnings)?;
+        let mut model = parts[0].constitutive(body, shelf, simd, warnings)?;
+        if let Some(repulsion) = &mut model.repulsion {
+            repulsion.own = own_stiffness(spec, body, &model.contact, model.horizon);
+        }
         let interaction = model.interaction(body, None)?;
         let interaction = super::bonded::around(spec, body, shelf, interaction, simd)?;
         return Ok((ConstitutiveModels::one(model), interaction));

@@ -10,7 +10,7 @@ use crate::interaction::cohesion::{Adhesion, Cohesion, Faces, RANGES};
 use crate::interaction::contact::Contact;
 use crate::interaction::friction::{Friction, TANGENTIAL};
 use crate::interaction::nearness::Nearness;
-use crate::interaction::{PairTable, Repulsion};
+use crate::interaction::{PairTable, Repulsion, in_series};
 use crate::message;
 use crate::quantity::Dimension;
 use crate::space::AXES;
@@ -78,6 +78,9 @@ pub(super) fn repulsion<const D: usize>(
     let range = PairTable::new(kinds.len(), |a, b| {
         contact.free * 0.5 * (kinds[a].spacing + kinds[b].spacing)
     });
+    // points with horizons of their own are those of one body
+    let own = constitutive.first().repulsion.as_ref();
+    let own = own.map_or(vec![], |r| r.own.clone());
     let conducts = contact.conductance.is_some();
     let longest = match conducts {
         true => nearness(&kinds, 0.0).longest(&range).max(range.highest()),
@@ -142,10 +145,30 @@ pub(super) fn repulsion<const D: usize>(
             stiffness,
             bonded: contact.bonded,
             range,
+            own,
         },
         conducts,
         rubs: contact.friction.is_some(),
     }))
+}
+
+/// `15 c/δ` of the bonds of each slot, `c ∝ δ^−(D+1)` at equal moduli, from that of the materials at the horizon of the body; empty: points have no
+/// horizons of their own, or the stiffness was given.
+pub(super) fn own_stiffness<const D: usize>(
+    spec: &Spec,
+    body: &Body<D>,
+    of_materials: &[f64],
+    horizon: f64,
+) -> Vec<f64> {
+    match spec.contact.as_ref().map(|c| &c.stiffness) {
+        Some(ContactStiffness::Laws) => {}
+        Some(ContactStiffness::Same(_) | ContactStiffness::Pairs(_)) | None => return vec![],
+    }
+    let of = |(slot, own): (usize, &f64)| match *own > 0.0 {
+        true => of_materials[body.material_of(slot)] * (horizon / own).powi(D as i32 + 2),
+        false => 0.0,
+    };
+    body.horizon.iter().enumerate().map(of).collect()
 }
 
 /// Rows of two kinds that touch.
@@ -253,6 +276,17 @@ impl Rules {
             grain.volume = grain.volume.max(body.volume.at(s));
             grain.density = grain.density.min(body.density.at(s));
         }
+        let mut repulsion = self.repulsion.clone();
+        if !repulsion.own.is_empty() {
+            // the stiffest point of each kind
+            let mut most = vec![0.0f64; self.kinds.len()];
+            for &s in &body.slots {
+                let s = s as usize;
+                most[kind(s)] = most[kind(s)].max(repulsion.own[s]);
+            }
+            let of = |a: usize, b: usize| in_series(most[a], most[b]);
+            repulsion.stiffness = PairTable::new(most.len(), of);
+        }
         let mut near = 0.0f64;
         for (n, part) in parts.iter().enumerate() {
             let own = body.pieces().get(n).map_or(body, |p| &p.body);
@@ -269,7 +303,7 @@ impl Rules {
                 adhesion.stiffness::<D>(faces)
             }
         };
-        contact_limit(&self.repulsion, &grains, per_axis, bonds, pulls)
+        contact_limit(&repulsion, &grains, per_axis, bonds, pulls)
     }
 
     /// The kind of a slot.

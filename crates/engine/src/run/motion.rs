@@ -66,6 +66,7 @@ impl<const D: usize> Model<D> {
             self.broken += tally.broken;
             self.released += tally.released;
             self.past_work[0] += tally.dissipated;
+            self.take_heat_of_flow();
         } else {
             self.f.iter_mut().for_each(|c| c.fill(0.0));
             if let Some(w) = &mut watched {

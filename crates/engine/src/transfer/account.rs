@@ -14,7 +14,7 @@ pub struct TransferAccount {
     pub exchanged: f64,
     /// At points whose value is held.
     pub held: f64,
-    /// By deformation.
+    /// By deformation and flow.
     pub made: f64,
     /// From the warmer to the colder point of every pair that touches: no part of the balance, since it stays in the bodies. `None`: contact
     /// conducts nothing.

@@ -174,6 +174,14 @@ impl Transfer {
         }
     }
 
+    /// Warms points by so much each, by their places; held ones keep what they have.
+    pub fn warm(&mut self, by: &[f64]) {
+        for i in (0..self.value.len()).filter(|i| !self.held[*i]) {
+            self.value[i] += by[i];
+            self.account.made += self.capacity[i] * by[i];
+        }
+    }
+
     /// Back to where it was kept.
     pub fn retreat(&mut self) {
         self.value.copy_from_slice(&self.before.0);

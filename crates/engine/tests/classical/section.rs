@@ -325,7 +325,10 @@ fn a_sheet_of_rubber_gets_thinner() {
                 ["xx", "yy", "xy"].map(|c| stress(sim.as_mut(), c))
             });
             for (a, b) in one.iter().zip(other) {
-                assert!((a - b).abs() < 1e-10 * one[0].abs(), "{gradient} {n}: {one:?} {other:?}");
+                assert!(
+                    (a - b).abs() < 1e-10 * one[0].abs(),
+                    "{gradient} {n}: {one:?} {other:?}"
+                );
             }
         }
         let stiff = "mu/2*(I1*J^(-2/3) - 3) + 5e5*mu*(J - 1)^2";
@@ -336,7 +339,10 @@ fn a_sheet_of_rubber_gets_thinner() {
             let exact = SHEAR * (stretch.powi(2) - stretch.powi(-4));
             let found = stress(sim.as_mut(), "xx");
             // a bulk modulus of a million μ is hardly pressed
-            assert!((found / exact - 1.0).abs() < 1e-5, "{gradient} {n}: {found} {exact}");
+            assert!(
+                (found / exact - 1.0).abs() < 1e-5,
+                "{gradient} {n}: {found} {exact}"
+            );
         }
     }
 }

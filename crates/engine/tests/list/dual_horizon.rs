@@ -296,3 +296,213 @@ fn what_knows_one_horizon_is_refused() {
         "own_horizon"
     );
 }
+
+/// Laws that compute from a horizon or a family what each of their points uses, and what shows it.
+fn of_points() -> Vec<(LawSpec, &'static str)> {
+    let all = |name: &str, numbers: &[(&str, f64)], words: &[(&str, &str)]| {
+        let mut all = Parameters::numbers(numbers);
+        for (key, word) in words {
+            all.set(key, Parameter::Word((*word).into()));
+        }
+        LawSpec::named(name, all)
+    };
+    let state = [
+        ("hugoniot_slope", 1.5),
+        ("gruneisen", 1.9),
+        ("linear_viscosity", 0.3),
+        ("quadratic_viscosity", 1.5),
+    ];
+    let mut fluid = state.to_vec();
+    fluid.push(("bulk", 2.0));
+    let mut metal = state.to_vec();
+    metal.extend([("bulk", 2.0), ("shear", 0.7), ("yield_stress", 0.01)]);
+    let plastic = [("young", 1.0), ("poisson", 0.3), ("yield_stress", 0.003)];
+    vec![
+        (all("fluid", &fluid, &[]), "shock_pressure"),
+        (
+            all(
+                "hypoelastic_plastic",
+                &metal,
+                &[("equation_of_state", "mie_gruneisen")],
+            ),
+            "shock_pressure",
+        ),
+        (all("elastic_plastic", &plastic, &[]), "plastic_strain"),
+    ]
+}
+
+/// A plate in plane strain all of whose points are told a uniform strain that grows with time.
+fn told(law: &LawSpec, longest: f64, own: Option<&str>) -> Spec {
+    let mut spec = with_law(solid(&[18.0, 8.0], longest, own), law);
+    spec.plane = Plane::Strain;
+    if own.is_none() {
+        // a yield surface of each family, as points with horizons of their own have it
+        spec.calibration = Calibration::Discrete;
+    }
+    spec.conditions = vec![ConditionSpec {
+        set: "all".into(),
+        kind: ConditionKind::Displacement([text("0.01*t*x + 0.004*t*y"), text("-0.03*t*y"), None]),
+    }];
+    spec.schedule.time_step = TimeStep::Fixed(0.1);
+    spec.schedule.force_unstable = true;
+    spec
+}
+
+/// A column after some steps.
+fn after(spec: &Spec, steps: usize, column: &str) -> Vec<f64> {
+    let mut sim = started(spec);
+    for _ in 0..steps {
+        sim.step().unwrap();
+    }
+    sim.scalars(column)
+}
+
+/// Points of one horizon answer alike, whether it is that of the body or each has it for itself, and however long others of the body might be;
+/// no pair is further apart than the horizon by less than half a spacing. A step of J of 2e-3 has 13 digits.
+#[test]
+fn one_horizon_point_by_point_is_that_of_the_body() {
+    for (law, column) in of_points() {
+        for horizon in [1.45, 2.3] {
+            let own = horizon.to_string();
+            let body = after(&told(&law, horizon, None), 8, column);
+            let most = body.iter().fold(0.0f64, |m, x| m.max(*x));
+            assert!(most > 1e-4, "{law:?}: {most:e}");
+            for longest in [horizon, 4.6] {
+                let each = after(&told(&law, longest, Some(&own)), 8, column);
+                for (a, b) in body.iter().zip(&each) {
+                    assert!(
+                        (a - b).abs() < 1e-11 * most,
+                        "{law:?} {longest}: {a:e} {b:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Where horizons are graded, each point yields, and spreads shocks, as in a body of its own one.
+#[test]
+fn graded_points_answer_as_in_a_body_of_their_own_horizon() {
+    let graded = "1.45 + 0.85*clamp((x-7)/4, 0, 1)";
+    for (law, column) in of_points() {
+        let spec = told(&law, 2.3, Some(graded));
+        let x = started(&spec).vectors("reference");
+        let found = after(&spec, 8, column);
+        for (horizon, low, high) in [(1.45, -1.0, 7.0), (2.3, 11.0, 20.0)] {
+            let one = after(&told(&law, horizon, None), 8, column);
+            let most = one.iter().fold(0.0f64, |m, x| m.max(*x));
+            let mut count = 0;
+            for ((x, a), b) in x.iter().zip(&one).zip(&found) {
+                if (low..=high).contains(&x[0]) {
+                    count += 1;
+                    assert!(
+                        (a - b).abs() < 1e-11 * most,
+                        "{law:?} at {x:?}: {a:e} {b:e}"
+                    );
+                }
+            }
+            assert!(count > 40, "{count}");
+        }
+    }
+}
+
+/// `q = ρ δ D (C_q δ D + C_l c)` with the horizon of each point, of the first step from rest: `D = −ΔJ/(Δt J)`, `ρ = ρ₀/J` in its middle, `ρ₀ c = √(ρ₀ K)`.
+#[test]
+fn viscosity_of_shocks_has_the_horizon_of_each_point() {
+    let [linear, quadratic, density, bulk]: [f64; 4] = [0.3, 1.5, 1.0, 2.0];
+    for (law, column) in of_points().into_iter().take(2) {
+        let spec = told(&law, 3.6, Some(GRADED));
+        let x = started(&spec).vectors("reference");
+        let found = after(&spec, 1, column);
+        let dt = 0.1;
+        let volume = (1.0 + 0.01 * dt) * (1.0 - 0.03 * dt);
+        let middle = 0.5 * (1.0 + volume);
+        let rate = (1.0 - volume) / (dt * middle);
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        for (x, q) in x.iter().zip(&found) {
+            let own = 2.05 + 1.5 * ((x[0] - 3.0) / 6.0).clamp(0.0, 1.0);
+            let wide = own * rate;
+            let exact =
+                wide * (linear * (density * bulk).sqrt() + quadratic * density * wide / middle);
+            // ΔJ of 2e-3 has so many digits
+            assert!(
+                (q / exact - 1.0).abs() < 1e-11,
+                "{law:?} at {x:?}: {q:e} {exact:e}"
+            );
+            least = least.min(*q);
+            most = most.max(*q);
+        }
+        assert!(most > 1.7 * least);
+    }
+}
+
+/// Bonds of points with the longest horizon reach as far as they do below a longer one.
+#[test]
+fn the_longest_horizon_loses_no_bonds() {
+    let pmb = [LawSpec::Pmb(PmbStiffness::Young(1.0))];
+    for law in pmb.into_iter().chain(of_families(2)) {
+        // √13 = 3.6 spacings is within 3.2 and a half
+        let of = |longest: f64| started(&with_law(solid(&[14.0, 9.0], longest, Some("3.2")), &law));
+        let (mut longest, mut shorter) = (of(3.2), of(5.0));
+        assert_eq!(
+            longest.info().directed_bonds,
+            shorter.info().directed_bonds,
+            "{law:?}"
+        );
+        let u = bent(longest.as_mut());
+        let (f, g) = (longest.forces_under(&u), shorter.forces_under(&u));
+        let most = f.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (f, g) in f.iter().zip(&g) {
+            for a in 0..2 {
+                assert!((f[a] - g[a]).abs() < 1e-12 * most, "{law:?}: {f:?} {g:?}");
+            }
+        }
+    }
+}
+
+/// Points push each other by the stiffness of their own bonds, `15 c/δ` with `c ∝ δ^−(D+1)`, in and out of families, and the step knows it.
+#[test]
+fn contact_is_as_stiff_as_the_bonds_of_each_point() {
+    let pmb = [LawSpec::Pmb(PmbStiffness::Young(1.0))];
+    for law in pmb.into_iter().chain(of_families(2)) {
+        let squeezed = |longest: f64, own: Option<&str>| {
+            let mut spec = with_law(solid(&[14.0, 5.0], longest, own), &law);
+            spec.contact = Some(ContactSpec {
+                bonded: 0.9,
+                free: 1.35,
+                stiffness: ContactStiffness::Laws,
+                friction: None,
+                cohesion: None,
+                conductance: None,
+            });
+            spec.initial = vec![InitialSpec {
+                set: "all".into(),
+                displacement: [text("-0.6*x"), None, None],
+                velocity: [None, None, None],
+            }];
+            spec.schedule.time_step = TimeStep::Fixed(1e-3);
+            let mut sim = started(&spec);
+            let contact_step = sim.info().contact_step;
+            sim.step().unwrap();
+            (sim.velocities(), contact_step)
+        };
+        let (body, step) = squeezed(2.3, None);
+        let most = body.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        for longest in [2.3, 4.6] {
+            let (each, own_step) = squeezed(longest, Some("2.3"));
+            for (v, w) in body.iter().zip(&each) {
+                for a in 0..2 {
+                    assert!(
+                        (v[a] - w[a]).abs() < 1e-11 * most,
+                        "{law:?} {longest}: {v:?} {w:?}"
+                    );
+                }
+            }
+            // by Lanczos' method
+            assert!(
+                (own_step / step - 1.0).abs() < 1e-3,
+                "{law:?}: {own_step} {step}"
+            );
+        }
+    }
+}

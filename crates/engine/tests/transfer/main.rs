@@ -4,6 +4,7 @@ mod accounts;
 mod bars;
 mod contact;
 mod expand;
+mod flow;
 mod modes;
 mod repeat;
 mod sample;

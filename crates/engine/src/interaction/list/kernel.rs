@@ -281,7 +281,20 @@ impl<const D: usize, W: Law> View<'_, D, W> {
                 material[1][l] = self.materials[ends[1] as usize];
             }
         }
-        let stiffness = c.lanes::<L>(material[0], material[1]) * volume;
+        let stiffness = match c.own.is_empty() {
+            true => c.lanes::<L>(material[0], material[1]),
+            false => {
+                let mut all = [0.0; TILE];
+                for (l, all) in all.iter_mut().enumerate().take(L::N) {
+                    // SAFETY: a slot per lane
+                    let ends = unsafe { [*rows.add(l), *partners.add(l)] };
+                    *all = c.between([0; 2], ends.map(|s| s as usize));
+                }
+                // SAFETY: a number per lane
+                unsafe { L::load(all.as_ptr()) }
+            }
+        };
+        let stiffness = stiffness * volume;
         let pull = (stiffness * (r - d)).div(r);
         let energy = L::splat(0.25) * stiffness * (r - d) * (r - d);
         (L::select(close, pull, zero), L::select(close, energy, zero))

@@ -426,6 +426,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                 });
             }
         };
-        what(Kin::new(&each))
+        let slot = self.family.rows(group).from(l).slot(0);
+        what(Kin::new(&each).within(self.family.reach(slot)))
     }
 }

@@ -60,6 +60,8 @@ pub struct CloudFamily<const D: usize> {
     weight: BondWeight,
     /// `[slots]` `½ + δ/h` of points with horizons of their own, and 1/h; empty: they have one.
     own: Vec<f64>,
+    /// The same horizons over that of the body; empty: they have one.
+    reach: Vec<f64>,
     rate: f64,
     /// `[slots][4]`: x, y, z, volume.
     reference: Vec<f64>,
@@ -71,9 +73,15 @@ pub struct CloudFamily<const D: usize> {
 }
 
 impl<const D: usize> CloudFamily<D> {
-    /// `remembers`: does the law have memory of bonds? Points with horizons of their own (`h`: the spacing) weigh a bond by the part of a cell that is within
+    /// `horizon`: the longest of all points. `remembers`: does the law have memory of bonds? Points with horizons of their own (`h`: the spacing) weigh a bond by the part of a cell that is within
     /// them, `ω ν` with ν as of [`DualHorizon`](crate::law::solid::dual_horizon::DualHorizon).
-    pub fn new(body: &Body<D>, list: HorizonList, weight: BondWeight, remembers: bool) -> Self {
+    pub fn new(
+        body: &Body<D>,
+        horizon: f64,
+        list: HorizonList,
+        weight: BondWeight,
+        remembers: bool,
+    ) -> Self {
         let mut reference = vec![0.0; 4 * body.len];
         for (slot, record) in reference.chunks_mut(4).enumerate() {
             record[..3].copy_from_slice(&body.position(slot));
@@ -86,6 +94,7 @@ impl<const D: usize> CloudFamily<D> {
             list,
             weight,
             own,
+            reach: body.horizon.iter().map(|d| d / horizon).collect(),
             rate,
             reference,
             back,
@@ -223,6 +232,10 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
         u
     }
 
+    fn reach(&self, slot: usize) -> f64 {
+        self.reach.get(slot).copied().unwrap_or(1.0)
+    }
+
     fn layout(&self, numbers: usize) -> Layout {
         Layout::records(numbers, self.slots)
     }
@@ -265,7 +278,7 @@ impl<const D: usize> Family<D> for CloudFamily<D> {
     }
 
     fn bytes(&self) -> usize {
-        self.list.bytes() + 8 * (self.reference.len() + self.own.len()) + 4 * self.back.len()
+        self.list.bytes() + 8 * (self.reference.len() + 2 * self.own.len()) + 4 * self.back.len()
     }
 }
 

@@ -325,6 +325,18 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
         self.held.is_empty() || self.add_across(body, u, trace)
     }
 
+    fn warm(&mut self, body: &Body<D>, above: &[f64]) -> bool {
+        self.check(body, &[]);
+        assert_eq!(above.len(), body.len, "a temperature for each slot");
+        self.set_warmth(body, above)
+    }
+
+    fn read_warmth(&self, body: &Body<D>, above: &mut [f64]) {
+        self.check(body, &[]);
+        assert_eq!(above.len(), body.len, "a temperature for each slot");
+        self.warmth(body, above);
+    }
+
     fn last(&mut self, step: f64) {
         self.step = step;
     }

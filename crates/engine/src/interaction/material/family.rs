@@ -80,6 +80,11 @@ pub trait Family<const D: usize>: Send + Sync + 'static {
     /// Slots of this family, and the columns of its body.
     unsafe fn displacement<L: Lane>(moved: &Moved<D>, slots: Self::Slots) -> [L; D];
 
+    /// Horizon of a point over that of the body (–).
+    fn reach(&self, _slot: usize) -> f64 {
+        1.0
+    }
+
     /// How numbers of points are laid out.
     fn layout(&self, numbers: usize) -> super::store::Layout;
     /// How many numbers it takes to remember one for each bond.

@@ -14,6 +14,7 @@ mod store;
 mod sweeps;
 mod tangents;
 mod view;
+mod warmth;
 
 pub use cloud::CloudFamily;
 pub use lattice::LatticeFamily;

@@ -89,7 +89,7 @@ impl<const D: usize> Pushed<'_, D> {
         if !(r < d) {
             return None;
         }
-        let stiffness = self.repulsion.of(materials) * self.body.volume.at(j);
+        let stiffness = self.repulsion.between(materials, [i, j]) * self.body.volume.at(j);
         Some(Push {
             y: std::array::from_fn(|a| xi[a] + eta[a]),
             pull: stiffness * (r - d) / r,

@@ -238,12 +238,19 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
 #[derive(Clone, Copy)]
 pub struct Kin<'a, const D: usize> {
     each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>)),
+    /// Horizon of the point over that of the material, which has the longest one of the body (–).
+    pub reach: f64,
 }
 
 impl<'a, const D: usize> Kin<'a, D> {
     /// Of what visits every bond, always in the same order.
     pub fn new(each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>))) -> Self {
-        Kin { each }
+        Kin { each, reach: 1.0 }
+    }
+
+    /// The same of a point with a horizon of its own.
+    pub fn within(self, reach: f64) -> Self {
+        Kin { reach, ..self }
     }
 
     /// Visit every bond.
@@ -354,6 +361,12 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
 
     /// Which number of [`Material::Past`] is a damage: a bond breaks when the mean of its ends reaches 1.
     fn failure(&self) -> Option<usize> {
+        None
+    }
+
+    /// Which number of [`Material::Past`], and of the [`Material::Memory`] that is [gathered](Material::GATHERS) to it, is a temperature above that of
+    /// reference. It grows in a step by what the law heats itself, and a body that conducts heat sets it before.
+    fn temperature(&self) -> Option<usize> {
         None
     }
 

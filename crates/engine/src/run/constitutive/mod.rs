@@ -23,8 +23,8 @@ pub(super) use constants::Laws;
 use constants::{Constants, constants};
 pub(super) use general::general;
 pub(super) use pairs::contact_stiffness;
-pub(super) use shelf::AnyPotentials;
 pub use shelf::Shelf;
+pub(super) use shelf::{AnyPotentials, Softens};
 use std::sync::Arc;
 use toughness::toughness;
 
@@ -134,6 +134,14 @@ impl ConstitutiveModels {
         })
     }
 
+    /// What the laws of materials soften by.
+    pub fn softens(&self, count: usize) -> Vec<Softens> {
+        self.per_material(count, |r| match &r.named {
+            Some(law) => law.softens(),
+            None => vec![Softens::default(); r.contact.len()],
+        })
+    }
+
     pub fn critical_stretches(&self, count: usize) -> Vec<f64> {
         self.per_material(count, |r| r.toughness.iter().map(|t| t.s00).collect())
     }
@@ -171,6 +179,7 @@ impl ConstitutiveModel {
                 stiffness: contact_stiffness(&contact_spec.stiffness, &contact)?,
                 bonded: contact_spec.bonded,
                 range: PairTable::uniform(contact_spec.free * spacing),
+                own: vec![],
             }),
             None => None,
         };

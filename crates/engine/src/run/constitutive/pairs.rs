@@ -3,7 +3,7 @@
 use super::Laws;
 use crate::error::BuildError;
 use crate::interaction::pairs::{BondConstants, BondTable};
-use crate::interaction::{PairTable, Toughness};
+use crate::interaction::{PairTable, Toughness, in_series};
 use crate::law::solid::eam_like::Solid;
 use crate::message;
 use crate::quantity::{Dimension, Message, rounded};
@@ -90,14 +90,7 @@ pub(in crate::run) fn contact_stiffness(
 ) -> Result<PairTable, BuildError> {
     let table = match stiffness {
         ContactStiffness::Same(one) => PairTable::uniform(*one),
-        ContactStiffness::Laws => PairTable::new(own.len(), |a, b| {
-            // two in series; alike ones exactly their own
-            if own[a] == own[b] {
-                own[a]
-            } else {
-                2.0 * own[a] * own[b] / (own[a] + own[b])
-            }
-        }),
+        ContactStiffness::Laws => PairTable::new(own.len(), |a, b| in_series(own[a], own[b])),
         ContactStiffness::Pairs(rows) => {
             let fits = rows.len() == own.len() && rows.iter().all(|r| r.len() == own.len());
             let symmetric = || (0..rows.len()).all(|a| (0..a).all(|b| rows[a][b] == rows[b][a]));

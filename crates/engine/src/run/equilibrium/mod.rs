@@ -260,6 +260,7 @@ impl<const D: usize> Model<D> {
         self.broken += tally.broken;
         self.released += tally.released;
         self.past_work[0] += tally.dissipated;
+        self.take_heat_of_flow();
     }
 
     /// One increment of load: equilibrium at the next time. On an error the state is that of the increment before.

@@ -4,7 +4,7 @@ use super::state::Transfers;
 use crate::error::BuildError;
 use crate::run::constitutive::general;
 use crate::run::model::Model;
-use crate::spec::{Method, Quantity, Spec, Statics, Stepper, TransferSpec};
+use crate::spec::{Method, Spec, Statics, Stepper, TransferSpec};
 
 /// Where a material expands, `pmb` and `lps` are laws of `law/material`: their own kernels know no temperature. Were laws changed?
 pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
@@ -25,7 +25,6 @@ pub(in crate::run) fn expanding(spec: &mut Spec) -> bool {
 impl<const D: usize> Model<D> {
     /// Bodies that expand: can their bonds?
     pub(super) fn make_expansion(&mut self, spec: &Spec) -> Result<(), BuildError> {
-        self.has_one_temperature(spec)?;
         for (n, t) in spec.transfers.iter().enumerate() {
             let strains: Vec<f64> = t.materials.iter().map(|m| m.expansion).collect();
             if strains.iter().any(|x| *x != 0.0) {
@@ -58,23 +57,6 @@ impl<const D: usize> Model<D> {
         Ok(())
     }
 
-    /// A law that softens by a temperature of its own has one that plastic work alone changes: another than that of the body.
-    fn has_one_temperature(&self, spec: &Spec) -> Result<(), BuildError> {
-        let heat = |t: &TransferSpec| t.quantity == Quantity::Heat;
-        let named = self.constitutive.all().filter_map(|m| m.named.as_ref());
-        let Some((_, law)) = { named }.find(|n| n.melts()).map(|n| n.memory()) else {
-            return Ok(());
-        };
-        if !spec.transfers.iter().any(heat) {
-            return Ok(());
-        }
-        Err(BuildError::unsupported(
-            Quantity::Heat.name(),
-            format!("points of the law {law} have a temperature of their own, which softens them and which plastic work alone changes: they would have two"),
-        )
-        .help("leave [heat] out: the temperature of an adiabatic impact is the law's; or leave melting_temperature out, and give the yield stress at the temperature of the body"))
-    }
-
     /// Do bodies expand?
     pub(in crate::run) fn expands(&self) -> bool {
         !self.transfers.grown.is_empty()
@@ -103,6 +85,14 @@ impl<const D: usize> Model<D> {
         }
         body.fill_images(strain);
         self.interaction.expand(body, strain);
+    }
+
+    /// Bonds get back the lengths that they had before the last step.
+    pub(super) fn contract(&mut self) {
+        if self.expands() {
+            self.transfers.strain.clone_from(&self.transfers.past);
+            self.interaction.expand(&self.body, &self.transfers.strain);
+        }
     }
 
     /// What the last step's expansion changes of the energy of bonds at displacements a time before those of now, and so much of it:

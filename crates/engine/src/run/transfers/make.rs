@@ -41,6 +41,7 @@ impl<const D: usize> Model<D> {
         }
         self.make_contact(spec)?;
         self.make_expansion(spec)?;
+        self.make_warmth(spec)?;
         self.make_heated(spec)
     }
 

@@ -4,6 +4,7 @@ mod contact;
 mod expansion;
 mod make;
 pub(super) mod state;
+mod warmth;
 
 pub(super) use expansion::expanding;
 pub use state::TransferInfo;
@@ -44,6 +45,7 @@ impl<const D: usize> Model<D> {
             transfer.start(t);
         }
         self.expand();
+        self.warm();
     }
 
     /// The bonds that are whole now conduct, where others broke or healed since.
@@ -90,6 +92,7 @@ impl<const D: usize> Model<D> {
             }
         }
         self.expand();
+        self.warm();
         self.transfers.price = 0.0;
         Ok(())
     }
@@ -97,7 +100,8 @@ impl<const D: usize> Model<D> {
     /// Back to before the last step.
     pub(super) fn retreat_transfers(&mut self) {
         self.transfers.all.iter_mut().for_each(Transfer::retreat);
-        self.expand();
+        self.contract();
+        self.warm();
         self.past_work[1] -= std::mem::take(&mut self.transfers.price);
     }
 
@@ -131,8 +135,9 @@ impl<const D: usize> Model<D> {
             placed[self.transfers.place[*s as usize] as usize] = *value;
         }
         found.set_values(&placed);
-        // bonds have other lengths now
+        // bonds have other lengths now, laws other temperatures
         self.expand();
+        self.warm();
         true
     }
 

@@ -31,6 +31,19 @@ pub(in crate::run) struct Transfers {
     pub(super) past: Vec<f64>,
     /// Work of the last step's expansion.
     pub(super) price: f64,
+    /// What flow softens by and heats; `None`: no law knows a temperature, or no heat is conducted.
+    pub(super) warmth: Option<Warmth>,
     /// The transfer that deformation heats, by its place, and its strain per value of each material.
     pub(super) heated: Option<(usize, Vec<f64>)>,
+}
+
+/// The temperature that laws share with the body.
+#[derive(Debug, Clone)]
+pub(in crate::run) struct Warmth {
+    /// Place of the heat among what spreads.
+    pub(super) heat: usize,
+    /// T_r of each material.
+    pub(super) reference: Vec<f64>,
+    /// T − T_r per slot, as laws had it at the start of their step.
+    pub(super) above: Vec<f64>,
 }

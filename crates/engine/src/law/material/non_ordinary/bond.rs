@@ -93,6 +93,7 @@ impl<L> BondAssociated<L> {
                 stiffness: zero,
                 square: zero,
                 across: end.point.1[1],
+                reach: one,
             },
         });
         let trace = tensor::contraction(&stress, &h) + tensor::trace(&stress);
@@ -184,6 +185,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for BondAssociated<L> {
 
     fn failure(&self) -> Option<usize> {
         self.law.failure()
+    }
+
+    fn temperature(&self) -> Option<usize> {
+        self.law.temperature()
     }
 
     fn constants(&self, material: usize, dt: f64) -> L::Constants<f64> {

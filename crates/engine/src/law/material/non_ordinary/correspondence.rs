@@ -351,6 +351,7 @@ mod tests {
         stiffness: 0.0,
         square: 0.0,
         across: 0.0,
+        reach: 1.0,
     };
 
     /// P is the slope of ψ, in plane stress too, and small strains are Hooke's.

@@ -5,7 +5,7 @@
 //! `p = (γ − 1) E/J`. Both are linear in E, `p = a(J) + b(J) E`, so a step finds E in closed form.
 //!
 //! Where the volume shrinks, `D = −J̇/J > 0`, pressure gets `q = ρ δ D (C_q δ D + C_l c)`: quadratic of von Neumann & Richtmyer (1950), linear of
-//! Landshoff (1955), over the length in which peridynamics spreads a shock, the horizon δ. c is the speed of sound of that state, before the step.
+//! Landshoff (1955), over the length in which peridynamics spreads a shock, the horizon δ of the point. c is the speed of sound of that state, before the step.
 
 use crate::columns::{Declaration, Dimension, Shape};
 use crate::law::descriptor::{self, Bounds, Given, Key, Need, Value};
@@ -31,7 +31,7 @@ pub struct EquationOfState {
     pub gruneisen: f64,
     /// E in the reference (pressure).
     pub energy: f64,
-    /// `C_l δ √ρ₀` and `C_q δ² ρ₀`.
+    /// `C_l δ √ρ₀` and `C_q δ² ρ₀` of the material's horizon.
     pub viscosity: [f64; 2],
 }
 
@@ -132,13 +132,15 @@ impl Kind {
         }
     }
 
-    /// q of a step from `J = 1 + before` to `1 + now`, from a state of this energy; `old` where time stands still.
+    /// q of a step from `J = 1 + before` to `1 + now`, from a state of this energy, of a point whose horizon is `reach` times the material's; `old` where
+    /// time stands still.
     #[inline(always)]
     pub fn viscosity<N: Number>(
         self,
         c: &Constants<N>,
         [before, now]: [N; 2],
         energy: N,
+        reach: N,
         old: N,
     ) -> N {
         let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
@@ -148,7 +150,8 @@ impl Kind {
         let stiffness = self.at(c, before).stiffness(energy);
         // ρ c = √(ρ₀ stiffness) as ρ = ρ₀/J; at rest a root has no slope: the least number has none either
         let sound = stiffness.most(N::constant(f64::MIN_POSITIVE)).sqrt();
-        let q = rate * c[LINEAR].fma(sound, (c[QUADRATIC] * rate).div(middle));
+        let wide = reach * rate;
+        let q = wide * c[LINEAR].fma(sound, (c[QUADRATIC] * wide).div(middle));
         zero.choose(c[RATE], q, old)
     }
 }
@@ -364,15 +367,19 @@ mod tests {
             energy: 0.0,
         };
         let c = of.constants(0.1);
-        let at = |ends| Kind::MieGruneisen.viscosity(&c, ends, 0.0, 7.0);
+        let at = |ends| Kind::MieGruneisen.viscosity(&c, ends, 0.0, 1.0, 7.0);
         assert_eq!(at([0.0, 0.02]), 0.0);
         let middle: f64 = 1.0 - 0.005;
         let (rate, sound) = (0.1 / middle, 2.0);
         let exact = 5.0 * 2.0 * rate * (1.5 * 2.0 * rate / middle + 0.3 * sound);
         assert!((at([0.0, -0.01]) / exact - 1.0).abs() < 1e-14);
+        // half the horizon
+        let half = Kind::MieGruneisen.viscosity(&c, [0.0, -0.01], 0.0, 0.5, 7.0);
+        let exact = 5.0 * 1.0 * rate * (1.5 * 1.0 * rate / middle + 0.3 * sound);
+        assert!((half / exact - 1.0).abs() < 1e-14);
         let still = of.constants(0.0);
         assert_eq!(
-            Kind::MieGruneisen.viscosity(&still, [0.0, -0.01], 0.0, 7.0),
+            Kind::MieGruneisen.viscosity(&still, [0.0, -0.01], 0.0, 1.0, 7.0),
             7.0
         );
     }

@@ -26,8 +26,8 @@ pub struct NonOrdinary<L> {
     pub control: Vec<f64>,
 }
 
-/// `K⁻¹`, 1/m, and 1 where K can be inverted.
-type Form<N, const D: usize> = (Matrix<N, D>, [N; 2]);
+/// `K⁻¹`, 1/m, 1 where K can be inverted, and [`Kin::reach`].
+type Form<N, const D: usize> = (Matrix<N, D>, [N; 3]);
 /// `P K⁻¹ − g H`, g.
 type Answers<N, const D: usize> = (Matrix<N, D>, N);
 /// `G_z β`, and what the stress reads.
@@ -69,6 +69,7 @@ fn unseen<N: Number, const D: usize>(
         stiffness: control * form.1[0],
         square: (sum.1 - tensor::contraction(&sum.0, h)).most(N::constant(0.0)),
         across,
+        reach: form.1[2],
     }
 }
 
@@ -153,6 +154,10 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         self.law.failure()
     }
 
+    fn temperature(&self) -> Option<usize> {
+        self.law.temperature()
+    }
+
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64> {
         let control = self.resistance::<D>(material);
         (control, self.law.constants(material, dt))
@@ -175,7 +180,7 @@ impl<const D: usize, L: Classical<D>> Material<D> for NonOrdinary<L> {
         let shape = kin.shape();
         let (inverse, whole) = tensor::inverse(shape);
         let sound = if whole { 1.0 } else { 0.0 };
-        (inverse, [inverse_weight(&shape), sound])
+        (inverse, [inverse_weight(&shape), sound, kin.reach])
     }
 
     /// `|δF|² ≤ |K⁻¹| Σ ω ν V |η|²`; of points without F the control alone, which goes with 1/m.

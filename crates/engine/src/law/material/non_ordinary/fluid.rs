@@ -84,7 +84,9 @@ impl<const D: usize> Classical<D> for Fluid {
         let before = at_rest + past[GAINED];
         let old = self.kind.at(c, past[DILATION]).pressure(before);
         let ends = [past[DILATION], beyond];
-        let q = self.kind.viscosity(c, ends, before, past[SHOCK]);
+        let q = self
+            .kind
+            .viscosity(c, ends, before, unseen.reach, past[SHOCK]);
         let state = self.kind.at(c, beyond);
         // E′ (1 + ½ b ΔJ) = E − ½ (p + q + a + q′) ΔJ
         let shrunk = half * (past[DILATION] - beyond);

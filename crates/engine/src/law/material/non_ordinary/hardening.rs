@@ -164,7 +164,7 @@ pub const KEYS: [Key; 13] = [
     optional(
         "reference_temperature",
         Dimension::TEMPERATURE,
-        "T_r, where the body is at first.",
+        "T_r of T* = (T − T_r)/(T_m − T_r), where the body is at first; beside [heat] T is that of the body.",
     ),
     descriptor::number(
         "thermal_exponent",

@@ -61,6 +61,7 @@ impl Hyperelastic {
             stiffness: zero,
             square: zero,
             across: zero,
+            reach: Dual::constant(1.0),
         };
         let (p, _, _) = law.at(0, &h, &seen);
         let (along, across) = (p[0][0].slope, p[1][1].slope);
@@ -254,6 +255,7 @@ mod tests {
         stiffness: 0.0,
         square: 0.0,
         across: 0.0,
+        reach: 1.0,
     };
     const LAMBDA: f64 = 1.3;
     const MU: f64 = 0.7;
@@ -328,6 +330,7 @@ mod tests {
                         stiffness: zero,
                         square: zero,
                         across: zero,
+                        reach: Dual::constant(1.0),
                     };
                     let constant = c.map(Dual::constant);
                     let a = law.stress(&[zero], &[], &h, &seen).stress;

@@ -168,6 +168,7 @@ mod tests {
         stiffness: 0.0,
         square: 0.0,
         across: 0.0,
+        reach: 1.0,
     };
 
     const LAMBDA: f64 = 1.3;

@@ -53,6 +53,11 @@ pub trait Classical<const D: usize>: Send + Sync + 'static {
         None
     }
 
+    /// [`Material::temperature`](super::Material::temperature)
+    fn temperature(&self) -> Option<usize> {
+        None
+    }
+
     /// Constants of a material for a step of length `dt`; 0: time stands still.
     fn constants(&self, material: usize, dt: f64) -> Self::Constants<f64>;
 
@@ -134,6 +139,8 @@ pub struct Unseen<N> {
     pub square: N,
     /// Elastic strain across a plane: [`Around::section`](super::Around::section), or that of a sheet.
     pub across: N,
+    /// [`Kin::reach`](super::Kin::reach), 1 of a bond.
+    pub reach: N,
 }
 
 impl<N: Number> Unseen<N> {

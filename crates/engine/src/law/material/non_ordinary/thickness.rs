@@ -104,6 +104,7 @@ mod tests {
         Unseen {
             stiffness: N::constant(0.0),
             square: N::constant(0.0),
+            reach: N::constant(1.0),
             across: N::constant(across),
         }
     }

@@ -125,6 +125,17 @@ pub(crate) struct Chosen {
     family: Arc<[Partner<3>]>,
 }
 
+/// What the law of a material says of temperatures.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Softens {
+    /// T_r.
+    pub reference: Option<f64>,
+    /// c, by which plastic work heats.
+    pub capacity: Option<f64>,
+    /// Is there an equation of state?
+    pub pressed: bool,
+}
+
 #[derive(Clone)]
 struct Made {
     parameters: Parameters,
@@ -243,10 +254,14 @@ impl Chosen {
         matches!(&self.entry.runs, Runs::Material(material) if material.fades)
     }
 
-    /// Do its materials soften by a temperature?
-    pub fn melts(&self) -> bool {
-        let melting = |m: &Made| m.parameters.number("melting_temperature").is_some();
-        self.materials.iter().any(melting)
+    /// What its materials soften by.
+    pub fn softens(&self) -> Vec<Softens> {
+        let of = |m: &Made| Softens {
+            reference: m.parameters.number("reference_temperature"),
+            capacity: m.parameters.number("heat_capacity"),
+            pressed: { m.parameters.word("equation_of_state") }.is_some_and(|w| w != "elastic"),
+        };
+        self.materials.iter().map(of).collect()
     }
 
     /// Are constants of any of its materials those of a place?
@@ -363,7 +378,7 @@ fn bind<const D: usize, M: Shelved + Material<D>>(chosen: &Chosen, place: Place<
             let near_horizon = list.near_horizon;
             let made = MaterialInteraction::new(MaterialParts {
                 body,
-                family: CloudFamily::new(body, list, weight, remembers),
+                family: CloudFamily::new(body, chosen.horizon, list, weight, remembers),
                 law,
                 kind: "list",
                 near_horizon,
@@ -394,7 +409,7 @@ fn own_horizons<const D: usize, M: Material<D>>(
     let half = 0.5 * body.spacing;
     let own = |i: usize| body.horizon[i];
     let reach = |i: usize, j: usize| own(i).max(own(j)) + half;
-    let list = HorizonList::within(body, horizon, reach)?;
+    let list = HorizonList::within(body, horizon + half, reach)?;
     Ok((list, weight.whole()))
 }
 

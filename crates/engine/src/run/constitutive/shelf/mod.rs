@@ -5,7 +5,7 @@ mod materials;
 
 pub(crate) use atoms::AnyPotentials;
 pub(super) use materials::chosen;
-pub(crate) use materials::{Chosen, Place};
+pub(crate) use materials::{Chosen, Place, Softens};
 
 use crate::condition::own::{OwnForce, Seen};
 use crate::error::BuildError;

@@ -9,7 +9,8 @@
 //! With an [equation of state](super::equation_of_state) the mean stress is `−p(J, E) − q` of the volume and of the internal energy E, which is all work that
 //! was done on the point, and the viscosity of shocks: metals under impact (Wilkins 1964). Flow then is von Mises's.
 //!
-//! Plastic work, by the trapezoidal rule, is what is dissipated; a part β of it heats the point, which keeps that heat: `ρ c ΔT = β Δw_p`. Damage of Johnson & Cook (1985):
+//! Plastic work, by the trapezoidal rule, is what is dissipated; a part β of it heats the point, `ρ c ΔT = β Δw_p`, which keeps that heat or gives it to a body that
+//! conducts it ([`Classical::temperature`]). A step flows at the temperature of its start. Damage of Johnson & Cook (1985):
 //! `ΔD = Δε̄/ε_f`, `ε_f = (D₁ + D₂ exp(D₃ p/q)) (1 + D₄ ln(ε̄̇/ε̇₀)) (1 + D₅ T*)`; what it does to bonds is a matter of their fracture.
 
 mod shelved;
@@ -203,12 +204,12 @@ impl HypoelasticPlastic {
         &self,
         c: &equation_of_state::Constants<N>,
         ([_, s0], memory): &Past<N, D>,
-        step: &Step<N, D>,
+        (step, reach): (&Step<N, D>, N),
         deviator: &Matrix<N, D>,
     ) -> (N, N) {
         let (zero, one, half) = (N::constant(0.0), N::constant(1.0), N::constant(0.5));
         let (ends, volumes) = (step.dilations, step.volumes);
-        let q = self.state.viscosity(c, ends, memory[WORK], memory[SHOCK]);
+        let q = (self.state).viscosity(c, ends, memory[WORK], reach, memory[SHOCK]);
         let state = self.state.at(c, ends[1]);
         // E′ = E + the work of all but the new mean stress m, and ½ J′ m tr Δε of that: linear in m = −a − q − b E′
         let known =
@@ -271,7 +272,7 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
             scalar(
                 "temperature_rise",
                 Dimension::TEMPERATURE,
-                "By how much plastic work has heated the point, β w_p/(ρ c).",
+                "Temperature T − T_r above that of reference: by plastic work alone, β w_p/(ρ c), or that of a body that conducts heat.",
             ),
             scalar(
                 "ductile_damage",
@@ -304,6 +305,11 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
     fn failure(&self) -> Option<usize> {
         // after U − 1 and the stress
         self.damages.then_some(2 * D * D + DAMAGED)
+    }
+
+    fn temperature(&self) -> Option<usize> {
+        let heated = self.materials.iter().any(|m| m.heating > 0.0);
+        (self.kind.heats || heated).then_some(2 * D * D + RISE)
     }
 
     fn constants(&self, material: usize, dt: f64) -> Constants<f64> {
@@ -393,7 +399,8 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         }
         let mut shock = memory[SHOCK];
         if self.state != equation_of_state::Kind::Elastic {
-            (flow.mean, shock) = self.pressed(&constants.1.1, past, &step, &s);
+            let wide = (&step, unseen.reach);
+            (flow.mean, shock) = self.pressed(&constants.1.1, past, wide, &s);
         }
         let q = flow.rest * trial.q;
         // plastic work at both ends, Δε^p : s = 3/2 Δε̄ s′:s/q′
@@ -413,7 +420,8 @@ impl<const D: usize> Classical<D> for HypoelasticPlastic {
         now[STRAIN] = memory[STRAIN] + flow.strain;
         now[PLASTIC_WORK] = memory[PLASTIC_WORK] + plastic;
         now[RISE] = c[HEATING].fma(plastic, memory[RISE]);
-        let triaxiality = flow.mean.div(q);
+        // molten: no q
+        let triaxiality = flow.mean.div(q.most(N::constant(f64::MIN_POSITIVE)));
         now[DAMAGED] =
             memory[DAMAGED] + self.damaged(constants, memory[RISE], flow.strain, triaxiality);
         // the secant modulus of shear, q/(q + 3με̄) of the elastic one
