@@ -48,9 +48,10 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
     for _ in 0..STEPS {
         low = f.choose(zero, x, low);
         high = zero.choose(f, x, high);
-        let guess = x - zero.choose(slope, f.div(slope), zero);
         let middle = half * (low + high.least(two.fma(x, one)));
-        let inside = low.choose(guess, guess.choose(high, guess, middle), middle);
+        let guess = zero.choose(slope, x - f.div(slope), middle);
+        // a correction below the last digit leaves it at a bound
+        let inside = guess.choose(low, middle, high.choose(guess, middle, guess));
         // where nothing is borne it stays
         let next = zero.choose(f * f, inside, x);
         let step = next - x;
