@@ -6,9 +6,8 @@ use super::Indenter;
 use super::surface::Near;
 use crate::body::{Body, Field};
 use crate::condition::rigid::Kept;
-use crate::interaction::friction::{
-    Coefficients, Pressed, TANGENTIAL, along, begun, follows, slipped,
-};
+use crate::interaction::coulomb::{Coefficients, TANGENTIAL, along, begun, follows, slipped};
+use crate::interaction::friction::Pressed;
 use crate::space::full;
 use std::collections::HashMap;
 
