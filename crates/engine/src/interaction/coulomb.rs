@@ -6,6 +6,9 @@ use crate::spec::FrictionSpec;
 /// Stiffness of contact along faces over that across them: the usual choice of granular mechanics (LAMMPS, `pair_style gran`).
 pub const TANGENTIAL: f64 = 2.0 / 7.0;
 
+/// A speed of sliding over the speeds that it is the difference of, up to which it is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Coefficients of a law at a time; what is below 0 counts as 0.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Coefficients {
@@ -44,7 +47,7 @@ impl Coefficients {
     }
 }
 
-pub(super) fn length<const D: usize>(x: &[f64; D]) -> f64 {
+pub fn length<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
@@ -52,6 +55,16 @@ pub(super) fn length<const D: usize>(x: &[f64; D]) -> f64 {
 pub fn along<const D: usize>(normal: &[f64; D], way: &[f64; D]) -> [f64; D] {
     let across: f64 = (0..D).map(|a| way[a] * normal[a]).sum();
     std::array::from_fn(|a| way[a] - across * normal[a])
+}
+
+/// The velocity of sliding along a face of normal n (of length 1); none where it is the round-off of speeds whose difference it is: what rolls
+/// has no direction in which to slide.
+pub fn sliding<const D: usize>(normal: &[f64; D], relative: &[f64; D], speeds: f64) -> [f64; D] {
+    let w = along(normal, relative);
+    match length(&w) <= ROUND_OFF * speeds {
+        true => [0.0; D],
+        false => w,
+    }
 }
 
 /// The elastic path of what begins in touch and slides with `w`: as if it had slid before.

@@ -14,16 +14,13 @@
 use super::BondTangent;
 use super::Interaction;
 use super::contact::{Contact, Touch};
-use super::coulomb::{Coefficients, TANGENTIAL, along, begun, follows, length, slipped};
+use super::coulomb::{Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped};
 use super::spin::Families;
 use crate::body::{Body, Field, zeros};
 use crate::space::{cross, full};
 use crate::spec::FrictionSpec;
 use std::iter::Peekable;
 use std::slice::Iter;
-
-/// A speed of sliding over the speeds that it is the difference of, up to which it is round-off.
-const ROUND_OFF: f64 = 1e-12;
 
 /// The elastic path ξ of two that touch.
 #[derive(Debug, Clone, Copy)]
@@ -211,11 +208,9 @@ impl<const D: usize> Friction<D> {
                 })
             });
             let straight: [f64; D] = std::array::from_fn(|a| v[a][j] - v[a][i]);
-            let mut w = along(&normal, &std::array::from_fn(|a| straight[a] - turn[a]));
-            let all = length(&turn) + length(&std::array::from_fn::<f64, D, _>(|a| v[a][i]));
-            if length(&w) <= ROUND_OFF * all {
-                w = [0.0; D];
-            }
+            let relative = std::array::from_fn(|a| straight[a] - turn[a]);
+            let speeds = length(&turn) + length::<D>(&std::array::from_fn(|a| v[a][i]));
+            let w = sliding(&normal, &relative, speeds);
             let most = law.at(length(&w)) * depth / TANGENTIAL;
             let (way, kept) = match (&self.from, before) {
                 (None, before) if dt == 0.0 && before.is_none_or(|s| s.way == [0.0; D]) => {

@@ -1,10 +1,11 @@
 //! Friction and turning: angular momentum of bodies that rub, and what turns as one or rolls and does not rub.
 
-use super::rigid::made;
+use super::rigid::{made, seen, tumbling};
 use super::{glancing, piece, sets, square, text};
 use peridyne::run::Simulation;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::space::region::Region;
+use peridyne::space::rigid::RigidShape;
 use peridyne::spec::*;
 
 /// Momentum and angular momentum about the origin of all points, and by their sizes what round-off of each is measured by.
@@ -203,4 +204,25 @@ fn what_rolls_does_not_rub() {
     spec.initial = vec![with(["-0.2*(y - 0.3 - 5.1)", "0.2*(x - 7)"])];
     let slides = rubs(&spec);
     assert!(slides > 0.1, "{slides}");
+}
+
+/// A ball that rolls over one point when a run begins is pushed across the surface only: the difference of its speeds is round-off, not sliding.
+#[test]
+fn a_ball_that_rolls_does_not_rub() {
+    let begins = |velocity: f64| {
+        let friction = Some(FrictionSpec::constant(0.4));
+        let mut spec = tumbling(RigidShape::Sphere { radius: 2.0 }, friction, 0.005);
+        let IndenterMotion::Free(free) = &mut spec.indenters[0].motion else {
+            panic!()
+        };
+        // 1.9 above the point (2, 2, 2), and further than its radius from all others
+        free.center = [2.0, 2.0, 3.9];
+        (free.velocity, free.spin) = ([velocity, 0.0, 0.0], [0.0, 0.41, 0.0]);
+        let mut sim = made(&spec);
+        let force = seen(sim.as_mut(), "force");
+        force[0].abs() / force[2].abs()
+    };
+    let (rolls, slides) = (begins(0.41 * 1.9), begins(1.0));
+    assert!(rolls < 1e-12, "{rolls:e}");
+    assert!((slides / 0.4 - 1.0).abs() < 1e-9, "{slides}");
 }
