@@ -8,6 +8,8 @@ mod faces;
 mod implicit;
 #[path = "friction/rigid.rs"]
 mod rigid;
+#[path = "friction/turning.rs"]
+mod turning;
 
 use peridyne::expression::Expression;
 use peridyne::run::{Options, Simulation, build};

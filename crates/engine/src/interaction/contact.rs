@@ -276,6 +276,13 @@ impl<const D: usize> Contact<D> {
         count
     }
 
+    /// Visit the ends of all listed pairs: who may touch before the pairs are found anew.
+    pub fn each_listed(&self, mut visit: impl FnMut([usize; 2])) {
+        for (i, row) in self.neighbours.rows() {
+            row.iter().for_each(|j| visit([i, *j as usize]));
+        }
+    }
+
     /// How often the pairs were found anew.
     pub fn builds(&self) -> u64 {
         self.neighbours.builds()

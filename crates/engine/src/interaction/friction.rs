@@ -5,18 +5,22 @@
 //! ([`TANGENTIAL`]). The force density on i is `κ V_j ξ`, that on j the opposite. μ may depend on the speed of sliding and on time
 //! ([`FrictionSpec`]). What touches and slides when a run begins has slid before. So what sticks holds a force without creeping; momentum
 //! is kept; what slips is dissipated; and the rest, `½ κ ξ² V_i V_j`, is energy of the contact until the pair parts.
+//!
+//! The force acts at the place of contact, midway between the points; at one of them that is alone: with y from i to j the couple
+//! `V_i V_j κ y × ξ` acts on both besides ([`Families`]). Dual to it the path of j along i is that of the points less what they turn by together,
+//! `u_j − u_i − ω × y`. So angular momentum is kept, what turns as one does not rub, and what rolls does not either. Between two points that
+//! are both alone there is no couple, and angular momentum is not kept.
 
 use super::BondTangent;
 use super::Interaction;
 use super::contact::{Contact, Touch};
+use super::coulomb::{Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped};
+use super::spin::Families;
 use crate::body::{Body, Field, zeros};
-use crate::expression::Expression;
+use crate::space::{cross, full};
 use crate::spec::FrictionSpec;
 use std::iter::Peekable;
 use std::slice::Iter;
-
-/// Stiffness of contact along faces over that across them: the usual choice of granular mechanics (LAMMPS, `pair_style gran`).
-pub const TANGENTIAL: f64 = 2.0 / 7.0;
 
 /// The elastic path ξ of two that touch.
 #[derive(Debug, Clone, Copy)]
@@ -65,46 +69,11 @@ pub struct Friction<const D: usize> {
     kept: f64,
     /// Who touches now.
     touching: Vec<Touch<D>>,
+    families: Families<D>,
+    /// How often the contact had found its pairs when families were found.
+    found: u64,
     /// What springs hold (energy): `−work − energy` is dissipated.
     pub energy: f64,
-}
-
-/// Coefficients of a law at a time; what is below 0 counts as 0.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Coefficients {
-    /// μ_k
-    kinetic: f64,
-    /// μ_s − μ_k
-    more: f64,
-    /// 1/v_c
-    slowness: f64,
-}
-
-impl Coefficients {
-    pub fn new(law: &FrictionSpec, t: f64) -> Coefficients {
-        let at = |e: &Expression| match e.eval(&[0.0; 3], t) {
-            x if x < 0.0 => 0.0,
-            x => x,
-        };
-        let kinetic = at(&law.kinetic);
-        let (more, slowness) = match &law.at_rest {
-            None => (0.0, 0.0),
-            Some(rest) => (at(&rest.coefficient) - kinetic, 1.0 / rest.speed),
-        };
-        Coefficients {
-            kinetic,
-            more,
-            slowness,
-        }
-    }
-
-    /// μ at a sliding speed.
-    pub fn at(&self, speed: f64) -> f64 {
-        match self.more {
-            0.0 => self.kinetic,
-            more => self.kinetic + more * (-speed * self.slowness).exp(),
-        }
-    }
 }
 
 /// The spring of two, in a list that is gone through in order of the ends.
@@ -114,64 +83,6 @@ fn find<'a, const D: usize>(
 ) -> Option<&'a Spring<D>> {
     while all.next_if(|s| s.ends < ends).is_some() {}
     all.next_if(|s| s.ends == ends)
-}
-
-fn length<const D: usize>(x: &[f64; D]) -> f64 {
-    x.iter().map(|c| c * c).sum::<f64>().sqrt()
-}
-
-/// What of a way lies in a face of normal n (of length 1).
-pub fn along<const D: usize>(normal: &[f64; D], way: &[f64; D]) -> [f64; D] {
-    let across: f64 = (0..D).map(|a| way[a] * normal[a]).sum();
-    std::array::from_fn(|a| way[a] - across * normal[a])
-}
-
-/// The elastic path of what begins in touch and slides with `w`: as if it had slid before.
-pub fn begun<const D: usize>(w: &[f64; D], most: f64) -> [f64; D] {
-    match length(w) {
-        0.0 => [0.0; D],
-        speed => w.map(|c| c * most / speed),
-    }
-}
-
-/// The elastic path after another piece of path along a face of normal n (of length 1), no longer than `most`, and what part of it is left.
-pub fn slipped<const D: usize>(
-    before: &[f64; D],
-    normal: &[f64; D],
-    path: &[f64; D],
-    most: f64,
-) -> ([f64; D], f64) {
-    // what turns with the faces keeps its length
-    let turned = along(normal, before);
-    let kept = match length(&turned) {
-        0.0 => 0.0,
-        short => length(before) / short,
-    };
-    let path = along(normal, path);
-    let way: [f64; D] = std::array::from_fn(|a| kept * turned[a] + path[a]);
-    let long = length(&way);
-    match long > most {
-        true => (way.map(|c| c * most / long), most / long),
-        false => (way, 1.0),
-    }
-}
-
-/// How the elastic path follows a small path in a face: what slips follows across its own direction alone. What pressure does to it is
-/// left out, which would not be symmetric.
-pub fn follows<const D: usize>(normal: &[f64; D], way: &[f64; D], kept: f64) -> [[f64; D]; D] {
-    let long = length(way);
-    let slips = kept < 1.0 && long > 0.0;
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| {
-            let one = if a == b { 1.0 } else { 0.0 };
-            let slip = if slips {
-                way[a] * way[b] / (long * long)
-            } else {
-                0.0
-            };
-            kept * (one - normal[a] * normal[b] - slip)
-        })
-    })
 }
 
 impl<const D: usize> Friction<D> {
@@ -186,6 +97,8 @@ impl<const D: usize> Friction<D> {
             work: 0.0,
             kept: 0.0,
             touching: vec![],
+            families: Families::default(),
+            found: 0,
             energy: 0.0,
         }
     }
@@ -258,13 +171,16 @@ impl<const D: usize> Friction<D> {
         self.touching.clear();
         contact.each_contact(u, |touch| self.touching.push(touch));
         let outside = self.touching.len();
+        self.families.begin();
         interaction.each_broken(body, &mut |i, j, xi| {
             self.touching
                 .extend(contact.touch_inside(body, u, [i, j], xi));
+            self.families.tear(i, j, &xi);
         });
         if self.touching.len() > outside {
             self.touching.sort_unstable_by_key(|t| [t.i, t.j]);
         }
+        self.find_families(contact, interaction, body);
         // all in order of their ends
         let mut before = self.before.iter().peekable();
         let mut pressed = self.pressed.iter().peekable();
@@ -282,7 +198,19 @@ impl<const D: usize> Friction<D> {
                 Some(_) | None => d - r,
             };
             let normal = y.map(|c| c / r);
-            let w = along(&normal, &std::array::from_fn(|a| v[a][j] - v[a][i]));
+            let from = self.from.as_ref().map(|from| &from.u);
+            let together = self.families.together(body, [u, v], from, [i, j]);
+            // what both turn by together is no sliding
+            let [turn, turned] = together.map_or([[0.0; D]; 2], |t| {
+                t.turns.map(|omega| {
+                    let moved = cross(&omega, &full(&y));
+                    std::array::from_fn(|a| moved[a])
+                })
+            });
+            let straight: [f64; D] = std::array::from_fn(|a| v[a][j] - v[a][i]);
+            let relative = std::array::from_fn(|a| straight[a] - turn[a]);
+            let speeds = length(&turn) + length::<D>(&std::array::from_fn(|a| v[a][i]));
+            let w = sliding(&normal, &relative, speeds);
             let most = law.at(length(&w)) * depth / TANGENTIAL;
             let (way, kept) = match (&self.from, before) {
                 (None, before) if dt == 0.0 && before.is_none_or(|s| s.way == [0.0; D]) => {
@@ -290,9 +218,9 @@ impl<const D: usize> Friction<D> {
                 }
                 (from, before) => {
                     let path = match from {
-                        Some(Departure { u: from, .. }) => {
-                            std::array::from_fn(|a| (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]))
-                        }
+                        Some(Departure { u: from, .. }) => std::array::from_fn(|a| {
+                            (u[a][j] - from[a][j]) - (u[a][i] - from[a][i]) - turned[a]
+                        }),
                         None => w.map(|c| dt * c),
                     };
                     slipped(before.map_or(&[0.0; D], |s| &s.way), &normal, &path, most)
@@ -304,6 +232,11 @@ impl<const D: usize> Friction<D> {
                 self.force[a][i] += stiffness * vj * way[a];
                 self.force[a][j] -= stiffness * vi * way[a];
             }
+            if let Some(together) = &together {
+                let couple = cross(&full(&y), &full(&way));
+                let couple = couple.map(|c| stiffness * vi * vj * c);
+                self.families.turn(together, [i, j], &couple);
+            }
             let square: f64 = way.iter().map(|c| c * c).sum();
             self.energy += 0.5 * stiffness * square * vi * vj;
             self.now.push(Spring {
@@ -313,6 +246,9 @@ impl<const D: usize> Friction<D> {
                 kept,
             });
         }
+        if !self.now.is_empty() {
+            self.families.add(body, u, &mut self.force);
+        }
         for a in 0..D {
             for (f, own) in f[a].iter_mut().zip(self.force[a].iter()) {
                 *f += own;
@@ -321,7 +257,30 @@ impl<const D: usize> Friction<D> {
         self.half_path(body, v, dt);
     }
 
-    /// The tangents of the last evaluation.
+    /// Finds the families of all that may touch before pairs are found anew, where one is missing.
+    fn find_families(
+        &mut self,
+        contact: &Contact<D>,
+        interaction: &dyn Interaction<D>,
+        body: &Body<D>,
+    ) {
+        let missing = |t: &Touch<D>| [t.i, t.j].iter().any(|s| !self.families.knows(*s));
+        if !self.touching.iter().any(missing) {
+            return;
+        }
+        let touching = self.touching.iter().flat_map(|t| [t.i, t.j]);
+        let mut slots: Vec<u32> = touching.map(|s| s as u32).collect();
+        contact.each_listed(|ends| slots.extend(ends.map(|s| s as u32)));
+        // faces of a crack are not listed
+        if self.found == contact.builds() {
+            slots.extend(self.families.slots());
+        }
+        self.found = contact.builds();
+        self.families.learn(interaction, body, slots);
+    }
+
+    /// The tangents of the last evaluation. What pressure and couples do to them is left out: a couple reaches whole families, and is small beside
+    /// what presses. Newton's steps are shorter by that, not wrong.
     pub fn tangents(&self, body: &Body<D>, visit: &mut dyn FnMut(BondTangent<D>)) {
         let touching = self.touching.iter().filter(|t| t.r > 0.0);
         for (touch, spring) in touching.zip(&self.now) {
@@ -354,5 +313,6 @@ impl<const D: usize> Friction<D> {
         8 * D * fields * self.force[0].len()
             + size_of::<Spring<D>>() * springs
             + size_of::<Touch<D>>() * self.touching.capacity()
+            + self.families.bytes()
     }
 }

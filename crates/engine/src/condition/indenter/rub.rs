@@ -6,9 +6,10 @@ use super::Indenter;
 use super::surface::Near;
 use crate::body::{Body, Field};
 use crate::condition::rigid::Kept;
-use crate::interaction::friction::{
-    Coefficients, Pressed, TANGENTIAL, along, begun, follows, slipped,
+use crate::interaction::coulomb::{
+    Coefficients, TANGENTIAL, begun, follows, length, sliding, slipped,
 };
+use crate::interaction::friction::Pressed;
 use crate::space::full;
 use std::collections::HashMap;
 
@@ -38,7 +39,10 @@ impl<const D: usize> Indenter<D> {
     fn sliding(&self, v: &Field<D>, touched: &Touched<D>) -> [f64; D] {
         let Near { arm, normal, .. } = &touched.near;
         let (of, i) = (self.rigid.velocity_at(&full(arm)), touched.slot as usize);
-        along(normal, &std::array::from_fn(|a| of[a] - v[a][i]))
+        let relative = std::array::from_fn(|a| of[a] - v[a][i]);
+        let point: [f64; D] = std::array::from_fn(|a| v[a][i]);
+        let speeds = length(&self.rigid.velocity_at(&[0.0; 3])) + length(&point);
+        sliding(normal, &relative, speeds)
     }
 
     /// Friction on all that are touched.
@@ -68,7 +72,7 @@ impl<const D: usize> Indenter<D> {
             // in equilibrium nothing has a speed, whatever the increment is divided by
             let speed = match held {
                 true => 0.0,
-                false => w.iter().map(|c| c * c).sum::<f64>().sqrt(),
+                false => length(&w),
             };
             let most = now.at(speed) * depth / (2.0 * TANGENTIAL);
             (touched.way, touched.kept) = match (&self.from, before.get(&touched.slot)) {
