@@ -351,7 +351,8 @@ fn a_sheet_of_rubber_gets_thinner() {
 #[test]
 fn a_torn_slice_is_one_of_the_solid() {
     let with = |name: &str, words: &[(&str, &str)], numbers: &[(&str, f64)]| {
-        let word = |p: Parameters, (key, x): &(&str, &str)| p.with(key, Parameter::Word((*x).into()));
+        let word =
+            |p: Parameters, (key, x): &(&str, &str)| p.with(key, Parameter::Word((*x).into()));
         let number = |p: Parameters, (key, x): &(&str, f64)| p.with(key, Parameter::Number(*x));
         let parameters = words.iter().fold(elastic(), word);
         LawSpec::named(name, numbers.iter().fold(parameters, number))
@@ -360,8 +361,16 @@ fn a_torn_slice_is_one_of_the_solid() {
         let words = [("gradient", gradient)];
         for law in [
             with("hypoelastic", &words, &[]),
-            with("hypoelastic_plastic", &words, &[("yield_stress", 0.01), ("hardening", 0.1)]),
-            with("correspondence", &[words[0], ("stress", "neo_hookean")], &[]),
+            with(
+                "hypoelastic_plastic",
+                &words,
+                &[("yield_stress", 0.01), ("hardening", 0.1)],
+            ),
+            with(
+                "correspondence",
+                &[words[0], ("stress", "neo_hookean")],
+                &[],
+            ),
         ] {
             let of = |kind: LatticeKind, sites: [i32; 3]| {
                 let mut spec = block(kind, sites, 2, law.clone());
@@ -369,7 +378,10 @@ fn a_torn_slice_is_one_of_the_solid() {
                 let [low, high] = [[0.4, -0.4, -9.0], [0.4, 9.0, 9.0]];
                 let corner = |y: f64, z: f64| [low[0], y, z];
                 let shape = match kind {
-                    LatticeKind::Square => CrackShape::Segment { from: low, to: high },
+                    LatticeKind::Square => CrackShape::Segment {
+                        from: low,
+                        to: high,
+                    },
                     _ => CrackShape::Polygon {
                         corners: vec![
                             corner(low[1], low[2]),
@@ -383,18 +395,27 @@ fn a_torn_slice_is_one_of_the_solid() {
                     shape,
                     kind: CrackKind::Broken,
                 }];
-                let mut sim = led(&mut spec, ["0.03*x*t + 0.01*y*t", "0.02*x*t - 0.01*y*t", "0"]);
+                let mut sim = led(
+                    &mut spec,
+                    ["0.03*x*t + 0.01*y*t", "0.02*x*t - 0.01*y*t", "0"],
+                );
                 (0..3).for_each(|_| sim.step().unwrap());
                 let n = sim.info().points as usize;
                 let torn = sim.column("damage").unwrap().values.at(n / 2, 0);
                 assert!(torn > 0.15, "{torn}");
-                sim.column("strain_energy_density").unwrap().values.at(n / 2, 0)
+                sim.column("strain_energy_density")
+                    .unwrap()
+                    .values
+                    .at(n / 2, 0)
             };
             let [plane, solid] = [
                 of(LatticeKind::Square, [9, 9, 1]),
                 of(LatticeKind::Cubic, [9, 9, 7]),
             ];
-            assert!((plane / solid - 1.0).abs() < 1e-9, "{gradient} {law:?}: {plane} {solid}");
+            assert!(
+                (plane / solid - 1.0).abs() < 1e-9,
+                "{gradient} {law:?}: {plane} {solid}"
+            );
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::sample::*;
 use peridyne::run::Simulation;
+use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
 /// Two blocks on top of each other along the last axis, `apart` more than their faces need to meet; the upper one begins at 1.
@@ -149,6 +150,25 @@ fn faces_of_one_lattice_exchange_by_their_area() {
             assert!(off.abs() < 1e-12, "{d}-D shifted by {shift}: {off:e}");
         }
     }
+}
+
+/// Of cells that are no cubes the faces are guessed, and it is said.
+#[test]
+fn faces_that_are_not_those_of_cubes_are_warned_of() {
+    let warns = |kind: Option<LatticeKind>| {
+        let mut spec = Two::blocks(3).spec();
+        let BodySpec::Several(pieces) = &mut spec.body else {
+            unreachable!()
+        };
+        if let (BodySpec::Lattice { kind: of, .. }, Some(kind)) = (&mut pieces[0].body, kind) {
+            *of = kind;
+        }
+        let sim = built(&spec);
+        let all = &sim.info().warnings;
+        all.iter().any(|w| w.contains("volume over the spacing"))
+    };
+    assert!(!warns(None));
+    assert!(warns(Some(LatticeKind::Fcc)));
 }
 
 /// Half of a spacing hangs over: what meets is that much less.

@@ -2,8 +2,24 @@
 
 use crate::error::BuildError;
 use crate::run::model::Model;
+use crate::space::lattice::LatticeKind;
 use crate::spec::{BodySpec, Quantity, Spec, Stepper, TransferMethod};
 use crate::transfer::Touching;
+
+/// Where faces are not those of cubic cells.
+const ROUGH: &str = "contact.conductance: the face of a point is taken as its volume over the spacing, which is that of chain, square and cubic lattices; faces of this body may be a third larger or smaller, and so is what they conduct: multiply the conductance by the true area of the faces over that";
+
+/// Are all points in the middle of cubic cells?
+fn is_cubic(body: &BodySpec) -> bool {
+    match body {
+        BodySpec::Lattice { kind, .. } | BodySpec::Sites { kind, .. } => matches!(
+            kind,
+            LatticeKind::Chain | LatticeKind::Square | LatticeKind::Cubic
+        ),
+        BodySpec::Cloud(_) => false,
+        BodySpec::Several(pieces) => pieces.iter().all(|p| is_cubic(&p.body)),
+    }
+}
 
 impl<const D: usize> Model<D> {
     /// Takes the contact conductance of a spec whose transfers are made.
@@ -61,6 +77,9 @@ impl<const D: usize> Model<D> {
             faces[self.transfers.place[s as usize] as usize] = self.body.face_at(s as usize);
         }
         heat.with_contact(Touching::new(h, faces));
+        if !is_cubic(&spec.body) {
+            self.info.warnings.push(ROUGH);
+        }
         self.conduct_contact();
         let told = self.info.transfers.iter_mut().zip(&self.transfers.all);
         told.for_each(|(info, t)| info.stable_step = t.stable_step(0.0));
