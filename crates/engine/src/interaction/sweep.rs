@@ -68,6 +68,15 @@ pub struct Released {
 }
 
 impl Released {
+    /// The same of bonds that may be on their own: these hold no less than nothing, and what half a step seems to make is its error.
+    #[inline(always)]
+    pub(super) fn of(&mut self, shares: bool, energy: f64) {
+        match shares {
+            true => self.book(energy),
+            false => self.lost += energy,
+        }
+    }
+
     /// Books what somebody lost.
     pub fn book(&mut self, energy: f64) {
         match energy < 0.0 {

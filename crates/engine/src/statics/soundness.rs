@@ -18,6 +18,33 @@ fn largest<const D: usize>(c: &[[f64; D]; D]) -> f64 {
 }
 
 impl<const D: usize> LinearBody<D> {
+    /// Its symmetric part, `V_i C_ij` and the transpose of `V_j C_ji` to their mean: of a body whose forces have no resultant its own diagonal, too.
+    pub(crate) fn symmetric(mut self) -> Self {
+        for i in 0..self.points() {
+            for k in self.start[i]..self.start[i + 1] {
+                let j = self.partner[k] as usize;
+                let row = &self.partner[self.start[j]..self.start[j + 1]];
+                let Ok(back) = row.binary_search(&(i as u32)) else {
+                    continue;
+                };
+                if j < i {
+                    continue;
+                }
+                let back = self.start[j] + back;
+                for a in 0..D {
+                    for b in 0..D {
+                        let here = self.volume[i] * self.block[k][a][b];
+                        let there = self.volume[j] * self.block[back][b][a];
+                        let mean = 0.5 * (here + there);
+                        self.block[k][a][b] = mean / self.volume[i];
+                        self.block[back][b][a] = mean / self.volume[j];
+                    }
+                }
+            }
+        }
+        self
+    }
+
     /// Force density on point `i` at displacements `u`.
     #[inline]
     pub fn force(&self, u: &[[f64; D]], i: usize) -> [f64; D] {

@@ -16,6 +16,7 @@ fn a_stencil_is_a_list() {
     };
     for case in cases().into_iter().filter(whole) {
         let mut runs = vec![];
+        println!("{}", case.name());
         for family in [FamilyChoice::Stencil, FamilyChoice::List] {
             let mut spec = case.spec();
             breaking(&mut spec, 0.03);

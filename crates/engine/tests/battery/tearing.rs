@@ -1,13 +1,17 @@
-//! A free body that tears has no more energy than it had, whatever its law: what breaking makes has a name, and laws of a family make none.
+//! A free body that tears has no more energy than it had, whatever its law: what breaking makes has a name, and laws of a gradient make none.
 
 use crate::sample::*;
 use peridyne::space::lattice::LatticeKind;
 use peridyne::spec::*;
 
-/// Explicit steps of 0.8 of the stable one miss a part of the energy while bonds break one after the other.
-const MISSED: f64 = 0.02;
+/// Steps, as parts of the stable one, and the part of the energy that explicit ones may miss while bonds break one after the other: the default, in which
+/// a body of few points has large errors, and short ones.
+const STEPS: [(FamilyChoice, f64, f64); 2] = [
+    (FamilyChoice::List, 0.8, 0.1),
+    (FamilyChoice::Stencil, 0.2, 0.02),
+];
 
-/// Bodies that are thrown apart and twisted, in the default step: a line, a plane that has a crack already, a block; on lattices and clouds.
+/// Bodies that are thrown apart and twisted, in the default step and a short one: a line, a plane that has a crack already, a block; on lattices and clouds.
 #[test]
 fn torn_bodies_gain_no_energy() {
     let mut torn = 0;
@@ -16,7 +20,7 @@ fn torn_bodies_gain_no_energy() {
         (LatticeKind::Square, [20, 10, 1], 3),
         (LatticeKind::Cubic, [9, 4, 4], 2),
     ] {
-        for family in [FamilyChoice::Stencil, FamilyChoice::List] {
+        for step in STEPS {
             for material in materials() {
                 let d = kind.dimension();
                 let planes = [Plane::Strain, Plane::Stress];
@@ -29,7 +33,7 @@ fn torn_bodies_gain_no_energy() {
                     ratio,
                     cells,
                 };
-                torn += u32::from(tears(&Case { material, place }, family));
+                torn += u32::from(tears(&Case { material, place }, step));
             }
         }
     }
@@ -37,7 +41,7 @@ fn torn_bodies_gain_no_energy() {
 }
 
 /// Whether it tore.
-fn tears(case: &Case, family: FamilyChoice) -> bool {
+fn tears(case: &Case, (family, step, allowed): (FamilyChoice, f64, f64)) -> bool {
     let mut spec = case.spec();
     spec.family = family;
     let [long, high] = [case.place.cells[0], case.place.cells[1]].map(|n| n as f64 * H);
@@ -63,14 +67,14 @@ fn tears(case: &Case, family: FamilyChoice) -> bool {
         }];
     }
     breaking(&mut spec, 0.04);
-    spec.schedule.time_step = TimeStep::Fraction(0.8);
+    spec.schedule.time_step = TimeStep::Fraction(step);
     let name = format!("{} {family:?}", case.name());
     let mut sim = made(&spec);
     sim.start(true);
     let start = sim.ledger().unwrap();
     let begin = start.kinetic + start.strain;
     let (mut most, mut missed) = (begin, 0.0f64);
-    for _ in 0..150 {
+    for _ in 0..(100.0 / step) as u32 {
         sim.step().unwrap_or_else(|error| panic!("{name}: {error}"));
         let now = sim
             .ledger()
@@ -90,17 +94,19 @@ fn tears(case: &Case, family: FamilyChoice) -> bool {
         end.released / begin,
         end.dissipated / begin,
     );
-    assert!(most < begin * (1.0 + MISSED), "{name}: {}", most / begin);
-    assert!(missed < begin * MISSED, "{name}: {}", missed / begin);
-    let linear = case.material.laws.iter().all(|law| {
-        matches!(
-            law,
-            LawSpec::Lps(_) | LawSpec::LpsAsTyped { .. } | LawSpec::EamLike { .. }
-        )
-    });
+    assert!(most < begin * (1.0 + allowed), "{name}: {}", most / begin);
+    assert!(missed < begin * allowed, "{name}: {}", missed / begin);
     let weighs = case.material.name == "position-aware";
-    // linear laws of a family keep theirs, whatever it makes: it is named
-    let most = if linear {
+    // the linear solid and its kin keep their formulas, whatever breaking makes: it is named
+    let kin = [
+        "lps",
+        "eam",
+        "elastic-plastic",
+        "plastic",
+        "viscoelastic",
+        "thermoelastic solids",
+    ];
+    let most = if kin.iter().any(|k| case.material.name.starts_with(k)) {
         f64::INFINITY
     // where energy can be below 0: weights of torn families, work of rates
     } else if weighs || !case.material.potential {

@@ -79,7 +79,8 @@ fn methods_agree_on_what_flows_and_breaks() {
 #[test]
 fn a_stiffness_without_symmetry_is_named_by_its_cause() {
     let spec = pulled(law("hypoelastic_plastic"), None);
-    let mut sim = solved(&with(&spec, Method::Newton, Solver::Direct, 1e-8));
+    let spec = with(&spec, Method::Newton, Solver::Direct, 1e-8);
+    let mut sim = solved(&spec);
     let said = sim.modes(2).unwrap_err().to_string();
     assert!(said.contains("the stiffness is not symmetric"), "{said}");
     assert!(

@@ -4,7 +4,7 @@ use super::*;
 
 /// Springs of stiffness 1 in a row from 0 to 10 that break at a stretch of 0.03, but for the two in the middle.
 fn chain() -> Spec {
-    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(2.0));
+    let law = LawSpec::Pmb(PmbStiffness::Micromodulus(1.0));
     let mut spec = block([10.0, 0.0, 0.0], 1, law);
     spec.horizon = Horizon::Ratio(1);
     spec.materials[0].fracture = Some(FractureSpec::new(Criterion::Stretch(0.03)));

@@ -12,7 +12,7 @@ use crate::interaction::bond::relative_square_stretch;
 use crate::interaction::criterion::{Criteria, Measure};
 use crate::interaction::{Tally, Toughness, history};
 use crate::law::material::fibres::{Fibres, of_kind};
-use crate::law::material::{Kin, Material, Numbers, Partner};
+use crate::law::material::{Kin, Material, Numbers, Partner, part_of};
 
 /// Most numbers that a form has.
 const FORM: usize = 32;
@@ -261,7 +261,7 @@ impl<const D: usize, F: Family<D>> Kernel for Shortest<'_, D, F> {
 /// Break them. What points lose is the energy of their bonds before less that of those that they keep, the mean of here and a step
 /// away (see [`Tear::drift`]): so the balance of energy is of second order in the step.
 ///
-/// A family whose law asks for sums of it (a deformation gradient, a dilatation) may be strained more without a bond than with it, and store
+/// A family whose form is that of its whole bonds (a deformation gradient, weights) may be strained more without a bond than with it, and store
 /// more: `W′ > W`. Breaking can only dissipate (Silling & Lehoucq 2010, the free energy at a fixed deformation falls with damage), so that
 /// of such a point is `W/W′` of what it would be from then on, and so are its force states: its integrity, 1 at first.
 pub struct Tear<'a, const D: usize, F, M> {
@@ -277,7 +277,7 @@ pub struct Tear<'a, const D: usize, F, M> {
     /// Bits of whole bonds, forms of families and integrities, to be written.
     pub alive: Shared<u8>,
     pub form: OwnRows,
-    /// `None`: of bonds that are on their own, which have nothing to lose but their energy.
+    /// `None`: the form is that of the family as it was.
     pub integrity: Option<Shared>,
     pub v: &'a Field<D>,
     /// Time to where a bond was last with its points (negative: it lets go at once and the kick of the half step that ends here misses
@@ -347,7 +347,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
                         if let Some(integrity) = &self.integrity {
                             let left = kept(before, after);
                             *integrity.at(slot) *= left;
-                            after *= left;
+                            after = part_of(left, after);
                         }
                         tally.broken += broken as u64;
                         tally
@@ -367,12 +367,15 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Tear<'_, D, F, M> 
     }
 }
 
-/// The part of the energy `after` that a point keeps which had `before`; where that was none, all or nothing, whichever is less.
+/// The part of the energy `after` that a point keeps which had `before`; where that was none, all or nothing, whichever is less. Nothing where what is
+/// left of the family is turned over, so that its law has no answer.
 fn kept(before: f64, after: f64) -> f64 {
-    match after > before {
-        true if before > 0.0 => before / after,
-        true if after > 0.0 => 0.0,
-        _ => 1.0,
+    if after <= before || before.is_nan() || (after <= 0.0 && before <= 0.0) {
+        1.0
+    } else if before > 0.0 && after.is_finite() {
+        before / after
+    } else {
+        0.0
     }
 }
 

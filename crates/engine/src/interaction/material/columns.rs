@@ -206,7 +206,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }
             self.integrity.copy_from_slice(values);
             self.look_integrity(body);
-            self.look_stiffness(body, |_, _| true);
+            self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
             return true;
         }
         let Some((declaration, place)) = self.place(name) else {

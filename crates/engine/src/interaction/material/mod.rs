@@ -77,7 +77,7 @@ pub struct MaterialInteraction<const D: usize, F, M> {
     life: Vec<f64>,
     /// Strain by temperature or swelling per slot; empty: none.
     expansion: Column,
-    /// What is left of each slot's energy and force states; empty: of bonds that are on their own, or that do not break.
+    /// What is left of each slot's energy and force states; empty: of laws whose forms are of whole families, or nothing breaks.
     integrity: Column,
     /// Is any of them below 1?
     degraded: bool,
@@ -228,7 +228,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             }),
             life: bonds(wears, 1.0),
             expansion: Column::default(),
-            integrity: column(breaks && M::PASSES > 0, 1.0),
+            integrity: column(breaks && M::FORM_OF_WHOLE, 1.0),
             degraded: false,
             stiffness: [const { vec![] }; 2],
             stiffened: 1.0,
@@ -448,18 +448,21 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         };
         let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);
         self.look_integrity(body);
-        self.look_stiffness(body, |torn, group| torn[group] != 0);
+        self.look_stiffness(body, u, |torn, group| torn[group] != 0);
         tally
     }
 
     /// After integrities have changed.
     fn look_integrity(&mut self, body: &Body<D>) {
+        if self.integrity.is_empty() {
+            return;
+        }
         body.fill_images(&mut self.integrity);
         self.degraded = self.integrity.iter().any(|x| *x < 1.0);
     }
 
     /// How stiff the points of some groups are now, and the most of all.
-    fn look_stiffness(&mut self, body: &Body<D>, of: impl Fn(&[u8], usize) -> bool) {
+    fn look_stiffness(&mut self, body: &Body<D>, u: &Field<D>, of: impl Fn(&[u8], usize) -> bool) {
         let [whole, mut now] = std::mem::take(&mut self.stiffness);
         if now.is_empty() {
             return;
@@ -467,7 +470,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         for group in (0..self.family.groups()).filter(|g| of(&self.torn, *g)) {
             for l in (0..TILE).filter(|l| self.family.is_point(group, *l)) {
                 let slot = self.family.rows(group).slot(l);
-                now[slot] = self.integrity_at(slot) * self.stiffness_of(body, group, l);
+                now[slot] = self.integrity_at(slot) * self.stiffness_of(body, u, group, l);
             }
         }
         let stiffened = |(whole, now): (&f64, &f64)| if *whole > 0.0 { now / whole } else { 1.0 };
@@ -476,13 +479,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     }
 
     /// [`Material::stiffness`] of a point with its whole bonds.
-    fn stiffness_of(&self, body: &Body<D>, group: usize, l: usize) -> f64 {
-        let (u, room) = (crate::body::zeros(0), Room::default());
+    fn stiffness_of(&self, body: &Body<D>, u: &Field<D>, group: usize, l: usize) -> f64 {
+        let room = Room::default();
         let first = self.family.byte(group, 0);
         let bits = &self.alive[first..first + self.family.bonds(group)];
         let material = body.material_of(self.family.rows(group).slot(l));
         let of = |kin: Kin<D>| self.law.stiffness(material, kin);
-        self.view(&u, &room).of_family(group, bits, l, of)
+        self.view(u, &room).of_family(group, bits, l, of)
     }
 
     /// What [`MaterialInteraction::look_stiffness`] compares with.
@@ -491,7 +494,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             return;
         }
         self.stiffness = [vec![0.0; body.len], vec![0.0; body.len]];
-        self.look_stiffness(body, |_, _| true);
+        self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
         self.stiffness[0] = self.stiffness[1].clone();
         self.stiffened = 1.0;
     }
@@ -548,7 +551,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// What points know of their families, from the bonds that are whole now.
     fn look(&mut self, body: &Body<D>) {
-        self.look_stiffness(body, |_, _| true);
+        self.look_stiffness(body, &crate::body::zeros(0), |_, _| true);
         let count = <M::Form<f64> as Numbers<f64>>::COUNT;
         if count == 0 {
             return;

@@ -7,7 +7,7 @@ use super::{MaterialInteraction, Room};
 use crate::body::{Body, Field};
 use crate::execute::lane::TILE;
 use crate::interaction::{BondForce, PointEnergies, along, history};
-use crate::law::material::{Bond, End, Material, Numbers, Site};
+use crate::law::material::{Bond, End, Material, Numbers, Site, part_of};
 
 impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> {
     /// What [`Interaction::bond_limit`](crate::interaction::Interaction::bond_limit) answers where there are fibres.
@@ -130,7 +130,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                     share += part * bond.stretch;
                     whole += part;
                 }
-                out.strain[slot] = self.integrity_at(slot) * energy;
+                out.strain[slot] = part_of(self.integrity_at(slot), energy);
                 out.whole[slot] = whole;
                 out.dilatation[slot] = share;
             }

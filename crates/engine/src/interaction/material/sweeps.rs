@@ -8,7 +8,7 @@ use crate::execute::lane::{Lane, Piece, TILE};
 use crate::execute::simd::Kernel;
 use crate::interaction::material::repulsion::Pushed;
 use crate::interaction::{EnergyFields, Tally};
-use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site};
+use crate::law::material::{Bond, End, ForceState, Material, Numbers, Site, part_of};
 
 /// A pass: sums over bonds, and what the points make of them.
 pub struct Sums<'a, const D: usize, F, M> {
@@ -151,7 +151,7 @@ pub unsafe fn pull_of<L: Lane, const D: usize, F: Family<D>, M: Material<D>>(
                 },
             )
         };
-        if M::PASSES > 0 && !v.integrity.is_empty() {
+        if M::FORM_OF_WHOLE && !v.integrity.is_empty() {
             own = own.times(v.integrity::<L>(at.rows));
             other = other.times(v.integrity::<L>(ends));
         }
@@ -273,7 +273,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
                     around: v.around::<L>(at.rows),
                 };
                 lost = lost + v.law.remember(&site, &point, &mut past);
-                lost = v.integrity::<L>(at.rows) * lost;
+                lost = part_of(v.integrity::<L>(at.rows), lost);
                 save(self.past, at.rows, &past);
                 for (l, x) in lost.to_array().iter().enumerate() {
                     if v.family.is_point(group, l) {
@@ -362,7 +362,7 @@ impl<L: Lane, const D: usize, F: Family<D>, M: Material<D>> Piece for EnergyOf<'
                     v.law.settle(pass, &site, sum, &mut point);
                 }
             }
-            v.integrity::<L>(at.rows) * energy
+            part_of(v.integrity::<L>(at.rows), energy)
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::execute::blocks::Seen;
 use crate::execute::lane::series::{Series, Stretch};
 use crate::execute::lane::{self, Lane, TILE};
 use crate::interaction::bond::relative_square_stretch;
-use crate::law::material::{Around, Bond, End, Material, Numbers, Sink, Site};
+use crate::law::material::{Around, Bond, End, Material, Numbers, Sink, Site, part_of};
 use crate::law::number::Number;
 
 /// Groups per block of work.
@@ -235,7 +235,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
     /// Slots of the family.
     #[inline(always)]
     pub unsafe fn integrity<L: Lane>(&self, slots: F::Slots) -> L {
-        match M::PASSES == 0 || self.integrity.is_empty() {
+        match !M::FORM_OF_WHOLE || self.integrity.is_empty() {
             true => L::splat(1.0),
             // SAFETY: a number per slot
             false => unsafe { slots.one::<L>(self.integrity.as_ptr()) },
@@ -258,7 +258,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
                 past: &past,
                 around: self.around::<L>(at.rows),
             };
-            self.integrity::<L>(at.rows) * self.law.across(&site, point)
+            part_of(self.integrity::<L>(at.rows), self.law.across(&site, point))
         }
     }
 

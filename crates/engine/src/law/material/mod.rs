@@ -173,6 +173,13 @@ pub trait ForceState<N, const D: usize>: Copy {
     fn times(self, factor: N) -> Self;
 }
 
+/// `factor x`; nothing of what has none left, whatever it would be.
+#[inline(always)]
+pub(crate) fn part_of<N: Number>(factor: N, x: N) -> N {
+    let zero = N::constant(0.0);
+    zero.choose(factor, factor * x, zero)
+}
+
 /// `T⟨ξ⟩ = t (ξ+η)`: along the bond, `t` over the current length.
 #[derive(Debug, Clone, Copy)]
 pub struct Along<N>(pub N);
@@ -197,7 +204,7 @@ impl<N: Number, const D: usize> ForceState<N, D> for Along<N> {
     }
     #[inline(always)]
     fn times(self, factor: N) -> Self {
-        Along(factor * self.0)
+        Along(part_of(factor, self.0))
     }
 }
 
@@ -228,7 +235,7 @@ impl<N: Number, const D: usize> ForceState<N, D> for Free<N, D> {
     #[inline(always)]
     fn times(mut self, factor: N) -> Self {
         for a in 0..D {
-            self.0[a] = factor * self.0[a];
+            self.0[a] = part_of(factor, self.0[a]);
         }
         self
     }

@@ -58,7 +58,13 @@ impl<const D: usize> Model<D> {
         let mut unstable = false;
         let reference = self.at_peace() && self.forgets();
         let swept = !factored && reference && self.contact.is_none();
-        let body = (!swept).then(|| self.tangent_now());
+        // conjugate gradients seek the step in the symmetric part of a tangent that has another: forces decide where it ends
+        let body = (!swept).then(|| match self.tangent_now() {
+            body if !factored && body.soundness().asymmetry > statics::SYMMETRIC => {
+                body.symmetric()
+            }
+            body => body,
+        });
         let added = self.added(inertia);
         // nothing but inertia resists what has lost all that held it
         let resisted = match (&body, inertia) {

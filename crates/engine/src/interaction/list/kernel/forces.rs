@@ -137,7 +137,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                     let own = [i.field[0] * kappa, i.field[1]];
                     let energy = history::released::<L, W>(q, own, lost, growth) * i.volume;
                     for x in energy.to_array() {
-                        tally.released.book(x);
+                        tally.released.of(W::SHARES, x);
                     }
                 }
             }

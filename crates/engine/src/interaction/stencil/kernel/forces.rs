@@ -387,7 +387,7 @@ impl<const D: usize, W: Law, const FULL: bool> Forces<'_, D, W, FULL> {
                 };
                 let energy = history::released::<L, W>(v.pressure_factor(i), own, lost, growth);
                 for (l, x) in energy.to_array().iter().enumerate() {
-                    tally.released.book(x * v.body.volume.at(i + l));
+                    tally.released.of(W::SHARES, x * v.body.volume.at(i + l));
                 }
             }
         }

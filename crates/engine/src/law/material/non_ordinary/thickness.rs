@@ -52,8 +52,8 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
         let guess = zero.choose(slope, x - f.div(slope), middle);
         // a correction below the last digit leaves it at a bound
         let inside = guess.choose(low, middle, high.choose(guess, middle, guess));
-        // where nothing is borne it stays
-        let next = zero.choose(f * f, inside, x);
+        // where nothing is borne it stays, with its slopes
+        let next = zero.choose(f * f, inside, zero.choose(slope, guess, x));
         let step = next - x;
         let square = step * step;
         let then = at(asked, next).across;
