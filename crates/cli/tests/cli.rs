@@ -259,7 +259,9 @@ fn every_good_deck_runs() {
         let units = |name: &str| text.contains(&format!("units = \"{name}\""));
         let short = match text.contains("duration") {
             // what is soft goes its way in steps
-            _ if text.contains("law.hyperelastic") => "statics.increments=8",
+            _ if text.contains("[statics]") && text.contains("law.hyperelastic") => {
+                "statics.increments=8"
+            }
             _ if text.contains("[statics]") => "statics.increments=1",
             true if units("none") => "run.duration=0.01",
             true if units("metal") => "run.duration=0.01 ps",

@@ -43,6 +43,10 @@ fn methods_agree_on_what_flows_and_breaks() {
         let spec = pulled(law("elastic_plastic"), fracture);
         let of = |method, solver, tolerance| {
             let mut sim = solved(&with(&spec, method, solver, tolerance));
+            // points on the yield surface have the slopes of flow, or none, whole
+            let body = sim.linear_body().of::<2>().unwrap();
+            let asymmetry = body.soundness().asymmetry;
+            assert!(asymmetry < 1e-10, "{method:?} {solver:?}: {asymmetry:e}");
             (
                 sim.ledger().unwrap(),
                 sim.broken(),

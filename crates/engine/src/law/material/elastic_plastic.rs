@@ -203,9 +203,9 @@ impl<const D: usize> Material<D> for ElasticPlastic {
             }
             .of_step();
             let stiff = shear * returned.per_stress;
-            // a point without bonds has no stiffness, and no flow
+            // a point without bonds has no stiffness, and no flow; at the yield surface bonds and what is across have their slopes both
             let part = stiff.div(N::constant(1.0) + stiff);
-            rest = zero.choose(returned.per_stress, part, zero);
+            rest = zero.choose(per_ball, part, zero);
             point[FLOW] = returned.strain;
             let stiff = triple * returned.per_stress;
             let moved = (stiff * across).div(N::constant(1.0) + kept * stiff);
