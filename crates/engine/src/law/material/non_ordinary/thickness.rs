@@ -9,9 +9,9 @@ use crate::law::number::Number;
 const STEPS: usize = 40;
 /// Strain over which the first slope is taken, to both sides.
 const APART: f64 = 1e-6;
-/// Steps below this say nothing of the slope.
+/// Steps below this part of the strain say nothing of the slope.
 const SHORT: f64 = 1e-8;
-/// A step of the search below this is the last but one.
+/// A step of the search below this part of it is the last but one.
 const CLOSE: f64 = 1e-14;
 /// Beyond any strain across.
 const THICK: f64 = 1e6;
@@ -37,7 +37,8 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
     asked: &Asked<'_, L, N, D>,
 ) -> Stressed<N, L::Past<N>, D> {
     let (zero, one, two) = (N::constant(0.0), N::constant(1.0), N::constant(2.0));
-    let (half, short) = (N::constant(0.5), N::constant(SHORT * SHORT));
+    let half = N::constant(0.5);
+    let strain = tensor::contraction(asked.h, asked.h);
     let mut x = asked.law.thickness(asked.past, tensor::dilation(asked.h));
     let mut f = at(asked, x).across;
     let apart = N::constant(APART);
@@ -56,6 +57,8 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
         let next = zero.choose(f * f, inside, zero.choose(slope, guess, x));
         let step = next - x;
         let square = step * step;
+        let size = next.fma(next, strain);
+        let short = N::constant(SHORT * SHORT) * size;
         let then = at(asked, next).across;
         let secant = (then - f).div(short.choose(square, step, one));
         let steep = short.choose(square, secant, slope);
@@ -64,7 +67,7 @@ pub(super) fn relaxed<N: Number, L: Classical<D>, const D: usize>(
         if last {
             break;
         }
-        last = !(N::constant(CLOSE * CLOSE) - square).any_below(0.0);
+        last = !(N::constant(CLOSE * CLOSE) * size - square).any_below(0.0);
     }
     at(asked, x)
 }
@@ -132,7 +135,8 @@ mod tests {
     /// A path that turns, shears, stretches up to a third, and comes back some way.
     fn path(size: f64, t: f64) -> Matrix<f64, 2> {
         let s = size * (2.0 * t - t * t * t);
-        let (sin, cos) = (0.7 * t).sin_cos();
+        // a turn as large as the strain: of a greater one F − 1 has but the digits that are left of it
+        let (sin, cos) = (2.3 * size * t).sin_cos();
         let u = [[1.0 + s, 0.4 * s], [0.4 * s, 1.0 - 0.2 * s]];
         let f = [
             [cos * u[0][0] - sin * u[1][0], cos * u[0][1] - sin * u[1][1]],
