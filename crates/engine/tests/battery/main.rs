@@ -24,7 +24,6 @@ mod scale;
 mod shifted;
 mod stability;
 mod tangents;
-mod tearing;
 mod waves;
 
 #[path = "../allocations/mod.rs"]

@@ -251,7 +251,7 @@ mod tests {
             ..Ledger::default()
         };
         assert_eq!(ledger_columns("J").len(), ledger_values(&ledger).len());
-        assert_eq!(ledger_values(&ledger)[7], 0.5);
+        assert_eq!(ledger_values(&ledger)[8], 0.5);
     }
 
     proptest! {
