@@ -24,6 +24,7 @@ mod scale;
 mod shifted;
 mod stability;
 mod tangents;
+mod tearing;
 mod waves;
 
 #[path = "../allocations/mod.rs"]
