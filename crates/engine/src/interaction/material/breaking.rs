@@ -430,6 +430,8 @@ impl<const D: usize, F: Family<D>, M: Material<D>> View<'_, D, F, M> {
             }
         };
         let slot = self.family.rows(group).from(l).slot(0);
-        what(Kin::new(&each).within(self.family.reach(slot)))
+        let lost = |(k, bits): (usize, &u8)| self.family.is_bond(group, k, l) && bits >> l & 1 == 0;
+        let torn = bits.iter().enumerate().any(lost);
+        what(Kin::new(&each).within(self.family.reach(slot)).torn(torn))
     }
 }

@@ -3,11 +3,9 @@
 use super::MaterialInteraction;
 use super::breaking::Shortest;
 use super::family::{Family, Moved, Slots};
-use super::sweeps::Forces;
 use crate::body::{Body, Column, Field, Identity, field};
 use crate::columns::Declaration;
 use crate::error::BuildError;
-use crate::execute::blocks::{Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::interaction::{
     BondForce, BondState, BondTangent, Interaction, PointEnergies, Sweep, Tally,
@@ -38,8 +36,13 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             Some(m) if self.step == 0.0 => m.steps[0],
             _ => self.step,
         };
-        let room = self.take_room(u, dt);
+        let mut room = self.take_room(u, dt);
         let breaks = motion.filter(|_| !self.critical.is_empty());
+        if let Some(m) = breaks.filter(|_| M::FORM_OF_WHOLE && !M::POTENTIAL) {
+            let total = self.step_of_rates(body, u, f, (m, &mut room), seen);
+            self.room = room;
+            return total;
+        }
         // of a watched step: the bonds before any breaks
         let mut whole = seen.as_ref().map(|_| {
             (
@@ -60,12 +63,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             total += self.tear(body, u, &room, m.v, -m.steps[0]);
         }
         self.settle(body, u, &room);
-        let kernel = Forces {
-            view: self.view(u, &room),
-            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
-            pushed: self.pushed(body),
-        };
-        run_blocks(self.simd, &kernel, self.sums.blocks());
+        self.pull(body, u, &room, f);
         if let Some(m) = breaks.filter(|m| m.release == Release::AfterForce) {
             self.measure(body, u, &room);
             total += self.tear(body, u, &room, m.v, m.steps[1]);
@@ -84,8 +82,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             self.swap_bonds(whole);
         }
         if breaks.is_some() {
-            std::mem::swap(&mut self.critical, &mut self.next);
-            body.fill_images(&mut self.critical);
+            self.next_critical(body);
         }
         self.room = room;
         total
@@ -380,5 +377,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Interaction<D> for MaterialIn
             + 8 * (self.critical.len() + self.next.len())
             + 8 * (self.damage.len() + self.expansion.len())
             + 8 * (self.work.len() + self.life.len())
+            + 8 * (self.integrity.len() + self.stiffness.iter().map(Vec::len).sum::<usize>())
     }
 }

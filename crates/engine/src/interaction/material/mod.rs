@@ -20,20 +20,21 @@ pub use cloud::CloudFamily;
 pub use lattice::LatticeFamily;
 
 use super::criterion::{Criteria, Measure};
-use super::{EnergyFields, PointEnergies, Repulsion, Tally, Toughness};
+use super::{EnergyFields, Motion, PointEnergies, Repulsion, Tally, Toughness};
 use crate::body::{Body, Column, Field, Identity, field};
 use crate::execute::blocks::{PerBlock, Seen, Shared, run_blocks};
 use crate::execute::lane::TILE;
 use crate::execute::simd::Simd;
 use crate::law::material::fibres::Fibres;
-use crate::law::material::{Kin, Material, Numbers};
+use crate::law::material::{Material, Numbers};
+use crate::spec::Release;
 use breaking::{Tear, Test};
 use family::{Family, Moved, Slots};
 use measured::Before;
 use repulsion::Pushed;
 use std::ops::AddAssign;
 use store::Store;
-use sweeps::{Energies, Remember, Sums};
+use sweeps::{Energies, Forces, Remember, Sums};
 use view::{BLOCK, View};
 
 /// The column of laws that flow.
@@ -329,16 +330,86 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// All passes: points as the bonds see them.
     fn settle(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) {
+        self.settle_only(body, u, room, &[]);
+    }
+
+    /// Of the groups that are marked; no marks: of all.
+    fn settle_only(&mut self, body: &Body<D>, u: &Field<D>, room: &Room, only: &[u8]) {
         let mut point = std::mem::replace(&mut self.point, Store::zeros(self.family.layout(0)));
         for pass in 0..M::PASSES {
             let out = point.shared();
             let mut view = self.view(u, room);
             view.point = out.seen();
-            let kernel = Sums { view, pass, out };
+            let kernel = Sums {
+                view,
+                pass,
+                out,
+                only,
+            };
             run_blocks(self.simd, &kernel, self.sums.blocks());
             point.fill_images(&body.images);
         }
         self.point = point;
+    }
+
+    /// Forces on points that have settled.
+    fn pull(&self, body: &Body<D>, u: &Field<D>, room: &Room, f: &mut Field<D>) {
+        let kernel = Forces {
+            view: self.view(u, room),
+            f: std::array::from_fn(|a| Shared(f[a].as_mut_ptr())),
+            pushed: self.pushed(body),
+        };
+        run_blocks(self.simd, &kernel, self.sums.blocks());
+    }
+
+    /// A step of a law of rates whose bonds may break. What a break changes of the gradient of a family it changes at once: it is a step of no length
+    /// after that of the motion, and no viscosity or rate sees it.
+    fn step_of_rates(
+        &mut self,
+        body: &Body<D>,
+        u: &Field<D>,
+        f: &mut Field<D>,
+        (motion, room): (Motion<D>, &mut Room),
+        seen: Option<&mut PointEnergies>,
+    ) -> Tally {
+        let after = motion.release == Release::AfterForce;
+        self.work_before(body, u, room);
+        self.settle(body, u, room);
+        if after {
+            self.pull(body, u, room, f);
+        }
+        if after || self.measures() {
+            self.measure(body, u, room);
+        }
+        let mut total = self.remember(body, u, room);
+        self.step = 0.0;
+        room.constants.clone_from(&room.still);
+        if let Some(seen) = seen {
+            self.seen(body, u, room, seen);
+        }
+        let drift = match after {
+            true => motion.steps[1],
+            false => -motion.steps[0],
+        };
+        let tear = self.tear(body, u, room, motion.v, drift);
+        if tear.broken > 0 {
+            let torn = std::mem::take(&mut self.torn);
+            self.settle_only(body, u, room, &torn);
+            total += self.remember_only(body, u, room, &torn);
+            self.torn = torn;
+        }
+        total += tear;
+        if !after {
+            self.pull(body, u, room, f);
+        }
+        self.keep(u, room);
+        self.next_critical(body);
+        total
+    }
+
+    fn next_critical(&mut self, body: &Body<D>) {
+        std::mem::swap(&mut self.critical, &mut self.next);
+        body.fill_images(&mut self.critical);
     }
 
     fn pushed<'a>(&'a self, body: &'a Body<D>) -> Option<Pushed<'a, D>> {
@@ -481,11 +552,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
     /// [`Material::stiffness`] of a point with its whole bonds.
     fn stiffness_of(&self, body: &Body<D>, u: &Field<D>, group: usize, l: usize) -> f64 {
         let room = Room::default();
-        let first = self.family.byte(group, 0);
-        let bits = &self.alive[first..first + self.family.bonds(group)];
+        let view = self.view(u, &room);
+        // SAFETY: a group of the family, whose bits nobody writes
+        let bits = unsafe { view.bits(group) };
         let material = body.material_of(self.family.rows(group).slot(l));
-        let of = |kin: Kin<D>| self.law.stiffness(material, kin);
-        self.view(u, &room).of_family(group, bits, l, of)
+        view.of_family(group, bits, l, |kin| self.law.stiffness(material, kin))
     }
 
     /// What [`MaterialInteraction::look_stiffness`] compares with.
@@ -521,6 +592,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
 
     /// Memory at the end of a step.
     fn remember(&mut self, body: &Body<D>, u: &Field<D>, room: &Room) -> Tally {
+        self.remember_only(body, u, room, &[])
+    }
+
+    /// Of the groups that are marked; no marks: of all.
+    fn remember_only(&mut self, body: &Body<D>, u: &Field<D>, room: &Room, only: &[u8]) -> Tally {
         if self.memory.is_empty() && self.past.data.is_empty() {
             return Tally::default();
         }
@@ -533,6 +609,7 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
             past,
             memory,
             volume: &body.volume,
+            only,
         };
         let tally = self.tallies.fold(self.simd, &kernel, Tally::add_assign);
         let count = <M::Memory<f64> as Numbers<f64>>::COUNT;

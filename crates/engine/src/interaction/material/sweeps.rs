@@ -15,6 +15,8 @@ pub struct Sums<'a, const D: usize, F, M> {
     pub view: View<'a, D, F, M>,
     pub pass: usize,
     pub out: OwnRows,
+    /// Marks of the groups that are meant; empty: all.
+    pub only: &'a [u8],
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> {
@@ -24,6 +26,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Sums<'_, D, F, M> 
     fn block<L: Lane>(&self, block: usize) {
         let (v, pass) = (&self.view, self.pass);
         for group in v.block(block) {
+            if !self.only.is_empty() && self.only[group] == 0 {
+                continue;
+            }
             // SAFETY: groups of the family; each is written by one block
             unsafe {
                 let at = v.group::<L>(group, 0);
@@ -216,6 +221,8 @@ pub struct Remember<'a, const D: usize, F, M> {
     pub memory: Shared,
     /// Volume per slot.
     pub volume: &'a crate::body::Values,
+    /// As of [`Sums`].
+    pub only: &'a [u8],
 }
 
 impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F, M> {
@@ -226,6 +233,9 @@ impl<const D: usize, F: Family<D>, M: Material<D>> Kernel for Remember<'_, D, F,
         let v = &self.view;
         let mut tally = Tally::default();
         for group in v.block(block) {
+            if !self.only.is_empty() && self.only[group] == 0 {
+                continue;
+            }
             // SAFETY: groups of the family; each is written by one block
             unsafe {
                 let at = v.group::<L>(group, 0);

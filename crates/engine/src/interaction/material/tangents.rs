@@ -225,6 +225,11 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
         memory: &M::Memory<f64>,
         own: bool,
     ) -> ([[f64; D]; D], Vec<[f64; D]>, [f64; D]) {
+        let channels = node.gain.first().map_or(0, Vec::len);
+        if node.integrity == 0.0 {
+            // whatever its law would say, that may have no answer
+            return ([[0.0; D]; D], vec![[0.0; D]; channels], [0.0; D]);
+        }
         let constants: M::Constants<Real> = lift(&node.constants, None);
         let memory: M::Memory<Real> = lift(memory, None);
         let pull = |axis: Option<usize>, number: Option<usize>| -> [Real; D] {
@@ -251,7 +256,6 @@ impl<const D: usize, F: Family<D>, M: Material<D>> MaterialInteraction<D, F, M> 
                 stiffness[r][c] = weight * b.per_length * slopes[r].slope;
             }
         }
-        let channels = node.gain.first().map_or(0, Vec::len);
         let mut through = vec![[0.0; D]; channels];
         for (n, gain) in node.gain.iter().enumerate() {
             let slopes = pull(None, Some(n));

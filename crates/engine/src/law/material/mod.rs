@@ -247,17 +247,28 @@ pub struct Kin<'a, const D: usize> {
     each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>)),
     /// Horizon of the point over that of the material, which has the longest one of the body (–).
     pub reach: f64,
+    /// Has it lost any of its bonds?
+    pub torn: bool,
 }
 
 impl<'a, const D: usize> Kin<'a, D> {
     /// Of what visits every bond, always in the same order.
     pub fn new(each: &'a dyn Fn(&mut dyn FnMut(&Partner<D>))) -> Self {
-        Kin { each, reach: 1.0 }
+        Kin {
+            each,
+            reach: 1.0,
+            torn: false,
+        }
     }
 
     /// The same of a point with a horizon of its own.
     pub fn within(self, reach: f64) -> Self {
         Kin { reach, ..self }
+    }
+
+    /// The same, which has lost bonds or not.
+    pub fn torn(self, torn: bool) -> Self {
+        Kin { torn, ..self }
     }
 
     /// Visit every bond.
