@@ -46,6 +46,13 @@ impl BalanceWatch {
             return None;
         }
         let before = self.most;
+        if ledger.made > ledger.residual() {
+            return Some(RunError::Made {
+                step,
+                given: before,
+                made: ledger.made,
+            });
+        }
         Some(RunError::Unstable {
             step,
             before,
@@ -62,7 +69,7 @@ impl BalanceWatch {
         let given = work + ledger.initial.abs();
         let begins = given > BEGINS * std::mem::replace(&mut self.given, given);
         self.most = self.most.max(given);
-        let lost = !begins && residual > LOST * self.most;
+        let lost = !begins && residual + ledger.made > LOST * self.most;
         self.gone = std::mem::replace(&mut self.lost, lost) && lost;
         let held = ledger.held() - ledger.dissipated;
         self.scale = self.scale.max(given).max(held.min(10.0 * self.scale));
@@ -203,5 +210,21 @@ mod tests {
             [false; 4]
         );
         assert_eq!(of(&[(1.0, 0.0), (0.1, 0.0), (0.1, 0.0)]), [false; 3]);
+    }
+
+    /// What breaking makes is out of nothing, too, though it has its account.
+    #[test]
+    fn energy_that_breaking_makes_ends_a_run() {
+        let mut watch = BalanceWatch::default();
+        let of = |made: f64| Ledger {
+            made,
+            ..ledger(1.0 + made, 0.0)
+        };
+        let gone = [0.0, 0.4, 0.6, 0.7].map(|made| {
+            watch.row(1, &of(made));
+            watch.gone
+        });
+        assert_eq!(gone, [false, false, false, true]);
+        assert!(of(0.7).residual().abs() < 1e-15);
     }
 }

@@ -75,6 +75,12 @@ pub enum RunError {
         before: f64,
         after: f64,
     },
+    /// Breaking has made so much of the energy that the body was given.
+    Made {
+        step: u64,
+        given: f64,
+        made: f64,
+    },
     Unstable {
         step: u64,
         before: f64,
@@ -193,6 +199,13 @@ impl RunError {
                 " came in, and ",
                 Dimension::ENERGY.of(*after),
                 " are there; flow or breaking within this increment went further than the law follows: take more increments, or let it break in motion ([run])",
+            ],
+            RunError::Made { step, given, made } => message![
+                format!("step {step}: breaking has made "),
+                Dimension::ENERGY.of(*made),
+                " of energy in a body that was given ",
+                Dimension::ENERGY.of(*given),
+                ": its points hold more without the bonds that broke than with them, so what follows is no fracture; take a law whose points lose stiffness then (`correspondence`, `position_aware`), a smaller critical stretch, or less compression beside what breaks",
             ],
             RunError::Unstable {
                 step,
