@@ -8,7 +8,7 @@ use peridyne_io::write::atomic::{create_directory, write_file};
 use peridyne_io::write::card::Measured;
 use std::collections::HashMap;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Writes a deck and the files that it names.
@@ -33,7 +33,32 @@ pub struct Ran {
     pub steps: u64,
 }
 
-/// Runs a deck to its end, or to the time `until` with its own or a slightly shorter step.
+/// A deck that others are compared with, each at its own end.
+pub struct Reference {
+    path: PathBuf,
+    ran: Vec<Ran>,
+}
+
+impl Reference {
+    pub fn new(path: PathBuf) -> Reference {
+        Reference { path, ran: vec![] }
+    }
+
+    /// Its run that ends when that of another does, with its own or a slightly shorter step: decks end at whole steps, and not at the same time.
+    pub fn until(&mut self, time: f64) -> Result<&Ran, Failure> {
+        let same = |ran: &Ran| (ran.time - time).abs() <= 1e-12 * time.abs();
+        let place = match self.ran.iter().position(same) {
+            Some(place) => place,
+            None => {
+                self.ran.push(run(&self.path, Some(time))?);
+                self.ran.len() - 1
+            }
+        };
+        Ok(&self.ran[place])
+    }
+}
+
+/// Runs a deck as it is written, or to the time `until` with its own or a slightly shorter step.
 pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|e| Failure::Run(format!("{name}: {e}")))?;
@@ -41,7 +66,7 @@ pub fn run(path: &Path, until: Option<f64>) -> Result<Ran, Failure> {
     let mut sim = build(&deck.spec, Options::default())
         .map_err(|e| Failure::Input(deck.explain(&e).into()))?;
     let mut steps = deck.steps(sim.info().time_step);
-    if let Some(until) = until.or(deck.duration)
+    if let Some(until) = until
         && deck.spec.schedule.statics().is_none()
         && deck.increments() == 0
     {
@@ -103,5 +128,6 @@ pub fn compare(fine: &Ran, coarse: &Ran) -> Measured {
         points,
         seconds: [fine.seconds, coarse.seconds],
         steps: [fine.steps, coarse.steps],
+        time: coarse.time,
     }
 }

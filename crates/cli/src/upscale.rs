@@ -6,8 +6,10 @@ use crate::Input;
 use crate::deck;
 use crate::failure::{Failure, say};
 use crate::run::with_threads;
-use crate::side_by_side::{compare, run, save};
+use crate::side_by_side::{Reference, compare, run, save};
 use peridyne::quantity::Message;
+use peridyne::run::{Options, build};
+use peridyne::spec::TimeStep;
 use peridyne_io::deck::upscaled::{copied, upscaled};
 use peridyne_io::deck::{Deck, Dim};
 use peridyne_io::write::card;
@@ -93,6 +95,7 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
         KeepName::Shells => Keep::Shells,
     });
     // everything that can be wrong is found before anything is written
+    let end = end(fine)?;
     let mut made = vec![];
     for &factor in &arguments.factor {
         let wrong = |m: String| match arguments.file {
@@ -106,24 +109,20 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
         let (spec, rule) =
             upscale::upscale_keeping(&fine.spec, factor, keep).map_err(|e| refused(&e))?;
         let mut card = card(&fine.spec, &spec, factor, rule).map_err(|e| refused(&e))?;
-        let text = upscaled(fine, &spec, factor).map_err(wrong)?;
+        let text = upscaled(fine, &spec, factor, end).map_err(wrong)?;
         card.notes.extend(text.notes.iter().map(Message::from));
         made.push((factor, text, card));
     }
     let original = copied(fine).map_err(Failure::input)?;
     save(&out, "fine.toml", &original)?;
-    let mut reference = None;
+    let mut reference = Reference::new(out.join("fine.toml"));
     for (factor, text, card) in made {
         let dir = out.join(format!("h{factor}"));
         save(&dir, "coarse.toml", &text)?;
         let mut measured = None;
         if arguments.run {
-            if reference.is_none() {
-                reference = Some(run(&out.join("fine.toml"), None)?);
-            }
-            let until = reference.as_ref().map(|fine| fine.time);
-            let coarse = run(&dir.join("coarse.toml"), until)?;
-            measured = reference.as_ref().map(|fine| compare(fine, &coarse));
+            let coarse = run(&dir.join("coarse.toml"), None)?;
+            measured = Some(compare(reference.until(coarse.time)?, &coarse));
         }
         card::write(&dir, &card, fine.units, measured.as_ref())
             .map_err(|e| Failure::Run(e.to_string()))?;
@@ -164,4 +163,19 @@ fn all(arguments: &UpscaleArguments, fine: &Deck, name: &str) -> Result<(), Fail
         }
     }
     Ok(())
+}
+
+/// When a deck ends that counts steps which the program finds: those of the coarse model are others, and it is to end then, too.
+fn end(deck: &Deck) -> Result<Option<f64>, Failure> {
+    let schedule = &deck.spec.schedule;
+    let found = match schedule.time_step {
+        TimeStep::Auto | TimeStep::Fraction(_) => true,
+        TimeStep::Fixed(_) => false,
+    };
+    if !found || deck.duration.is_some() || schedule.statics().is_some() {
+        return Ok(None);
+    }
+    let model = build(&deck.spec, Options::default())
+        .map_err(|e| Failure::Input(deck.explain(&e).into()))?;
+    Ok(Some(schedule.steps as f64 * model.info().time_step))
 }

@@ -77,8 +77,9 @@ fn a_chain_of_springs_is_upscaled_and_both_decks_run() {
         // the difference of the two runs is that of the two chains, which is known; waves are so long that points every 1
         // have the same ratio as all that are compared
         let [a, b] = [0, 1].map(|k| number(&format!("/measured/steps/{k}")));
-        let fine = closed_form(0.25, 20, 60.0, a);
-        let coarse = closed_form(spacing, n as i32, 60.0, b);
+        let end = number("/measured/time");
+        let fine = closed_form(0.25, 20, end, a);
+        let coarse = closed_form(spacing, n as i32, end, b);
         let exact = relative_difference(&coarse, &fine);
         let error = number("/measured/displacement_error");
         assert!((error / exact - 1.0).abs() < 1e-6, "{error} {exact}");
@@ -92,6 +93,104 @@ fn a_chain_of_springs_is_upscaled_and_both_decks_run() {
             assert!(h.join(name).is_file(), "{name}");
         }
         peridyne(&["check", h.join("coarse.toml").to_str().unwrap()], 0);
+    }
+}
+
+/// The time of the last row of a run of a deck.
+fn end_of(file: &Path) -> f64 {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().to_str().unwrap();
+    peridyne(&["run", file.to_str().unwrap(), "--out", out], 0);
+    let history = std::fs::read_to_string(dir.path().join("history.csv")).unwrap();
+    let column = |line: &str, n: usize| line.split(',').nth(n).unwrap().to_string();
+    let titles = history.lines().next().unwrap();
+    let time = titles
+        .split(',')
+        .position(|t| t.starts_with("time"))
+        .unwrap();
+    let last = history.lines().last().unwrap();
+    column(last, time).parse().unwrap()
+}
+
+/// Steps of coarse decks are stable, that of a chain is seleson2009 (4.13), and they end where the fine one does, to one step: whichever way its steps
+/// are given. The card is that of the decks as they are written.
+#[test]
+fn coarse_decks_have_stable_steps_and_end_with_the_fine_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let chain = r#"
+units = "none"
+horizon = { m_ratio = 20 }
+influence = "constant"
+volume_scaling = false
+body = { lattice = "chain", spacing = 0.25, region = { block = { low = 0, high = 100 } } }
+material = { density = 1, law = { springs = { young = 1 } } }
+[[initial]]
+displacement = ["0.01*exp(-((x-50)/8)^2)"]
+[output]
+vtu = false
+picture = false
+"#;
+    let plane = r#"
+units = "none"
+periodic = ["x", "y"]
+plane = "stress"
+thickness = 1
+horizon = { m_ratio = 6 }
+body = { lattice = "square", spacing = 0.02, region = { block = { low = [0, 0], high = [1, 1] } } }
+material = { density = 1, law = { pmb = { young = 1 } } }
+[[initial]]
+displacement = ["0.001*sin(2*pi*x)", 0]
+[output]
+vtu = false
+picture = false
+"#;
+    let neighbours = |n: i32| {
+        let n1 = f64::from(n);
+        let harmonic: f64 = (1..=n).map(|j| f64::from(j).recip()).sum();
+        (n1 * (n1 + 1.0) / (2.0 * harmonic)).sqrt()
+    };
+    // (4.13): 0.85 Δx √(ρ/(K(N) H_N)), K(N) = 2 K1/(N (N + 1))
+    let [step, coarse_step] = [(0.25, 20), (0.5, 10)].map(|(dx, n)| 0.85 * dx * neighbours(n));
+    assert!((coarse_step - 1.8416747869437702).abs() < 1e-12);
+    let cases = [
+        (chain, format!("steps = 184\ntime_step = {step:?}")),
+        (chain, format!("duration = 60\ntime_step = {step:?}")),
+        (chain, "steps = 50".into()),
+        (chain, "steps = 50\ntime_step = { safety = 0.4 }".into()),
+        (chain, "duration = 30".into()),
+        (plane, "duration = 0.5\ntime_step = 0.04".into()),
+        (plane, "steps = 12\ntime_step = 0.04".into()),
+    ];
+    for (n, (body, run)) in cases.iter().enumerate() {
+        let file = dir.path().join(format!("{n}.toml"));
+        std::fs::write(&file, format!("{body}[run]\n{run}\n")).unwrap();
+        let out = dir.path().join(n.to_string());
+        let arguments = [
+            "upscale",
+            file.to_str().unwrap(),
+            "--run",
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        peridyne(&arguments, 0);
+        let deck = out.join("h2/coarse.toml");
+        let [fine, coarse] = [&file, &deck].map(|deck| end_of(deck));
+        let card = card(&out.join("h2"));
+        let number = |path: &str| card.pointer(path).and_then(Value::as_f64).unwrap();
+        let compared = number("/measured/time");
+        assert!(
+            (compared / coarse - 1.0).abs() < 1e-12,
+            "{run}: {compared} {coarse}"
+        );
+        let one = coarse / number("/measured/steps/1");
+        assert!(
+            (coarse - fine).abs() <= one * (1.0 + 1e-9),
+            "{run}: {coarse} {fine} {one}"
+        );
+        if n == 0 {
+            assert!((one / coarse_step - 1.0).abs() < 1e-12, "{one}");
+            assert_eq!(number("/measured/steps/1"), 162.0);
+        }
     }
 }
 

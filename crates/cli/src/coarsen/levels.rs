@@ -4,7 +4,7 @@ use super::report::{record, told};
 use super::way::Way;
 use super::{Acting, CoarsenArguments, Level};
 use crate::failure::{Failure, say};
-use crate::side_by_side::{compare, run, save};
+use crate::side_by_side::{Reference, compare, run, save};
 use peridyne::space::Point;
 use peridyne::spec::{Carriers, LinearBody, Method};
 use peridyne_io::deck::coarsened::coarsened;
@@ -191,10 +191,10 @@ fn run_levels<const D: usize>(
     {
         say("note: level 0 is run as its deck says, nonlinear; the levels are linear");
     }
-    let fine = run(&out.join("level0.toml"), None)?;
+    let mut fine = Reference::new(out.join("level0.toml"));
     for Level { name, .. } in made {
-        let coarse = run(&out.join(format!("{name}.toml")), Some(fine.time))?;
-        let m = compare(&fine, &coarse);
+        let coarse = run(&out.join(format!("{name}.toml")), None)?;
+        let m = compare(fine.until(coarse.time)?, &coarse);
         if !m.error.is_finite() {
             say(&format!(
                 "{name}: nothing moves at the {} points that both have: no error can be told",

@@ -84,11 +84,17 @@ pub fn copied(deck: &Deck) -> Result<Rewritten, String> {
     })
 }
 
-/// The deck of `coarse`, which was made of the deck's specification with points `factor` times as far apart.
+/// The deck of `coarse`, which was made of the deck's specification with points `factor` times as far apart. It ends at `end` (time), where that is
+/// given, instead of after a number of steps.
 ///
 /// # Errors
 /// What of the deck does not go with the factor, in words.
-pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, String> {
+pub fn upscaled(
+    deck: &Deck,
+    coarse: &Spec,
+    factor: u32,
+    end: Option<f64>,
+) -> Result<Rewritten, String> {
     let mut table = table(deck)?;
     let mut files = beside(deck, &mut table);
     let mut notes = vec![];
@@ -184,13 +190,22 @@ pub fn upscaled(deck: &Deck, coarse: &Spec, factor: u32) -> Result<Rewritten, St
     if let TimeStep::Fixed(dt) = coarse.schedule.time_step {
         run.insert("time_step".into(), plain(dt, Dim::TIME));
     }
-    if run.contains_key("steps") {
+    if let Some(end) = end {
+        run.remove("steps");
+        run.insert("duration".into(), plain(end, Dim::TIME));
+    } else if run.contains_key("steps") {
         run.insert("steps".into(), Value::Integer(coarse.schedule.steps as i64));
     }
+    let [before, after] = [&deck.spec, coarse].map(|spec| spec.schedule.steps as f64);
+    let fewer = match deck.duration {
+        // their number is not known before they run
+        Some(_) => 1.0 / f64::from(factor),
+        None => after / before,
+    };
     if let Some(output) = inner(&mut table, "output") {
         for key in ["every", "history"] {
             if let Some(Value::Integer(n)) = output.get_mut(key) {
-                *n = (*n + i64::from(factor) - 1) / i64::from(factor);
+                *n = ((*n as f64 * fewer).ceil() as i64).max(1);
             }
         }
     }

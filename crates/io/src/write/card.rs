@@ -20,6 +20,8 @@ pub struct Measured {
     /// Seconds of stepping.
     pub seconds: [f64; 2],
     pub steps: [u64; 2],
+    /// At which both are compared, the end of the coarse deck (time).
+    pub time: f64,
 }
 
 fn side(s: &Side) -> Value {
@@ -68,6 +70,7 @@ fn json(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Value {
             "points_compared": m.points,
             "seconds": m.seconds,
             "steps": m.steps,
+            "time": m.time,
             "speed_up": m.seconds[0] / m.seconds[1],
         })),
         "notes": card.notes.iter().map(|n| units.tell(n)).collect::<Vec<_>>(),
@@ -190,7 +193,8 @@ fn markdown(card: &Card, units: UnitSystem, measured: Option<&Measured>) -> Stri
     if let Some(m) = measured {
         let _ = writeln!(
             t,
-            "\nBoth were run: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {}).",
+            "\nBoth were run to {}, the end of the coarse deck: {} and {} steps in {:.3} and {:.3} s of stepping, {:.1} times as fast. The displacements at the {} coarse points differ by {:.3} % (root mean square, largest displacement {}).",
+            units.show(m.time, Dim::TIME),
             m.steps[0],
             m.steps[1],
             m.seconds[0],

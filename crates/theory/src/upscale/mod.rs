@@ -293,10 +293,19 @@ pub fn upscale_keeping(
             Rule::Horizon
         }
     };
+    let longer = match spec.dimension {
+        1 => longer::<1>(spec, &coarse)?,
+        2 => longer::<2>(spec, &coarse)?,
+        _ => longer::<3>(spec, &coarse)?,
+    };
     coarse.schedule = Schedule {
-        steps: spec.schedule.steps.div_ceil(u64::from(factor)),
+        // as near to the same end as whole steps are
+        steps: match spec.schedule.steps {
+            0 => 0,
+            steps => ((steps as f64 / longer).round() as u64).max(1),
+        },
         time_step: match spec.schedule.time_step {
-            TimeStep::Fixed(dt) => TimeStep::Fixed(dt * n),
+            TimeStep::Fixed(dt) => TimeStep::Fixed(dt * longer),
             TimeStep::Fraction(x) => TimeStep::Fraction(x),
             TimeStep::Auto => TimeStep::Auto,
         },
@@ -305,6 +314,27 @@ pub fn upscale_keeping(
     crate::homogenize::surface::renew(&mut coarse)?;
     Ok((coarse, rule))
 }
+
+/// How many times as long a step of the coarse model is: as its bound of stable steps is to that of the fine one (seleson2009 (4.13)), and no more than
+/// what leaves it the same part of its own limit where that bound is far off.
+fn longer<const D: usize>(fine: &Spec, coarse: &Spec) -> Result<f64, UpscaleError> {
+    let of = |spec: &Spec| -> Result<[f64; 2], UpscaleError> {
+        let (crystal, _) = crystal::<D>(spec)?;
+        let sharp = crystal.largest(if D == 3 { 8 } else { 32 }).time_step();
+        Ok([crystal.bound(), sharp])
+    };
+    let ([bound, limit], [coarse_bound, coarse_limit]) = (of(fine)?, of(coarse)?);
+    let sharp = coarse_limit / limit;
+    let by_bounds = coarse_bound / bound;
+    let safe = match fine.schedule.time_step {
+        TimeStep::Fixed(dt) => dt * by_bounds <= SAFE * coarse_limit,
+        TimeStep::Fraction(_) | TimeStep::Auto => false,
+    };
+    Ok(if safe { by_bounds } else { sharp })
+}
+
+/// Part of the stability limit of a perfect crystal up to which a step is taken by the rule of bounds.
+const SAFE: f64 = 0.95;
 
 /// The potential with the same reach at `n` times the spacing, and its horizon; `None`: its form does not allow that.
 fn keeping_reach(
