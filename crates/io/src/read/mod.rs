@@ -163,6 +163,9 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
         return exodus::parse_exodus(&bytes, &name);
     }
     let text = String::from_utf8(bytes).map_err(|_| error("it is not text".into()))?;
+    if extension == "inp" {
+        return whole(abaqus::parse(&text, &name, path.parent())?, &name);
+    }
     parse(&text, &name, &extension)
 }
 
@@ -193,7 +196,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
             sourced(data::parse_data(text, name)?, true, name)?
         }
         "lammpstrj" | "dump" => sourced(dump::parse_dump(text, name, Frame::Last)?, false, name)?,
-        "inp" => abaqus::parse(text, name)?,
+        "inp" => abaqus::parse(text, name, None)?,
         "msh" => gmsh::parse(text, name)?,
         "data" | "lmp" => lammps::parse(text, name)?,
         _ => text::parse(text, name)?,
