@@ -155,6 +155,9 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     if extension == "npz" {
         return linear::read(path);
     }
+    if extension == "inp" {
+        return whole(abaqus::read(path)?, &name);
+    }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     if extension == "msh" {
         return whole(gmsh::read(&bytes, &name)?, &name);
@@ -163,9 +166,6 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
         return exodus::parse_exodus(&bytes, &name);
     }
     let text = String::from_utf8(bytes).map_err(|_| error("it is not text".into()))?;
-    if extension == "inp" {
-        return whole(abaqus::parse(&text, &name, path.parent())?, &name);
-    }
     parse(&text, &name, &extension)
 }
 

@@ -386,8 +386,17 @@ impl<'a> Context<'a> {
             own.is_some_and(|own| own.eq_ignore_ascii_case(&name.value))
         };
         let owned: Vec<&str> = names.iter().filter(own).copied().collect();
+        if owned.len() > 1 {
+            return Err(self.error(
+                &name.span,
+                format!(
+                    "\"{}\" is a set of several instances: write one of \"{}\"",
+                    name.value,
+                    owned.join("\", \"")
+                ),
+            ));
+        }
         let help = match nearest(&name.value, names.iter().copied()) {
-            _ if !owned.is_empty() => format!("several have one: \"{}\"", owned.join("\", \"")),
             Some(near) => format!("did you mean \"{near}\"?"),
             None => format!("known sets: {}", names.join(", ")),
         };

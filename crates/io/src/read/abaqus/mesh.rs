@@ -4,8 +4,8 @@ use super::super::ReadError;
 use super::super::cell::Cell;
 use super::super::mesh::{Group, Mesh};
 use super::input::Deck;
-use super::model::{Model, Of, Place, Scope, Set, Shape, Surface, of_scope};
-use std::collections::HashMap;
+use super::model::{Element, Model, Of, Place, Scope, Set, Shape, Surface, of_scope, split_number};
+use std::collections::{HashMap, HashSet};
 
 /// The mesh, and the names with their instance of sets that need none.
 pub(super) struct Made {
@@ -15,6 +15,8 @@ pub(super) struct Made {
     pub shells: Option<String>,
     /// Cells by numbers of elements.
     index: HashMap<u64, usize>,
+    /// Elements whose faces have other numbers than those of the manual.
+    turned: HashSet<u64>,
 }
 
 pub(super) fn mesh(deck: &Deck, model: &mut Model) -> Result<Made, ReadError> {
@@ -23,14 +25,18 @@ pub(super) fn mesh(deck: &Deck, model: &mut Model) -> Result<Made, ReadError> {
         aliases: Vec::new(),
         shells: None,
         index: HashMap::new(),
+        turned: HashSet::new(),
     };
-    for (s, scope) in model.scopes.iter().enumerate() {
-        let each = scope.nodes.iter();
-        let each = each.map(|(n, x)| (of_scope(s, *n), *x));
+    made.mesh.nodes = std::mem::take(&mut model.scopes[0].nodes);
+    for (s, scope) in model.scopes.iter_mut().enumerate() {
+        let each = std::mem::take(&mut scope.nodes).into_iter();
+        let each = each.map(|(n, x)| (of_scope(s, n), x));
         made.mesh.nodes.extend(each);
     }
-    for (s, scope) in model.scopes.iter().enumerate() {
-        made.cells(deck, s, scope)?;
+    for (s, scope) in model.scopes.iter_mut().enumerate() {
+        let elements = std::mem::take(&mut scope.elements);
+        scope.index = HashMap::new();
+        made.cells(deck, s, scope, elements)?;
     }
     made.element_sets(model);
     for (name, s, set) in made.named(model, Of::Nodes) {
@@ -61,8 +67,14 @@ fn order(model: &Model) -> impl Iterator<Item = usize> + use<> {
 }
 
 impl Made {
-    fn cells(&mut self, deck: &Deck, s: usize, scope: &Scope) -> Result<(), ReadError> {
-        for element in &scope.elements {
+    fn cells(
+        &mut self,
+        deck: &Deck,
+        s: usize,
+        scope: &Scope,
+        elements: Vec<Element>,
+    ) -> Result<(), ReadError> {
+        for element in elements {
             let number = element.number;
             let kind = match element.shape {
                 Shape::Cell(kind) => kind,
@@ -95,6 +107,9 @@ impl Made {
             }
             self.index
                 .insert(of_scope(s, number), self.mesh.cells.len());
+            if element.turned {
+                self.turned.insert(of_scope(s, number));
+            }
             self.mesh.cells.push(Cell {
                 kind,
                 id: number,
@@ -200,7 +215,7 @@ impl Made {
         s: usize,
         surface: &Surface,
         name: &str,
-        outer: &mut Option<HashMap<Vec<u64>, usize>>,
+        outer: &mut Option<HashMap<[u64; 4], usize>>,
     ) -> Result<Option<String>, ReadError> {
         let (mut nodes, mut sides) = (Vec::new(), Vec::new());
         for (text, face, at) in &surface.rows {
@@ -215,9 +230,6 @@ impl Made {
                 let Some(cell) = self.index.get(&number).copied() else {
                     continue;
                 };
-                let (_, own) = super::model::split_number(number);
-                let turned = { model.element(if s == 0 { number } else { own }) }
-                    .is_some_and(|(_, e)| e.turned);
                 let kind = self.mesh.cells[cell].kind;
                 let digit = face.strip_prefix('S').and_then(|k| k.parse::<usize>().ok());
                 let flat = kind.dimension() == 2 && self.shells.is_some();
@@ -231,7 +243,7 @@ impl Made {
                         });
                         sides.extend(free.map(|side| (cell, Some(side.to_vec()))));
                     }
-                    (_, Some(_)) if turned => {
+                    (_, Some(_)) if self.turned.contains(&number) => {
                         return Ok(Some(format!(
                             "the face {face} of what *ELCOPY, REFLECT made"
                         )));
@@ -239,6 +251,7 @@ impl Made {
                     (_, Some(k)) => match kind.sides().get(k.wrapping_sub(1)) {
                         Some(side) => sides.push((cell, Some(side.to_vec()))),
                         None => {
+                            let own = split_number(number).1;
                             let message = format!("element {own} has no face {face}");
                             return Err(deck.error(*at, message));
                         }
@@ -255,14 +268,18 @@ impl Made {
     }
 }
 
-fn corners(cell: &Cell, side: &[usize]) -> Vec<u64> {
-    let mut corners: Vec<u64> = side.iter().map(|c| cell.nodes[*c]).collect();
+/// Corners of a side, rising; of an edge and a triangle with 0 before them.
+fn corners(cell: &Cell, side: &[usize]) -> [u64; 4] {
+    let mut corners = [0; 4];
+    for (to, c) in corners.iter_mut().zip(side) {
+        *to = cell.nodes[*c];
+    }
     corners.sort_unstable();
     corners
 }
 
 /// How many cells have each side.
-fn count_sides(mesh: &Mesh) -> HashMap<Vec<u64>, usize> {
+fn count_sides(mesh: &Mesh) -> HashMap<[u64; 4], usize> {
     let mut count = HashMap::new();
     for cell in &mesh.cells {
         for side in cell.kind.sides() {

@@ -19,16 +19,22 @@ mod set;
 mod silent;
 
 use super::lines::Lines;
-use super::{ReadError, Sourced};
+use super::{ReadError, Sourced, text_of};
 use input::{Block, Deck};
 use model::{Model, Of};
 use std::path::Path;
 
-/// `folder` is where files that it includes are.
+/// A file, with those that it includes.
+pub(super) fn read(path: &Path) -> Result<Sourced, ReadError> {
+    let (text, name) = text_of(path)?;
+    parse(&text, &name, path.parent())
+}
+
+/// The same from a text; `folder` is where files that it includes are.
 pub(super) fn parse(text: &str, name: &str, folder: Option<&Path>) -> Result<Sourced, ReadError> {
     let deck = Deck::new(text, name, folder)?;
     let mut model = Model::new();
-    deck.blocks(|block| read(block, &mut model))?;
+    deck.blocks(|block| keyword(block, &mut model))?;
     let lines = Lines::binary(name);
     assembly::close(&mut model).map_err(|message| lines.error(message))?;
     let made = mesh::mesh(&deck, &mut model)?;
@@ -62,7 +68,7 @@ pub(super) fn parse(text: &str, name: &str, folder: Option<&Path>) -> Result<Sou
     Ok(points)
 }
 
-fn read(block: &Block, model: &mut Model) -> Result<(), ReadError> {
+fn keyword(block: &Block, model: &mut Model) -> Result<(), ReadError> {
     match &*block.keyword.name {
         "NODE" => node::nodes(block, model),
         "SYSTEM" => node::system(block, model),

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::read::{Frame, points};
+use proptest::prelude::*;
 use std::path::Path;
 
 #[test]
@@ -161,4 +162,35 @@ fn included_files_are_read_in_their_place() {
             .to_string()
             .contains("cannot read the included file")
     );
+}
+
+proptest! {
+    /// No damage to a file makes the reader panic.
+    #[test]
+    fn damaged_files_are_read_or_refused(at in 0.0..1.0f64, cut in 0usize..40, put in "[-0-9$*,.\" =\\nA-Za-z]{0,12}") {
+        let start = (at * WHOLE.len() as f64) as usize;
+        let damaged = format!("{}{put}{}", &WHOLE[..start], &WHOLE[(start + cut).min(WHOLE.len())..]);
+        if let Err(error) = parse(&damaged, "f", "inp") {
+            prop_assert!(!error.message.is_empty());
+        }
+    }
+}
+
+/// Something of everything.
+const WHOLE: &str = include_str!("../../../../../../decks/good/instances.inp");
+
+#[test]
+fn the_deck_of_instances_is_a_bar() {
+    let points = read(WHOLE);
+    assert_eq!(points.cloud.volume.len(), 32);
+    near(&[volume(&points)], &[32.0]);
+    near(&centroid(&points), &[4.0, 1.0, 1.0]);
+    for (name, x) in [("left.End", 0.5), ("right.End", 7.5)] {
+        assert_eq!(area(&points, name), Some(4.0), "{name}");
+        let ids = set(&points, name).unwrap();
+        assert_eq!(ids.len(), 4);
+        for id in ids {
+            near(&points.cloud.position[*id as usize][..1], &[x]);
+        }
+    }
 }
