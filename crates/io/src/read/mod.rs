@@ -152,11 +152,11 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
             "a file \".{extension}\" has one state: frames are in .lammpstrj and .extxyz"
         )));
     }
-    if extension == "npz" {
-        return linear::read(path);
-    }
     if extension == "inp" {
         return whole(abaqus::read(path)?, &name);
+    }
+    if extension == "npz" {
+        return linear::read(path);
     }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     if extension == "msh" {
