@@ -4,7 +4,7 @@ use super::super::ReadError;
 use super::generate::shift;
 use super::input::Block;
 use super::keyword::Label;
-use super::model::{Frame, Model, Place, Scope};
+use super::model::{Frame, ITEM, Model, Place, Scope};
 
 fn label(block: &Block, option: &str) -> Result<Label, ReadError> {
     let label = Label::new(block.needed(option)?);
@@ -76,6 +76,8 @@ pub(super) fn instance(block: &Block, model: &mut Model) -> Result<(), ReadError
     let Some(at) = model.parts.iter().position(named) else {
         return Err(block.error(format!("there is no part {} before this line", part.shown)));
     };
+    let size = model.parts[at].nodes.len() + model.parts[at].elements.len();
+    model.generate(&block.rows(), size, ITEM)?;
     let (along, turned) = shift(&mut block.rows(), 1.0)?;
     let turned = turned.unwrap_or(Frame::NONE);
     model.frame = Some(Frame {
@@ -95,7 +97,7 @@ pub(super) fn instance(block: &Block, model: &mut Model) -> Result<(), ReadError
 
 /// `*END PART`, `*END INSTANCE`, `*END ASSEMBLY`.
 pub(super) fn end(block: &Block, model: &mut Model) -> Result<(), ReadError> {
-    block.only(&[])?;
+    block.only(&["NAME"])?;
     match (&*block.keyword.name, model.place) {
         ("ENDASSEMBLY", _) => return outside(block, model),
         ("ENDPART", Place::Part(_)) => {}

@@ -3,25 +3,16 @@
 use super::super::ReadError;
 use super::super::cell::Kind;
 use super::input::{Block, Rows};
-use super::model::{Element, Model, Of, Place, Shape};
+use super::keyword::Label;
+use super::model::{Element, ITEM, Model, Of, Place, Shape};
 use std::rc::Rc;
 
 /// Families of elements: the letters before the number of nodes, and cells of their corners. What is no solid has a shape in a
 /// mesh of solids.
-const FAMILIES: [(&str, &[(&str, Kind)]); 10] = [
-    (
-        "C3D",
-        &[
-            ("27", Kind::Hexa),
-            ("20", Kind::Hexa),
-            ("15", Kind::Prism),
-            ("10", Kind::Tetra),
-            ("8", Kind::Hexa),
-            ("6", Kind::Prism),
-            ("5", Kind::Pyramid),
-            ("4", Kind::Tetra),
-        ],
-    ),
+const FAMILIES: [(&str, &[(&str, Kind)]); 12] = [
+    ("C3D", SOLID),
+    ("DC3D", SOLID),
+    ("DC2D", FLAT),
     ("SC", &[("8", Kind::Hexa), ("6", Kind::Prism)]),
     ("CPS", FLAT),
     ("CPE", FLAT),
@@ -39,6 +30,17 @@ const FAMILIES: [(&str, &[(&str, Kind)]); 10] = [
         ],
     ),
     ("S", FLAT),
+];
+
+const SOLID: &[(&str, Kind)] = &[
+    ("27", Kind::Hexa),
+    ("20", Kind::Hexa),
+    ("15", Kind::Prism),
+    ("10", Kind::Tetra),
+    ("8", Kind::Hexa),
+    ("6", Kind::Prism),
+    ("5", Kind::Pyramid),
+    ("4", Kind::Tetra),
 ];
 
 const FLAT: &[(&str, Kind)] = &[
@@ -100,14 +102,14 @@ fn unknown(name: &str) -> String {
         () => "",
     };
     format!(
-        "unknown element type {name}{why}; known are C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, C3D20, C3D27, SC6, SC8, CPS3, CPS4, CPS6, CPS8, CPE3, CPE4, CPE6, CPE8 with the letters that follow them"
+        "unknown element type {name}{why}; known are C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, C3D20, C3D27, SC6, SC8, CPS3, CPS4, CPS6, CPS8, CPE3, CPE4, CPE6, CPE8 and those of heat (DC3D8, DC2D4) with the letters that follow them"
     )
 }
 
 /// `*ELEMENT`: a number and its nodes, which may go on over several lines.
 pub(super) fn elements(block: &Block, model: &mut Model) -> Result<(), ReadError> {
     block.only(&["TYPE", "ELSET", "INPUT"])?;
-    let name = block.needed("TYPE")?.to_uppercase();
+    let name = Label::new(block.needed("TYPE")?).key;
     let Some((shape, [least, most])) = shape(&name) else {
         return Err(block.error(unknown(&name)));
     };
@@ -234,7 +236,7 @@ pub(super) fn elgen(block: &Block, model: &mut Model) -> Result<(), ReadError> {
         let count = counts
             .iter()
             .fold(1u64, |all, c| all.saturating_mul(*c as u64));
-        model.generate(&rows, count)?;
+        model.generate(&rows, count as usize, ITEM)?;
         all.push(master);
         for k in 1..count as i64 {
             let steps = [
@@ -269,7 +271,7 @@ pub(super) fn elcopy(block: &Block, model: &mut Model) -> Result<(), ReadError> 
     let old = model.named(block.needed("OLDSET")?, Of::Elements, None);
     let old = old.map_err(|message| block.error(message))?;
     let rows = block.rows();
-    model.generate(&rows, old.len() as u64)?;
+    model.generate(&rows, old.len(), ITEM)?;
     let mut made = Vec::with_capacity(old.len());
     for number in old {
         let Some((_, element)) = model.element(number) else {

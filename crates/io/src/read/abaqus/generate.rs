@@ -3,7 +3,7 @@
 use super::super::ReadError;
 use super::input::{Block, Rows};
 use super::keyword::Label;
-use super::model::{Frame, Model, Of};
+use super::model::{Frame, ITEM, Model, Of};
 use super::node::System;
 use peridyne::space::rotation::{Quaternion, times};
 use peridyne::space::{cross, dot, length};
@@ -85,7 +85,7 @@ pub(super) fn ngen(block: &Block, model: &mut Model) -> Result<(), ReadError> {
         let last = rows.number(1, "the node at the end")?;
         let step = rows.whole(2, "an increment")?.unwrap_or(1i64);
         let made = numbers(&rows, first, last, step.unsigned_abs())?;
-        model.generate(&rows, made.len() as u64)?;
+        model.generate(&rows, made.len(), ITEM)?;
         let here = model.here();
         let ends = [here.place(&rows, first)?, here.place(&rows, last)?];
         let extra = extra(&rows, model, system)?;
@@ -237,7 +237,7 @@ pub(super) fn nfill(block: &Block, model: &mut Model) -> Result<(), ReadError> {
             ));
         }
         for (a, b) in begin.into_iter().zip(end) {
-            model.generate(&rows, intervals)?;
+            model.generate(&rows, intervals as usize, ITEM)?;
             if i128::from(a) + i128::from(step) * i128::from(intervals) != i128::from(b) {
                 return Err(rows.error(format!(
                     "{intervals} intervals with an increment of {step} do not lead from node {a} to node {b}"
@@ -311,7 +311,7 @@ pub(super) fn ncopy(block: &Block, model: &mut Model) -> Result<(), ReadError> {
     let old = model.named(name, Of::Nodes, None);
     let old = old.map_err(|message| block.error(message))?;
     let copy = copy(block, &mut rows, model)?;
-    model.generate(&rows, old.len() as u64)?;
+    model.generate(&rows, old.len(), ITEM)?;
     let here = model.here();
     let mut made = Vec::with_capacity(old.len());
     for number in old {

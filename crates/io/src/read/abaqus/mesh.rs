@@ -218,6 +218,8 @@ impl Made {
         outer: &mut Option<HashMap<[u64; 4], usize>>,
     ) -> Result<Option<String>, ReadError> {
         let (mut nodes, mut sides) = (Vec::new(), Vec::new());
+        let dimension = self.mesh.cells.iter().map(|c| c.kind.dimension()).max();
+        let dimension = dimension.unwrap_or(0);
         for (text, face, at) in &surface.rows {
             let found = model.named(text, surface.of, None);
             let found = found.map_err(|message| deck.error(*at, message))?;
@@ -232,9 +234,11 @@ impl Made {
                 };
                 let kind = self.mesh.cells[cell].kind;
                 let digit = face.strip_prefix('S').and_then(|k| k.parse::<usize>().ok());
-                let flat = kind.dimension() == 2 && self.shells.is_some();
+                // a shell, or a face of solids that was meshed besides
+                let lower = kind.dimension() < dimension;
                 match (&**face, digit) {
-                    ("" | "SPOS" | "SNEG", _) if flat => sides.push((cell, None)),
+                    ("" | "SPOS" | "SNEG", _) if lower => sides.push((cell, None)),
+                    _ if lower => return Ok(Some(format!("the face {face} of a shell"))),
                     ("", _) => {
                         let outer = outer.get_or_insert_with(|| count_sides(&self.mesh));
                         let free = kind.sides().iter().filter(|side| {

@@ -4,6 +4,7 @@ use super::super::ReadError;
 use super::super::cell::{Kind, Nodes};
 use super::input::{LARGEST, Rows};
 use super::keyword::{Label, split};
+use peridyne::execute::memory::afford;
 use peridyne::space::rotation::{Axes, times};
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
@@ -168,8 +169,11 @@ pub(super) enum Place {
     Instance(usize),
 }
 
-/// Nodes, elements and members of sets that generation may make.
-const GENERATED: u64 = 1 << 26;
+/// Bytes of a member of a set, and of a node or an element with all that is made of them.
+pub(super) const MEMBER: u64 = 16;
+pub(super) const ITEM: u64 = 320;
+/// Bytes that are made before memory is looked at again.
+const STEP: u64 = 1 << 26;
 
 pub(super) struct Model {
     /// The model around the parts, then instances. Numbers of its own are as they stand; those of an instance have its
@@ -183,6 +187,7 @@ pub(super) struct Model {
     /// Parts that have instances.
     pub used: HashSet<usize>,
     pub notes: Vec<String>,
+    /// Bytes since memory was looked at.
     generated: u64,
 }
 
@@ -231,15 +236,17 @@ impl Model {
         (1..self.scopes.len()).find(|s| named(&self.scopes[*s]))
     }
 
-    /// Counts what is generated.
-    pub fn generate(&mut self, rows: &Rows, count: u64) -> Result<(), ReadError> {
-        self.generated = self.generated.saturating_add(count);
-        if self.generated <= GENERATED {
+    /// Weighs what is generated, whose lines do not say how much it is: so many of so many bytes each.
+    pub fn generate(&mut self, rows: &Rows, count: usize, each: u64) -> Result<(), ReadError> {
+        let bytes = each.saturating_mul(count as u64);
+        self.generated = self.generated.saturating_add(bytes);
+        if self.generated < STEP {
             return Ok(());
         }
-        Err(rows.error(format!(
-            "more than {GENERATED} nodes, elements or members of sets are generated"
-        )))
+        self.generated = 0;
+        let what = "what this line makes";
+        let room = afford("memory", what, bytes.max(STEP) as f64, "");
+        room.map_err(|error| rows.error(error.message.to_string()))
     }
 
     /// The node or element that a field names, or the members of a set; `instance` is where they are looked for first.

@@ -3,7 +3,7 @@
 use super::super::ReadError;
 use super::input::{Block, Rows};
 use super::keyword::Label;
-use super::model::{Model, Of, Place, Surface, of_scope};
+use super::model::{MEMBER, Model, Of, Place, Surface, of_scope};
 
 /// `*NSET` and `*ELSET`: numbers, names of other sets, ranges, or the nodes of a set of elements.
 pub(super) fn set(block: &Block, model: &mut Model, of: Of) -> Result<(), ReadError> {
@@ -56,14 +56,18 @@ fn members(
     while rows.next() {
         if block.keyword.has("GENERATE") {
             let range = range(&rows, of)?;
-            model.generate(&rows, range.len() as u64)?;
+            model.generate(&rows, range.len(), MEMBER)?;
             members.extend(range.map(|m| of_scope(instance.unwrap_or(0), m)));
             continue;
         }
         for k in 0..rows.fields.len() {
             let Some(text) = rows.field(k) else { continue };
             let found = model.named(text, of, instance);
-            members.extend(found.map_err(|message| rows.error(message))?);
+            let found = found.map_err(|message| rows.error(message))?;
+            if found.len() > 1 {
+                model.generate(&rows, found.len(), MEMBER)?;
+            }
+            members.extend(found);
         }
     }
     Ok(members)
@@ -77,7 +81,7 @@ fn range(rows: &Rows, of: Of) -> Result<impl ExactSizeIterator<Item = u64> + use
     let first = rows.number(0, &format!("the first {what}"))?;
     let last = rows.number(1, &format!("the last {what}"))?;
     let step = rows.whole(2, "the step")?.unwrap_or(1usize);
-    if step == 0 || last < first || last - first > 1 << 24 {
+    if rows.any(3..rows.fields.len()) || step == 0 || last < first || last - first > 1 << 24 {
         return Err(rows.error("expected first, last, step with first ≤ last, a step above 0 and at most 16 million members"));
     }
     let count = (last - first) as usize / step + 1;

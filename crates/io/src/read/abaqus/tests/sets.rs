@@ -114,3 +114,29 @@ fn cells_of_several_groups_keep_the_sides_of_surfaces() {
     assert_eq!(set(&points, "S"), Some(&[1][..]));
     assert_eq!(area(&points, "S"), Some(6.0));
 }
+
+#[test]
+fn surfaces_of_plates_are_edges_and_those_of_shells_are_the_shells() {
+    let plate = "*NODE\n1,0,0\n2,2,0\n3,2,5\n4,0,5\n*ELEMENT,TYPE=CPE4\n1,1,2,3,4\n";
+    for (face, length) in [
+        ("S1", 2.0),
+        ("S2", 5.0),
+        ("S3", 2.0),
+        ("S4", 5.0),
+        ("", 14.0),
+    ] {
+        let points = read(&format!("{plate}*SURFACE,NAME=S\n1,{face}\n"));
+        assert_eq!(area(&points, "S"), Some(length), "{face}");
+    }
+    for skin in ["S4R", "M3D4", "CPS4"] {
+        let solid = format!("{BOXES}*ELEMENT,TYPE={skin},ELSET=SKIN\n9,3,6,12,9\n");
+        for face in ["", "SPOS", "SNEG"] {
+            let points = read(&format!("{solid}*SURFACE,NAME=S\nSKIN,{face}\n"));
+            assert_eq!(set(&points, "S"), Some(&[1][..]));
+            assert_eq!(area(&points, "S"), Some(6.0));
+        }
+        let points = read(&format!("{solid}*SURFACE,NAME=S\nSKIN,E1\n"));
+        assert_eq!(set(&points, "S"), None);
+        assert!(points.notes[0].contains("the face E1 of a shell is not read"));
+    }
+}
