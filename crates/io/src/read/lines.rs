@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 pub(super) struct Lines<'a> {
     name: &'a str,
-    rest: std::iter::Peekable<std::iter::Enumerate<std::str::Lines<'a>>>,
+    rest: std::iter::Enumerate<std::str::Lines<'a>>,
     /// 1-based number of the line last taken.
     pub number: usize,
 }
@@ -14,7 +14,7 @@ impl<'a> Lines<'a> {
     pub fn new(text: &'a str, name: &'a str) -> Self {
         Lines {
             name,
-            rest: text.lines().enumerate().peekable(),
+            rest: text.lines().enumerate(),
             number: 0,
         }
     }
@@ -51,11 +51,6 @@ impl<'a> Lines<'a> {
     pub fn expect(&mut self, what: &str) -> Result<&'a str, ReadError> {
         self.next()
             .ok_or_else(|| self.error(format!("the file ends where {what} should follow")))
-    }
-
-    /// The line after this one, untouched.
-    pub fn peek(&mut self) -> Option<&'a str> {
-        self.rest.peek().map(|(_, line)| line.trim())
     }
 
     pub fn error(&self, message: impl Into<String>) -> ReadError {

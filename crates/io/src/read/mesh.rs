@@ -112,14 +112,19 @@ impl Mesh {
     fn merge(&mut self) {
         let mut first: HashMap<Vec<u64>, usize> = HashMap::new();
         let mut kept: Vec<Cell> = Vec::with_capacity(self.cells.len());
+        // where each cell is then
+        let mut place = Vec::with_capacity(self.cells.len());
         for cell in std::mem::take(&mut self.cells) {
+            place.push(kept.len());
             if cell.groups.is_empty() {
                 kept.push(cell);
                 continue;
             }
-            match first.get(&cell.nodes).map(|at| &mut kept[*at]) {
-                Some(same) if same.kind == cell.kind && same.groups != cell.groups => {
-                    same.groups.extend(cell.groups);
+            match first.get(&cell.nodes).copied() {
+                Some(at) if kept[at].kind == cell.kind && kept[at].groups != cell.groups => {
+                    kept[at].groups.extend(cell.groups);
+                    place.pop();
+                    place.push(at);
                 }
                 Some(_) => kept.push(cell),
                 None => {
@@ -129,6 +134,12 @@ impl Mesh {
             }
         }
         self.cells = kept;
+        for (_, cells) in &mut self.cell_sets {
+            cells.iter_mut().for_each(|c| *c = place[*c]);
+        }
+        for (_, sides) in &mut self.side_sets {
+            sides.iter_mut().for_each(|(c, _)| *c = place[*c]);
+        }
     }
 
     fn sets(&self, dimension: usize, body: &[&Cell], cloud: &mut Cloud, notes: &mut Vec<String>) {
@@ -289,7 +300,12 @@ fn add(cloud: &mut Cloud, name: &str, ids: BTreeSet<u32>, faces: Areas, notes: &
         _ if ids.is_empty() => notes.push(format!(
             "the group \"{name}\" of the mesh touches no cell: it makes no set"
         )),
-        Some((_, known)) if **known == *ids => {}
+        Some((_, known)) if **known == *ids => {
+            let new = cloud.faces.iter().all(|(known, _)| known != name);
+            if let Some(areas) = faces.of(&ids).filter(|_| new) {
+                cloud.faces.push((name.to_string(), areas.into()));
+            }
+        }
         Some((_, known)) => notes.push(format!(
             "the mesh has several groups \"{name}\": the set is the one of {} points, not the one of {}",
             known.len(),

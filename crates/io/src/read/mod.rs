@@ -152,6 +152,9 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
             "a file \".{extension}\" has one state: frames are in .lammpstrj and .extxyz"
         )));
     }
+    if extension == "inp" {
+        return whole(abaqus::read(path)?, &name);
+    }
     if extension == "npz" {
         return linear::read(path);
     }
@@ -193,7 +196,7 @@ pub fn parse(text: &str, name: &str, extension: &str) -> Result<Points, ReadErro
             sourced(data::parse_data(text, name)?, true, name)?
         }
         "lammpstrj" | "dump" => sourced(dump::parse_dump(text, name, Frame::Last)?, false, name)?,
-        "inp" => abaqus::parse(text, name)?,
+        "inp" => abaqus::parse(text, name, None)?,
         "msh" => gmsh::parse(text, name)?,
         "data" | "lmp" => lammps::parse(text, name)?,
         _ => text::parse(text, name)?,

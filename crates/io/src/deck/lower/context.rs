@@ -380,6 +380,22 @@ impl<'a> Context<'a> {
             .map(|set| set.name.as_str())
             .chain(["all"])
             .collect();
+        // sets of instances of Abaqus have the instance before their name
+        let own = |set: &&&str| {
+            let own = set.rsplit_once('.').map(|(_, own)| own);
+            own.is_some_and(|own| own.eq_ignore_ascii_case(&name.value))
+        };
+        let owned: Vec<&str> = names.iter().filter(own).copied().collect();
+        if owned.len() > 1 {
+            return Err(self.error(
+                &name.span,
+                format!(
+                    "\"{}\" is a set of several instances: write one of \"{}\"",
+                    name.value,
+                    owned.join("\", \"")
+                ),
+            ));
+        }
         let help = match nearest(&name.value, names.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
             None => format!("known sets: {}", names.join(", ")),
