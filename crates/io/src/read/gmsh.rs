@@ -71,6 +71,7 @@ impl Gmsh {
                 nodes.len()
             )));
         }
+        self.mesh.second_order[kind.dimension()] += usize::from(count > kind.corners());
         self.mesh.cells.push(Cell {
             kind,
             id,
@@ -98,19 +99,16 @@ fn unknown(lines: &Lines, kind: u32, id: u64) -> ReadError {
 }
 
 /// Reads a mesh of either kind.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Sourced, ReadError> {
+pub(super) fn read(bytes: Vec<u8>, name: &str) -> Result<Sourced, ReadError> {
     let binary = bytes.starts_with(b"$MeshFormat")
         && String::from_utf8_lossy(&bytes[..bytes.len().min(80)])
             .lines()
             .nth(1)
             .is_some_and(|format| format.split_whitespace().nth(1) == Some("1"));
     if binary {
-        return binary::parse(bytes, name);
+        return binary::parse(&bytes, name);
     }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => parse(text, name),
-        Err(_) => Err(Lines::binary(name).error("it is no mesh of gmsh: neither text nor binary")),
-    }
+    parse(&super::whole::text(bytes, name, 0)?, name)
 }
 
 /// Is the version new (4.1) rather than old (2.2)?
