@@ -171,3 +171,96 @@ pub(super) fn next_line(
     push(raw, false, line).map_err(Bad::Text)?;
     Ok(any)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::BufReader;
+
+    const TEXT: &str = "*NODE\n1, 0.5, ü\n";
+
+    fn utf16(text: &str, order: fn(u16) -> [u8; 2]) -> Vec<u8> {
+        let marked = format!("\u{feff}{text}");
+        marked.encode_utf16().flat_map(order).collect()
+    }
+
+    #[test]
+    fn marks_and_line_ends_of_all_systems_say_the_same() {
+        let returns = TEXT.replace('\n', "\r");
+        for bytes in [
+            TEXT.as_bytes().to_vec(),
+            [MARK, TEXT.as_bytes()].concat(),
+            utf16(TEXT, u16::to_le_bytes),
+            utf16(TEXT, u16::to_be_bytes),
+            utf16(&returns, u16::to_le_bytes),
+            returns.clone().into_bytes(),
+            [MARK, returns.as_bytes()].concat(),
+        ] {
+            assert_eq!(text(bytes.clone(), 0).unwrap(), TEXT, "{bytes:?}");
+        }
+        // what lines() takes as it is stays as it is
+        assert_eq!(text(b"a\r\nb\r\n".to_vec(), 0).unwrap(), "a\r\nb\r\n");
+        assert_eq!(text(b"a\r\rb\r\nc".to_vec(), 0).unwrap(), "a\n\nb\nc");
+    }
+
+    #[test]
+    fn other_bytes_are_told_with_their_place() {
+        let latin = b"x\n# Gr\xf6\xdfe\nname = \"Gr\xf6\xdfe\"\n".to_vec();
+        let error = text(latin, 0).unwrap_err();
+        assert_eq!(error.line, Some(3));
+        let told = "the byte 0xF6 in column 11 is no UTF-8, likely `ö` in Latin-1";
+        assert!(error.message.starts_with(told), "{error}");
+        let title = b"Gr\xf6\xdfe in \xb5m\n** \xe4\n1 # \xe4\n".to_vec();
+        assert_eq!(
+            text(title.clone(), 1).unwrap(),
+            "Größe in µm\n** ä\n1 # ä\n"
+        );
+        assert_eq!(text(title, 0).unwrap_err().line, Some(1));
+        for (bytes, part) in [
+            (&b"\x89HDF\x00\x01"[..], "binary"),
+            (b"*\0N\0O\0D\0E\0\n\0", "UTF-16 without a byte-order mark"),
+            (b"\0*\0N\0O\0D\0E\0\n", "UTF-16 without a byte-order mark"),
+            (b"\xff\xfe\0\0*\0\0\0", "UTF-32"),
+            (b"\xff\xfe*\0N", "damaged"),
+        ] {
+            let error = text(bytes.to_vec(), 0).unwrap_err().to_string();
+            assert!(error.contains(part), "{bytes:?}: {error}");
+        }
+    }
+
+    fn streamed(bytes: &[u8], room: usize) -> Result<Vec<String>, String> {
+        let mut reader = BufReader::with_capacity(room, bytes);
+        let (mut raw, mut line, mut all) = (vec![], String::new(), vec![]);
+        loop {
+            match next_line(&mut reader, all.len() + 1, &mut raw, &mut line) {
+                Ok(true) => all.push(line.clone()),
+                Ok(false) => return Ok(all),
+                Err(Bad::Text(why)) => return Err(why),
+                Err(Bad::Read(why)) => return Err(why.to_string()),
+            }
+        }
+    }
+
+    #[test]
+    fn lines_of_streams_end_alike() {
+        let lines = ["1", "", "ä 2", "3"];
+        for end in ["\n", "\r\n", "\r"] {
+            for (last, mark) in [("", &b""[..]), (end, MARK)] {
+                let bytes = [mark, lines.join(end).as_bytes(), last.as_bytes()].concat();
+                for room in [1, 2, 3, 64] {
+                    assert_eq!(streamed(&bytes, room).unwrap(), lines, "{end:?} {room}");
+                }
+            }
+        }
+        let error = streamed(&utf16(TEXT, u16::to_le_bytes), 64).unwrap_err();
+        assert!(error.contains("UTF-16"), "{error}");
+        let error = streamed(b"1\n\xe4 2\n", 64).unwrap_err();
+        assert!(error.contains("0xE4 in column 1"), "{error}");
+        let long = vec![b'7'; 3 << 20];
+        assert!(
+            streamed(&long, 1 << 16)
+                .unwrap_err()
+                .contains("longer than")
+        );
+    }
+}

@@ -1,6 +1,7 @@
 //! gmsh meshes, formats 2.2 and 4.1, as text or binary; physical groups become marks and sets.
 
 mod binary;
+mod partitioned;
 
 use super::cell::{Cell, Kind};
 use super::lines::Lines;
@@ -136,6 +137,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         match section {
             "$PhysicalNames" => physical_names(&mut lines, &mut mesh)?,
             "$Entities" => entities(&mut lines, &mut mesh)?,
+            "$PartitionedEntities" => partitioned::text(&mut lines, &mut mesh)?,
             "$Nodes" => nodes(&mut lines, &mut mesh)?,
             "$Elements" => elements(&mut lines, &mut mesh)?,
             other if other.starts_with('$') => {

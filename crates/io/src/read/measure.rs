@@ -62,13 +62,19 @@ fn dot(a: &Point, b: &Point) -> f64 {
 ///
 /// # Errors
 /// A node does not exist; the cell is tangled or has no volume.
-pub(super) fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<(Point, f64), ReadError> {
+pub(super) fn measure(
+    lines: &Lines,
+    nodes: &Nodes,
+    cell: &Cell,
+) -> Result<(Point, f64), ReadError> {
     let error = |message: String| lines.error_where(cell.line, message);
     let mut x = Vec::with_capacity(8);
     for id in &cell.nodes {
         let missing = || {
             let element = cell.id;
-            error(format!("element {element} refers to node {id}, which does not exist"))
+            error(format!(
+                "element {element} refers to node {id}, which does not exist"
+            ))
         };
         x.push(*nodes.get(id).ok_or_else(missing)?);
     }
@@ -109,7 +115,10 @@ pub(super) fn measure(lines: &Lines, nodes: &Nodes, cell: &Cell) -> Result<(Poin
             2 => "area in the x-y plane",
             _ => "volume",
         };
-        return Err(error(format!("{} has no positive {what}: {volume}", named())));
+        return Err(error(format!(
+            "{} has no positive {what}: {volume}",
+            named()
+        )));
     }
     match jacobians.iter().find(|j| j.1.abs() <= FLAT) {
         Some(j) => Err(error(format!(
@@ -196,4 +205,161 @@ fn tetrahedron(x: &[Point]) -> (f64, Point) {
     let volume = dot(&e, &cross(&f, &g)) / 6.0;
     let moment = std::array::from_fn(|a| volume * (e[a] + f[a] + g[a]) / 4.0);
     (volume, moment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Centroid and volume of a cell whose nodes are 1, 2, ….
+    fn of(kind: Kind, places: &[Point]) -> Result<(Point, f64), String> {
+        let nodes: Nodes = (1..).zip(places.iter().copied()).collect();
+        let cell = Cell {
+            kind,
+            id: 9,
+            nodes: (1..=places.len() as u64).collect(),
+            groups: vec![],
+            line: Some(7),
+            volume: None,
+        };
+        measure(&Lines::binary("f"), &nodes, &cell).map_err(|e| e.to_string())
+    }
+
+    const CUBE: [Point; 8] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 1.0],
+        [1.0, 1.0, 1.0],
+        [0.0, 1.0, 1.0],
+    ];
+    const WEDGE: [Point; 6] = [CUBE[0], CUBE[1], CUBE[3], CUBE[4], CUBE[5], CUBE[7]];
+    const PYRAMID: [Point; 5] = [CUBE[0], CUBE[1], CUBE[2], CUBE[3], CUBE[4]];
+
+    fn close((centroid, volume): (Point, f64), wanted: (Point, f64)) {
+        assert!(
+            (volume - wanted.1).abs() < 1e-15,
+            "{volume}, not {}",
+            wanted.1
+        );
+        for (a, b) in centroid.iter().zip(wanted.0) {
+            assert!((a - b).abs() < 1e-15, "{centroid:?}, not {:?}", wanted.0);
+        }
+    }
+
+    /// Corner 6 moved by a along x: x = ξ + aξηζ, so the Jacobian is 1 + aηζ.
+    #[test]
+    fn a_warped_hexahedron_is_its_trilinear_map() {
+        let a = 0.75;
+        let mut warped = CUBE;
+        warped[6][0] += a;
+        let v = 1.0 + a / 4.0;
+        let x = 0.5 + a / 4.0 + a * a / 18.0;
+        let y = 0.5 + a / 6.0;
+        close(of(Kind::Hexa, &warped).unwrap(), ([x / v, y / v, y / v], v));
+        // other corners first, the other way round, far away: the same cell
+        let turned = [2, 3, 0, 1, 6, 7, 4, 5].map(|k| warped[k]);
+        close(of(Kind::Hexa, &turned).unwrap(), ([x / v, y / v, y / v], v));
+        let over = [4, 5, 6, 7, 0, 1, 2, 3].map(|k| warped[k]);
+        close(of(Kind::Hexa, &over).unwrap(), ([x / v, y / v, y / v], v));
+    }
+
+    /// The corner above node 2 raised by h: z = ζ(1 + hη) over the triangle.
+    #[test]
+    fn prisms_and_pyramids_with_warped_faces_are_integrals_of_their_jacobian() {
+        let h = 0.5;
+        let mut wedge = WEDGE;
+        wedge[5][2] += h;
+        let v = 0.5 + h / 6.0;
+        let z = (0.5 + h / 3.0 + h * h / 12.0) / 2.0;
+        let x = 1.0 / 6.0 + h / 24.0;
+        let y = 1.0 / 6.0 + h / 12.0;
+        close(of(Kind::Prism, &wedge).unwrap(), ([x / v, y / v, z / v], v));
+        // base (u, v, a u v) under the tip (0, 0, 1): a third of ∫(1 + a u v)
+        let a = 0.25;
+        let mut pyramid = PYRAMID;
+        pyramid[2][2] += a;
+        let (_, volume) = of(Kind::Pyramid, &pyramid).unwrap();
+        assert!((volume - (1.0 + a / 4.0) / 3.0).abs() < 1e-15, "{volume}");
+    }
+
+    #[test]
+    fn any_two_nodes_of_a_cell_that_change_places_tangle_it() {
+        for (kind, corners) in [
+            (Kind::Hexa, &CUBE[..]),
+            (Kind::Prism, &WEDGE),
+            (Kind::Quad, &CUBE[..4]),
+        ] {
+            for i in 0..corners.len() {
+                for j in 0..i {
+                    let mut swapped = corners.to_vec();
+                    swapped.swap(i, j);
+                    let error = of(kind, &swapped).unwrap_err();
+                    let told = "f:7: element 9";
+                    assert!(
+                        error.starts_with(told) && error.contains("tangled"),
+                        "{error}"
+                    );
+                }
+            }
+        }
+        // of a pyramid the tip and a corner of the base, or two of these
+        for (i, j) in [(0, 1), (1, 2), (2, 3), (1, 4), (3, 4)] {
+            let mut swapped = PYRAMID;
+            swapped.swap(i, j);
+            let error = of(Kind::Pyramid, &swapped).unwrap_err();
+            assert!(error.contains("tangled"), "{i} {j} {error}");
+        }
+    }
+
+    #[test]
+    fn one_corner_pushed_through_is_named() {
+        let mut pushed = CUBE;
+        pushed[6] = [0.1, 0.1, 0.1];
+        let error = of(Kind::Hexa, &pushed).unwrap_err();
+        assert!(error.contains("(hexahedron) is tangled"), "{error}");
+        assert!(
+            error.contains("the corner of node 7 has not the sign"),
+            "{error}"
+        );
+        let arrow = [[0.0; 3], [1.0, 0.0, 0.0], [0.2, 0.2, 0.0], [0.0, 1.0, 0.0]];
+        let error = of(Kind::Quad, &arrow).unwrap_err();
+        assert!(error.contains("the corner of node 3"), "{error}");
+        // a corner of half a turn
+        let straight = [[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 1.0, 0.0]];
+        let error = of(Kind::Quad, &straight).unwrap_err();
+        assert!(error.contains("flat at the corner of node 3"), "{error}");
+    }
+
+    #[test]
+    fn nodes_may_coincide_where_a_cell_is_written_as_another() {
+        let as_cube = [0, 1, 2, 2, 3, 4, 5, 5].map(|k| WEDGE[k]);
+        close(
+            of(Kind::Hexa, &as_cube).unwrap(),
+            of(Kind::Prism, &WEDGE).unwrap(),
+        );
+        let as_cube = [0, 1, 2, 3, 4, 4, 4, 4].map(|k| PYRAMID[k]);
+        close(
+            of(Kind::Hexa, &as_cube).unwrap(),
+            of(Kind::Pyramid, &PYRAMID).unwrap(),
+        );
+        let half = [CUBE[0], CUBE[1], CUBE[2], CUBE[2]];
+        close(
+            of(Kind::Quad, &half).unwrap(),
+            ([2.0 / 3.0, 1.0 / 3.0, 0.0], 0.5),
+        );
+        // opposite corners of a side that coincide fold it
+        let folded = [0, 1, 2, 1, 4, 5, 6, 5].map(|k| CUBE[k]);
+        assert!(of(Kind::Hexa, &folded).is_err());
+    }
+
+    #[test]
+    fn the_other_orientation_is_the_same_cell() {
+        let turned = [4, 5, 6, 7, 0, 1, 2, 3].map(|k| CUBE[k]);
+        close(of(Kind::Hexa, &turned).unwrap(), ([0.5; 3], 1.0));
+        let turned = [1, 0, 2, 3].map(|k| [CUBE[0], CUBE[1], CUBE[3], CUBE[4]][k]);
+        close(of(Kind::Tetra, &turned).unwrap(), ([0.25; 3], 1.0 / 6.0));
+    }
 }

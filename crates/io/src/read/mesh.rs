@@ -83,7 +83,8 @@ impl Mesh {
             .filter(|c| c.kind.dimension() == dimension)
             .collect();
         if dimension == 2 {
-            self.flat(&body).map_err(|why| lines.error_where(None, why))?;
+            self.flat(&body)
+                .map_err(|why| lines.error_where(None, why))?;
         }
         for cell in &body {
             let (centroid, volume) = measure(lines, &self.nodes, cell)?;
@@ -125,7 +126,9 @@ impl Mesh {
         let nodes = body.iter().flat_map(|c| &c.nodes);
         let places = nodes.filter_map(|n| self.nodes.get(n));
         plane::lies(places, 2).map_err(|why| {
-            format!("the mesh has triangles and quadrilaterals alone, which makes a 2-D body, and {why}")
+            format!(
+                "the mesh has triangles and quadrilaterals alone, which makes a 2-D body, and {why}"
+            )
         })
     }
 

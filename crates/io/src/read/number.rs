@@ -62,7 +62,15 @@ mod tests {
         for line in ["0,5 0,5 0 1", "0,5;1,5;0;1", "1,5e-3\t2,5", "0 0,5"] {
             assert!(decimal_commas(line), "{line}");
         }
-        for line in ["0,5,0,1", "0.5, 1, 2, 3", "0 1 2 3", "1;2;3", "1 , 2 , 3", "1, 2,3", ""] {
+        for line in [
+            "0,5,0,1",
+            "0.5, 1, 2, 3",
+            "0 1 2 3",
+            "1;2;3",
+            "1 , 2 , 3",
+            "1, 2,3",
+            "",
+        ] {
             assert!(!decimal_commas(line), "{line}");
         }
         assert!(comma("-1,5D-3").contains("decimal comma"));

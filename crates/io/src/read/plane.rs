@@ -38,7 +38,10 @@ pub(crate) fn lies<'a>(
     };
     let [low, high] = bounds[off];
     let wanted = AXES[..dimension].join(" and ");
-    let found = format!("{} is not the same everywhere: it runs from {low} to {high}", AXES[off]);
+    let found = format!(
+        "{} is not the same everywhere: it runs from {low} to {high}",
+        AXES[off]
+    );
     let own: Vec<&str> = (0..3).filter(|a| !same(*a)).map(|a| AXES[a]).collect();
     Err(match own.len() == dimension {
         true => format!(

@@ -44,7 +44,8 @@ impl<'a> Spacing<'a> {
         }
         let of = |k: Option<f64>| -> Vec<usize> {
             let all = 0..self.position.len();
-            all.filter(|i| kind.is_none_or(|all| Some(all[*i]) == k)).collect()
+            all.filter(|i| kind.is_none_or(|all| Some(all[*i]) == k))
+                .collect()
         };
         let groups: Vec<Vec<usize>> = match kind {
             Some(_) => kinds.into_iter().map(|k| of(Some(k))).collect(),

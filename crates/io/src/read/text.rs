@@ -84,7 +84,8 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         if words.is_empty() {
             continue;
         }
-        if columns.is_none() && words.iter().all(|f| number(f).is_none()) && comma(line).is_empty() {
+        if columns.is_none() && words.iter().all(|f| number(f).is_none()) && comma(line).is_empty()
+        {
             return Err(lines.error(format!(
                 "expected `x y z volume [mark]` as numbers, found the words `{}`: a header begins with #, write `# {}`",
                 line.trim(),
@@ -154,9 +155,8 @@ impl Reader {
                 Column::Volume => {
                     let volume = lines.finite(Some(word), "the volume")?;
                     if volume <= 0.0 {
-                        return Err(lines.error(format!(
-                            "the volume must be positive, it is {volume}{say}"
-                        )));
+                        return Err(lines
+                            .error(format!("the volume must be positive, it is {volume}{say}")));
                     }
                     self.cloud.volume.push(volume);
                 }
@@ -180,7 +180,9 @@ impl Reader {
 
     /// Why the columns are likely others than `x y z volume [mark]`.
     fn doubt(&self) -> Option<String> {
-        let Cloud { position, volume, .. } = &self.cloud;
+        let Cloud {
+            position, volume, ..
+        } = &self.cloud;
         let spacing = Spacing::new(position);
         let counts = { position.windows(2) }.all(|w| w[1][0] - w[0][0] == 1.0);
         if position.len() > 3 && counts && spacing.dimension() > 1 {
@@ -195,7 +197,11 @@ impl Reader {
         let whole = |v: &f64| v.fract() == 0.0;
         let least = volume.iter().copied().fold(f64::INFINITY, f64::min);
         let blocks = least == 1.0 || volume.iter().any(|v| *v != volume[0]);
-        if !blocks || self.marks.is_empty() || !volume.iter().all(whole) || !self.marks.iter().all(|m| *m > 0.0) {
+        if !blocks
+            || self.marks.is_empty()
+            || !volume.iter().all(whole)
+            || !self.marks.iter().all(|m| *m > 0.0)
+        {
             return None;
         }
         // as x y z block volume, the order of Peridigm

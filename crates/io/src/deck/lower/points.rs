@@ -20,8 +20,12 @@ pub(super) fn lie_flat(context: &Context, cloud: &Cloud, file: &At<String>) -> R
     if d == 3 {
         return Ok(());
     }
-    plane::lies(cloud.position.iter(), d)
-        .map_err(|why| context.error(&file.span, format!("of the points of {}, {why}", file.value)))
+    plane::lies(cloud.position.iter(), d).map_err(|why| {
+        context.error(
+            &file.span,
+            format!("of the points of {}, {why}", file.value),
+        )
+    })
 }
 
 /// So they are in several bodies; `new` is the next.

@@ -226,8 +226,14 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
     if let (false, false, Style::Molecular, Some(line)) = (named, bonded, style, atoms.like_charges)
     {
         return Err(lines
-            .fail_at(line, "", "these columns fit two styles: id molecule type x y z, and id type charge x y z")
-            .help("write which: `Atoms # molecular`; charges are not read: there is no Coulomb law"));
+            .fail_at(
+                line,
+                "",
+                "these columns fit two styles: id molecule type x y z, and id type charge x y z",
+            )
+            .help(
+                "write which: `Atoms # molecular`; charges are not read: there is no Coulomb law",
+            ));
     }
     Ok(DataFile {
         style,

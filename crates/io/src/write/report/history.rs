@@ -191,8 +191,8 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
     use crate::write::history::{Column as Written, History};
+    use std::fs;
 
     #[test]
     fn what_is_written_is_read() {
