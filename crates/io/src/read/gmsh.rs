@@ -175,10 +175,12 @@ fn physical_names(lines: &mut Lines, mesh: &mut Gmsh) -> Result<(), ReadError> {
 }
 
 fn physical_name(lines: &Lines, mesh: &mut Gmsh, line: &str) -> Result<(), ReadError> {
-    let mut fields = line.splitn(3, char::is_whitespace);
+    let mut fields = line.split_whitespace();
     let dimension = lines.parse(fields.next(), "a dimension")?;
     let number = lines.parse(fields.next(), "the number of a group")?;
-    let name = fields.next().unwrap_or("").trim().trim_matches('"');
+    let quoted = line.split_once('"').map(|(_, name)| name);
+    let name = quoted.or(fields.next()).unwrap_or("").trim();
+    let name = name.trim_end_matches('"');
     let group = mesh.mesh.group(dimension, number);
     let known: &mut Group = &mut mesh.mesh.groups[group];
     known.name = Some(name.to_string()).filter(|n| !n.is_empty());

