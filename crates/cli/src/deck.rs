@@ -7,6 +7,7 @@ use peridyne::execute::simd::Simd;
 use peridyne::run::{Info, Options, Simulation, TransferInfo, build};
 use peridyne::spec::{Stepper, TransferMethod};
 use peridyne_io::deck::{Deck, Dim, UnitSystem, rounded};
+use peridyne_io::read::encoding;
 use std::io::Read;
 
 /// Is this file a deck, as opposed to a LAMMPS script?
@@ -37,6 +38,7 @@ const OTHERS: [(&[u8], &str, bool); 11] = [
 
 fn refuse_others(name: &str, bytes: &[u8]) -> Result<(), Failure> {
     let begin = bytes[..bytes.len().min(4096)].to_ascii_uppercase();
+    let begin = begin.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&begin);
     let begin = begin.trim_ascii_start();
     let Some((_, what, body)) = OTHERS
         .iter()
@@ -80,7 +82,10 @@ pub fn text(input: &Input) -> Result<String, Failure> {
             "{name}: this looks like a deck, and is read as a LAMMPS script because of its name: name it .toml"
         )));
     }
-    String::from_utf8(bytes).map_err(|e| Failure::input(format!("{name}: not text: {e}")))
+    encoding::text(bytes, 0).map_err(|e| {
+        let place = e.line.map_or(String::new(), |l| format!(":{l}"));
+        Failure::input(format!("{name}{place}: {}", e.message))
+    })
 }
 
 /// Variables are those of scripts.

@@ -5,6 +5,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use crate::error::{Problem, Result};
+use peridyne_io::read::encoding;
 
 /// Bytes of a script, or of a file of values.
 const LARGEST_TEXT: u64 = 16 << 20;
@@ -33,5 +34,5 @@ pub(crate) fn text(path: &Path, shown: &str) -> Result<String> {
             LARGEST_TEXT >> 20
         )));
     }
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    encoding::text(bytes, 0).map_err(|e| Problem::new(format!("{shown}: {e}")))
 }

@@ -9,6 +9,8 @@ use peridyne_fields::{Cell, FieldsError, Kernel, Method, PairForce, Partition, S
 use peridyne_io::continuum::potential::{ModelError, Words as PotentialWords};
 use peridyne_io::continuum::{Masses, Model, Units, model, of_deck};
 use peridyne_io::read::molecules::molecules;
+use peridyne_io::read::number::{decimal_commas, number};
+use peridyne_io::read::text_of;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -273,9 +275,7 @@ fn room_for(flag: &str, points: f64) -> Result<(), Failure> {
 
 /// x y z in each row; a first row of words names the columns, `#` begins a comment.
 fn points(path: &Path) -> Result<Vec<[f64; 3]>, Failure> {
-    let name = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Failure::input(format!("{name}: cannot read it: {e}")))?;
+    let (text, name) = text_of(path).map_err(|e| Failure::input(e.to_string()))?;
     let mut all = vec![];
     for (n, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or("").trim();
@@ -286,15 +286,20 @@ fn points(path: &Path) -> Result<Vec<[f64; 3]>, Failure> {
         if words.is_empty() {
             continue;
         }
-        let numbers: Option<Vec<f64>> = words.iter().map(|w| w.parse().ok()).collect();
+        let numbers: Option<Vec<f64>> = words.iter().map(|w| number(w)).collect();
+        let numbers = numbers.filter(|_| !decimal_commas(line));
         match numbers.as_deref() {
             Some(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
                 all.push([x, y, z]);
             }
             None if all.is_empty() && words[..].starts_with(&["x", "y", "z"]) => {}
             _ => {
+                let hint = match decimal_commas(line) {
+                    true => "; are these decimal commas? Numbers have a point: 1.5, not 1,5",
+                    false => "",
+                };
                 return Err(Failure::input(format!(
-                    "{name}:{}: expected x y z, three finite numbers, found `{line}`",
+                    "{name}:{}: expected x y z, three finite numbers, found `{line}`{hint}",
                     n + 1
                 )));
             }

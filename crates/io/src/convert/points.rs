@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::tree::Entry;
 use crate::read::exodus::parse_touching;
+use crate::read::number::number as read_number;
 use crate::write::exodus::Layout;
 use peridyne::expression::Expression;
 
@@ -31,7 +32,8 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 fn text(path: &Path) -> Result<String, String> {
-    String::from_utf8(read(path)?).map_err(|_| format!("{}: it is not text", path.display()))
+    let read = crate::read::text_of(path);
+    read.map(|(text, _)| text).map_err(|e| e.to_string())
 }
 
 /// Lines with their numbers, without comments.
@@ -107,8 +109,8 @@ fn of_text(path: &Path) -> Result<Points, String> {
             let Some(at) = columns.iter().position(|c| c.eq_ignore_ascii_case(column)) else {
                 return Ok(None);
             };
-            match words[at].parse::<f64>() {
-                Ok(x) if x.is_finite() => Ok(Some(x)),
+            match read_number(words[at]) {
+                Some(x) if x.is_finite() => Ok(Some(x)),
                 _ => Err(format!(
                     "{name}:{n}: {column} is `{}`, expected a number",
                     words[at]
@@ -129,6 +131,12 @@ fn of_text(path: &Path) -> Result<Points, String> {
         }
         points.volume.push(volume);
         let block = number("block_id")?.ok_or_else(|| missing("block_id"))?;
+        if block.fract() != 0.0 || block.abs() > f64::from(i32::MAX) {
+            return Err(format!(
+                "{name}:{n}: block_id is {block}, expected a whole number: the columns are {}, in another order a line `header:` names them",
+                columns.join(" ")
+            ));
+        }
         points.block.push(block as i32);
     }
     Ok(points)

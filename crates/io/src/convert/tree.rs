@@ -2,6 +2,8 @@
 
 use std::cell::RefCell;
 
+use crate::read::number::number;
+
 /// What became of an entry.
 #[derive(Debug, Clone, PartialEq)]
 enum State {
@@ -98,7 +100,7 @@ impl Entry {
     /// The number of an entry, which is taken if it is one.
     pub fn number(&self, key: &str) -> Option<f64> {
         let entry = self.find(key)?;
-        let number = entry.own()?.parse().ok().filter(|x: &f64| x.is_finite());
+        let number = number(entry.own()?).filter(|x| x.is_finite());
         if number.is_none() {
             entry.refuse("a number was expected");
         }

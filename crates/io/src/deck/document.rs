@@ -180,7 +180,7 @@ pub struct Body {
     pub region: Option<At<Shape>>,
     /// Whole cells along each axis from the origin on, instead of a region.
     pub cells: Option<At<Vec<At<u32>>>>,
-    /// Points `x y z volume [mark]` (.txt), a mesh (Abaqus .inp, gmsh .msh as text or binary, Exodus II .g or .e in netCDF-3; its groups are sets), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
+    /// Points `x y z volume [mark]` (.txt; a first line `# x y z block_id volume` names columns in another order), a mesh (Abaqus .inp, gmsh .msh as text or binary, Exodus II .g or .e in netCDF-3; its groups are sets), a linear body with its micromoduli (.npz), LAMMPS data of `atom_style peri` (.data, .lmp: volume
     /// and density of each point, the atom type as mark), or atoms: LAMMPS data of `atom_style atomic`, `molecular`, or `full` with charges of 0, a LAMMPS dump
     /// (.lammpstrj, .dump), extended XYZ (.extxyz). Relative to the deck.
     pub file: Option<At<String>>,

@@ -11,9 +11,7 @@ use std::path::Path;
 /// # Errors
 /// File and line of the first mistake; another atom style.
 pub fn data(path: &Path) -> Result<Atoms, ReadError> {
-    let name = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| lammps::error(&name, None, format!("cannot read it: {e}")))?;
+    let (text, name) = super::whole::titled(path, 1)?;
     parse_data(&text, &name)
 }
 

@@ -2,6 +2,7 @@
 
 use super::ReadError;
 use super::atoms::{Atoms, Frame, Names, Tilted};
+use super::number;
 use super::stream::Stream;
 use std::io::BufRead;
 use std::path::Path;
@@ -358,7 +359,7 @@ pub(super) fn frame<R: BufRead>(stream: &mut Stream<R>, head: Head) -> Result<At
             numbers.push(written.parse().unwrap_or(u32::MAX));
         }
         for (c, (_, values)) in more.iter().zip(&mut others) {
-            values.push(words[*c].parse().unwrap_or(f64::NAN));
+            values.push(number::number(words[*c]).unwrap_or(f64::NAN));
         }
         let own = stream.count(words[id], "the id")?;
         ids.push(own);

@@ -3,6 +3,7 @@
 
 use super::ReadError;
 use super::lines::Lines;
+use super::number::number;
 use std::path::Path;
 
 /// Of three elements: the centre i, and j and k about it.
@@ -45,7 +46,7 @@ pub fn parse_entries(text: &str, name: &str, columns: &[&str]) -> Result<Vec<Ent
             numbers.push(lines.finite(Some(word), column)?);
         }
         let elements = [0, 1, 2].map(|n| words[n].to_string());
-        if let Some(name) = elements.iter().find(|e| e.parse::<f64>().is_ok()) {
+        if let Some(name) = elements.iter().find(|e| number(e).is_some()) {
             return Err(lines.error(format!(
                 "an entry begins with the names of three elements, found the number `{name}`"
             )));

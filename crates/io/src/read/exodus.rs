@@ -261,6 +261,8 @@ impl Exodus<'_> {
                     "element {element} of block {name} has the volume {volume}"
                 ));
             }
+            let dimension = kind.dimension();
+            self.mesh.second_order[dimension] += usize::from(nodes.len() > kind.corners());
             let corners = nodes[..kind.corners()].iter();
             // what is negative is no node, and said so where nodes are looked for
             let corners = corners.map(|n| u64::try_from(*n).unwrap_or(0));

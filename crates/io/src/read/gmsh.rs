@@ -1,6 +1,7 @@
 //! gmsh meshes, formats 2.2 and 4.1, as text or binary; physical groups become marks and sets.
 
 mod binary;
+mod partitioned;
 
 use super::cell::{Cell, Kind};
 use super::lines::Lines;
@@ -71,6 +72,7 @@ impl Gmsh {
                 nodes.len()
             )));
         }
+        self.mesh.second_order[kind.dimension()] += usize::from(count > kind.corners());
         self.mesh.cells.push(Cell {
             kind,
             id,
@@ -98,19 +100,16 @@ fn unknown(lines: &Lines, kind: u32, id: u64) -> ReadError {
 }
 
 /// Reads a mesh of either kind.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Sourced, ReadError> {
+pub(super) fn read(bytes: Vec<u8>, name: &str) -> Result<Sourced, ReadError> {
     let binary = bytes.starts_with(b"$MeshFormat")
         && String::from_utf8_lossy(&bytes[..bytes.len().min(80)])
             .lines()
             .nth(1)
             .is_some_and(|format| format.split_whitespace().nth(1) == Some("1"));
     if binary {
-        return binary::parse(bytes, name);
+        return binary::parse(&bytes, name);
     }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => parse(text, name),
-        Err(_) => Err(Lines::binary(name).error("it is no mesh of gmsh: neither text nor binary")),
-    }
+    parse(&super::whole::text(bytes, name, 0)?, name)
 }
 
 /// Is the version new (4.1) rather than old (2.2)?
@@ -138,6 +137,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Sourced, ReadError> {
         match section {
             "$PhysicalNames" => physical_names(&mut lines, &mut mesh)?,
             "$Entities" => entities(&mut lines, &mut mesh)?,
+            "$PartitionedEntities" => partitioned::text(&mut lines, &mut mesh)?,
             "$Nodes" => nodes(&mut lines, &mut mesh)?,
             "$Elements" => elements(&mut lines, &mut mesh)?,
             other if other.starts_with('$') => {
@@ -175,10 +175,12 @@ fn physical_names(lines: &mut Lines, mesh: &mut Gmsh) -> Result<(), ReadError> {
 }
 
 fn physical_name(lines: &Lines, mesh: &mut Gmsh, line: &str) -> Result<(), ReadError> {
-    let mut fields = line.splitn(3, char::is_whitespace);
+    let mut fields = line.split_whitespace();
     let dimension = lines.parse(fields.next(), "a dimension")?;
     let number = lines.parse(fields.next(), "the number of a group")?;
-    let name = fields.next().unwrap_or("").trim().trim_matches('"');
+    let quoted = line.split_once('"').map(|(_, name)| name);
+    let name = quoted.or(fields.next()).unwrap_or("").trim();
+    let name = name.trim_end_matches('"');
     let group = mesh.mesh.group(dimension, number);
     let known: &mut Group = &mut mesh.mesh.groups[group];
     known.name = Some(name.to_string()).filter(|n| !n.is_empty());

@@ -34,6 +34,7 @@ pub fn read(path: &Path) -> Result<Points, ReadError> {
         cloud: arrays.cloud(),
         dimension: Some(dimension),
         atoms: None,
+        ends: None,
         micromoduli: Some(Arc::new(body)),
         notes: vec![],
     })

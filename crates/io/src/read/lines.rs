@@ -1,6 +1,7 @@
 //! Lines of a text file with their numbers, and numbers of a line.
 
 use super::ReadError;
+use super::number::{comma, number};
 use std::str::FromStr;
 
 pub(super) struct Lines<'a> {
@@ -73,13 +74,17 @@ impl<'a> Lines<'a> {
         let text = text
             .ok_or_else(|| self.error(format!("expected {what}, the line ends")))?
             .trim();
-        text.parse()
-            .map_err(|_| self.error(format!("expected {what}, found `{text}`")))
+        text.parse().map_err(|_| self.unexpected(text, what))
+    }
+
+    fn unexpected(&self, text: &str, what: &str) -> ReadError {
+        self.error(format!("expected {what}, found `{text}`{}", comma(text)))
     }
 
     /// A number that is neither NaN nor infinite.
     pub fn finite(&self, text: Option<&str>, what: &str) -> Result<f64, ReadError> {
-        let value: f64 = self.parse(text, what)?;
+        let text: String = self.parse(text, what)?;
+        let value = number(&text).ok_or_else(|| self.unexpected(&text, what))?;
         if value.is_finite() {
             Ok(value)
         } else {

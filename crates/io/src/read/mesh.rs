@@ -7,8 +7,10 @@
 //! Sets that stand for a face know its area at each of their points: groups of surfaces (in 2-D of lines), sets of sides, and sets of
 //! nodes that hold whole outer sides of all their cells, and no whole cell.
 
-use super::cell::{Cell, Kind, Nodes, measure};
+use super::cell::{Cell, Kind, Nodes};
 use super::lines::Lines;
+use super::measure::measure;
+use super::plane;
 use super::{ReadError, Sourced};
 use peridyne::space::{cross, length};
 use peridyne::spec::Cloud;
@@ -41,6 +43,8 @@ pub(super) struct Mesh {
     pub touching: bool,
     /// Elements without shape, by type: (type, how many).
     pub shapeless: BTreeMap<String, usize>,
+    /// Cells with nodes besides their corners, by their dimension.
+    pub second_order: [usize; 4],
 }
 
 impl Mesh {
@@ -78,6 +82,10 @@ impl Mesh {
             .iter()
             .filter(|c| c.kind.dimension() == dimension)
             .collect();
+        if dimension == 2 {
+            self.flat(&body)
+                .map_err(|why| lines.error_where(None, why))?;
+        }
         for cell in &body {
             let (centroid, volume) = measure(lines, &self.nodes, cell)?;
             cloud.position.push(centroid);
@@ -95,6 +103,10 @@ impl Mesh {
                 cloud.names.push((group.number, name));
             }
         }
+        let solid = body.iter().filter(|c| c.kind != Kind::Sphere);
+        let nodes = solid.flat_map(|c| &c.nodes);
+        let ends = plane::bounds(nodes.filter_map(|n| self.nodes.get(n)));
+        let ends = Some(ends).filter(|e| e[0][0] <= e[0][1]);
         let mut notes = Vec::new();
         self.sets(dimension, &body, &mut cloud, &mut notes);
         self.note(dimension, &cloud, &mut notes);
@@ -103,8 +115,20 @@ impl Mesh {
             cloud,
             // spheres are points of any dimension
             dimension: Some(dimension).filter(|_| body.iter().any(|c| c.kind != Kind::Sphere)),
+            ends,
             lines: sources,
             notes,
+        })
+    }
+
+    /// A body of flat cells lies in x and y.
+    fn flat(&self, body: &[&Cell]) -> Result<(), String> {
+        let nodes = body.iter().flat_map(|c| &c.nodes);
+        let places = nodes.filter_map(|n| self.nodes.get(n));
+        plane::lies(places, 2).map_err(|why| {
+            format!(
+                "the mesh has triangles and quadrilaterals alone, which makes a 2-D body, and {why}"
+            )
         })
     }
 
@@ -238,6 +262,12 @@ impl Mesh {
                 .iter()
                 .map(|(kind, count)| format!("{count} elements {kind}")),
         );
+        if self.second_order[dimension] > 0 {
+            notes.push(format!(
+                "{} second-order cells are taken by their corners: their sides are straight, nodes between the corners do not count",
+                self.second_order[dimension]
+            ));
+        }
         if parts.is_empty() {
             return;
         }

@@ -11,6 +11,7 @@ mod cell;
 pub mod data;
 pub mod dump;
 pub mod eam;
+pub mod encoding;
 pub mod entries;
 pub mod exodus;
 pub mod extxyz;
@@ -19,8 +20,12 @@ mod gmsh;
 pub mod lammps;
 mod linear;
 mod lines;
+mod measure;
 mod mesh;
 pub mod molecules;
+pub mod number;
+pub(crate) mod plane;
+pub(crate) mod spacing;
 pub mod stl;
 mod stream;
 pub mod tag;
@@ -29,7 +34,7 @@ pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
-pub(crate) use whole::text_of;
+pub use whole::text_of;
 
 use peridyne::spec::{AnyLinearBody, Cloud};
 use std::collections::HashMap;
@@ -44,6 +49,8 @@ pub struct Points {
     pub cloud: Cloud,
     /// Dimension of a mesh's cells; `None` where the file does not say.
     pub dimension: Option<usize>,
+    /// Lowest and highest coordinates of a mesh's cells.
+    pub ends: Option<[[f64; 2]; 3]>,
     /// What files of atoms say besides.
     pub atoms: Option<AtomsFile>,
     /// Of a linear body.
@@ -160,13 +167,14 @@ pub fn points(path: &Path, frame: Frame) -> Result<Points, ReadError> {
     }
     let bytes = std::fs::read(path).map_err(|e| error(format!("cannot read it: {e}")))?;
     if extension == "msh" {
-        return whole(gmsh::read(&bytes, &name)?, &name);
+        return whole(gmsh::read(bytes, &name)?, &name);
     }
     if matches!(&*extension, "g" | "e" | "exo" | "gen") {
         return exodus::parse_exodus(&bytes, &name);
     }
-    let text = String::from_utf8(bytes).map_err(|_| error("it is not text".into()))?;
-    parse(&text, &name, &extension)
+    // a data file of LAMMPS has a title
+    let titles = usize::from(matches!(&*extension, "data" | "lmp"));
+    parse(&whole::text(bytes, &name, titles)?, &name, &extension)
 }
 
 /// Is the second line of a file that of extended XYZ?
@@ -229,6 +237,7 @@ fn whole(points: Sourced, name: &str) -> Result<Points, ReadError> {
     Ok(Points {
         cloud: points.cloud,
         dimension: points.dimension,
+        ends: points.ends,
         atoms: points.atoms,
         micromoduli: None,
         notes: points.notes,
@@ -277,6 +286,7 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
             ..Cloud::default()
         },
         dimension: None,
+        ends: None,
         lines: vec![],
         notes: vec![],
     })
@@ -286,6 +296,7 @@ fn sourced(atoms: Atoms, lammps: bool, name: &str) -> Result<Sourced, ReadError>
 struct Sourced {
     cloud: Cloud,
     dimension: Option<usize>,
+    ends: Option<[[f64; 2]; 3]>,
     lines: Vec<usize>,
     atoms: Option<AtomsFile>,
     notes: Vec<String>,

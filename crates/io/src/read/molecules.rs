@@ -55,7 +55,7 @@ pub fn molecules(
     length: f64,
     energy: f64,
 ) -> Result<BondedSpec, ReadError> {
-    let (text, name) = super::whole::text_of(path)?;
+    let (text, name) = super::whole::titled(path, 1)?;
     parse_molecules(&text, &name, special, length, energy)
 }
 

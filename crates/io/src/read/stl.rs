@@ -23,8 +23,9 @@ pub fn stl(path: &Path, unit: f64) -> Result<Triangles, ReadError> {
     let bytes = std::fs::read(path).map_err(|e| fail(format!("cannot read it: {e}")))?;
     let mut all = match binary_count(&bytes) {
         Some(count) => binary(&bytes, count).map_err(fail)?,
-        None => match std::str::from_utf8(&bytes) {
-            Ok(text) if text.trim_start().starts_with("solid") => ascii(text, &name)?,
+        None => match super::whole::text(bytes.clone(), &name, 1) {
+            Ok(text) if text.trim_start().starts_with("solid") => ascii(&text, &name)?,
+            Err(wrong) if bytes.trim_ascii_start().starts_with(b"solid") => return Err(wrong),
             Ok(_) | Err(_) => {
                 let told = word(&bytes, HEADER).map(|n| n as usize);
                 let holds = bytes.len().saturating_sub(HEADER + 4) / TRIANGLE;

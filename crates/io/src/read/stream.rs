@@ -1,6 +1,8 @@
 //! Lines of a file one at a time: trajectories do not fit in memory.
 
 use super::ReadError;
+use super::encoding::{Bad, next_line};
+use super::number::{comma, number};
 use flate2::bufread::MultiGzDecoder;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -12,6 +14,8 @@ pub(super) struct Stream<R> {
     /// 1-based number of the line last taken.
     number: usize,
     line: String,
+    /// Bytes of the line.
+    raw: Vec<u8>,
     packed: bool,
 }
 
@@ -50,26 +54,28 @@ impl<R: BufRead> Stream<R> {
             name: name.to_string(),
             number: 0,
             line: String::new(),
+            raw: Vec::new(),
             packed: false,
         }
     }
 
     /// The next line, without its end; `None` at the end of the file.
     pub fn next(&mut self) -> Result<Option<&str>, ReadError> {
-        self.line.clear();
-        match self.reader.read_line(&mut self.line) {
-            Ok(0) => Ok(None),
-            Ok(_) => {
-                self.number += 1;
-                Ok(Some(self.line.trim_end()))
+        self.number += 1;
+        let number = self.number;
+        match next_line(&mut self.reader, number, &mut self.raw, &mut self.line) {
+            Ok(true) => Ok(Some(self.line.trim_end())),
+            Ok(false) => {
+                self.number -= 1;
+                Ok(None)
             }
-            Err(e) => {
-                self.number += 1;
+            Err(Bad::Text(why)) => Err(self.error(why)),
+            Err(Bad::Read(e)) => {
                 let why = match self.packed {
-                    true => "the packed file is damaged or cut off",
-                    false => "binary or compressed file?",
+                    true => " (the packed file is damaged or cut off)",
+                    false => "",
                 };
-                Err(self.error(format!("cannot read this line: {e} ({why})")))
+                Err(self.error(format!("cannot read this line: {e}{why}")))
             }
         }
     }
@@ -103,10 +109,13 @@ impl<R: BufRead> Stream<R> {
     }
 
     pub fn finite(&self, word: &str, what: &str) -> Result<f64, ReadError> {
-        match word.parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(x),
-            Ok(x) => Err(self.error(format!("{what} is {x}"))),
-            Err(_) => Err(self.error(format!("expected {what}, a number, found `{word}`"))),
+        match number(word) {
+            Some(x) if x.is_finite() => Ok(x),
+            Some(x) => Err(self.error(format!("{what} is {x}"))),
+            None => {
+                let hint = comma(word);
+                Err(self.error(format!("expected {what}, a number, found `{word}`{hint}")))
+            }
         }
     }
 

@@ -1,6 +1,8 @@
 use super::*;
 use proptest::prelude::*;
 
+mod foreign;
+
 fn read(text: &str, extension: &str) -> Points {
     parse(text, "f", extension).unwrap_or_else(|e| panic!("{e}"))
 }

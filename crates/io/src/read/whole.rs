@@ -1,21 +1,29 @@
 //! Small text files, read at once.
 
-use super::ReadError;
+use super::{ReadError, encoding};
 use std::path::Path;
 
-/// Text and name of a file; old comments may be in Latin-1.
-pub(crate) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
+/// Text and name of a file.
+///
+/// # Errors
+/// It cannot be read, or is no text ([`encoding::text`]).
+pub fn text_of(path: &Path) -> Result<(String, String), ReadError> {
+    titled(path, 0)
+}
+
+/// The same of a file whose first lines may say anything.
+pub(super) fn titled(path: &Path, titles: usize) -> Result<(String, String), ReadError> {
+    let bytes = std::fs::read(path);
+    let bytes = bytes.map_err(|e| ReadError::file(path, format!("cannot read it: {e}")))?;
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| ReadError {
-        file: name.clone(),
-        line: None,
-        message: format!("cannot read it: {e}"),
-    })?;
-    match String::from_utf8(bytes) {
-        Ok(text) => Ok((text, name)),
-        Err(e) => Ok((
-            e.into_bytes().iter().map(|b| char::from(*b)).collect(),
-            name,
-        )),
-    }
+    Ok((text(bytes, &name, titles)?, name))
+}
+
+/// The text of these bytes of a file.
+pub(super) fn text(bytes: Vec<u8>, name: &str, titles: usize) -> Result<String, ReadError> {
+    encoding::text(bytes, titles).map_err(|wrong| ReadError {
+        file: name.into(),
+        line: wrong.line,
+        message: wrong.message,
+    })
 }

@@ -4,7 +4,7 @@ use super::body;
 use super::context::{Context, Result};
 use super::pieces::within;
 use super::sets;
-use super::{Files, horizon, influence};
+use super::{Files, horizon, influence, points};
 use crate::deck::document::{Body, Document, FamilyName};
 use crate::deck::error::nearest;
 use crate::deck::value::At;
@@ -48,6 +48,7 @@ pub(super) fn bodies(
                 "atoms, and linear bodies with their micromoduli, cannot be one of several bodies",
             ));
         }
+        points::lie_together(context, &pieces, &spec, written.file.as_ref())?;
         let name = match &written.name {
             Some(name) if name.value == "all" || name.value.is_empty() => {
                 let message = "a body needs another name: \"all\" is the set of all points";

@@ -3,7 +3,7 @@
 use super::Files;
 use super::context::{Context, Result};
 use super::region::region;
-use super::section;
+use super::{points, section};
 use crate::deck::document::{Body, Document, LatticeName, SurfaceName};
 use crate::deck::units::{Dim, UnitSystem};
 use crate::deck::value::{At, Or};
@@ -55,6 +55,7 @@ pub(super) fn body(
             let points = files.read(context, written)?;
             context.atoms = points.atoms;
             context.micromoduli = points.micromoduli;
+            context.ends = points.ends;
             let notes = points.notes.into_iter();
             let name = written.file.as_ref().map_or("", |f| &f.value);
             context.notes.extend(notes.map(|n| format!("{name}: {n}")));
@@ -94,6 +95,9 @@ pub(super) fn body(
                     context.error(&perturb.amplitude.span, "only a lattice can be perturbed")
                 );
             }
+            if let Some(file) = &written.file {
+                points::lie_flat(context, &cloud, file)?;
+            }
             if let Some(spacing) = &written.spacing {
                 cloud.spacing = Some(context.positive(spacing, Dim::LENGTH, "the spacing")?);
             }
@@ -115,6 +119,8 @@ pub(super) fn body(
                 // areas of a 2-D mesh, volumes otherwise
                 let power = if natural == Some(2) { 2 } else { 3 };
                 cloud.position.iter_mut().flatten().for_each(|c| *c *= unit);
+                let ends = context.ends.iter_mut().flatten().flatten();
+                ends.for_each(|c| *c *= unit);
                 cloud.volume.iter_mut().for_each(|v| *v *= unit.powi(power));
                 for (_, areas) in &mut cloud.faces {
                     *areas = areas.iter().map(|a| a * unit.powi(power - 1)).collect();
@@ -154,6 +160,13 @@ pub(super) fn body(
                 );
                 let remark = context.source.remark(&file.span, &text);
                 context.notes.push(remark);
+            }
+            if natural.is_none()
+                && context.atoms.is_none()
+                && let Some(file) = &written.file
+                && let Some(doubt) = points::odd_volumes(context, document, &cloud, file)?
+            {
+                context.doubts.push(doubt);
             }
             if let (Some(atoms), Some(file)) = (&context.atoms, &written.file) {
                 atoms_fit(context, atoms, file)?;

@@ -24,8 +24,12 @@ pub(in crate::deck) struct Context<'a> {
     pub atoms: Option<AtomsFile>,
     /// Of the body's file.
     pub micromoduli: Option<Arc<AnyLinearBody>>,
+    /// Lowest and highest coordinates of the cells of a mesh; of several bodies those of the last.
+    pub ends: Option<[[f64; 2]; 3]>,
     /// What was passed over in files.
     pub notes: Vec<String>,
+    /// What looks wrong in files, with the line that names them.
+    pub doubts: Vec<String>,
     /// Numbers in quotes that carry no unit: where, and what was taken.
     pub unitless: RefCell<Vec<(Range<usize>, String)>>,
     /// What `t` is: a time, in statics a number.
@@ -48,7 +52,9 @@ impl<'a> Context<'a> {
             dimension: 3,
             atoms: None,
             micromoduli: None,
+            ends: None,
             notes: Vec::new(),
+            doubts: Vec::new(),
             unitless: RefCell::default(),
             constants: BTreeMap::new(),
         };

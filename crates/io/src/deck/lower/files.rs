@@ -25,6 +25,7 @@ impl Files<'_> {
             return Ok(Points {
                 cloud: Cloud::default(),
                 dimension: None,
+                ends: None,
                 atoms: None,
                 micromoduli: None,
                 notes: Vec::new(),

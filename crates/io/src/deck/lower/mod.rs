@@ -14,6 +14,7 @@ mod material;
 mod motion;
 mod periods;
 mod pieces;
+mod points;
 mod probes;
 mod region;
 mod schedule;

@@ -1,6 +1,7 @@
 //! Periods of a body, and the corner that they begin at.
 
 use super::context::{Context, Result};
+use super::points;
 use crate::deck::document::{Body, Periodic};
 use crate::deck::units::{Dim, short};
 use crate::deck::value::{At, Or};
@@ -75,6 +76,17 @@ pub(super) fn periods(
             return Err(context.error(
                 &span,
                 format!("there is no {axis} in {}-D", context.dimension),
+            ));
+        }
+        if let Some(period) = period
+            && let Some(length) = points::longer(context, body, a, period)
+        {
+            let [period, length] = [period, length].map(|x| context.units.show(x, Dim::LENGTH));
+            return Err(context.error(
+                &span,
+                format!(
+                    "the body is {length} long along {axis}, and repeats every {period}: it would lie in its own image"
+                ),
             ));
         }
         out[a] = Some(match body {

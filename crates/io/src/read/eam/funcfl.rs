@@ -9,7 +9,7 @@ use super::super::ReadError;
 use super::setfl::{Grid, described};
 use super::symbol::symbol;
 use super::values::Values;
-use super::{EamElement, EamFile, text_of};
+use super::{EamElement, EamFile, titled};
 use std::path::Path;
 
 /// Hartree (eV) times Bohr radius (Å), with the digits that LAMMPS takes.
@@ -22,7 +22,7 @@ const CHARGE: f64 = 27.2 * 0.529;
 pub fn funcfl<P: AsRef<Path>>(paths: &[P]) -> Result<EamFile, ReadError> {
     let texts: Vec<(String, String)> = paths
         .iter()
-        .map(|p| text_of(p.as_ref()))
+        .map(|p| titled(p.as_ref(), 1))
         .collect::<Result<_, _>>()?;
     let borrowed: Vec<(&str, &str)> = texts
         .iter()

@@ -11,7 +11,7 @@ pub use funcfl::{funcfl, parse_funcfl};
 pub use setfl::{fs, parse_fs, parse_setfl, setfl};
 
 use super::ReadError;
-use super::whole::text_of;
+use super::whole::titled;
 
 /// An element of a file of potentials.
 #[derive(Debug, Clone, PartialEq)]

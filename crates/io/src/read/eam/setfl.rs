@@ -4,7 +4,7 @@
 
 use super::super::ReadError;
 use super::values::Values;
-use super::{EamElement, EamFile, failure, text_of};
+use super::{EamElement, EamFile, failure, titled};
 use std::path::Path;
 
 /// Reads an `eam/alloy` file.
@@ -13,7 +13,7 @@ use std::path::Path;
 /// File and line: it is truncated, has something else than a finite number in a table, counts that do not fit,
 /// steps that are not positive, or a cutoff beyond its tables.
 pub fn setfl(path: &Path) -> Result<EamFile, ReadError> {
-    let (text, name) = text_of(path)?;
+    let (text, name) = titled(path, 3)?;
     parse_setfl(&text, &name)
 }
 
@@ -22,7 +22,7 @@ pub fn setfl(path: &Path) -> Result<EamFile, ReadError> {
 /// # Errors
 /// As [`setfl`].
 pub fn fs(path: &Path) -> Result<EamFile, ReadError> {
-    let (text, name) = text_of(path)?;
+    let (text, name) = titled(path, 3)?;
     parse_fs(&text, &name)
 }
 

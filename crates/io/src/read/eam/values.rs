@@ -2,6 +2,7 @@
 
 use super::super::ReadError;
 use super::super::lines::Lines;
+use super::super::number::number;
 
 /// Lines and, between them, numbers one after another.
 pub(super) struct Values<'a> {
@@ -70,7 +71,7 @@ impl<'a> Values<'a> {
 
     /// The number that a word of the current line is.
     pub fn number(&self, word: &str, what: impl Fn() -> String) -> Result<f64, ReadError> {
-        match fortran(word) {
+        match number(word) {
             Some(x) if x.is_finite() => Ok(x),
             Some(x) => Err(self.lines.error(format!("{} is {x}", what()))),
             None => Err(self.lines.error(format!(
@@ -114,44 +115,6 @@ impl<'a> Values<'a> {
             Some(word) => Err(self.lines.error(format!(
                 "`{word}` stands after the last table: the counts in the header do not fit the tables{hint}"
             ))),
-        }
-    }
-}
-
-/// `1.5D-3`, `1.5e-3`, and `1.5-103`, as Fortran prints exponents of three digits.
-fn fortran(word: &str) -> Option<f64> {
-    if let Ok(x) = word.parse() {
-        return Some(x);
-    }
-    let word = word.replace(['D', 'd'], "e");
-    if let Ok(x) = word.parse() {
-        return Some(x);
-    }
-    let sign = word.rfind(['+', '-']).filter(|at| *at > 0)?;
-    if word.contains(['e', 'E']) {
-        return None;
-    }
-    format!("{}e{}", &word[..sign], &word[sign..]).parse().ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::fortran;
-
-    #[test]
-    fn exponents_as_fortran_writes_them() {
-        for (text, value) in [
-            ("1.5D-3", 1.5e-3),
-            ("-0.25d+02", -25.0),
-            (".5", 0.5),
-            ("0.", 0.0),
-            ("1.5-103", 1.5e-103),
-            ("-2.0+100", -2e100),
-        ] {
-            assert_eq!(fortran(text), Some(value), "{text}");
-        }
-        for text in ["FCC", "1.5e", "--1", "1e5-3", "", "-"] {
-            assert_eq!(fortran(text), None, "{text}");
         }
     }
 }

@@ -2,19 +2,19 @@
 //!
 //! Format: gmsh reference manual, "MSH file format" and "MSH file format version 2 (Legacy)".
 
-use super::{Gmsh, element, physical_name, unknown, version};
+use super::{Gmsh, element, partitioned, physical_name, unknown, version};
 use crate::read::lines::Lines;
 use crate::read::{ReadError, Sourced};
 
-struct Bytes<'a> {
+pub(super) struct Bytes<'a> {
     rest: &'a [u8],
     /// The file has its lowest byte last.
     swapped: bool,
-    lines: Lines<'a>,
+    pub lines: Lines<'a>,
 }
 
 impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize, what: &str) -> Result<&'a [u8], ReadError> {
+    pub fn take(&mut self, count: usize, what: &str) -> Result<&'a [u8], ReadError> {
         match self.rest.split_at_checked(count) {
             Some((head, rest)) => {
                 self.rest = rest;
@@ -35,18 +35,18 @@ impl<'a> Bytes<'a> {
         Ok(word)
     }
 
-    fn int(&mut self, what: &str) -> Result<i32, ReadError> {
+    pub fn int(&mut self, what: &str) -> Result<i32, ReadError> {
         Ok(i32::from_le_bytes(self.word(what)?))
     }
 
     /// A whole number that is not negative.
-    fn unsigned(&mut self, what: &str) -> Result<u64, ReadError> {
+    pub fn unsigned(&mut self, what: &str) -> Result<u64, ReadError> {
         let value = self.int(what)?;
         u64::try_from(value).map_err(|_| self.lines.error(format!("{what} is {value}")))
     }
 
     /// gmsh's `size_t`.
-    fn size(&mut self, what: &str) -> Result<u64, ReadError> {
+    pub fn size(&mut self, what: &str) -> Result<u64, ReadError> {
         Ok(u64::from_le_bytes(self.word(what)?))
     }
 
@@ -138,6 +138,7 @@ pub(super) fn parse(bytes: &[u8], name: &str) -> Result<Sourced, ReadError> {
                 }
             }
             "$Entities" => entities(&mut file, &mut mesh)?,
+            "$PartitionedEntities" => partitioned::binary(&mut file, &mut mesh)?,
             "$Nodes" if mesh.new => nodes(&mut file, &mut mesh)?,
             "$Nodes" => old_nodes(&mut file, &mut mesh)?,
             "$Elements" if mesh.new => elements(&mut file, &mut mesh)?,

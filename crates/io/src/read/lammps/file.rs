@@ -56,6 +56,8 @@ pub type Masses = Vec<Option<(f64, Option<String>)>>;
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataFile {
     pub style: Style,
+    /// Does the file say its style (`Atoms # STYLE`)?
+    pub named: bool,
     pub types: usize,
     /// Empty without the section `Masses`.
     pub masses: Masses,
@@ -82,6 +84,8 @@ pub struct DataAtoms {
     pub position: Vec<[f64; 3]>,
     /// Where the file has them.
     pub velocity: Option<Vec<[f64; 3]>>,
+    /// The last line, where molecules and types may be types and charges as well.
+    pub like_charges: Option<usize>,
 }
 
 impl DataAtoms {
@@ -94,6 +98,7 @@ impl DataAtoms {
     }
 }
 
+const GUESSED: &str = "the file does not say its atom_style, which is guessed from the number of columns: write `Atoms # peri` (or atomic, molecular, full)";
 const SECTIONS: [&str; 3] = ["Masses", "Atoms", "Velocities"];
 /// What bonds atoms.
 const BONDED: [&str; 8] = [
@@ -159,19 +164,19 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
     }
     let mut atoms: Option<DataAtoms> = None;
     let mut style = None;
+    let mut named = false;
     let mut had_images = false;
     let mut masses = Vec::new();
     loop {
         match (section.as_str(), atoms.is_some()) {
             ("Atoms", false) => {
                 style = told_style(&lines)?;
-                atoms = Some(read_atoms(
-                    &mut lines,
-                    count,
-                    types,
-                    &mut style,
-                    &mut had_images,
-                )?);
+                named = style.is_some();
+                let read = read_atoms(&mut lines, count, types, &mut style, &mut had_images);
+                atoms = Some(read.map_err(|e| match named || e.help.is_some() {
+                    true => e,
+                    false => e.help(GUESSED),
+                })?);
             }
             ("Masses", _) => masses = read_masses(&mut lines, types)?,
             (name, _) if BONDED.contains(&name) => {
@@ -218,8 +223,21 @@ pub fn read_data(reader: impl BufRead, path: &str) -> Result<DataFile> {
             .help("write `Atoms # molecular` and id molecule type x y z, or `Atoms # full` and id molecule type charge x y z"));
     }
     let atoms = atoms.unwrap_or_default();
+    if let (false, false, Style::Molecular, Some(line)) = (named, bonded, style, atoms.like_charges)
+    {
+        return Err(lines
+            .fail_at(
+                line,
+                "",
+                "these columns fit two styles: id molecule type x y z, and id type charge x y z",
+            )
+            .help(
+                "write which: `Atoms # molecular`; charges are not read: there is no Coulomb law",
+            ));
+    }
     Ok(DataFile {
         style,
+        named,
         types,
         masses,
         low: corners.map(|c| c[0]),
@@ -331,6 +349,7 @@ fn read_atoms<R: BufRead>(
 ) -> Result<DataAtoms> {
     // the header is not trusted with memory
     let mut rows: Vec<(u32, u32, [f64; 5], usize)> = Vec::with_capacity(count.min(1 << 20));
+    let mut like_charges = types > 1;
     for k in 0..count {
         let words = row(lines, "Atoms", k, count)?;
         if words[0].starts_with(|c: char| c.is_ascii_uppercase()) {
@@ -359,6 +378,7 @@ fn read_atoms<R: BufRead>(
         if !(1..=types).contains(&kind) {
             return Err(lines.fail(format!("atom type {kind} is not between 1 and {types}")));
         }
+        like_charges &= { words[1].parse() }.is_ok_and(|t| (1..=types).contains(&t));
         if told == Style::Full {
             kind_at += 1;
             let charge = finite(&words[kind_at]).map_err(|e| lines.fail(e))?;
@@ -399,6 +419,7 @@ fn read_atoms<R: BufRead>(
         density: rows.iter().map(|r| r.2[1]).collect(),
         position: rows.iter().map(|r| [r.2[2], r.2[3], r.2[4]]).collect(),
         velocity: None,
+        like_charges: Some(lines.number).filter(|_| like_charges && count > 0),
     })
 }
 

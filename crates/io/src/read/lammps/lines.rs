@@ -1,6 +1,8 @@
 //! Lines and numbers of data files and dumps.
 
-use std::io::{BufRead, Read};
+use crate::read::encoding::{Bad, next_line};
+use crate::read::number::{comma, number};
+use std::io::BufRead;
 
 /// What is wrong in a file, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -24,15 +26,14 @@ impl FileError {
     }
 }
 
-/// Characters of a line.
-const LONGEST_LINE: u64 = 1 << 20;
-
 /// Lines of a file with their numbers, for messages.
 pub struct Lines<R> {
     reader: R,
     pub path: String,
     pub number: usize,
     pub text: String,
+    /// Bytes of the line.
+    raw: Vec<u8>,
 }
 
 impl<R: BufRead> Lines<R> {
@@ -42,24 +43,19 @@ impl<R: BufRead> Lines<R> {
             path: path.to_string(),
             number: 0,
             text: String::new(),
+            raw: Vec::new(),
         }
     }
 
     /// The next line without its comment; `None` at the end of the file.
     pub fn advance(&mut self) -> Result<Option<&str>> {
-        self.text.clear();
         self.number += 1;
-        let mut raw = Vec::new();
-        let mut reader = (&mut self.reader).take(LONGEST_LINE);
-        match reader.read_until(b'\n', &mut raw) {
-            Ok(0) => return Ok(None),
-            Ok(n) if n as u64 == LONGEST_LINE && raw.last() != Some(&b'\n') => {
-                return Err(self.fail(format!(
-                    "this line is longer than {LONGEST_LINE} characters (binary file?)"
-                )));
-            }
-            Ok(_) => {}
-            Err(e) => {
+        let number = self.number;
+        match next_line(&mut self.reader, number, &mut self.raw, &mut self.text) {
+            Ok(true) => {}
+            Ok(false) => return Ok(None),
+            Err(Bad::Text(why)) => return Err(self.fail(why)),
+            Err(Bad::Read(e)) => {
                 return Err(Box::new(FileError {
                     path: self.path.clone(),
                     line: None,
@@ -68,10 +64,7 @@ impl<R: BufRead> Lines<R> {
                 }));
             }
         }
-        match std::str::from_utf8(&raw) {
-            Ok(t) => self.text.push_str(t.trim_end()),
-            Err(_) => return Err(self.fail("this line is not text (binary or compressed file?)")),
-        }
+        self.text.truncate(self.text.trim_end().len());
         Ok(Some(self.text.split('#').next().unwrap_or("").trim()))
     }
 
@@ -93,9 +86,9 @@ impl<R: BufRead> Lines<R> {
 
 /// A finite number.
 pub fn finite(word: &str) -> std::result::Result<f64, String> {
-    match word.parse::<f64>() {
-        Ok(x) if x.is_finite() => Ok(x),
-        Ok(_) => Err(format!("`{word}` is not a finite number")),
-        Err(_) => Err(format!("expected a number, found `{word}`")),
+    match number(word) {
+        Some(x) if x.is_finite() => Ok(x),
+        Some(_) => Err(format!("`{word}` is not a finite number")),
+        None => Err(format!("expected a number, found `{word}`{}", comma(word))),
     }
 }

@@ -3,10 +3,15 @@
 mod file;
 mod lines;
 
+use super::spacing::Spacing;
 use super::{ReadError, Sourced};
 pub use file::{DataAtoms, DataFile, Masses, Style, read_data};
 pub use lines::{FileError, Lines, Result, finite};
 use peridyne::spec::Cloud;
+
+/// Volumes beyond this, or below its inverse, are none.
+const FACTOR: f64 = 100.0;
+const GUESSED: &str = "the file does not say its atom_style: it is taken as peri, id type volume density x y z (`Atoms # peri` says so)";
 
 pub(super) fn file(text: &str, name: &str) -> std::result::Result<DataFile, ReadError> {
     read_data(text.as_bytes(), name).map_err(|problem| {
@@ -24,6 +29,7 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
         atoms,
         had_images,
         style,
+        named,
         ..
     } = file(text, name)?;
     if style != Style::Peri {
@@ -41,6 +47,18 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
             name,
             None,
             "image flags other than 0: write unwrapped positions and leave the flags out",
+        ));
+    }
+    let spacing = Spacing::new(&atoms.position);
+    let excess = spacing.excess(&atoms.volume, None);
+    if !named && spacing.dimension() == 3 && excess.abs() > FACTOR.ln() {
+        return Err(error(
+            name,
+            None,
+            format!(
+                "the file does not say its atom_style, and as peri (id type volume density x y z) its volumes are {:.1e} times those between its points: write `Atoms # peri` if they are right; sphere has diameters there, full molecules, types and charges",
+                excess.exp()
+            ),
         ));
     }
     let moves = |v: &[f64; 3]| *v != [0.0; 3];
@@ -70,9 +88,12 @@ pub(super) fn parse(text: &str, name: &str) -> std::result::Result<Sourced, Read
             ..Cloud::default()
         },
         dimension: None,
+        ends: None,
         // the file is in no order; the engine names points in one place by their number
         lines: vec![],
-        notes: vec![],
+        notes: { [GUESSED].into_iter().filter(|_| !named) }
+            .map(String::from)
+            .collect(),
     })
 }
 

@@ -1,6 +1,5 @@
 //! `history.csv` as a report shows it.
 
-use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -38,7 +37,7 @@ pub struct Column {
 /// # Errors
 /// It cannot be read, or a row is not one of numbers.
 pub fn read(path: &Path) -> Result<Vec<Column>, ReadError> {
-    let text = fs::read_to_string(path).map_err(|e| ReadError::file(path, e.to_string()))?;
+    let (text, _) = crate::read::text_of(path)?;
     let mut lines = text.lines();
     let mut columns: Vec<Column> = cells(lines.next().unwrap_or(""))
         .into_iter()
@@ -193,6 +192,7 @@ pub fn shown(columns: &[Column]) -> (Value, Option<String>) {
 mod tests {
     use super::*;
     use crate::write::history::{Column as Written, History};
+    use std::fs;
 
     #[test]
     fn what_is_written_is_read() {
