@@ -29,6 +29,7 @@ pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
+pub use mesh::Holds;
 pub(crate) use whole::text_of;
 
 use peridyne::spec::{AnyLinearBody, Cloud};
