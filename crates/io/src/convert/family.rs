@@ -3,6 +3,7 @@
 //! Here bonds are pairs with `|ξ|² ≤ δ²` in plain arithmetic. PeriLab and Peridigm's trees take the same, Peridigm after a box of
 //! `x ± δ`; a grid of Peridigm has the cells of a box, of which `NeighborhoodType: Spherical` keeps those with `|ξ|² − δ² < 0`.
 
+use super::Program;
 use super::points::Points;
 use std::collections::HashMap;
 
@@ -19,17 +20,70 @@ pub enum Search {
     Cells,
 }
 
+impl Search {
+    /// Of a program; `grid`: its points are cells of a grid, `ball`: of which it takes a ball.
+    pub fn of(program: Program, grid: bool, ball: bool) -> Self {
+        match (program, grid, ball) {
+            (Program::PeriLab, ..) => Search::Ball,
+            (Program::Peridigm, false, _) => Search::BoxedBall,
+            (Program::Peridigm, true, true) => Search::OpenBall,
+            (Program::Peridigm, true, false) => Search::Cells,
+        }
+    }
+}
+
+/// The horizon whose ball is the family of the other program, and what should be known of it.
+///
+/// # Errors
+/// No ball is.
+pub fn horizon(
+    points: &Points,
+    given: f64,
+    search: Search,
+) -> Result<(f64, Option<String>), String> {
+    let Some(differs) = differs(points, given, search) else {
+        let told = "bonds as long as the horizon were not looked at, there are too many: round-off decides about them";
+        return Ok((given, Some(told.into())));
+    };
+    match differs.horizon(given) {
+        Some(found) if found == given => Ok((found, None)),
+        Some(found) => {
+            let ties = if found > given {
+                "count"
+            } else {
+                "do not count"
+            };
+            let told = format!(
+                "bonds as long as the horizon {given:?} {ties} there: here it is {found:?}"
+            );
+            Ok((found, Some(told)))
+        }
+        None => {
+            let Differs { there, here, .. } = differs;
+            let what = match search {
+                Search::Cells => {
+                    "on a grid of Peridigm without NeighborhoodType Spherical the family is a box of cells, here a ball"
+                }
+                _ => "round-off decides there about bonds as long as the horizon",
+            };
+            Err(format!(
+                "{what}: {there} directed bonds are missing, {here} are added"
+            ))
+        }
+    }
+}
+
 /// Pairs of points, each counted from both ends.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
-pub struct Differs {
+struct Differs {
     /// There alone.
-    pub there: u64,
+    there: u64,
     /// In the ball alone.
-    pub here: u64,
+    here: u64,
     /// Within round-off of the horizon, and bonds there.
-    pub tied: u64,
+    tied: u64,
     /// Within round-off of the horizon, and no bonds there.
-    pub untied: u64,
+    untied: u64,
 }
 
 /// Part of the horizon that counts as round-off; the engine's is 1e-9.
@@ -40,7 +94,7 @@ const MOST: u64 = 1 << 31;
 
 impl Differs {
     /// The horizon that makes the family of the other program out of a ball, where one does.
-    pub fn horizon(&self, horizon: f64) -> Option<f64> {
+    fn horizon(&self, horizon: f64) -> Option<f64> {
         match self {
             Differs {
                 there: 0, here: 0, ..
@@ -64,7 +118,7 @@ impl Differs {
 }
 
 /// What differs; `None`: there are too many pairs to look at.
-pub fn differs(points: &Points, horizon: f64, search: Search) -> Option<Differs> {
+fn differs(points: &Points, horizon: f64, search: Search) -> Option<Differs> {
     let cells = cells_of(points, horizon);
     let boxed = |a: &[f64; 3], b: &[f64; 3]| {
         (0..3).all(|k| a[k] - horizon <= b[k] && b[k] <= a[k] + horizon)

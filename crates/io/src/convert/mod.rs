@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use crate::read::ReadError;
 use crate::write::WriteError;
 use crate::write::exodus::write_mesh;
-use family::{Differs, Search};
+use family::Search;
 use points::Points;
 pub use tree::Unmapped;
 use tree::{Entry, Value};
@@ -391,47 +391,23 @@ impl<'a> Converter<'a> {
         horizon.ok_or_else(|| "no block has a Horizon that is a number".into())
     }
 
-    /// The horizon whose ball is the family of the other program; where none is, the horizon says so.
-    fn family(&mut self, blocks: &[Block], horizon: f64) -> f64 {
+    /// The horizon whose ball is the family of the other program; where there is none, that of the deck, which is then named.
+    fn family(&mut self, blocks: &[Block], given: f64) -> f64 {
         let kind = { self.root.list("Discretization") }.and_then(|d| d.text("NeighborhoodType"));
         let ball = kind.is_some_and(|t| t.eq_ignore_ascii_case("Spherical"));
-        let search = match (self.program, self.points.grid, ball) {
-            (Program::PeriLab, ..) => Search::Ball,
-            (Program::Peridigm, None, _) => Search::BoxedBall,
-            (Program::Peridigm, Some(_), true) => Search::OpenBall,
-            (Program::Peridigm, Some(_), false) => Search::Cells,
-        };
-        let Some(differs) = family::differs(&self.points, horizon, search) else {
-            self.remarks.push("bonds as long as the horizon were not looked at, there are too many: there round-off decides about them".into());
-            return horizon;
-        };
-        let found = differs.horizon(horizon);
-        match found {
-            None => {
-                let Differs { there, here, .. } = differs;
-                let why = match search {
-                    Search::Cells => format!(
-                        "on a grid of Peridigm without NeighborhoodType Spherical the family is a box of cells, here a ball: {there} directed bonds are missing, {here} are added"
-                    ),
-                    _ => format!(
-                        "round-off decides there about bonds as long as the horizon: {there} directed bonds are missing, {here} are added"
-                    ),
-                };
+        let search = Search::of(self.program, self.points.grid.is_some(), ball);
+        match family::horizon(&self.points, given, search) {
+            Ok((horizon, told)) => {
+                self.remarks.extend(told);
+                horizon
+            }
+            Err(why) => {
                 for block in blocks {
                     block.entry.refuse_entry("Horizon", &why);
                 }
+                given
             }
-            Some(found) if found != horizon => {
-                let ties = if found > horizon {
-                    "counted"
-                } else {
-                    "not counted"
-                };
-                self.remarks.push(format!("bonds as long as the horizon {horizon:?} are {ties} there: it is {found:?} here"));
-            }
-            Some(_) => {}
         }
-        found.unwrap_or(horizon)
     }
 
     /// Materials of all blocks.
