@@ -167,7 +167,7 @@ pub fn enough_disk(deck: &Deck, sim: &dyn Simulation, dir: &Path) -> Result<(), 
     let steps = deck.steps(info.time_step);
     let amount = Amount {
         steps,
-        every: output.every,
+        every: output.every(steps),
         history: output.history.unwrap_or((steps / 100).max(1)),
         points: info.points,
         files: u64::from(output.vtu) + u64::from(output.exodus.is_some()),
@@ -410,7 +410,7 @@ fn plan(
         allow_outside,
         steps,
         increments: deck.increments(),
-        every: output.every,
+        every: output.every(steps),
         modes: deck.modes,
         linear_body: output.linear_body,
         history: output.history.unwrap_or((steps / 100).max(1)),

@@ -1,7 +1,9 @@
-//! Boundary and initial conditions, bond filters and compute classes of both programs.
+//! Boundary and initial conditions and compute classes of both programs.
 
-use super::quoted;
-use super::tree::Entry;
+use super::points::Points;
+use super::solver::Solver;
+use super::tree::{Entry, same};
+use super::{Program, increments, quoted};
 use peridyne::expression::Expression;
 
 /// How the time of the other deck follows from ours: `start + scale t`.
@@ -17,50 +19,113 @@ impl Clock {
     /// # Errors
     /// It is none, with the reason.
     pub fn expression(self, given: &str) -> Result<String, String> {
-        let text = given.trim().trim_end_matches(';').trim();
-        let text = match text.strip_prefix("value") {
-            Some(rest) if rest.trim_start().starts_with('=') => {
-                rest.trim_start().trim_start_matches('=').trim()
-            }
-            _ => text,
-        };
+        let text = plain(given);
         if text.contains(['{', ';']) {
             return Err("a program is no expression: write it as a ? b : c".into());
         }
-        Expression::parse(text, &[]).map_err(|e| format!("no expression: {}", e.message))?;
+        // PeriLab's time since the start
+        let text = put(&text, "st", &format!("(t - {:?})", self.start));
+        Expression::parse(&text, &[]).map_err(|e| format!("no expression: {}", e.message))?;
         if self.start == 0.0 && self.scale == 1.0 {
-            return Ok(text.into());
+            return Ok(text);
         }
-        let time = match self.start == 0.0 {
-            true => format!("({:?}*t)", self.scale),
-            false => format!("({:?} + {:?}*t)", self.start, self.scale),
+        let time = match (self.start == 0.0, self.scale == 1.0) {
+            (true, _) => format!("({:?}*t)", self.scale),
+            (_, true) => format!("({:?} + t)", self.start),
+            _ => format!("({:?} + {:?}*t)", self.start, self.scale),
         };
-        let letter = |c: char| c.is_alphanumeric() || c == '_';
-        let mut out = String::new();
-        let mut before = ' ';
-        let mut rest = text.chars().peekable();
-        while let Some(c) = rest.next() {
-            let alone = c == 't' && !letter(before) && !rest.peek().is_some_and(|n| letter(*n));
-            match alone {
-                true => out += &time,
-                false => out.push(c),
-            }
-            before = c;
-        }
-        Ok(out)
+        Ok(put(&text, "t", &time))
     }
+
+    /// The same at a time of the other program, as an expression of the place.
+    ///
+    /// # Errors
+    /// As [`Self::expression`].
+    pub fn at(self, given: &str, time: f64) -> Result<String, String> {
+        let there = Clock {
+            start: 0.0,
+            scale: 1.0,
+        };
+        Ok(put(&there.expression(given)?, "t", &format!("({time:?})")))
+    }
+}
+
+/// Without what the other programs write around and into an expression: `value = …;`, and dots before operators of Julia.
+fn plain(given: &str) -> String {
+    let text = given.trim().trim_end_matches(';').trim();
+    let text = match text.strip_prefix("value") {
+        Some(rest) if rest.trim_start().starts_with('=') => {
+            rest.trim_start().trim_start_matches('=').trim()
+        }
+        _ => text,
+    };
+    let mut text = text.to_string();
+    for operator in ["*", "/", "+", "-", "^"] {
+        text = text.replace(&format!(".{operator}"), operator);
+    }
+    text
+}
+
+/// Places of a word that stands alone.
+fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let letter = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    text.match_indices(word)
+        .map(|(at, _)| at)
+        .filter(move |at| {
+            let before = text[..*at].chars().next_back();
+            let after = text[at + word.len()..].chars().next();
+            !before.is_some_and(letter) && !after.is_some_and(letter)
+        })
+}
+
+/// `by` in place of a word that stands alone.
+fn put(text: &str, word: &str, by: &str) -> String {
+    let (mut out, mut from) = (String::new(), 0);
+    for at in words(text, word) {
+        out += &text[from..at];
+        out += by;
+        from = at + word.len();
+    }
+    out + &text[from..]
+}
+
+/// What conditions act on, and when.
+pub struct Stage<'a> {
+    pub program: Program,
+    pub points: &'a Points,
+    pub names: &'a [String],
+    pub solver: &'a Solver,
+    pub dimension: usize,
+}
+
+/// One condition of the other program.
+struct Given<'a> {
+    entry: &'a Entry,
+    table: &'static str,
+    key: &'static str,
+    set: String,
+    axis: usize,
+    value: &'a str,
 }
 
 /// What a condition does here: the table and the key.
 fn kind(entry: &Entry) -> Result<(&'static str, &'static str), String> {
-    let given = entry.text("Type").unwrap_or("").to_lowercase();
-    let variable = entry.text("Variable").unwrap_or("").to_lowercase();
+    let plain = |key: &str| {
+        entry
+            .text(key)
+            .unwrap_or("")
+            .to_lowercase()
+            .replace('_', " ")
+    };
+    let (given, variable) = (plain("Type"), plain("Variable"));
     let initial = given.starts_with("initial");
-    let key = match (given.trim_start_matches("initial ").trim(), &*variable) {
+    let key = match (given.trim_start_matches("initial").trim(), &*variable) {
+        ("neumann", _) => return Err("PeriLab reads Neumann conditions and applies none".into()),
         // Peridigm says it in the type, PeriLab in the variable
         ("prescribed displacement" | "displacement", _) | (_, "displacements") => "displacement",
         ("velocity", _) | (_, "velocity") => "velocity",
         ("body force", _) | (_, "body forces" | "force densities") => "body_force",
+        (_, "forces") => "force",
         _ => {
             return Err(format!("no condition of type \"{given}\" {variable}")
                 .trim_end()
@@ -68,128 +133,103 @@ fn kind(entry: &Entry) -> Result<(&'static str, &'static str), String> {
         }
     };
     match (initial, key) {
-        (true, "body_force") => Err("a body force has no initial value".into()),
+        (true, "body_force" | "force") => Err("a body force has no initial value".into()),
         (true, key) => Ok(("initial", key)),
         (false, key) => Ok(("condition", key)),
     }
 }
 
-/// Tables of the conditions; `sets` are the names that there are.
-pub fn conditions(all: &Entry, sets: &[String], clock: Clock, dimension: usize) -> String {
-    let mut out = String::new();
+/// Tables of the conditions.
+pub fn conditions(all: &Entry, stage: &Stage, remarks: &mut Vec<String>) -> String {
+    let mut given: Vec<Given> = vec![];
     for entry in all.lists() {
-        match condition(entry, sets, clock, dimension) {
-            Ok(text) => out += &text,
+        match read(entry, stage) {
+            Ok(one) => given.push(one),
+            Err(why) => entry.refuse(&why),
+        }
+    }
+    let mut out = String::new();
+    for one in &given {
+        let entry = one.entry;
+        match value(one, &given, stage, remarks) {
+            Ok((key, value)) => {
+                out += &format!(
+                    "\n# {}\n[[{}]]\nset = {}\n{key} = {{ {} = {} }}\n",
+                    entry.key.replace(['\n', '\r'], " "),
+                    one.table,
+                    quoted(&one.set),
+                    AXES[one.axis],
+                    quoted(&value)
+                );
+            }
             Err(why) => entry.refuse(&why),
         }
     }
     out
 }
 
-fn condition(
-    entry: &Entry,
-    sets: &[String],
-    clock: Clock,
-    dimension: usize,
-) -> Result<String, String> {
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn read<'a>(entry: &'a Entry, stage: &Stage) -> Result<Given<'a>, String> {
     let (table, key) = kind(entry)?;
     let set = entry.text("Node Set").or_else(|| entry.text("Block"));
     let set = set.ok_or("it has no Node Set")?;
-    let name = sets.iter().find(|s| s.eq_ignore_ascii_case(set));
+    let name = stage.names.iter().find(|s| same(s, set));
     let name = name.ok_or_else(|| format!("there is no node set \"{set}\", or it is empty"))?;
     let axis = entry.text("Coordinate").unwrap_or("x").to_lowercase();
-    if !["x", "y", "z"].contains(&&*axis) {
-        return Err(format!("the coordinate \"{axis}\" is not x, y or z"));
-    }
-    if axis == "z" && dimension == 2 {
+    let axis = AXES.iter().position(|a| *a == axis);
+    let axis = axis.ok_or("the coordinate is not x, y or z")?;
+    if axis == 2 && stage.dimension == 2 {
         return Err("there is no z in 2-D".into());
     }
-    let value = entry.text("Value").ok_or("it has no Value")?;
-    let value = clock.expression(value)?;
-    let comment = entry.key.replace(['\n', '\r'], " ");
-    Ok(format!(
-        "\n# {comment}\n[[{table}]]\nset = {}\n{key} = {{ {axis} = {} }}\n",
-        quoted(name),
-        quoted(&value)
-    ))
+    Ok(Given {
+        entry,
+        table,
+        key,
+        set: name.clone(),
+        axis,
+        value: entry.text("Value").ok_or("it has no Value")?,
+    })
 }
 
-/// Pre-cracks of bond filters.
-pub fn filters(all: &Entry, dimension: usize) -> String {
-    let mut out = String::new();
-    for entry in all.lists() {
-        match filter(entry, dimension) {
-            Ok(text) => out += &text,
-            Err(why) => entry.refuse(&why),
-        }
-    }
-    out
-}
-
-/// Three numbers; in a plane z may be left out.
-fn vector(entry: &Entry, name: &str) -> Result<[f64; 3], String> {
-    let mut v = [0.0; 3];
-    for (c, axis) in v.iter_mut().zip(["X", "Y", "Z"]) {
-        let key = format!("{name} {axis}");
-        *c = match entry.number(&key) {
-            Some(x) => x,
-            None if axis == "Z" => 0.0,
-            None => return Err(format!("it has no {key}")),
-        };
-    }
-    Ok(v)
-}
-
-fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    v.map(|x| x / length)
-}
-
-fn filter(entry: &Entry, dimension: usize) -> Result<String, String> {
-    let kind = entry
-        .text("Type")
-        .unwrap_or("")
-        .to_lowercase()
-        .replace('_', " ");
-    let number = |key: &str| entry.number(key).ok_or_else(|| format!("it has no {key}"));
-    let shape = match &*kind {
-        "rectangular plane" => {
-            let normal = vector(entry, "Normal")?;
-            let corner = vector(entry, "Lower Left Corner")?;
-            let bottom = vector(entry, "Bottom Unit Vector")?;
-            let length = number("Bottom Length")?;
-            let side = number("Side Length")?;
-            // the other edge is bottom × normal in both programs
-            let (bottom, normal) = (unit(bottom), unit(normal));
-            let up: [f64; 3] = std::array::from_fn(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                bottom[j] * normal[k] - bottom[k] * normal[j]
-            });
-            let at = |a: f64, b: f64| -> [f64; 3] {
-                std::array::from_fn(|i| corner[i] + a * length * bottom[i] + b * side * up[i])
+/// The key of a condition, and its value as the program applies it.
+fn value(
+    given: &Given,
+    all: &[Given],
+    stage: &Stage,
+    remarks: &mut Vec<String>,
+) -> Result<(&'static str, String), String> {
+    let (clock, from) = (stage.solver.clock, stage.solver.from);
+    match (stage.program, given.table, given.key) {
+        // initial values are those at time 0, also where a deck begins later
+        (Program::Peridigm, "initial", key) => Ok((key, clock.at(given.value, 0.0)?)),
+        (Program::PeriLab, "initial", _) if from != 0.0 => Err(format!(
+            "PeriLab applies initial values at time 0 alone, and it begins at {from:?}"
+        )),
+        (Program::PeriLab, "initial", key) => Ok((key, clock.at(given.value, 0.0)?)),
+        (Program::Peridigm, _, "displacement") => {
+            let initial = |g: &&Given| {
+                g.table == "initial" && g.key == "displacement" && g.axis == given.axis
             };
-            let flat = |p: [f64; 3]| format!("[{:?}, {:?}]", p[0], p[1]);
-            match dimension {
-                2 => format!(
-                    "segment = {{ from = {}, to = {} }}",
-                    flat(corner),
-                    flat(at(1.0, 0.0))
-                ),
-                _ => {
-                    let corners = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
-                    format!("polygon = {corners:?}")
-                }
+            let before: Vec<(&str, Vec<u32>)> = { all.iter().filter(initial) }
+                .map(|g| (g.value, stage.points.of(&g.set)))
+                .collect();
+            let (value, told) = increments::total(given.value, &given.set, &before, stage)?;
+            if told {
+                remarks.push("Peridigm adds what a prescribed displacement changes by in each step: f(t) - f(t0) on what is there at the start; one that does not change is taken itself".into());
             }
+            Ok(("displacement", value))
         }
-        "disk" if dimension == 3 => format!(
-            "disk = {{ center = {:?}, normal = {:?}, radius = {:?} }}",
-            vector(entry, "Center")?,
-            vector(entry, "Normal")?,
-            number("Radius")?
-        ),
-        other => return Err(format!("no pre-crack of type \"{other}\"")),
-    };
-    Ok(format!("\n[[precrack]]\n{shape}\n"))
+        (_, _, "force") => {
+            let volume = stage.points.volume_of(&given.set);
+            let volume = volume.ok_or("it is a force on each point, and their volumes differ: give a body force for each volume")?;
+            Ok((
+                "body_force",
+                format!("({})/{volume:?}", clock.expression(given.value)?),
+            ))
+        }
+        (_, _, key) => Ok((key, clock.expression(given.value)?)),
+    }
 }
 
 /// What a field is called here, and what should be known of it.

@@ -5,6 +5,9 @@
 //! depends on the program. Numbers stay as they are: such decks have no units, and neither has the new one (`units = "none"`).
 
 mod conditions;
+mod family;
+mod filters;
+mod increments;
 mod laws;
 mod points;
 mod solver;
@@ -16,6 +19,7 @@ use std::path::{Path, PathBuf};
 use crate::read::ReadError;
 use crate::write::WriteError;
 use crate::write::exodus::write_mesh;
+use family::Search;
 use points::Points;
 pub use tree::Unmapped;
 use tree::{Entry, Value};
@@ -92,7 +96,7 @@ pub fn convert(path: &Path, mesh: &str) -> Result<Converted, ReadError> {
         whole("it has no list Discretization: it is no deck of Peridigm or PeriLab".into())
     })?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let points = points::points(discretization, folder).map_err(whole)?;
+    let points = points::points(discretization, folder, program).map_err(whole)?;
     let title = path
         .file_stem()
         .map_or("deck".into(), |s| s.to_string_lossy());
@@ -155,7 +159,7 @@ fn influence(discretization: &Entry) -> &'static str {
     let given = discretization.text("Influence Function").unwrap_or("One");
     match &*given.to_lowercase().replace(' ', "") {
         "one" | "1" | "1.0" => "constant",
-        "1/zeta" | "1.0/zeta" => "inverse",
+        "1/zeta" | "1.0/zeta" | "1/xi" | "1.0/xi" => "inverse",
         _ => {
             discretization.refuse_entry(
                 "Influence Function",
@@ -164,6 +168,17 @@ fn influence(discretization: &Entry) -> &'static str {
             "constant"
         }
     }
+}
+
+/// Tables of the materials of all blocks.
+#[derive(Default)]
+struct Materials {
+    text: String,
+    /// The plane they are in, and its thickness, where volumes have it.
+    plane: Option<&'static str>,
+    height: Option<f64>,
+    /// Can any break?
+    breaks: bool,
 }
 
 /// A block of the deck: its set, and the list that describes it.
@@ -181,9 +196,23 @@ impl<'a> Converter<'a> {
         let sets = discretization.and_then(|d| d.list("Node Sets"));
         for list in given.into_iter().chain(sets) {
             for entry in list.all() {
+                if tree::same(&entry.key, "Create Node Set For Rank Deficient Nodes") {
+                    match list.is_true(&entry.key) {
+                        true => entry.refuse("points that lose all bonds are not held here"),
+                        false => list.idle(&[&entry.key]),
+                    }
+                    continue;
+                }
                 if let (Value::Text(_), Some(text)) = (&entry.value, entry.own()) {
                     self.points.add_set(&entry.key, text, &self.folder)?;
                 }
+            }
+        }
+        for entry in given.into_iter().flat_map(Entry::lists) {
+            if self.program == Program::PeriLab
+                && let Some(sets) = entry.text("Node Set")
+            {
+                self.points.add_union(sets);
             }
         }
         self.remarks.append(&mut self.points.notes);
@@ -193,18 +222,21 @@ impl<'a> Converter<'a> {
                 "Omit Bonds Between Blocks",
                 "give blocks bodies of their own: [[body]]",
             );
-            d.refuse_entry("NeighborhoodType", "families are balls");
-        }
-        let grid = discretization.is_some_and(|d| d.list("TensorProduct3DMeshGenerator").is_some());
-        let ball = discretization.and_then(|d| d.text("NeighborhoodType"));
-        let ball = ball.is_some_and(|t| t.eq_ignore_ascii_case("Spherical"));
-        if grid && !ball {
-            self.remarks.push("on a grid of Peridigm without NeighborhoodType Spherical the family is a box of cells; here it is a ball of the horizon".into());
+            let ball = d.text("NeighborhoodType");
+            if ball.is_some_and(|t| !t.eq_ignore_ascii_case("Spherical")) {
+                d.refuse_entry("NeighborhoodType", "families are balls");
+            }
         }
         let blocks = self.blocks()?;
-        let horizon = self.horizon(&blocks)?;
+        let given_horizon = self.horizon(&blocks)?;
+        let horizon = self.family(&blocks, given_horizon);
         let solver = solver::solver(root, self.program, &mut self.remarks)?;
-        let (materials, plane, breaks) = self.materials(&blocks, solver.damage);
+        let Materials {
+            text: materials,
+            plane,
+            height,
+            breaks,
+        } = self.materials(&blocks, given_horizon, solver.damage);
         if materials.is_empty() {
             let mut whys: Vec<String> = root.unmapped().into_iter().map(|u| u.why).collect();
             // what nobody asked for yet says nothing
@@ -224,6 +256,11 @@ impl<'a> Converter<'a> {
             out += "dimension = 2\n";
             out += &format!("plane = \"{}\"\n", plane.unwrap_or("strain"));
         }
+        if let Some(height) = height {
+            out += &format!("thickness = {height:?}\n");
+            // of a plane they are areas
+            self.points.volume.iter_mut().for_each(|v| *v /= height);
+        }
         out += &format!("horizon = {horizon:?}\n");
         let influence = discretization.map_or("constant", influence);
         out += &format!("influence = \"{influence}\"\n");
@@ -234,7 +271,13 @@ impl<'a> Converter<'a> {
         out += &format!("body = {{ file = {} }}\n", quoted(mesh));
         out += &materials;
         if let Some(filters) = discretization.and_then(|d| d.list("Bond Filters")) {
-            out += &conditions::filters(filters, dimension);
+            let target = filters::Target {
+                program: self.program,
+                dimension,
+                position: &self.points.position,
+                horizon: given_horizon,
+            };
+            out += &filters::filters(filters, &target, &mut self.remarks);
         }
         let mut names: Vec<String> = self.points.names.values().cloned().collect();
         let sets = self
@@ -244,7 +287,14 @@ impl<'a> Converter<'a> {
             .filter(|(_, points)| !points.is_empty());
         names.extend(sets.map(|(name, _)| name.clone()));
         if let Some(given) = given {
-            out += &conditions::conditions(given, &names, solver.clock, dimension);
+            let stage = conditions::Stage {
+                program: self.program,
+                points: &self.points,
+                names: &names,
+                solver: &solver,
+                dimension,
+            };
+            out += &conditions::conditions(given, &stage, &mut self.remarks);
         }
         let mut labels = vec![];
         if let Some(all) = root.list("Compute Class Parameters") {
@@ -341,12 +391,33 @@ impl<'a> Converter<'a> {
         horizon.ok_or_else(|| "no block has a Horizon that is a number".into())
     }
 
-    /// Tables of the materials of all blocks, the plane they are in, and whether any can break.
-    fn materials(
-        &mut self,
-        blocks: &[Block],
-        damage: bool,
-    ) -> (String, Option<&'static str>, bool) {
+    /// The horizon whose ball is the family of the other program; where there is none, that of the deck, which is then named.
+    fn family(&mut self, blocks: &[Block], given: f64) -> f64 {
+        let kind = { self.root.list("Discretization") }.and_then(|d| d.text("NeighborhoodType"));
+        let ball = kind.is_some_and(|t| t.eq_ignore_ascii_case("Spherical"));
+        let search = Search::of(self.program, self.points.grid.is_some(), ball);
+        match family::horizon(&self.points, given, search) {
+            Ok((horizon, told)) => {
+                self.remarks.extend(told);
+                horizon
+            }
+            Err(why) => {
+                for block in blocks {
+                    block.entry.refuse_entry("Horizon", &why);
+                }
+                given
+            }
+        }
+    }
+
+    /// Materials of all blocks.
+    fn materials(&mut self, blocks: &[Block], horizon: f64, damage: bool) -> Materials {
+        let setting = laws::Setting {
+            program: self.program,
+            dimension: self.points.dimension,
+            flat: self.points.flat(),
+            horizon,
+        };
         let models = self.root.list("Models");
         let root = self.root;
         let named = |list: &str| {
@@ -362,7 +433,8 @@ impl<'a> Converter<'a> {
             Program::Peridigm => "Material",
             Program::PeriLab => "Material Model",
         };
-        let (mut out, mut plane, mut breaks) = (String::new(), None, false);
+        let mut made = Materials::default();
+        let mut first = true;
         for block in blocks {
             let name = block.entry.text(key_of).unwrap_or("");
             let Some(material) = materials.and_then(|all| all.list(name)) else {
@@ -371,10 +443,15 @@ impl<'a> Converter<'a> {
                     .refuse(&format!("there is no material \"{name}\""));
                 continue;
             };
-            let Some(law) = laws::law(material) else {
+            let Some(law) = laws::law(material, &setting) else {
                 continue;
             };
-            plane = plane.or(law.plane);
+            if std::mem::take(&mut first) {
+                (made.plane, made.height) = (law.plane, law.height);
+            } else if (law.plane, law.height) != (made.plane, made.height) {
+                material.refuse("a body is in one plane, that of the first block");
+                continue;
+            }
             let density = material
                 .number("Density")
                 .or_else(|| block.entry.number("Density"));
@@ -382,7 +459,7 @@ impl<'a> Converter<'a> {
                 material.refuse("it has no Density");
                 continue;
             };
-            out += &match blocks.len() {
+            made.text += &match blocks.len() {
                 1 => "\n[material]\n".to_string(),
                 _ => format!(
                     "\n[material.{}]\nset = {}\n",
@@ -390,7 +467,7 @@ impl<'a> Converter<'a> {
                     quoted(&block.name)
                 ),
             };
-            out += &format!("density = {density:?}\nlaw = {}\n", law.text);
+            made.text += &format!("density = {density:?}\nlaw = {}\n", law.text);
             let Some(model) = block.entry.text("Damage Model") else {
                 continue;
             };
@@ -401,8 +478,8 @@ impl<'a> Converter<'a> {
                 }
                 Some(list) => {
                     if let Some(fracture) = laws::fracture(list, &mut self.remarks) {
-                        breaks = true;
-                        out += &format!("fracture = {fracture}\n");
+                        made.breaks = true;
+                        made.text += &format!("fracture = {fracture}\n");
                     }
                 }
                 None => block
@@ -413,7 +490,7 @@ impl<'a> Converter<'a> {
         // one remark for a model of several blocks
         let mut seen = std::collections::BTreeSet::new();
         self.remarks.retain(|r| seen.insert(r.clone()));
-        (out, plane, breaks)
+        made
     }
 }
 

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use super::Program;
 use super::tree::Entry;
-use crate::read::exodus::parse_touching;
+use crate::read::Holds;
+use crate::read::exodus::parse_holding;
 use crate::read::number::number as read_number;
 use crate::write::exodus::Layout;
 use peridyne::expression::Expression;
@@ -24,6 +26,14 @@ pub struct Points {
     pub sets: BTreeMap<String, Vec<u32>>,
     /// What should be known of them.
     pub notes: Vec<String>,
+    pub grid: Option<Grid>,
+}
+
+/// Cells of a grid of Peridigm: lengths of their edges, and how many there are along each axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Grid {
+    pub edge: [f64; 3],
+    pub count: [usize; 3],
 }
 
 /// Text of a file that a deck names.
@@ -44,15 +54,17 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// `discretization` in the folder of its deck.
-pub fn points(discretization: &Entry, folder: &Path) -> Result<Points, String> {
+pub fn points(discretization: &Entry, folder: &Path, program: Program) -> Result<Points, String> {
     let kind = discretization.text("Type").unwrap_or("").to_lowercase();
     let file = discretization.text("Input Mesh File");
     let mut points = match (&*kind, file) {
         ("text file", Some(file)) => of_text(&folder.join(file))?,
-        ("exodus" | "exodus mesh", Some(file)) => of_mesh(&folder.join(file))?,
-        ("abaqus" | "gmsh", Some(file)) => {
+        ("exodus" | "exodus mesh", Some(file)) => of_mesh(&folder.join(file), program)?,
+        (of @ ("abaqus" | "gmsh"), Some(file)) => {
             let read = crate::read::points(&folder.join(file), crate::read::Frame::Last);
-            of_cloud(read.map_err(|e| e.to_string())?)
+            let mut points = of_cloud(read.map_err(|e| e.to_string())?);
+            points.without_groups(of == "gmsh");
+            points
         }
         ("pdquickgrid", _) => of_grid(discretization)?,
         (_, None) => return Err("Discretization has no Input Mesh File".into()),
@@ -142,10 +154,14 @@ fn of_text(path: &Path) -> Result<Points, String> {
     Ok(points)
 }
 
-/// Cells as points; a node set holds the cells that have one of its nodes, as in both programs.
-fn of_mesh(path: &Path) -> Result<Points, String> {
+/// Cells as points; a node set holds the cells that have one of its nodes in Peridigm, those that have no others in PeriLab.
+fn of_mesh(path: &Path, program: Program) -> Result<Points, String> {
     let name = path.display().to_string();
-    let read = parse_touching(&read(path)?, &name).map_err(|e| e.to_string())?;
+    let holds = match program {
+        Program::Peridigm => Holds::Touching,
+        Program::PeriLab => Holds::Enclosed,
+    };
+    let read = parse_holding(&read(path)?, &name, holds).map_err(|e| e.to_string())?;
     Ok(of_cloud(read))
 }
 
@@ -161,6 +177,7 @@ fn of_cloud(read: crate::read::Points) -> Points {
             .map(|(name, ids)| (name, ids.to_vec()))
             .collect(),
         notes: read.notes,
+        grid: None,
     }
 }
 
@@ -192,21 +209,30 @@ fn of_grid(discretization: &Entry) -> Result<Points, String> {
     if total.is_none_or(|n| n > 100_000_000) {
         return Err("the grid has more than a hundred million points".into());
     }
+    // added up, as there: round-off decides about bonds of the length of the horizon
+    let places: [Vec<f64>; 3] = std::array::from_fn(|a| {
+        let first = origin[a] + edge[a] / 2.0;
+        let next = |x: &f64| Some(x + edge[a]);
+        std::iter::successors(Some(first), next)
+            .take(count[a])
+            .collect()
+    });
     for z in 0..count[2] {
         for y in 0..count[1] {
             for x in 0..count[0] {
                 let cell = [x, y, z];
-                let place = |a: usize| origin[a] + (cell[a] as f64 + 0.5) * edge[a];
+                let place = |a: usize| places[a][cell[a]];
                 points.position.push(std::array::from_fn(place));
                 points.volume.push(edge.iter().product());
                 points.block.push(1);
             }
         }
     }
+    points.grid = Some(Grid { edge, count });
     Ok(points)
 }
 
-/// Numbers with blanks or commas between them, and ranges `first:last`; `None`: it is something else.
+/// Numbers with blanks or commas between them, and ranges `first:last` or `first:by:last`; `None`: it is something else.
 fn numbers(text: &str) -> Option<Vec<u32>> {
     let mut all = vec![];
     for word in text
@@ -215,10 +241,13 @@ fn numbers(text: &str) -> Option<Vec<u32>> {
     {
         match word.split_once(':') {
             None => all.push(word.parse().ok()?),
-            Some((first, last)) => {
+            Some((first, rest)) => {
+                let (by, last) = rest.split_once(':').unwrap_or(("1", rest));
                 let (first, last): (u32, u32) = (first.parse().ok()?, last.parse().ok()?);
+                let by: usize = by.parse().ok().filter(|by| *by > 0)?;
                 // no mesh here has more
-                (last.saturating_sub(first) < 1 << 27).then(|| all.extend(first..=last))?;
+                let few = last.saturating_sub(first) < 1 << 27;
+                few.then(|| all.extend((first..=last).step_by(by)))?;
             }
         }
     }
@@ -226,6 +255,65 @@ fn numbers(text: &str) -> Option<Vec<u32>> {
 }
 
 impl Points {
+    /// PeriLab's blocks of meshes without groups: all cells are block 1. It looks for groups of solids alone, so that all plane
+    /// cells of gmsh are, too.
+    fn without_groups(&mut self, gmsh: bool) {
+        let flat = gmsh && self.dimension == 2;
+        if flat && self.block.iter().any(|b| *b > 1) {
+            let note = "PeriLab knows no groups of a plane gmsh mesh: all cells are block 1";
+            self.notes.push(note.into());
+        }
+        if flat || self.block.iter().all(|b| *b == 0) {
+            self.block.fill(1);
+            self.names.clear();
+        }
+    }
+
+    /// Points of a set or a block, rising.
+    pub fn of(&self, name: &str) -> Vec<u32> {
+        let block = self.names.iter().find(|(_, n)| *n == name);
+        let with =
+            |b: i32| (0..self.block.len() as u32).filter(move |i| self.block[*i as usize] == b);
+        match (self.sets.get(name), block) {
+            (Some(set), _) => set.clone(),
+            (None, Some((block, _))) => with(*block).collect(),
+            (None, None) => vec![],
+        }
+    }
+
+    /// Do all have the same z?
+    pub fn flat(&self) -> bool {
+        let z = self.position.iter().map(|x| x[2]);
+        let (low, high) = z.fold((f64::MAX, f64::MIN), |(l, h), z| (l.min(z), h.max(z)));
+        let reach = |k: usize| {
+            { self.position.iter() }
+                .map(|x| x[k].abs())
+                .fold(0.0, f64::max)
+        };
+        high - low <= 1e-9 * reach(0).max(reach(1))
+    }
+
+    /// The volume that all points of a set have.
+    pub fn volume_of(&self, name: &str) -> Option<f64> {
+        let set = self.of(name);
+        let mut all = set.iter().map(|i| self.volume[*i as usize]);
+        let first = all.next()?;
+        let same = |v: f64| (v - first).abs() <= 1e-12 * first;
+        all.all(same).then_some(first)
+    }
+
+    /// Adds the union of sets whose names stand with + between them, as PeriLab has it.
+    pub fn add_union(&mut self, given: &str) {
+        let parts = given.split('+').map(str::trim);
+        let found: Option<Vec<&Vec<u32>>> = parts.map(|part| self.sets.get(part)).collect();
+        if let Some(found) = found.filter(|f| f.len() > 1) {
+            let mut union: Vec<u32> = found.into_iter().flatten().copied().collect();
+            union.sort_unstable();
+            union.dedup();
+            self.sets.insert(given.to_string(), union);
+        }
+    }
+
     /// Adds a set: numbers of points from 1 on (`7`, `1:27`), the name of a file with them, or an expression that holds at its points
     /// (`x < 0.1`). Numbers that no point has are left out, with a note.
     ///
@@ -235,6 +323,7 @@ impl Points {
         let path = folder.join(given);
         let mut set: Vec<u32> = match numbers(given) {
             Some(numbers) => self.places(name, &numbers),
+            None if given.eq_ignore_ascii_case("all") => (0..self.position.len() as u32).collect(),
             None if path.is_file() => {
                 let numbers = self.numbers_of(&path)?;
                 self.places(name, &numbers)

@@ -1,7 +1,7 @@
 //! Solvers and outputs of both programs.
 
 use super::conditions::{Clock, field};
-use super::tree::{Entry, Value};
+use super::tree::{Entry, Value, same};
 use super::{Program, quoted};
 
 /// How the deck runs.
@@ -9,10 +9,13 @@ pub struct Solver {
     /// Its table.
     pub text: String,
     pub clock: Clock,
+    /// Times there: the first and the last.
+    pub from: f64,
+    pub to: f64,
     /// Do bonds break?
     pub damage: bool,
     /// Steps or increments, where they are known.
-    steps: Option<u64>,
+    pub steps: Option<u64>,
 }
 
 /// Lists of the top whose name begins so, in order.
@@ -37,15 +40,27 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
     for other in others {
         other.refuse("a deck has one solver: write a second deck");
     }
-    solver.idle(&["Verbose", "Material Models", "Maximum Damage"]);
+    solver.idle(&["Verbose"]);
+    if solver
+        .text("Material Models")
+        .is_some_and(|t| t.eq_ignore_ascii_case("false"))
+    {
+        solver.refuse_entry(
+            "Material Models",
+            "bodies here have materials, whose forces act",
+        );
+    }
+    match solver.number("Maximum Damage") {
+        Some(most) if most < 1.0 => {
+            solver.refuse_entry("Maximum Damage", "a run does not end where a point is torn")
+        }
+        _ => {}
+    }
     let damage = match program {
         Program::Peridigm => true,
         Program::PeriLab => solver.is_true("Damage Models"),
     };
-    let from = solver.number("Initial Time").unwrap_or(0.0);
-    let to = solver
-        .number("Final Time")
-        .ok_or("the solver has no Final Time")?;
+    let [from, to] = times(solver)?;
     if !(to > from) {
         return Err(format!("the solver ends at {to}, and begins at {from}"));
     }
@@ -66,7 +81,7 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         scale: 1.0,
     };
     if let Some(list) = solver.list("Verlet") {
-        let (time, steps) = step(list, to - from);
+        let (time, steps) = step(list, to - from, program);
         list.refuse_entry(
             "Numerical Damping",
             "write damping in a [[condition]], force density / velocity",
@@ -74,6 +89,8 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         return Ok(Solver {
             text: format!("\n[run]\n{time}"),
             clock: moving,
+            from,
+            to,
             damage,
             steps,
         });
@@ -82,9 +99,23 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         let Some(list) = solver.list(name) else {
             continue;
         };
-        let (time, steps) = step(list, to - from);
+        let (time, steps) = match program {
+            Program::Peridigm => step(list, to - from, program),
+            Program::PeriLab => {
+                // its steps are those of statics
+                list.idle(&["Safety Factor", "Fixed dt", "Numerical Damping"]);
+                let steps = increments(solver, list, to - from, program);
+                let step = (to - from) / steps as f64;
+                let text = format!("steps = {steps}\ntime_step = {step:?}\n");
+                (text, Some(steps))
+            }
+        };
         let mut text = format!("\n[run]\nintegrator = \"newmark\"\n{time}");
-        for (there, here) in [("Beta", "beta"), ("Gamma", "gamma")] {
+        let names = match program {
+            Program::Peridigm => [("Beta", "beta"), ("Gamma", "gamma")],
+            Program::PeriLab => [("Newmark Alpha", "beta"), ("Newmark Delta", "gamma")],
+        };
+        for (there, here) in names {
             if let Some(x) = list.number(there) {
                 text += &format!("{here} = {x:?}\n");
             }
@@ -96,6 +127,8 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         return Ok(Solver {
             text,
             clock: moving,
+            from,
+            to,
             damage,
             steps,
         });
@@ -109,15 +142,12 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
         let Some(list) = solver.list(name) else {
             continue;
         };
-        let steps = ["Number of Load Steps", "Number of Steps"];
-        let steps = steps.into_iter().find_map(|key| list.number(key));
-        let increments = steps.unwrap_or(1.0).max(1.0) as u64;
+        let increments = increments(solver, list, to - from, program);
         let method = if name.starts_with("Linear") {
             "linear"
         } else {
             "newton"
         };
-        list.refuse_entry("Time Steps", "increments of a load are equal here");
         residuals(list);
         remarks.push(format!(
             "t goes from 0 to 1 in statics: conditions have ({from:?} + {:?} t) in place of t",
@@ -129,6 +159,8 @@ pub fn solver(root: &Entry, program: Program, remarks: &mut Vec<String>) -> Resu
                 start: from,
                 scale: to - from,
             },
+            from,
+            to,
             damage,
             steps: Some(increments),
         });
@@ -149,14 +181,78 @@ fn residuals(list: &Entry) {
     }
 }
 
-/// Steps in time: what a table says of them, and how many where that is known. As many whole steps as fit are done.
-fn step(list: &Entry, duration: f64) -> (String, Option<u64>) {
-    match (list.number("Fixed dt"), list.number("Safety Factor")) {
-        (Some(dt), safety) if dt > 0.0 => {
-            if safety.is_some_and(|s| s != 1.0) {
-                list.refuse_entry("Safety Factor", "the step is given");
-            }
-            let steps = ((duration / dt).floor() as u64).max(1);
+/// The first and the last time. Peridigm's statics may say them with all others, as `Time Steps`.
+fn times(solver: &Entry) -> Result<[f64; 2], String> {
+    let listed = { solver.lists() }.find_map(|list| listed(list).map(|t| [t[0], t[t.len() - 1]]));
+    let from = solver.number("Initial Time");
+    match (solver.number("Final Time"), listed) {
+        (Some(to), None) => Ok([from.unwrap_or(0.0), to]),
+        (Some(to), Some(_)) if steps_given(solver) => Ok([from.unwrap_or(0.0), to]),
+        (_, Some(listed)) => Ok(listed),
+        (None, None) => Err("the solver has no Final Time".into()),
+    }
+}
+
+/// Peridigm takes a number of load steps before a list of times.
+fn steps_given(solver: &Entry) -> bool {
+    { solver.lists() }.any(|list| list.find("Number of Load Steps").is_some())
+}
+
+/// `Time Steps` of a list, where they are two or more numbers.
+fn listed(list: &Entry) -> Option<Vec<f64>> {
+    let words = list.text("Time Steps")?.split_whitespace();
+    let times: Option<Vec<f64>> = words.map(|w| w.parse().ok()).collect();
+    times.filter(|t| t.len() >= 2)
+}
+
+/// Increments of a load: PeriLab's `Number of Steps` stands beside the method, and `Fixed dt` in it goes first.
+fn increments(solver: &Entry, list: &Entry, duration: f64, program: Program) -> u64 {
+    let count = |x: f64| x.clamp(1.0, 1e9) as u64;
+    if program == Program::PeriLab {
+        // in nonlinear statics a step that is given goes first
+        let fixed = if same(&list.key, "Static") {
+            list.number("Fixed dt")
+        } else {
+            None
+        };
+        let fixed = fixed.filter(|dt| *dt > 0.0);
+        let steps = { solver.number("Number of Steps") }.or_else(|| list.number("Number of Steps"));
+        let fixed = fixed.map(|dt| (duration / dt).round());
+        return fixed.or(steps).map_or(1, count);
+    }
+    if let Some(steps) = list.number("Number of Load Steps") {
+        list.refuse_entry("Time Steps", "the number of load steps is given");
+        return count(steps);
+    }
+    let Some(times) = listed(list) else { return 1 };
+    let each = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let uneven = |pair: &[f64]| (pair[1] - pair[0] - each).abs() > 1e-9 * each.abs();
+    if times.windows(2).any(uneven) {
+        list.refuse_entry("Time Steps", "increments of a load are equal here");
+    }
+    (times.len() - 1) as u64
+}
+
+/// Steps in time: what a table says of them, and how many where that is known. Peridigm does as many whole steps as fit, and a safety
+/// factor shortens a step that is given, too; PeriLab does so many equal steps that none is longer.
+fn step(list: &Entry, duration: f64, program: Program) -> (String, Option<u64>) {
+    let safety = list.number("Safety Factor");
+    match (list.number("Fixed dt"), safety) {
+        (Some(dt), _) if dt > 0.0 => {
+            let (steps, dt) = match program {
+                Program::Peridigm => {
+                    let dt = safety.filter(|s| *s > 0.0).map_or(dt, |s| dt * s);
+                    ((duration / dt).floor(), dt)
+                }
+                Program::PeriLab => {
+                    if safety.is_some() {
+                        list.idle(&["Safety Factor"]);
+                    }
+                    let steps = (duration / dt).ceil();
+                    (steps, duration / steps)
+                }
+            };
+            let steps = (steps as u64).max(1);
             (
                 format!("steps = {steps}\ntime_step = {dt:?}\n"),
                 Some(steps),
@@ -190,20 +286,16 @@ pub fn output(
         lists.extend(all.lists());
     }
     let mut fields: Vec<&str> = vec![];
-    let (mut name, mut every) = (None, None);
+    let (mut name, mut frames) = (None, None);
     for list in lists {
         list.idle(&[
             "Output Format",
             "Output File Type",
             "Parallel Write",
-            "Write After Damage",
             "Flush File",
         ]);
         let file = list.text("Output Filename");
-        let frequency = match list.number("Number of Output Steps").filter(|n| *n >= 1.0) {
-            Some(n) => solver.steps.map(|steps| (steps / n as u64).max(1)),
-            None => list.number("Output Frequency").map(|n| n.max(1.0) as u64),
-        };
+        let frequency = frequency(list, solver);
         let variables = list.list("Output Variables").map_or(&[][..], Entry::all);
         let mut own = 0;
         for variable in variables {
@@ -216,10 +308,7 @@ pub fn output(
                 variable.own();
                 continue;
             }
-            if nothing[..2]
-                .iter()
-                .any(|n| super::tree::same(n, &variable.key))
-            {
+            if nothing[..2].iter().any(|n| same(n, &variable.key)) {
                 // numbers of points are in every file, and there is one process
                 variable.own();
                 continue;
@@ -240,7 +329,7 @@ pub fn output(
         }
         match (
             own > 0 || name.is_none(),
-            name.is_some() && every != frequency,
+            name.is_some() && frames != frequency,
         ) {
             (true, true) => list.refuse_entry(
                 "Output Frequency",
@@ -248,21 +337,46 @@ pub fn output(
             ),
             (true, false) => {
                 name = name.or(file);
-                every = every.or(frequency);
+                frames = frames.or(frequency);
             }
             (false, _) => {}
         }
-        list.refuse_entry("Initial Output Step", "frames begin at the start");
+        let all = |key: &str, none: f64| match list.number(key) {
+            Some(x) if x == none => {}
+            _ => list.refuse_entry(key, "frames are of the whole run"),
+        };
+        if list.is_true("Write After Damage") {
+            list.refuse_entry("Write After Damage", "frames are of the whole run");
+        }
+        all("Initial Output Step", 1.0);
+        all("Final Output Step", f64::MAX);
+        all("Start Time", 0.0);
+        all("End Time", f64::MAX);
     }
     let mut text = String::from("\n[output]\nvtu = false\n");
     let stem = name.unwrap_or("results");
     let stem = stem.rsplit(['/', '\\']).next().unwrap_or(stem);
     text += &format!("exodus = {}\n", quoted(&format!("{stem}.e")));
-    if let Some(every) = every {
-        text += &format!("every = {every}\n");
+    if let Some(frames) = frames {
+        text += &frames;
     }
     if !fields.is_empty() {
         text += &format!("fields = {fields:?}\n");
     }
     text
+}
+
+/// How often there are frames, as a key of the output; the same number of steps between them as there, where they are counted there.
+fn frequency(list: &Entry, solver: &Solver) -> Option<String> {
+    let number = list.number("Number of Output Steps").filter(|n| *n >= 1.0);
+    let every = list.number("Output Frequency").filter(|n| *n >= 1.0);
+    match (number, every, solver.steps) {
+        (Some(n), _, Some(steps)) => Some(format!(
+            "every = {}\n",
+            steps.div_ceil(n as u64).clamp(1, steps)
+        )),
+        (Some(n), _, None) => Some(format!("frames = {}\n", n as u64)),
+        (None, Some(every), _) => Some(format!("every = {}\n", every as u64)),
+        (None, None, _) => None,
+    }
 }

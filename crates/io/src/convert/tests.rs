@@ -6,6 +6,9 @@ use peridyne::spec::{ConditionKind, Horizon, TimeStep};
 use proptest::prelude::*;
 use std::fs;
 
+mod filters;
+mod rules;
+
 const MESH: &str = "# x y z block_id volume\n0 0 0 1 1.0\n1 0 0 1 1.0\n0 1 0 2 2.0\n1 1 0 2 2.0\n";
 
 const YAML: &str = r#"Peridigm:

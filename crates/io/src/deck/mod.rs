@@ -78,6 +78,8 @@ pub struct OutputSpec {
     pub dir: Option<PathBuf>,
     /// Steps between frames; `None`: first and last state.
     pub every: Option<u64>,
+    /// Or how many frames there are after the first.
+    pub frames: Option<u64>,
     /// VTU series with PVD.
     pub vtu: bool,
     /// Exodus II file of this name.
@@ -100,6 +102,14 @@ pub struct OutputSpec {
     pub data: Option<PathBuf>,
     /// Keys whose names lead out of the folder they belong in, and the names.
     pub outside: Vec<(&'static str, String)>,
+}
+
+impl OutputSpec {
+    /// Steps between frames of a run of `steps`; `None`: first and last state.
+    pub fn every(&self, steps: u64) -> Option<u64> {
+        let shared = |frames: u64| steps.div_ceil(frames).max(1);
+        self.every.or(self.frames.map(shared))
+    }
 }
 
 /// A picture that a deck asks for.

@@ -7,7 +7,7 @@
 
 use super::cell::{Cell, Kind};
 use super::lines::Lines;
-use super::mesh::{Group, Mesh};
+use super::mesh::{Group, Holds, Mesh};
 use super::{Points, ReadError, Sourced, whole};
 use crate::netcdf::Reader;
 
@@ -84,18 +84,18 @@ const KNOWN: &str =
 /// The file is cut short, of netCDF-4, no mesh, has element types that make no points, cells without volume, or nodes that do not
 /// exist.
 pub fn parse_exodus(bytes: &[u8], name: &str) -> Result<Points, ReadError> {
-    whole(read(bytes, name, false)?, name)
+    parse_holding(bytes, name, Holds::Sides)
 }
 
-/// The same where a set of nodes holds every cell that has one of them, as in Peridigm.
+/// The same, with other cells in the sets of nodes.
 ///
 /// # Errors
 /// Those of [`parse_exodus`].
-pub fn parse_touching(bytes: &[u8], name: &str) -> Result<Points, ReadError> {
-    whole(read(bytes, name, true)?, name)
+pub fn parse_holding(bytes: &[u8], name: &str, holds: Holds) -> Result<Points, ReadError> {
+    whole(read(bytes, name, holds)?, name)
 }
 
-fn read(bytes: &[u8], name: &str, touching: bool) -> Result<Sourced, ReadError> {
+fn read(bytes: &[u8], name: &str, holds: Holds) -> Result<Sourced, ReadError> {
     let lines = Lines::binary(name);
     let error = |message: String| lines.error(message);
     let reader = Reader::new(bytes).map_err(error)?;
@@ -103,7 +103,7 @@ fn read(bytes: &[u8], name: &str, touching: bool) -> Result<Sourced, ReadError> 
         reader,
         mesh: Mesh {
             distinct: true,
-            touching,
+            holds,
             ..Mesh::default()
         },
         shells: None,

@@ -39,12 +39,24 @@ pub(super) struct Mesh {
     pub side_sets: Vec<(String, Vec<(usize, Option<Vec<usize>>)>)>,
     /// Every cell stands once: two with the same nodes are two.
     pub distinct: bool,
-    /// A set of nodes holds every cell that has one of them.
-    pub touching: bool,
+    /// Which cells a set of nodes holds.
+    pub holds: Holds,
     /// Elements without shape, by type: (type, how many).
     pub shapeless: BTreeMap<String, usize>,
     /// Cells with nodes besides their corners, by their dimension.
     pub second_order: [usize; 4],
+}
+
+/// Which cells a set of nodes holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Holds {
+    /// Those that it bounds or fills: a side or all corners.
+    #[default]
+    Sides,
+    /// Those that have one of its nodes.
+    Touching,
+    /// Those that have no other nodes.
+    Enclosed,
 }
 
 impl Mesh {
@@ -192,13 +204,15 @@ impl Mesh {
         }
         for (name, nodes) in &self.node_sets {
             let mut faces = Areas::default();
-            let cells = match self.touching {
-                true => nodes
-                    .iter()
-                    .flat_map(|n| around.with(*n))
-                    .copied()
-                    .collect(),
-                false => around.of_nodes(nodes, &self.nodes, &mut faces),
+            let touching = || nodes.iter().flat_map(|n| around.with(*n)).copied();
+            let cells = match self.holds {
+                Holds::Sides => around.of_nodes(nodes, &self.nodes, &mut faces),
+                Holds::Touching => touching().collect(),
+                Holds::Enclosed => {
+                    let set: HashSet<u64> = nodes.iter().copied().collect();
+                    let inside = |i: &u32| body[*i as usize].nodes.iter().all(|n| set.contains(n));
+                    touching().filter(inside).collect()
+                }
             };
             add(cloud, name, cells, faces, notes);
         }

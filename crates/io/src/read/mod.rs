@@ -34,6 +34,7 @@ pub mod vtu;
 mod whole;
 
 pub use atoms::{Atoms, Frame, Species};
+pub use mesh::Holds;
 pub use whole::text_of;
 
 use peridyne::spec::{AnyLinearBody, Cloud};

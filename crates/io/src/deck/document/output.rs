@@ -12,6 +12,8 @@ pub struct Output {
     pub dir: Option<String>,
     /// Steps between frames; only the first and the last state when left out.
     pub every: Option<At<u64>>,
+    /// Frames after the first, evenly in steps, in place of `every`; one fewer or a few fewer where steps are no multiple.
+    pub frames: Option<At<u64>>,
     /// Point fields of a frame, by name (`peridyne laws` lists them), displacements always; displacement, velocity, damage,
     /// energy_density, dilatation, mark when left out.
     pub fields: Option<Vec<At<String>>>,

@@ -455,6 +455,13 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         }
         name => name.as_ref().map(|n| n.value.clone().into()),
     };
+    if let (Some(_), Some(frames)) = (&written.every, &written.frames) {
+        return Err(context.error_with(
+            &frames.span,
+            "every says how often there are frames, and frames says how many",
+            "keep one of them",
+        ));
+    }
     if let Some(name) = &written.exodus {
         let ends = [".e", ".exo", ".ex2"];
         if !ends.iter().any(|end| name.value.ends_with(end)) {
@@ -491,6 +498,7 @@ pub(super) fn output(context: &Context, written: &Output, atoms: bool) -> Result
         outside,
         dir: written.dir.clone().map(Into::into),
         every: positive(&written.every, "every")?,
+        frames: positive(&written.frames, "frames")?,
         vtu: written.vtu.unwrap_or(true),
         exodus: written.exodus.as_ref().map(|n| n.value.clone().into()),
         bonds: written.bonds,

@@ -154,6 +154,24 @@ fn blocks_are_marks_and_everything_named_is_a_set() {
     }
 }
 
+#[test]
+fn sets_of_nodes_hold_cells_that_touch_them_or_lie_in_them() {
+    // the cube and the wedge share nodes 2 and 8; the cube alone has all of the first eight
+    let sets = |nodes: Vec<i32>, holds: Holds| -> Vec<u32> {
+        let mut variables = cubes();
+        variables.retain(|v| v.0 != "node_ns1");
+        variables.push(("node_ns1", &["eight"], Given::Ints(nodes), None));
+        let points = parse_holding(&bytes(&variables), "f", holds).unwrap();
+        let set = points.cloud.sets.iter().find(|(name, _)| name == "left");
+        set.map_or(vec![], |(_, s)| s.to_vec())
+    };
+    let cube = vec![1, 2, 5, 4, 7, 8, 11, 10];
+    assert_eq!(sets(cube.clone(), Holds::Touching), [0, 1]);
+    assert_eq!(sets(cube, Holds::Enclosed), [0]);
+    let all_but_one = vec![1, 2, 5, 4, 7, 8, 11, 11];
+    assert!(sets(all_but_one, Holds::Enclosed).is_empty());
+}
+
 /// Three spheres in two blocks.
 fn spheres(attributes: usize, values: Vec<f64>, names: Option<Vec<&'static str>>) -> Vec<u8> {
     let dimensions = [

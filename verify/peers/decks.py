@@ -1,0 +1,275 @@
+"""Every deck of Peridigm's test/regression and PeriLab's test/fullscale_tests, converted, run, and compared with its gold file.
+
+Usage: python decks.py PERIDYNE [--peridigm CHECKOUT] [--perilab CHECKOUT] [--only PART] [--table FILE] [--seconds N]
+
+CHECKOUT is a clone of github.com/peridigm/peridigm or github.com/PeriHub/PeriLab.jl, bare or with files. A line of the table is a deck:
+what became of it, the largest difference of each field from the gold over all points and common times, as part of the field's largest
+value, and entries that were not mapped. It agrees where all fields are within TOLERANCE, or within its own in KNOWN with the reason
+for it. Exit code 1 if a deck that agreed in KNOWN, or is not in it, does not: what differs must have its reason here.
+Needs: pip install numpy scipy
+"""
+
+import argparse
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from scipy.io import netcdf_file
+from scipy.spatial import cKDTree
+
+TOLERANCE = 1e-6
+
+# our nodal variables (without their component), and those of both programs
+FIELDS = {
+    "displacement": ("displ", ["Displacement", "Displacements"]),
+    "velocity": ("velocity", ["Velocity"]),
+    "force density": ("force_density", ["Force_Density", "Force Densities"]),
+    "force": ("force_density", ["Force", "Forces"]),
+    "dilatation": ("dilatation", ["Dilatation"]),
+    "damage": ("damage", ["Damage"]),
+}
+
+
+class Exodus:
+    """Nodal and element variables of a file, by point."""
+
+    def __init__(self, path):
+        self.data = netcdf_file(path, "r", mmap=False)
+        v = self.data.variables
+        axes = [f"coord{a}" for a in "xyz" if f"coord{a}" in v]
+        at = [v[a].data for a in axes] or list(v["coord"].data)
+        self.at = np.zeros((len(at[0]), 3))
+        for a, column in enumerate(at):
+            self.at[:, a] = column
+        self.times = np.array(v["time_whole"].data)
+        self.nodal = {n: k for k, n in enumerate(self.names("name_nod_var"), 1)}
+        self.element = {n: k for k, n in enumerate(self.names("name_elem_var"), 1)}
+
+    def names(self, name):
+        if name not in self.data.variables:
+            return []
+        return [b"".join(row).split(b"\0")[0].decode().strip() for row in self.data.variables[name].data]
+
+    def scalar(self, name, frame):
+        """Values of a variable at all points; elements are points with the numbers of their nodes."""
+        if name in self.nodal:
+            return self.data.variables[f"vals_nod_var{self.nodal[name]}"].data[frame]
+        if name not in self.element:
+            return None
+        values = np.full(len(self.at), np.nan)
+        blocks = [k for k in range(1, 1000) if f"connect{k}" in self.data.variables]
+        for block in blocks:
+            nodes = self.data.variables[f"connect{block}"].data
+            found = self.data.variables.get(f"vals_elem_var{self.element[name]}eb{block}")
+            if nodes.shape[1] != 1 or found is None:
+                return None
+            values[nodes[:, 0] - 1] = found.data[frame]
+        return values
+
+    def field(self, names, frame):
+        """Columns of the first of these fields that is there: a scalar, or components in any of the spellings."""
+        for name in names:
+            one = self.scalar(name, frame)
+            if one is not None:
+                return one[:, None]
+            for style in (str.lower, str.upper, lambda a: "_" + a):
+                columns = [self.scalar(name + style(a), frame) for a in "xyz"]
+                columns = [c for c in columns if c is not None]
+                if len(columns) >= 2:
+                    return np.stack(columns, axis=1)
+        return None
+
+
+Line = collections.namedtuple("Line", "case kind text worst left")
+
+
+def files(checkout, under, to):
+    """The files of a folder of a checkout, without what is not there of it."""
+    checkout = pathlib.Path(checkout)
+    if (checkout / under).is_dir():
+        return checkout / under
+    git = ["git", "--git-dir", str(checkout if (checkout / "HEAD").exists() else checkout / ".git")]
+    names = subprocess.run([*git, "ls-tree", "-r", "--name-only", "HEAD", under], capture_output=True, text=True, check=True)
+    for name in names.stdout.splitlines():
+        shown = subprocess.run([*git, "show", f"HEAD:{name}"], capture_output=True)
+        if shown.returncode == 0:
+            path = to / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(shown.stdout)
+    return to / under
+
+
+def entries(text, name):
+    """Values of an entry of a deck, YAML or XML, without comments."""
+    text = re.sub(r"<!--.*?-->", "", text, flags=re.S)
+    text = re.sub(r"(?m)^\s*#.*$", "", text)
+    pattern = rf'(?:"|^|\s){re.escape(name)}"?\s*(?::\s*|type="\w+"\s+value=)"?([^"\n#/]+)'
+    return [v.strip() for v in re.findall(pattern, text, flags=re.M)]
+
+
+def gold_of(deck, text):
+    """The gold file of a deck."""
+    for output in entries(text, "Output Filename"):
+        stem = pathlib.Path(output.strip()).name
+        tried = [deck.parent / f"{stem}_gold.e", deck.parent / "Reference" / f"{stem}.e"]
+        for path in tried + [deck.parent / f"{deck.stem}_gold.e"]:
+            if path.is_file():
+                return path
+    return None
+
+
+def common(ours, gold, times):
+    """Pairs of a frame of the gold and our frames about it with the weight of the second; `times` are ours as there."""
+    span = max(abs(times[-1]), abs(times[-1] - times[0]), 1e-300)
+    pairs = []
+    for g, t in enumerate(gold.times):
+        # the first record of PeriLab is empty, that of the start follows
+        if g + 1 < len(gold.times) and g == 0 and gold.times[1] == t:
+            continue
+        k = int(np.searchsorted(times, t - 1e-9 * span))
+        if k < len(times) and abs(times[k] - t) <= 1e-6 * span:
+            pairs.append((g, k, k, 0.0))
+        elif 0 < k < len(times):
+            pairs.append((g, k - 1, k, (t - times[k - 1]) / (times[k] - times[k - 1])))
+    return pairs
+
+
+def compare(ours, gold, times):
+    """Largest difference of each field as part of its largest value; None without common points or times."""
+    distance, nearest = cKDTree(ours.at).query(gold.at)
+    size = np.ptp(gold.at, axis=0).max()
+    if len(ours.at) != len(gold.at) or distance.max() > 1e-6 * size:
+        return f"its points are others: {len(gold.at)} there, {len(ours.at)} here, {distance.max():.1e} apart"
+    pairs = common(ours, gold, times)
+    if not pairs:
+        return "no time of the gold is in the run"
+    volume = np.concatenate([ours.data.variables[k].data[:, 1] for k in attributes(ours)])
+    order = np.concatenate([ours.data.variables[k.replace("attrib", "connect")].data[:, 0] for k in attributes(ours)]) - 1
+    volumes = np.empty(len(ours.at))
+    volumes[order] = volume
+    worst = {}
+    for label, (here, there) in FIELDS.items():
+        largest, off = 0.0, 0.0
+        for g, a, b, weight in pairs:
+            wanted = gold.field(there, g)
+            found = [ours.field([here], k) for k in (a, b)]
+            if wanted is None or any(f is None for f in found):
+                break
+            found = (found[0] + weight * (found[1] - found[0]))[nearest][:, : wanted.shape[1]]
+            if label == "force":
+                found = found * volumes[nearest][:, None]
+            known = ~np.isnan(wanted)
+            largest = max(largest, np.abs(wanted[known]).max(initial=0.0))
+            off = max(off, np.abs(found - wanted)[known].max(initial=0.0))
+        else:
+            worst[label] = off if largest == 0.0 else off / largest
+    return worst or "no field of the gold is in the run"
+
+
+def attributes(file):
+    return sorted((k for k in file.data.variables if re.fullmatch(r"attrib\d+", k)), key=lambda k: int(k[6:]))
+
+
+def shorter(message):
+    """The first line of what a program says of a failure."""
+    lines = [l for l in message.splitlines() if l.strip()]
+    told = [l for l in lines if "error" in l.lower()] or lines or ["nothing was said"]
+    return re.sub(r"\s+", " ", re.sub(r"^.*?error:?\s*", "", told[0], flags=re.I))[:160]
+
+
+def case(peridyne, deck, name, seconds):
+    text = deck.read_text(errors="replace")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        new = folder / "new.toml"
+        done = subprocess.run([peridyne, "convert", str(deck), "-o", str(new)], capture_output=True, text=True)
+        said = done.stdout + done.stderr
+        left = sorted({l.split("not mapped: ", 1)[1] for l in said.splitlines() if "not mapped: " in l})
+        if done.returncode != 0:
+            return Line(name, "refused", shorter(done.stderr).split(": ", 1)[-1], {}, left)
+        gold = gold_of(deck, text)
+        run = [peridyne, "run", str(new), "--out", str(folder / "out"), "--set", "output.report=false", "--set", "output.picture=false"]
+        try:
+            done = subprocess.run(run, capture_output=True, text=True, timeout=seconds)
+        except subprocess.TimeoutExpired:
+            return Line(name, "too long", f"more than {seconds} s", {}, left)
+        if done.returncode != 0:
+            return Line(name, "does not run", shorter(done.stderr), {}, left)
+        if gold is None:
+            return Line(name, "no gold", "", {}, left)
+        ours = Exodus(next((folder / "out").glob("*.e")))
+        try:
+            gold = Exodus(gold)
+        except (TypeError, ValueError) as error:
+            return Line(name, "no gold", f"its gold is not read: {error}", {}, left)
+        start = float((entries(text, "Initial Time") or ["0"])[0])
+        times = ours.times + start
+        if "[statics]" in new.read_text():
+            end = entries(text, "Final Time")
+            steps = entries(text, "Time Steps")
+            end = float(end[0]) if end else float(steps[0].split()[-1])
+            times = start + (end - start) * ours.times
+        found = compare(ours, gold, times)
+    if isinstance(found, str):
+        return Line(name, "differs", found, {}, left)
+    tolerance, why = KNOWN.get(name, (TOLERANCE, ""))
+    most = max(found.values())
+    if tolerance is None:
+        return Line(name, "differs", why, found, left)
+    return Line(name, "agrees" if most <= tolerance else "DIFFERS", why, found, left)
+
+
+def table(lines):
+    rows = ["| deck | | largest difference | why, what is not mapped |", "|---|---|---|---|"]
+    for l in lines:
+        worst = ", ".join(f"{field} {value:.0e}" for field, value in l.worst.items())
+        left = collections.Counter(e.split(" / ")[0] for e in l.left)
+        rest = ", ".join(f"{k} ({n})" for k, n in left.items())
+        rows.append(f"| {l.case} | {l.kind} | {worst} | {'; '.join(x for x in (l.text.replace('|', '/'), rest) if x)} |")
+    counts = collections.Counter(l.kind for l in lines)
+    rows.append("")
+    rows.append(f"{len(lines)} decks: " + ", ".join(f"{n} {kind}" for kind, n in counts.most_common()))
+    return "\n".join(rows)
+
+
+# tolerance, or None where it differs; and why
+KNOWN = {}
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("peridyne")
+    arguments.add_argument("--peridigm")
+    arguments.add_argument("--perilab")
+    arguments.add_argument("--only", default="")
+    arguments.add_argument("--table")
+    arguments.add_argument("--seconds", type=float, default=120)
+    a = arguments.parse_args()
+    peridyne = str(pathlib.Path(a.peridyne).resolve())
+    lines = []
+    with tempfile.TemporaryDirectory() as folder:
+        for checkout, under, kinds in [
+            (a.peridigm, "test/regression", (".xml", ".yaml")),
+            (a.perilab, "test/fullscale_tests", (".yaml",)),
+        ]:
+            if not checkout:
+                continue
+            root = files(checkout, under, pathlib.Path(folder) / pathlib.Path(under).name)
+            for deck in sorted(p for p in root.rglob("*") if p.suffix in kinds):
+                name = str(deck.relative_to(root))
+                if a.only in name and not re.search(r"/np\d/", name):
+                    lines.append(case(peridyne, deck, name, a.seconds))
+                    print(*lines[-1][:4], flush=True)
+    print(table(lines))
+    if a.table:
+        pathlib.Path(a.table).write_text(table(lines) + "\n")
+    if any(l.kind == "DIFFERS" for l in lines):
+        sys.exit("decks differ that have no reason in KNOWN")
+
+
+if __name__ == "__main__":
+    main()
